@@ -1,0 +1,79 @@
+# Every target sets up what it needs below this folder and leaves the system as it is.
+#
+#   make demo    see the robot of the tutorial in a browser
+#   make test    all tests (those of the page need a Chromium: `apt install chromium` or any on the PATH)
+#   make check   ruff, mypy, import-linter, the page's type check, generated files current
+#   make bench   the figures the project promises, measured on this machine
+#   make docs    the documentation site in site/
+
+PYTHON ?= python3
+VERSION ?=
+VENV := .venv$(if $(VERSION),-$(VERSION))
+BIN := $(VENV)/bin
+UV ?= $(shell command -v uv || echo .build/uv/bin/uv)
+export UV
+
+LOCKED := .build/constraints.txt
+PAGE_SOURCES := $(shell find frontend -path frontend/node_modules -prune -o -type f -print)
+
+.PHONY: demo test test-quick test-browser check bench docs page lock format clean
+
+demo: $(VENV)/.ready
+	$(BIN)/linkwright launch my_robot_description display.launch.py $(ARGS)
+
+test: $(VENV)/.dev page
+	$(BIN)/python tools/build_page.py test
+	$(BIN)/pytest -n 2 --dist loadfile $(ARGS)
+
+test-quick: $(VENV)/.dev
+	$(BIN)/pytest -n 2 --dist loadfile -m "not browser and not slow" $(ARGS)
+
+test-browser: $(VENV)/.dev page
+	$(BIN)/pytest -m browser $(ARGS)
+
+check: $(VENV)/.dev
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+	MYPYPATH=src $(BIN)/mypy
+	$(BIN)/lint-imports
+	$(BIN)/python tools/lock.py check
+	$(BIN)/python tools/protocol_types.py --check
+	$(BIN)/python tools/command_reference.py --check
+	$(BIN)/python tools/build_page.py run check
+
+bench: $(VENV)/.dev page
+	$(BIN)/python -m benchmarks $(ARGS)
+
+docs: $(VENV)/.dev
+	$(BIN)/mkdocs build --strict
+
+page: $(VENV)/.dev
+	$(BIN)/python tools/build_page.py
+
+lock: | $(UV)
+	$(PYTHON) tools/lock.py update $(ARGS)
+
+format: $(VENV)/.dev
+	$(BIN)/ruff check --fix
+	$(BIN)/ruff format
+
+clean:
+	rm -rf .venv .venv-* .build dist site frontend/node_modules src/linkwright/viewer/page
+
+.build/uv/bin/uv:
+	$(PYTHON) -m venv .build/uv
+	.build/uv/bin/python -m pip install --quiet uv
+
+$(LOCKED): uv.lock tools/lock.py
+	mkdir -p .build
+	$(PYTHON) tools/lock.py constraints > $@
+
+# The program alone, installed so that changes to the sources count at once; the build makes the page.
+$(VENV)/.ready: pyproject.toml hatch_build.py $(LOCKED) $(PAGE_SOURCES) | $(UV)
+	test -x $(BIN)/python || $(UV) venv --quiet --python $(or $(VERSION),$(PYTHON)) $(VENV)
+	$(UV) pip install --quiet --python $(BIN)/python --reinstall-package linkwright --editable . --constraints $(LOCKED)
+	touch $@
+
+$(VENV)/.dev: $(VENV)/.ready
+	$(UV) pip install --quiet --python $(BIN)/python --group dev --constraints $(LOCKED)
+	touch $@

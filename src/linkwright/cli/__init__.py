@@ -1,0 +1,5 @@
+"""The command line: one file a verb, each importing its room only when it runs."""
+
+from linkwright.cli.main import main
+
+__all__ = ["main"]

@@ -1,0 +1,112 @@
+"""The ``linkwright`` command: finds the verb, runs it, turns errors into messages and exit statuses.
+
+Exit statuses: 0 fine, 1 findings or an error in what the user gave, 2 wrong usage, 3 a bug of ours, 130 interrupted.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Sequence
+from importlib import import_module
+from typing import Protocol, cast
+
+from linkwright._version import __version__
+from linkwright.diagnostics import LinkwrightError, did_you_mean, print_diagnostics
+
+VERBS = ("launch", "view", "xacro", "check", "diagram", "pkg")
+"""In the order in which the help lists them; each is a module of this package."""
+
+FINE, FINDINGS, USAGE, BUG, INTERRUPTED = 0, 1, 2, 3, 130
+
+
+class Verb(Protocol):
+    """What a verb's module offers."""
+
+    NAME: str
+    HELP: str
+
+    def configure(self, parser: argparse.ArgumentParser) -> None:
+        """Declare the verb's arguments."""
+
+    def run(self, arguments: argparse.Namespace) -> int:
+        """Do it; returns the exit status."""
+
+
+def main(words: Sequence[str] | None = None) -> int:
+    """Run the command line and return its exit status; never raises."""
+    try:
+        return _dispatch(list(sys.argv[1:] if words is None else words))
+    except LinkwrightError as error:
+        print_diagnostics(error.diagnostics, sys.stderr)
+        return FINDINGS
+    except KeyboardInterrupt:
+        return INTERRUPTED
+    except BrokenPipeError:
+        # The reader of our output went away (`| head`); python would complain again when it flushes at exit.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return FINE
+    except SystemExit as stop:  # argparse
+        return stop.code if isinstance(stop.code, int) else USAGE
+    except Exception as error:  # noqa: BLE001 - the last line of defence: a bug of ours must not print a traceback
+        _report_bug(error)
+        return BUG
+
+
+def verb(name: str) -> Verb:
+    """The module of a verb."""
+    return cast("Verb", import_module(f"linkwright.cli.{name}"))
+
+
+def parser_for(name: str) -> argparse.ArgumentParser:
+    """The argument parser of one verb, as the command reference and the verb itself use it."""
+    module = verb(name)
+    parser = argparse.ArgumentParser(prog=f"linkwright {name}", description=module.HELP)
+    module.configure(parser)
+    return parser
+
+
+def _dispatch(words: list[str]) -> int:
+    if not words or words[0] in ("-h", "--help", "help"):
+        print(_overview())
+        return FINE if words else USAGE
+    name = words[0]
+    if name in ("-V", "--version"):
+        print(f"linkwright {__version__}")
+        return FINE
+    if name not in VERBS:
+        hint = did_you_mean(name, VERBS) or "`linkwright --help` lists the commands"
+        what = "option" if name.startswith("-") else "command"
+        print(f"linkwright: there is no {what} '{name}'; {hint}", file=sys.stderr)
+        return USAGE
+    arguments = parser_for(name).parse_args(words[1:])
+    return verb(name).run(arguments)
+
+
+def _overview() -> str:
+    width = max(map(len, VERBS))
+    lines = [
+        "usage: linkwright COMMAND ...",
+        "",
+        "Robot descriptions the ROS 2 way, without ROS.",
+        "",
+        "commands:",
+    ]
+    lines += [f"  {name:{width}}  {verb(name).HELP}" for name in VERBS]
+    lines += ["", "`linkwright COMMAND --help` says more. `linkwright --version` prints the version."]
+    return "\n".join(lines)
+
+
+def _report_bug(error: Exception) -> None:
+    import tempfile
+    import traceback
+
+    with tempfile.NamedTemporaryFile("w", prefix="linkwright-", suffix=".log", delete=False, encoding="utf-8") as log:
+        log.write(f"linkwright {__version__}, Python {sys.version}, words {sys.argv[1:]}\n")
+        traceback.print_exception(type(error), error, error.__traceback__, file=log)
+    print(
+        f"linkwright: this is a bug of ours: {type(error).__name__}: {error}\n"
+        f"Please report it with the file {log.name}",
+        file=sys.stderr,
+    )

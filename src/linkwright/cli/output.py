@@ -1,0 +1,26 @@
+"""Writing the files that commands produce."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError
+
+
+def write_output(path: Path, text: str) -> None:
+    """Write a result file, making its folder.
+
+    Raises:
+        LinkwrightError: CLI201 when it cannot be written.
+    """
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise LinkwrightError(
+            Diagnostic(
+                "CLI201",
+                f"cannot write '{path}': {error.strerror or error}",
+                hint="name a file in a folder that you may write to",
+            )
+        ) from None

@@ -1,0 +1,68 @@
+"""What can be said about a user's input, and the error that carries it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from enum import Enum
+
+from linkwright.diagnostics.source import SourceText, Span
+
+
+class Severity(Enum):
+    """How bad a finding is; an error makes a command exit with status 1."""
+
+    ERROR = "error"
+    WARNING = "warning"
+    INFO = "info"
+
+
+@dataclass(frozen=True, slots=True)
+class Note:
+    """One more fact about a diagnostic, with the place it holds at, such as a macro call on the way there."""
+
+    message: str
+    span: Span | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnostic:
+    """One finding: a stable code, what is wrong, where, why, and how to put it right.
+
+    Attributes:
+        code: letters for the room and three digits, such as ``XAC101``; never reused for another meaning.
+        message: one sentence without a full stop at its end, naming the thing as the user wrote it.
+        span: the place, or None where there is none (a missing file).
+        notes: the story behind it: includes, macro calls, values.
+        hint: how to mend it, or None.
+        source: the text that the span is in, for an excerpt; None where it was not kept.
+    """
+
+    code: str
+    message: str
+    span: Span | None = None
+    severity: Severity = Severity.ERROR
+    notes: tuple[Note, ...] = ()
+    hint: str | None = None
+    source: SourceText | None = None
+
+
+class LinkwrightError(Exception):
+    """An error in what the user gave us, never a bug of ours; it carries at least one diagnostic."""
+
+    def __init__(self, *diagnostics: Diagnostic) -> None:
+        if not diagnostics:
+            raise ValueError("a LinkwrightError needs a diagnostic")
+        super().__init__(diagnostics[0].message)
+        self.diagnostics: tuple[Diagnostic, ...] = diagnostics
+
+    def __str__(self) -> str:
+        return "\n".join(
+            f"{diagnostic.span}: {diagnostic.message}" if diagnostic.span else diagnostic.message
+            for diagnostic in self.diagnostics
+        )
+
+
+def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
+    """Whether any of them is an error."""
+    return any(diagnostic.severity is Severity.ERROR for diagnostic in diagnostics)

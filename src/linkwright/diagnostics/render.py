@@ -1,0 +1,133 @@
+"""Diagnostics as text for a terminal and as plain data."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from pathlib import Path
+from typing import IO, Any
+from unicodedata import east_asian_width
+
+from linkwright.diagnostics.diagnostic import Diagnostic, Note, Severity
+from linkwright.diagnostics.source import Span
+
+_COLOURS = {Severity.ERROR: "31", Severity.WARNING: "33", Severity.INFO: "36"}
+_TAB = "    "
+
+
+def wants_colour(stream: IO[str]) -> bool:
+    """Whether to colour what goes to a stream: a terminal, unless NO_COLOR is set or TERM is dumb."""
+    if os.environ.get("NO_COLOR"):
+        return False
+    return stream.isatty() and os.environ.get("TERM") != "dumb"
+
+
+def render(diagnostic: Diagnostic, *, colour: bool = False) -> str:
+    """The diagnostic as a terminal shows it: head line, place, excerpt with a caret, notes and hint."""
+    paint = _Paint(colour)
+    severity = diagnostic.severity
+    head = f"{severity.value}[{diagnostic.code}]"
+    lines = [f"{paint(head, _COLOURS[severity] + ';1')}{paint(': ' + diagnostic.message, '1')}"]
+    if diagnostic.span:
+        lines.append(f"  {paint('-->', '34')} {_place(diagnostic.span)}")
+        lines += _excerpt(diagnostic, paint)
+    for note in diagnostic.notes:
+        where = f" ({_place(note.span)})" if note.span else ""
+        lines.append(f"   {paint('=', '34')} note: {_indented(note.message)}{where}")
+    if diagnostic.hint:
+        lines.append(f"   {paint('=', '34')} {paint('hint', '32')}: {_indented(diagnostic.hint)}")
+    return "\n".join(lines)
+
+
+def print_diagnostics(diagnostics: Iterable[Diagnostic], stream: IO[str]) -> None:
+    """Write diagnostics to a stream, one after another, coloured where the stream wants it."""
+    colour = wants_colour(stream)
+    for diagnostic in diagnostics:
+        print(render(diagnostic, colour=colour), file=stream)
+    stream.flush()
+
+
+def to_data(diagnostic: Diagnostic) -> dict[str, Any]:
+    """The diagnostic as JSON-ready data: places are 1-based, absent ones are None."""
+    return {
+        "code": diagnostic.code,
+        "severity": diagnostic.severity.value,
+        "message": diagnostic.message,
+        **_span_data(diagnostic.span),
+        "notes": [_note_data(note) for note in diagnostic.notes],
+        "hints": [diagnostic.hint] if diagnostic.hint else [],
+    }
+
+
+def _span_data(span: Span | None) -> dict[str, Any]:
+    return {
+        "file": span.file if span else None,
+        "line": span.line if span else None,
+        "column": span.column if span else None,
+        "end_line": span.end_line if span else None,
+        "end_column": span.end_column if span else None,
+    }
+
+
+def _note_data(note: Note) -> dict[str, Any]:
+    span = note.span
+    return {
+        "message": note.message,
+        "file": span.file if span else None,
+        "line": span.line if span else None,
+        "column": span.column if span else None,
+    }
+
+
+class _Paint:
+    def __init__(self, colour: bool) -> None:
+        self._colour = colour
+
+    def __call__(self, text: str, code: str) -> str:
+        return f"\x1b[{code}m{text}\x1b[0m" if self._colour else text
+
+
+def _place(span: Span) -> str:
+    path = span.file if span.file.startswith("<") else display_path(span.file)
+    return f"{path}:{span.line}:{span.column}"
+
+
+def _excerpt(diagnostic: Diagnostic, paint: _Paint) -> list[str]:
+    span, source = diagnostic.span, diagnostic.source
+    if span is None or source is None or source.name != span.file:
+        return []
+    line = source.line(span.line)
+    if not line.strip():
+        return []
+    before = line[: span.column - 1]
+    if span.end_line == span.line:
+        marked = line[span.column - 1 : max(span.end_column - 1, span.column)]
+    else:
+        marked = line[span.column - 1 :]
+    number = str(span.line)
+    gutter = " " * len(number)
+    bar = paint("|", "34")
+    carets = paint("^" * max(1, _width(marked)), _COLOURS[diagnostic.severity])
+    shown = line.replace("\t", _TAB)
+    return [
+        f"{gutter} {bar}",
+        f"{paint(number, '34')} {bar} {shown}",
+        f"{gutter} {bar} {' ' * _width(before)}{carets}",
+    ]
+
+
+def _width(text: str) -> int:
+    return sum(
+        len(_TAB) if character == "\t" else 2 if east_asian_width(character) in "WF" else 1 for character in text
+    )
+
+
+def _indented(text: str) -> str:
+    return text.replace("\n", "\n     ")
+
+
+def display_path(path: str | Path) -> str:
+    """A path as messages show it: relative to the current folder where it lies below it."""
+    text = str(path)
+    relative = os.path.relpath(text)
+    return text if relative.startswith("..") else relative

