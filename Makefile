@@ -1,7 +1,7 @@
 # Every target sets up what it needs below this folder and leaves the system as it is.
 #
 #   make demo    see the robot of the tutorial in a browser
-#   make test    all tests (those of the page need a Chromium: `apt install chromium` or any on the PATH)
+#   make test    all tests, those of the page in a real Chromium (fetched below .build/ where there is none)
 #   make check   ruff, mypy, import-linter, the page's type check, generated files current
 #   make bench   the figures the project promises, measured on this machine
 #   make docs    the documentation site in site/
@@ -23,13 +23,13 @@ demo: $(VENV)/.ready
 
 test: $(VENV)/.dev page
 	$(BIN)/python tools/build_page.py test
-	$(BIN)/pytest -n 2 --dist loadfile $(ARGS)
+	LINKWRIGHT_CHROMIUM=$$($(BIN)/python tools/chromium.py) $(BIN)/pytest -n 2 --dist loadfile $(ARGS)
 
 test-quick: $(VENV)/.dev
 	$(BIN)/pytest -n 2 --dist loadfile -m "not browser and not slow" $(ARGS)
 
 test-browser: $(VENV)/.dev page
-	$(BIN)/pytest -m browser $(ARGS)
+	LINKWRIGHT_CHROMIUM=$$($(BIN)/python tools/chromium.py) $(BIN)/pytest -m browser $(ARGS)
 
 check: $(VENV)/.dev
 	$(BIN)/ruff check

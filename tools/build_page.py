@@ -75,13 +75,18 @@ def npm(*arguments: str) -> None:
         SystemExit: when it fails.
     """
     environment = dict(os.environ)
-    command = _npm_command(environment)
+    command = npm_command(environment)
     done = subprocess.run([*command, *arguments], cwd=FRONTEND, env=environment, check=False, stdout=sys.stderr)
     if done.returncode:
         raise SystemExit(f"npm {' '.join(arguments)} failed with status {done.returncode}")
 
 
-def _npm_command(environment: dict[str, str]) -> list[str]:
+def npm_command(environment: dict[str, str]) -> list[str]:
+    """The words that start npm; puts its node first on the PATH of `environment` where that is not the system's.
+
+    Raises:
+        SystemExit: when there is no Node.
+    """
     on_path = shutil.which("npm")
     if on_path and _node_version() >= _OLDEST_NODE:
         return [on_path]

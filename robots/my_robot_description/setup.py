@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Installs the Python module, and into the package's share folder everything that ROS tools look for there."""
+
+from pathlib import Path
+
+from setuptools import find_packages, setup
+
+PACKAGE = 'my_robot_description'
+SHARE = Path('share') / PACKAGE
+
+# Installed with all the folders inside them, so that a new file or folder needs no change here.
+SHARED_FOLDERS = ['launch', 'meshes', 'rviz', 'urdf']
+
+
+def shared_files():
+    """List (installed folder, files) for every folder that holds files, as `data_files` wants them."""
+    for top in SHARED_FOLDERS:
+        for folder in [Path(top), *sorted(path for path in Path(top).rglob('*') if path.is_dir())]:
+            files = sorted(str(path) for path in folder.iterdir() if path.is_file())
+            if files and folder.name != '__pycache__':
+                yield str(SHARE / folder), files
+
+
+setup(
+    name=PACKAGE,
+    version='0.1.0',
+    packages=find_packages(exclude=['test']),
+    data_files=[
+        # The marker through which ROS 2 finds an installed package by its name.
+        ('share/ament_index/resource_index/packages', ['resource/' + PACKAGE]),
+        (str(SHARE), ['package.xml']),
+        *shared_files(),
+    ],
+    install_requires=['setuptools'],
+    zip_safe=True,
+    author='The Linkwright authors',
+    author_email='maintainers@linkwright.dev',
+    maintainer='The Linkwright authors',
+    maintainer_email='maintainers@linkwright.dev',
+    description='mbot, a small two-wheeled robot with differential drive: its models and the launch files that show them.',
+    license='Apache-2.0',
+    entry_points={'console_scripts': []},
+)

@@ -1,0 +1,201 @@
+"""The one who knows where packages are."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
+
+import linkwright
+from linkwright.diagnostics import display_path
+from linkwright.workspace import ament, uri
+from linkwright.workspace.errors import PackageNotFoundError
+from linkwright.workspace.manifest import enclosing_package, package_name
+from linkwright.workspace.sources import SourceScan
+
+
+class PackageFinder:
+    """Finds ROS packages the way ROS users lay them out.
+
+    The places, in the order they are asked:
+
+    1. `extra`, given by the caller;
+    2. the prefixes of ``AMENT_PREFIX_PATH`` (a sourced ROS or workspace);
+    3. colcon's ``install`` folders in the start folders and in the folders above them, merged or isolated;
+    4. source trees: the package a start folder lies in and the packages beside that one, the packages below a
+    start
+       folder, and those below ``src`` of the folders above it;
+    5. the packages shipped with Linkwright.
+
+    Nothing is read from the disk before it is needed, and a search through source trees stops where it meets
+    the package.
+
+    Args:
+        start: where the user stands, one folder or several of falling weight; the current folder by default.
+        environment: the variables to read ``AMENT_PREFIX_PATH`` from; the process's by default.
+        extra: package name -> share folder, before everything else.
+    """
+
+    def __init__(
+        self,
+        *,
+        start: Path | Sequence[Path] | None = None,
+        environment: Mapping[str, str] | None = None,
+        extra: Mapping[str, str | Path] | None = None,
+    ) -> None:
+        if start is None:
+            start = Path.cwd()
+        starts = [start] if isinstance(start, Path) else start self._starts =
+        tuple(dict.fromkeys(Path(os.path.abspath(each)) for each in starts))  # noqa: PTH100 - no links
+        self._environment = os.environ if environment is None else environment self._extra = {name:
+        Path(share) for name, share in (extra or {}).items()} self._scans: dict[Path, SourceScan] = {}
+        self._known: dict[str, Path] = {}
+
+    def find(self, name: str) -> Path | None:
+        """The share folder of a package (its source folder where it is not installed), or None."""
+        share = self._known.get(name)
+        if share is None:
+            for place in self._places(name):
+                share = place()
+                if share is not None:
+                    self._known[name] = share
+                    break
+        return share
+
+    def share(self, name: str) -> Path:
+        """The share folder of a package (its source folder where it is not installed).
+
+        Raises:
+            PackageNotFoundError: PKG101, with the places that were searched and the nearest names.
+        """
+        share = self.find(name)
+        if share is None:
+            raise PackageNotFoundError(name, self._searched(), self.packages(), self._advice(name))
+        return share
+
+    def packages(self) -> dict[str, Path]:
+        """All packages there are: name -> share folder; of two with one name the one that `find` gives."""
+        found = dict(self._extra)
+        for name, share in self._all():
+            found.setdefault(name, share)
+        return found
+
+    def resolve(self, address: str, relative_to: Path | None = None) -> Path:
+        """The file that an address in a description or launch file means; whether it exists is not asked.
+
+        Args:
+            address: ``package://NAME/PATH``, ``file:///PATH`` or a plain path.
+            relative_to: the folder that a relative plain path starts from; the current folder by default.
+
+        Raises:
+            LinkwrightError: PKG101 for an unknown package, PKG102 for an address of another form.
+        """
+        return uri.resolve(address, self.share, relative_to)
+
+    def package_of(self, path: str | Path) -> str | None:
+        """The name of the package that a file lies in (installed or source), or None."""
+        absolute = Path(os.path.abspath(path))  # noqa: PTH100 - links are kept: share folders are full of
+        them found = enclosing_package(absolute) return found[0] if found else None
+
+    # --- the places -----------------------------------------------------------------------------------------
+
+    def _places(self, name: str) -> Iterator[Callable[[], Path | None]]:
+        yield lambda: self._extra.get(name)
+        for prefix in ament.environment_prefixes(self._environment):
+            yield lambda prefix=prefix: ament.share_in_prefix(prefix, name)  # type: ignore[misc]
+        for install in self._installs():
+            yield lambda install=install: ament.share_in_install(install, name)  # type: ignore[misc]
+        yield lambda: dict(self._enclosing()).get(name)
+        for root in self._source_roots():
+            yield lambda root=root: self._scan(root).find(name)  # type: ignore[misc]
+        yield lambda: self._shipped().get(name)
+
+    def _all(self) -> Iterator[tuple[str, Path]]:
+        for prefix in ament.environment_prefixes(self._environment):
+            yield from ament.packages_in_prefix(prefix)
+        for install in self._installs():
+            yield from ament.packages_in_install(install)
+        yield from self._enclosing()
+        for root in self._source_roots():
+            yield from self._scan(root).packages().items()
+        yield from self._shipped().items()
+
+    def _upwards(self) -> Iterator[Path]:
+        seen: set[Path] = set()
+        for start in self._starts:
+            for folder in (start, *start.parents):
+                if folder not in seen:
+                    seen.add(folder)
+                    yield folder
+
+    def _installs(self) -> Iterator[Path]:
+        for folder in self._upwards():
+            install = folder / "install"
+            if ament.is_colcon_install(install):
+                yield install
+
+    def _enclosing(self) -> Iterator[tuple[str, Path]]:
+        for start in self._starts:
+            found = enclosing_package(start)
+            if found:
+                yield found
+
+    def _source_roots(self) -> Iterator[Path]:
+        roots: dict[Path, None] = {}
+        for start in self._starts:
+            found = enclosing_package(start)
+            if found:
+                roots[found[1].parent] = None
+            else:
+                roots[start] = None
+            for folder in (start, *start.parents):
+                source = folder / "src"
+                if source.is_dir():
+                    roots[source] = None
+        yield from roots
+
+    def _scan(self, root: Path) -> SourceScan:
+        scan = self._scans.get(root)
+        if scan is None:
+            scan = self._scans[root] = SourceScan(root)
+        return scan
+
+    def _shipped(self) -> dict[str, Path]:
+        folder = shipped_folder()
+        return {} if folder is None else SourceScan(folder).packages()
+
+    # --- the story for the error ----------------------------------------------------------------------------
+
+    def _searched(self) -> list[str]:
+        prefixes = ament.environment_prefixes(self._environment)
+        if prefixes:
+            places = [f"AMENT_PREFIX_PATH: {os.pathsep.join(map(str, prefixes))}"]
+        else:
+            places = ["AMENT_PREFIX_PATH: not set"]
+        places += [f"colcon install folder {display_path(install)}" for install in self._installs()]
+        for root in self._source_roots():
+            scan = self._scan(root)
+            bound = " (only in part: too many folders)" if scan.truncated else ""
+            places.append(f"package.xml files below {display_path(root)}{bound}")
+            places += [
+                f"{display_path(folder / 'package.xml')}, which names no package" for folder in scan.unnamed
+            ]
+        places.append("the packages shipped with Linkwright: " + (", ".join(self._shipped()) or "none"))
+        return places
+
+    def _advice(self, name: str) -> str:
+        for start in self._starts:
+            for folder in (start, *start.parents):
+                if package_name(folder / name) == name:
+                    return f"it lies in {display_path(folder / name)}, beside the search: start from {folder}"
+        return "go to the workspace that holds it, or source its install/setup.bash"
+
+
+def shipped_folder() -> Path | None:
+    """Where the packages shipped with Linkwright lie: in the wheel, or in the repository of an editable
+    install."""
+    package = Path(linkwright.__file__).parent
+    for folder in (package / "robots", package.parents[1] / "robots"):
+        if folder.is_dir():
+            return folder
+    return None

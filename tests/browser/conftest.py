@@ -1,0 +1,148 @@
+"""A real Chromium and a real `linkwright` process for the tests of the page."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import queue
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.sync_api import Browser, Page, sync_playwright
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+PACKAGE = REPOSITORY / "robots" / "my_robot_description"
+_FLAGS = (
+    "--no-sandbox",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--no-first-run",
+)
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Browser]:
+    """One browser for the session, drawing in software."""
+    path = os.environ.get("LINKWRIGHT_CHROMIUM") or shutil.which("chromium")
+    if path is None:
+        pytest.fail("no Chromium: `make test` fetches one, or set LINKWRIGHT_CHROMIUM")
+    with sync_playwright() as playwright:
+        launched = playwright.chromium.launch(executable_path=path, args=list(_FLAGS))
+        yield launched
+        launched.close()
+
+
+@dataclass
+class Program:
+    """A running `linkwright` command; `output` is all it printed, standard error included, so far."""
+
+    process: subprocess.Popen[str]
+    url: str = ""
+    output: list[str] = field(default_factory=list)
+    _lines: queue.Queue[str | None] = field(default_factory=queue.Queue)
+
+    def wait_for(self, pattern: str, seconds: float = 20) -> re.Match[str]:
+        """Read on until a line matches; fails with all the output when none does in time."""
+        deadline = time.monotonic() + seconds
+        while True:
+            with contextlib.suppress(queue.Empty):
+                line = self._lines.get(timeout=max(0.0, deadline - time.monotonic()))
+                if line is None:
+                    pytest.fail(f"the program ended before a line like {pattern!r}:\n{''.join(self.output)}")
+                if found := re.search(pattern, line):
+                    return found
+            if time.monotonic() >= deadline:
+                pytest.fail(f"no line like {pattern!r} within {seconds} s:\n{''.join(self.output)}")
+
+    def interrupt(self, seconds: float = 10) -> int:
+        """Ctrl-C, and the exit status."""
+        self.process.send_signal(signal.SIGINT)
+        return self.process.wait(timeout=seconds)
+
+    def read(self) -> None:
+        """Collect lines until the program closes its output; runs in a thread."""
+        assert self.process.stdout is not None
+        for line in self.process.stdout:
+            self.output.append(line)
+            self._lines.put(line)
+        self._lines.put(None)
+
+
+Start = Callable[..., Program]
+
+
+@pytest.fixture
+def start(tmp_path: Path) -> Iterator[Start]:
+    """A function that starts `linkwright WORDS... --no-open` and waits for the viewer's address."""
+    running: list[tuple[Program, threading.Thread]] = []
+
+    def run(*words: str, cwd: Path = tmp_path) -> Program:
+        process = subprocess.Popen(
+            [sys.executable, "-m", "linkwright", *words, "--no-open"],
+            cwd=cwd,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            env={**os.environ, "PYTHONUNBUFFERED": "1", "NO_COLOR": "1"},
+        )
+        program = Program(process)
+        reader = threading.Thread(target=program.read, daemon=True)
+        reader.start()
+        running.append((program, reader))
+        program.url = program.wait_for(r"^Viewer: (\S+)$")[1]
+        return program
+
+    yield run
+    for program, reader in running:
+        if program.process.poll() is None:
+            program.process.terminate()
+            program.process.wait(timeout=10)
+        reader.join(timeout=5)
+        assert program.process.stdout is not None
+        program.process.stdout.close()
+
+
+@pytest.fixture
+def open_page(browser: Browser) -> Iterator[Callable[[Program], Page]]:
+    """A function that opens a program's page at 1280x800 and waits until the robot is drawn."""
+    contexts = []
+    complaints: list[str] = []
+
+    def open_url(program: Program, *, wait: bool = True) -> Page:
+        context = browser.new_context(viewport={"width": 1280, "height": 800}, locale="en-US")
+        contexts.append(context)
+        page = context.new_page()
+        page.on("pageerror", lambda error: complaints.append(str(error)))
+        page.on("console", lambda message: complaints.append(message.text) if message.type == "error" else None)
+        page.goto(program.url)
+        if wait:
+            page.wait_for_function("window.linkwright?.ready === true", timeout=30_000)
+        return page
+
+    yield open_url
+    for context in contexts:
+        context.close()
+    assert complaints == [], "errors in the page's console"
+
+
+def state(page: Page, name: str) -> Any:
+    """One member of `window.linkwright`."""
+    return page.evaluate(f"() => window.linkwright.{name}")
+
+
+def until(page: Page, condition: str, seconds: float = 10) -> None:
+    """Wait until a JavaScript condition over `lw` (window.linkwright) holds."""
+    page.wait_for_function(f"() => {{ const lw = window.linkwright; return {condition}; }}", timeout=seconds * 1000)

@@ -1,0 +1,63 @@
+"""Every model of the package, through its two launch files, as RViz would show it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.browser.conftest import PACKAGE, REPOSITORY, state
+
+pytestmark = pytest.mark.browser
+
+MODELS = {
+    "mbot_base.urdf": 5,
+    "mbot_with_camera.urdf": 6,
+    "mbot_with_kinect.urdf": 6,
+    "mbot_with_laser.urdf": 6,
+    "mbot_base.xacro": 12,
+}
+TUTORIAL = REPOSITORY.parent / "shared" / "tutorial"
+
+
+def launch_words(model: str, package: Path = PACKAGE) -> list[str]:
+    launch = "display_xacro.launch.py" if model.endswith(".xacro") else "display.launch.py"
+    return ["launch", str(package / "launch" / launch), f"model:={package / 'urdf' / model}"]
+
+
+@pytest.mark.parametrize(("model", "links"), MODELS.items())
+def test_model_shows(start, open_page, model, links):
+    page = open_page(start(*launch_words(model)))
+    assert state(page, "robot.name") == "mbot"
+    assert state(page, "robot.links") == links
+    assert state(page, "robot.visuals") == links
+    position = state(page, "frames.left_wheel_link.position")
+    assert position == pytest.approx([0, 0.19, -0.05], abs=1e-6)
+    view = state(page, "view")
+    assert (view["distance"], view["pitch"], view["yaw"]) == pytest.approx((1.7, 0.33, 5.5))
+    assert [display["name"] for display in state(page, "displays")] == ["Grid", "RobotModel", "TF"]
+    assert {display["level"] for display in state(page, "displays")} == {"ok"}
+
+
+@pytest.mark.skipif(not TUTORIAL.is_dir(), reason="the tutorial's files are not beside the repository")
+@pytest.mark.parametrize(("launch", "links"), [("display.launch.py", 5), ("display_xacro.launch.py", 12)])
+def test_published_launch_files_run_unchanged(start, open_page, launch, links):
+    program = start("launch", "my_robot_description", launch, cwd=TUTORIAL)
+    page = open_page(program)
+    assert state(page, "robot.links") == links
+    assert state(page, "frames.left_wheel_link.position") == pytest.approx([0, 0.19, -0.05], abs=1e-6)
+    robot_model = next(display for display in state(page, "displays") if display["name"] == "RobotModel")
+    if links == 12:
+        # The published package has no mesh: the robot shows, and the row says where the file was looked for.
+        row = next(row for row in robot_model["status"] if row["name"] == "kinect_link")
+        assert row["level"] == "error"
+        assert str(TUTORIAL / "my_robot_description" / "meshes" / "kinect.dae") in row["text"]
+        assert any("meshes/kinect.dae" in line for line in program.output)
+    else:
+        assert robot_model["level"] == "ok"
+
+
+def test_top_plate_stands_above_the_base(start, open_page):
+    page = open_page(start(*launch_words("mbot_base.xacro")))
+    # Its visual's centre is another 0.16 m above its frame: 0.32 m above base_link (tests/viewer has the shape).
+    assert state(page, "frames.base_link_upper.position") == pytest.approx([0, 0, 0.16], abs=1e-6)

@@ -1,0 +1,342 @@
+"""Write the mesh of the Kinect that mbot carries: ``robots/my_robot_description/meshes/kinect.dae``.
+
+Usage: python tools/make_kinect_mesh.py [--check]
+
+The mesh is COLLADA 1.4.1 in metres with z up. The long side lies along x and the lenses look along -y, so that the
+quarter turn about z in the URDF makes them look along the robot's +x. The origin is 34 mm above the underside of the
+foot: mbot's models place it 30 mm and 35 mm above a deck. The same program writes the same bytes everywhere.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+
+TARGET = Path(__file__).resolve().parent.parent / "robots" / "my_robot_description" / "meshes" / "kinect.dae"
+
+Vector = tuple[float, float, float]
+
+# Overall 0.28 x 0.07 x 0.046 m. The body's front lies behind the lenses, which end at y = -0.035.
+BODY_X = 0.14
+BODY_Y = (-0.0335, 0.035)
+BODY_Z = (-0.020, 0.012)
+FOOT_BOTTOM = -0.034
+LENS_FRONT = -0.035
+
+
+@dataclass(frozen=True)
+class Material:
+    """A surface: colours are red, green, blue from 0 to 1."""
+
+    name: str
+    diffuse: Vector
+    specular: Vector = (0.0, 0.0, 0.0)
+    emission: Vector = (0.0, 0.0, 0.0)
+    shininess: float = 1.0
+
+
+@dataclass(frozen=True)
+class Triangle:
+    """Three corners, counter-clockwise from outside, and the outward normal at each."""
+
+    corners: tuple[Vector, Vector, Vector]
+    normals: tuple[Vector, Vector, Vector]
+
+
+@dataclass(frozen=True)
+class Part:
+    """One closed surface of one material."""
+
+    name: str
+    material: Material
+    triangles: list[Triangle]
+
+
+SHELL = Material("shell", (0.055, 0.055, 0.062), specular=(0.35, 0.35, 0.36), shininess=42.0)
+FOOT = Material("foot", (0.11, 0.11, 0.12), specular=(0.10, 0.10, 0.10), shininess=12.0)
+LENS = Material("lens", (0.015, 0.018, 0.045), specular=(0.90, 0.92, 1.0), shininess=90.0)
+EMITTER = Material("emitter", (0.30, 0.01, 0.02), specular=(0.6, 0.4, 0.4), emission=(0.22, 0.0, 0.01), shininess=60.0)
+LED = Material("led", (0.05, 0.45, 0.10), emission=(0.03, 0.55, 0.10))
+
+
+def subtract(a: Vector, b: Vector) -> Vector:
+    """The vector from b to a."""
+    return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
+
+
+def unit(a: Vector) -> Vector:
+    """The same direction with length 1."""
+    length = math.hypot(*a)
+    return (a[0] / length, a[1] / length, a[2] / length)
+
+
+def cross(a: Vector, b: Vector) -> Vector:
+    """The vector product of a and b."""
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+def rounded_rectangle(width: float, height: float, radius: float, steps: int = 5) -> list[tuple[float, float]]:
+    """The outline of a rectangle about (0, 0) with round corners, counter-clockwise."""
+    outline = []
+    for quarter, (sign_u, sign_v) in enumerate(((1, 1), (-1, 1), (-1, -1), (1, -1))):
+        for step in range(steps + 1):
+            angle = (quarter + step / steps) * math.pi / 2
+            outline.append(
+                (
+                    sign_u * (width / 2 - radius) + radius * math.cos(angle),
+                    sign_v * (height / 2 - radius) + radius * math.sin(angle),
+                )
+            )
+    return outline
+
+
+def circle(radius: float, steps: int = 32) -> list[tuple[float, float]]:
+    """The outline of a circle about (0, 0), counter-clockwise."""
+    angles = [2 * math.pi * step / steps for step in range(steps)]
+    return [(radius * math.cos(angle), radius * math.sin(angle)) for angle in angles]
+
+
+def loft(rings: Sequence[Sequence[Vector]]) -> list[Triangle]:
+    """A closed, convex surface through rings of equally many points.
+
+    The rings run counter-clockwise as seen from beyond the last one. The walls are shaded smooth around a ring and flat
+    from one ring to the next, so that edges between rings stay crisp; the two ends are flat.
+    """
+    triangles = []
+    count = len(rings[0])
+    for lower, upper in pairwise(rings):
+        faces = []
+        for at in range(count):
+            after = (at + 1) % count
+            faces.append(unit(cross(subtract(lower[after], lower[at]), subtract(upper[at], lower[at]))))
+        for at in range(count):
+            after = (at + 1) % count
+            here = smooth(faces[at - 1], faces[at], faces[at])
+            there = smooth(faces[at], faces[after], faces[at])
+            triangles.append(Triangle((lower[at], lower[after], upper[after]), (here, there, there)))
+            triangles.append(Triangle((lower[at], upper[after], upper[at]), (here, there, here)))
+    return triangles + cap(list(reversed(rings[0]))) + cap(list(rings[-1]))
+
+
+def smooth(a: Vector, b: Vector, face: Vector) -> Vector:
+    """The normal between two faces that meet at less than 30 degrees; at a sharper edge, the face's own."""
+    if sum(x * y for x, y in zip(a, b, strict=True)) < math.cos(math.radians(30)):
+        return face
+    return unit((a[0] + b[0], a[1] + b[1], a[2] + b[2]))
+
+
+def cap(ring: list[Vector]) -> list[Triangle]:
+    """A flat, convex end: a fan over the ring, which runs counter-clockwise from outside."""
+    normal = unit(cross(subtract(ring[1], ring[0]), subtract(ring[2], ring[0])))
+    normals = (normal, normal, normal)
+    return [Triangle((ring[0], ring[at], ring[at + 1]), normals) for at in range(1, len(ring) - 1)]
+
+
+def body() -> Part:
+    """The long shell: a rounded profile drawn out along x, bevelled at both ends."""
+    middle_y, middle_z = sum(BODY_Y) / 2, sum(BODY_Z) / 2
+    rings = []
+    for x, inset in ((-BODY_X, 0.004), (-BODY_X + 0.004, 0.0), (BODY_X - 0.004, 0.0), (BODY_X, 0.004)):
+        outline = rounded_rectangle(BODY_Y[1] - BODY_Y[0] - 2 * inset, BODY_Z[1] - BODY_Z[0] - 2 * inset, 0.009 - inset)
+        # The y-z plane seen from +x: y to the right, z up.
+        rings.append([(x, middle_y + u, middle_z + v) for u, v in outline])
+    return Part("body", SHELL, loft(rings))
+
+
+def foot() -> Part:
+    """The stand: a neck that widens to the base; its upper end is hidden inside the body."""
+    rings = []
+    for z, width, depth in (
+        (FOOT_BOTTOM, 0.090, 0.062),
+        (FOOT_BOTTOM + 0.005, 0.090, 0.062),
+        (FOOT_BOTTOM + 0.008, 0.058, 0.044),
+        (BODY_Z[0] + 0.002, 0.046, 0.036),
+    ):
+        outline = rounded_rectangle(width, depth, 0.012)
+        rings.append([(u, v, z) for u, v in outline])
+    return Part("foot", FOOT, loft(rings))
+
+
+def lens(name: str, material: Material, x: float, radius: float, front: float = LENS_FRONT) -> Part:
+    """A round window in the front: a short cylinder along -y with a bevelled rim."""
+    z = sum(BODY_Z) / 2
+    rings = []
+    for y, size in ((BODY_Y[0] + 0.003, radius), (front + 0.0005, radius), (front, radius - 0.001)):
+        # The x-z plane seen from -y, the side that the rings advance to: x to the right, z up.
+        rings.append([(x + u, y, z + v) for u, v in circle(size)])
+    return Part(name, material, loft(rings))
+
+
+def kinect() -> list[Part]:
+    """All parts, in the order of the file."""
+    return [
+        body(),
+        foot(),
+        lens("emitter", EMITTER, -0.068, 0.0085),
+        lens("colour_lens", LENS, 0.0, 0.0085),
+        lens("depth_lens", LENS, 0.030, 0.0085),
+        lens("led", LED, -0.026, 0.0025, front=LENS_FRONT + 0.0005),
+    ]
+
+
+def number(value: float) -> str:
+    """A number with at most six decimals and no negative zero, the same on every machine."""
+    text = f"{value:.6f}".rstrip("0").rstrip(".")
+    return "0" if text in ("-0", "") else text
+
+
+def effect(material: Material) -> str:
+    """The COLLADA effect of a material: Phong shading."""
+    rows = []
+    for tag, colour in (
+        ("emission", material.emission),
+        ("diffuse", material.diffuse),
+        ("specular", material.specular),
+    ):
+        rows.append(f"          <{tag}><color>{' '.join(map(number, colour))} 1</color></{tag}>")
+    return "\n".join(
+        [
+            f'    <effect id="{material.name}-effect">',
+            "      <profile_COMMON>",
+            '        <technique sid="common"><phong>',
+            *rows,
+            f"          <shininess><float>{number(material.shininess)}</float></shininess>",
+            "        </phong></technique>",
+            "      </profile_COMMON>",
+            "    </effect>",
+        ]
+    )
+
+
+def source(identifier: str, vectors: Sequence[Vector]) -> str:
+    """A COLLADA source of x, y, z triples, one triple a line."""
+    rows = "\n".join("          " + " ".join(map(number, vector)) for vector in vectors)
+    accessor = f'<accessor source="#{identifier}-array" count="{len(vectors)}" stride="3">'
+    return "\n".join(
+        [
+            f'        <source id="{identifier}">',
+            f'          <float_array id="{identifier}-array" count="{3 * len(vectors)}">',
+            rows,
+            "          </float_array>",
+            f"          <technique_common>{accessor}",
+            '            <param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/>',
+            "          </accessor></technique_common>",
+            "        </source>",
+        ]
+    )
+
+
+def geometry(part: Part) -> str:
+    """The COLLADA geometry of a part; equal points and equal normals are written once."""
+    positions: dict[Vector, int] = {}
+    normals: dict[Vector, int] = {}
+    indices = []
+    for triangle in part.triangles:
+        for corner, normal in zip(triangle.corners, triangle.normals, strict=True):
+            at = positions.setdefault(rounded(corner), len(positions))
+            facing = normals.setdefault(rounded(normal), len(normals))
+            indices.append(f"{at} {facing}")
+    rows = "\n".join("          " + "  ".join(indices[start : start + 3]) for start in range(0, len(indices), 3))
+    name = part.name
+    return "\n".join(
+        [
+            f'    <geometry id="{name}-mesh" name="{name}">',
+            "      <mesh>",
+            source(f"{name}-positions", list(positions)),
+            source(f"{name}-normals", list(normals)),
+            f'        <vertices id="{name}-vertices">',
+            f'          <input semantic="POSITION" source="#{name}-positions"/>',
+            "        </vertices>",
+            f'        <triangles material="{part.material.name}" count="{len(part.triangles)}">',
+            f'          <input semantic="VERTEX" source="#{name}-vertices" offset="0"/>',
+            f'          <input semantic="NORMAL" source="#{name}-normals" offset="1"/>',
+            "          <p>",
+            rows,
+            "          </p>",
+            "        </triangles>",
+            "      </mesh>",
+            "    </geometry>",
+        ]
+    )
+
+
+def rounded(vector: Vector) -> Vector:
+    """The vector as the file will hold it; adding zero turns -0.0 into 0.0."""
+    return (round(vector[0], 6) + 0.0, round(vector[1], 6) + 0.0, round(vector[2], 6) + 0.0)
+
+
+def node(part: Part) -> str:
+    """The place of a part in the scene."""
+    name, material = part.name, part.material.name
+    return "\n".join(
+        [
+            f'      <node id="{name}" name="{name}">',
+            f'        <instance_geometry url="#{name}-mesh"><bind_material><technique_common>',
+            f'          <instance_material symbol="{material}" target="#{material}-material"/>',
+            "        </technique_common></bind_material></instance_geometry>",
+            "      </node>",
+        ]
+    )
+
+
+def generate() -> str:
+    """The whole file."""
+    parts = kinect()
+    materials = list(dict.fromkeys(part.material for part in parts))
+    # COLLADA requires both dates; they are fixed so that the file depends on nothing but this program.
+    return "\n".join(
+        [
+            '<?xml version="1.0" encoding="utf-8"?>',
+            "<!-- SPDX-License-Identifier: Apache-2.0. Generated by tools/make_kinect_mesh.py of Linkwright. -->",
+            '<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">',
+            "  <asset>",
+            "    <contributor><authoring_tool>make_kinect_mesh.py</authoring_tool></contributor>",
+            "    <created>2000-01-01T00:00:00Z</created>",
+            "    <modified>2000-01-01T00:00:00Z</modified>",
+            '    <unit name="meter" meter="1"/>',
+            "    <up_axis>Z_UP</up_axis>",
+            "  </asset>",
+            "  <library_effects>",
+            *map(effect, materials),
+            "  </library_effects>",
+            "  <library_materials>",
+            *(
+                f'    <material id="{name}-material" name="{name}"><instance_effect url="#{name}-effect"/></material>'
+                for name in (material.name for material in materials)
+            ),
+            "  </library_materials>",
+            "  <library_geometries>",
+            *map(geometry, parts),
+            "  </library_geometries>",
+            "  <library_visual_scenes>",
+            '    <visual_scene id="scene" name="kinect">',
+            *map(node, parts),
+            "    </visual_scene>",
+            "  </library_visual_scenes>",
+            '  <scene><instance_visual_scene url="#scene"/></scene>',
+            "</COLLADA>",
+            "",
+        ]
+    )
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Write the file, or with ``--check`` say whether it is current."""
+    text = generate()
+    if "--check" in arguments:
+        current = TARGET.read_text(encoding="utf-8") if TARGET.exists() else ""
+        if current != text:
+            print(f"{TARGET} is stale: run python tools/make_kinect_mesh.py", file=sys.stderr)
+            return 1
+        return 0
+    TARGET.parent.mkdir(parents=True, exist_ok=True)
+    TARGET.write_text(text, encoding="utf-8", newline="\n")
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main(sys.argv[1:]))
