@@ -31,7 +31,9 @@ _FONTS = """<?xml version="1.0"?>
 """
 _WRAPPER = """#!/bin/sh
 here=$(dirname "$0")
-FONTCONFIG_FILE="$here/fonts/fonts.conf" LD_LIBRARY_PATH="$here/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}" exec "$here/chromium" "$@"
+export FONTCONFIG_FILE="$here/fonts/fonts.conf"
+export LD_LIBRARY_PATH="$here/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}"
+exec "$here/chromium" "$@"
 """
 
 

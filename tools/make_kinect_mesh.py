@@ -59,7 +59,9 @@ class Part:
 SHELL = Material("shell", (0.055, 0.055, 0.062), specular=(0.35, 0.35, 0.36), shininess=42.0)
 FOOT = Material("foot", (0.11, 0.11, 0.12), specular=(0.10, 0.10, 0.10), shininess=12.0)
 LENS = Material("lens", (0.015, 0.018, 0.045), specular=(0.90, 0.92, 1.0), shininess=90.0)
-EMITTER = Material("emitter", (0.30, 0.01, 0.02), specular=(0.6, 0.4, 0.4), emission=(0.22, 0.0, 0.01), shininess=60.0)
+EMITTER = Material(
+    "emitter", (0.20, 0.012, 0.02), specular=(0.6, 0.4, 0.4), emission=(0.10, 0.0, 0.005), shininess=60.0
+)
 LED = Material("led", (0.05, 0.45, 0.10), emission=(0.03, 0.55, 0.10))
 
 

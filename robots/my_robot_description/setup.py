@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Installs the Python module, and into the package's share folder everything that ROS tools look for there."""
+"""Installs the Python module, and into the share folder everything that ROS tools look for there."""
 
 from pathlib import Path
 
@@ -13,7 +13,7 @@ SHARED_FOLDERS = ['launch', 'meshes', 'rviz', 'urdf']
 
 
 def shared_files():
-    """List (installed folder, files) for every folder that holds files, as `data_files` wants them."""
+    """Yield (installed folder, its files) for each folder, as `data_files` wants them."""
     for top in SHARED_FOLDERS:
         for folder in [Path(top), *sorted(path for path in Path(top).rglob('*') if path.is_dir())]:
             files = sorted(str(path) for path in folder.iterdir() if path.is_file())
@@ -37,7 +37,7 @@ setup(
     author_email='maintainers@linkwright.dev',
     maintainer='The Linkwright authors',
     maintainer_email='maintainers@linkwright.dev',
-    description='mbot, a small two-wheeled robot with differential drive: its models and the launch files that show them.',
+    description='mbot, a small two-wheeled robot: its models and the launch files that show them.',
     license='Apache-2.0',
     entry_points={'console_scripts': []},
 )

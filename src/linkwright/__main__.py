@@ -1,5 +1,5 @@
 """``python -m linkwright``."""
 
-from linkwright.cli.main import main
+from linkwright.cli.command import main
 
 raise SystemExit(main())

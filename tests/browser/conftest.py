@@ -20,8 +20,6 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
 
-REPOSITORY = Path(__file__).resolve().parents[2]
-PACKAGE = REPOSITORY / "robots" / "my_robot_description"
 _FLAGS = (
     "--no-sandbox",
     "--use-angle=swiftshader",

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.browser.conftest import PACKAGE, REPOSITORY, state
+from tests.browser.conftest import state
+from tests.places import PACKAGE, TUTORIAL
 
 pytestmark = pytest.mark.browser
 
@@ -17,7 +18,6 @@ MODELS = {
     "mbot_with_laser.urdf": 6,
     "mbot_base.xacro": 12,
 }
-TUTORIAL = REPOSITORY.parent / "shared" / "tutorial"
 
 
 def launch_words(model: str, package: Path = PACKAGE) -> list[str]:

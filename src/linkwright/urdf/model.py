@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Literal, Union
+from typing import Literal
 
 from linkwright.xmltree import Element
 
@@ -73,7 +73,7 @@ class Mesh:
     scale: Vector3 = (1.0, 1.0, 1.0)
 
 
-Geometry = Union[Box, Cylinder, Capsule, Sphere, Mesh]
+Geometry = Box | Cylinder | Capsule | Sphere | Mesh
 
 
 @dataclass(frozen=True, slots=True)

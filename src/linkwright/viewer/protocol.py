@@ -3,13 +3,22 @@
 Control messages are JSON objects with a ``type``; the TypeScript types in ``frontend/src/protocol.gen.ts`` are
 generated from this module by ``tools/protocol_types.py``. Transforms travel as one binary frame, packed by
 `pack_transforms`. Lengths are metres, angles radians, quaternions x, y, z, w, colours 0 to 1.
+
+The page opens one WebSocket at ``/ws`` (same origin; the cookie set with the page lets it in). `Hello` comes first,
+then `Tree`, the `RobotScene` of every RobotModel, `ViewState`, `Joints`, `JointPositions`, `Diagnostics`, `FrameTable`
+and the last transforms; after that whatever changes, where only the newest of a kind waits for a slow page. A binary
+frame whose revision is not that of the last `FrameTable` is to be dropped.
+
+Property ids are ``global/<name>`` or ``<display id>/<name>/<name>...``: the names of the rows on the way, joined by
+``/``; in a name ``%`` is written ``%25`` and ``/`` is ``%2F``. The page asks for a change with `SetProperty` and takes
+it as made when `PropertyChanged` (or new rows) comes back; a refused value is answered with the one that stands.
 """
 
 from __future__ import annotations
 
 import struct
 from dataclasses import dataclass, field
-from typing import Any, Literal, Union
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +28,7 @@ PROTOCOL_VERSION = 1
 
 StatusLevel = Literal["ok", "warn", "error"]
 PropertyKind = Literal["group", "bool", "int", "float", "string", "color", "enum", "frame"]
-PropertyValue = Union[bool, int, float, str, None]
+PropertyValue = bool | int | float | str | None
 ShapeKind = Literal["box", "cylinder", "capsule", "sphere", "mesh"]
 
 _TRANSFORMS_HEADER = struct.Struct("<IIIId")
@@ -63,7 +72,12 @@ class StatusRow:
 class Display:
     """One display of the Displays panel. `cls` is RViz's class, such as ``rviz_default_plugins/Grid``.
 
-    `supported` is false for a class this program does not draw; it is kept and shown as such.
+    `supported` is false for a class this program does not draw; it is kept and shown as such. What the rows mean:
+
+    - RobotModel: a shape is drawn with the alpha of its colour, times ``Alpha``, times the link's ``Alpha`` below
+      ``Links``. A link's row is a ``bool`` (draw its shapes) when it has any, else a ``group``.
+    - TF: a frame is drawn when it has a row below ``Frames`` and that is on; frames that the filters leave out have
+      none. ``Update Interval`` (seconds between updates, 0 for every frame) of both is applied by the page.
     """
 
     id: str
@@ -334,11 +348,20 @@ class MeshStatus:
     type: Literal["mesh_status"] = "mesh_status"
 
 
-ServerMessage = Union[
-    Hello, Tree, DisplayProperties, PropertyChanged, DisplayStatus, RobotScene, FrameTable, ViewState, Joints,
-    JointPositions, Diagnostics,
-]  # fmt: skip
-PageMessage = Union[SetProperty, SetJoint, RandomizeJoints, CenterJoints, ViewChanged, MeshStatus]
+ServerMessage = (
+    Hello
+    | Tree
+    | DisplayProperties
+    | PropertyChanged
+    | DisplayStatus
+    | RobotScene
+    | FrameTable
+    | ViewState
+    | Joints
+    | JointPositions
+    | Diagnostics
+)
+PageMessage = SetProperty | SetJoint | RandomizeJoints | CenterJoints | ViewChanged | MeshStatus
 
 
 def pack_transforms(revision: int, stamp: float, poses: NDArray[Any], ages: NDArray[Any]) -> bytes:

@@ -1,5 +1,4 @@
-"""The finder in force, for code that cannot be handed one: launch files call
-``get_package_share_directory(name)``."""
+"""The finder in force, for those who cannot be handed one, as launch files that ask for a share folder."""
 
 from __future__ import annotations
 

@@ -17,11 +17,9 @@ class PackageNotFoundError(LinkwrightError, KeyError):
         name: the package that was looked for.
     """
 
-    def __init__(
-        self, name: str, searched: Sequence[str], known: Iterable[str], advice: str | None = None
-    ) -> None:
+    def __init__(self, name: str, searched: Sequence[str], known: Iterable[str]) -> None:
         notes = tuple(Note(f"searched {place}") for place in searched)
-        hint = did_you_mean(name, known) or advice
+        hint = did_you_mean(name, known) or ("go to the workspace that holds it, or source its install/setup.bash")
         super().__init__(Diagnostic("PKG101", f"package '{name}' not found", notes=notes, hint=hint))
         self.name = name
 

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 import linkwright
 from linkwright.diagnostics import display_path
 from linkwright.workspace import ament, uri
 from linkwright.workspace.errors import PackageNotFoundError
-from linkwright.workspace.manifest import enclosing_package, package_name
+from linkwright.workspace.manifest import enclosing_package
 from linkwright.workspace.sources import SourceScan
 
 
@@ -22,9 +22,8 @@ class PackageFinder:
     1. `extra`, given by the caller;
     2. the prefixes of ``AMENT_PREFIX_PATH`` (a sourced ROS or workspace);
     3. colcon's ``install`` folders in the start folders and in the folders above them, merged or isolated;
-    4. source trees: the package a start folder lies in and the packages beside that one, the packages below a
-    start
-       folder, and those below ``src`` of the folders above it;
+    4. source trees: the package a start folder lies in and the packages beside that one, the packages below
+       a start folder, and those below ``src`` of the folders above it;
     5. the packages shipped with Linkwright.
 
     Nothing is read from the disk before it is needed, and a search through source trees stops where it meets
@@ -45,21 +44,20 @@ class PackageFinder:
     ) -> None:
         if start is None:
             start = Path.cwd()
-        starts = [start] if isinstance(start, Path) else start self._starts =
-        tuple(dict.fromkeys(Path(os.path.abspath(each)) for each in starts))  # noqa: PTH100 - no links
-        self._environment = os.environ if environment is None else environment self._extra = {name:
-        Path(share) for name, share in (extra or {}).items()} self._scans: dict[Path, SourceScan] = {}
+        starts = [start] if isinstance(start, Path) else start
+        self._starts = tuple(dict.fromkeys(_absolute(each) for each in starts))
+        self._environment = os.environ if environment is None else environment
+        self._extra = {name: Path(share) for name, share in (extra or {}).items()}
+        self._scans: dict[Path, SourceScan] = {}
         self._known: dict[str, Path] = {}
 
     def find(self, name: str) -> Path | None:
         """The share folder of a package (its source folder where it is not installed), or None."""
         share = self._known.get(name)
         if share is None:
-            for place in self._places(name):
-                share = place()
-                if share is not None:
-                    self._known[name] = share
-                    break
+            share = next((place for place in self._places(name) if place is not None), None)
+            if share is not None:
+                self._known[name] = share
         return share
 
     def share(self, name: str) -> Path:
@@ -70,7 +68,7 @@ class PackageFinder:
         """
         share = self.find(name)
         if share is None:
-            raise PackageNotFoundError(name, self._searched(), self.packages(), self._advice(name))
+            raise PackageNotFoundError(name, self._searched(), self.packages())
         return share
 
     def packages(self) -> dict[str, Path]:
@@ -94,21 +92,21 @@ class PackageFinder:
 
     def package_of(self, path: str | Path) -> str | None:
         """The name of the package that a file lies in (installed or source), or None."""
-        absolute = Path(os.path.abspath(path))  # noqa: PTH100 - links are kept: share folders are full of
-        them found = enclosing_package(absolute) return found[0] if found else None
+        found = enclosing_package(_absolute(path))
+        return found[0] if found else None
 
     # --- the places -----------------------------------------------------------------------------------------
 
-    def _places(self, name: str) -> Iterator[Callable[[], Path | None]]:
-        yield lambda: self._extra.get(name)
+    def _places(self, name: str) -> Iterator[Path | None]:
+        yield self._extra.get(name)
         for prefix in ament.environment_prefixes(self._environment):
-            yield lambda prefix=prefix: ament.share_in_prefix(prefix, name)  # type: ignore[misc]
+            yield ament.share_in_prefix(prefix, name)
         for install in self._installs():
-            yield lambda install=install: ament.share_in_install(install, name)  # type: ignore[misc]
-        yield lambda: dict(self._enclosing()).get(name)
+            yield ament.share_in_install(install, name)
+        yield dict(self._enclosing()).get(name)
         for root in self._source_roots():
-            yield lambda root=root: self._scan(root).find(name)  # type: ignore[misc]
-        yield lambda: self._shipped().get(name)
+            yield self._scan(root).find(name)
+        yield self._shipped().get(name)
 
     def _all(self) -> Iterator[tuple[str, Path]]:
         for prefix in ament.environment_prefixes(self._environment):
@@ -177,25 +175,20 @@ class PackageFinder:
             scan = self._scan(root)
             bound = " (only in part: too many folders)" if scan.truncated else ""
             places.append(f"package.xml files below {display_path(root)}{bound}")
-            places += [
-                f"{display_path(folder / 'package.xml')}, which names no package" for folder in scan.unnamed
-            ]
+            places += [f"{display_path(folder / 'package.xml')}, which names no package" for folder in scan.unnamed]
         places.append("the packages shipped with Linkwright: " + (", ".join(self._shipped()) or "none"))
         return places
 
-    def _advice(self, name: str) -> str:
-        for start in self._starts:
-            for folder in (start, *start.parents):
-                if package_name(folder / name) == name:
-                    return f"it lies in {display_path(folder / name)}, beside the search: start from {folder}"
-        return "go to the workspace that holds it, or source its install/setup.bash"
-
 
 def shipped_folder() -> Path | None:
-    """Where the packages shipped with Linkwright lie: in the wheel, or in the repository of an editable
-    install."""
+    """Where the packages shipped with us lie: in the wheel, or in the repository of an editable install."""
     package = Path(linkwright.__file__).parent
     for folder in (package / "robots", package.parents[1] / "robots"):
         if folder.is_dir():
             return folder
     return None
+
+
+def _absolute(path: str | Path) -> Path:
+    """An absolute path with its links kept: share folders are full of them."""
+    return Path(os.path.abspath(path))  # noqa: PTH100 - Path.resolve would follow the links

@@ -13,7 +13,7 @@ IGNORE_MARKERS = frozenset({"COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE"})
 SKIPPED_FOLDERS = frozenset({"build", "install", "log", "node_modules", "__pycache__", "site-packages"})
 
 MAXIMUM_DEPTH = 8
-MAXIMUM_FOLDERS = 5000
+MAXIMUM_FOLDERS = 3000
 
 
 class SourceScan:
@@ -85,8 +85,7 @@ class SourceScan:
             if depth == MAXIMUM_DEPTH:
                 self.truncated = self.truncated or bool(folders)
                 continue
-            waiting.extend((os.path.join(folder, entry), depth + 1) for entry in folders)  # noqa: PTH118 -
-            hot
+            waiting.extend((f"{folder}{os.sep}{entry}", depth + 1) for entry in folders)
 
 
 def _listing(folder: str) -> tuple[set[str], list[str]]:
@@ -112,8 +111,7 @@ def _links_upwards(entry: os.DirEntry[str]) -> bool:
     """Whether a folder is a link to one of the folders it lies in: following it would never end."""
     if not entry.is_symlink():
         return False
-    target = os.path.realpath(entry.path) return
-    os.path.realpath(os.path.dirname(entry.path)).startswith(target.rstrip(os.sep) + os.sep) or (  # noqa:
-    PTH120
-        target == os.path.realpath(os.path.dirname(entry.path))  # noqa: PTH120
-    )
+    link = Path(entry.path)
+    target = link.resolve()
+    above = link.parent.resolve()
+    return target == above or target in above.parents

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Union
 
 from linkwright.diagnostics import SourceText, Span
 
@@ -105,20 +104,27 @@ class Element:
         return self.source.span(*found) if found else self.span()
 
 
-Node = Union[Element, Text, Comment, ProcessingInstruction]
+Node = Element | Text | Comment | ProcessingInstruction
 
 
 class Document:
     """A parsed document: what stands before the root, the root, what stands after it.
 
-    `doctype` is the document type declaration as written, or None.
+    Attributes:
+        prolog: comments and processing instructions before the root.
+        root: the root element.
+        epilog: comments and processing instructions after the root.
+        doctype: the document type declaration as it is written back, or None.
+        doctype_index: how many nodes of the prolog stand before the document type declaration.
+        source: the text it was read from; None for a document made by a program.
     """
 
-    __slots__ = ("doctype", "epilog", "prolog", "root", "source")
+    __slots__ = ("doctype", "doctype_index", "epilog", "prolog", "root", "source")
 
     def __init__(self, root: Element, source: SourceText | None = None) -> None:
         self.prolog: list[Comment | ProcessingInstruction] = []
         self.root = root
         self.epilog: list[Comment | ProcessingInstruction] = []
         self.doctype: str | None = None
+        self.doctype_index = 0
         self.source = source

@@ -17,6 +17,8 @@ from linkwright.diagnostics import LinkwrightError, did_you_mean, print_diagnost
 
 VERBS = ("launch", "view", "xacro", "check", "diagram", "pkg")
 """In the order in which the help lists them; each is a module of this package."""
+_NESTED = frozenset({"pkg"})
+"""Verbs with verbs of their own; elsewhere options may stand between words (`launch PACKAGE --no-open FILE`)."""
 
 FINE, FINDINGS, USAGE, BUG, INTERRUPTED = 0, 1, 2, 3, 130
 
@@ -80,8 +82,9 @@ def _dispatch(words: list[str]) -> int:
         what = "option" if name.startswith("-") else "command"
         print(f"linkwright: there is no {what} '{name}'; {hint}", file=sys.stderr)
         return USAGE
-    arguments = parser_for(name).parse_args(words[1:])
-    return verb(name).run(arguments)
+    parser = parser_for(name)
+    parse = parser.parse_args if name in _NESTED else parser.parse_intermixed_args
+    return verb(name).run(parse(words[1:]))
 
 
 def _overview() -> str:

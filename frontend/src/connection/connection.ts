@@ -1,0 +1,94 @@
+import { PROTOCOL_VERSION, type PageMessage, type ServerMessage } from "../protocol.gen";
+import { Signal } from "../state/signal";
+import { unpackTransforms, type Transforms } from "./transforms";
+
+/** `ended`: the program said goodbye; the page still looks for a new one. `outdated`: a reload did not help. */
+export type ConnectionState = "connecting" | "connected" | "reconnecting" | "ended" | "outdated";
+
+const FIRST_RETRY_MS = 250;
+const LONGEST_RETRY_MS = 4000;
+const GOING_AWAY = 1001;
+const RELOADED_KEY = "linkwright.reloaded-for-protocol";
+
+/** The WebSocket to the server, opened again with growing pauses whenever it is lost. */
+export class Connection {
+  readonly message = new Signal<ServerMessage>();
+  readonly transforms = new Signal<Transforms>();
+  readonly stateChanged = new Signal<ConnectionState>();
+  private socket: WebSocket | null = null;
+  private retryMs = FIRST_RETRY_MS;
+  private current: ConnectionState = "connecting";
+
+  constructor(private readonly url: string) {}
+
+  get state(): ConnectionState {
+    return this.current;
+  }
+
+  open(): void {
+    const socket = new WebSocket(this.url);
+    socket.binaryType = "arraybuffer";
+    socket.onmessage = (event: MessageEvent<string | ArrayBuffer>) => this.receive(event.data);
+    socket.onclose = (event) => this.lost(event.code);
+    this.socket = socket;
+  }
+
+  /** Sends now or not at all: what the user did while there was no server is not replayed later. */
+  send(message: PageMessage): void {
+    if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
+  }
+
+  private receive(data: string | ArrayBuffer): void {
+    if (data instanceof ArrayBuffer) {
+      const transforms = unpackTransforms(data);
+      if (transforms) this.transforms.emit(transforms);
+      return;
+    }
+    const message = JSON.parse(data) as ServerMessage;
+    if (message.type === "hello") {
+      if (message.protocol !== PROTOCOL_VERSION) {
+        this.outdated();
+        return;
+      }
+      sessionStorage.removeItem(RELOADED_KEY);
+      this.retryMs = FIRST_RETRY_MS;
+      this.become("connected");
+    }
+    this.message.emit(message);
+  }
+
+  private lost(code: number): void {
+    this.socket = null;
+    if (this.current === "outdated") return;
+    if (code === GOING_AWAY) this.become("ended");
+    else if (this.current === "connected") this.become("reconnecting");
+    setTimeout(() => this.open(), this.retryMs);
+    this.retryMs = Math.min(this.retryMs * 1.6, LONGEST_RETRY_MS);
+  }
+
+  /** The server was replaced by another version: its own page is one reload away. */
+  private outdated(): void {
+    const socket = this.socket;
+    this.become("outdated");
+    socket?.close();
+    if (sessionStorage.getItem(RELOADED_KEY)) return;
+    sessionStorage.setItem(RELOADED_KEY, "yes");
+    location.reload();
+  }
+
+  private become(state: ConnectionState): void {
+    if (state === this.current) return;
+    this.current = state;
+    this.stateChanged.emit(state);
+  }
+}
+
+/** Where the server's WebSocket is for a page at `page`; a token in the page's address goes along. */
+export function socketUrl(page: string): string {
+  const from = new URL(page);
+  const url = new URL("ws", page);
+  url.protocol = from.protocol === "https:" ? "wss:" : "ws:";
+  const token = from.searchParams.get("token");
+  if (token) url.searchParams.set("token", token);
+  return url.href;
+}

@@ -1,0 +1,32 @@
+import { TRANSFORMS_KIND } from "../protocol.gen";
+
+const HEADER_BYTES = 24;
+const FLOATS_PER_POSE = 7;
+
+/** One binary frame: the poses of every frame of a table, in the fixed frame. */
+export interface Transforms {
+  /** Revision of the frame table that names the rows. */
+  revision: number;
+  /** Time of the newest transform, seconds. */
+  stamp: number;
+  /** count x 7: x y z (m) qx qy qz qw; NaN rows where there is no transform. */
+  poses: Float32Array;
+  /** Seconds since each frame was last heard of; 0 for static frames. */
+  ages: Float32Array;
+}
+
+/** Reads what `pack_transforms` of `viewer/protocol.py` wrote; null when the bytes are something else. */
+export function unpackTransforms(buffer: ArrayBuffer): Transforms | null {
+  if (buffer.byteLength < HEADER_BYTES) return null;
+  const header = new DataView(buffer);
+  const count = header.getUint32(8, true);
+  const posesBytes = count * FLOATS_PER_POSE * 4;
+  if (header.getUint32(0, true) !== TRANSFORMS_KIND) return null;
+  if (buffer.byteLength !== HEADER_BYTES + posesBytes + count * 4) return null;
+  return {
+    revision: header.getUint32(4, true),
+    stamp: header.getFloat64(16, true),
+    poses: new Float32Array(buffer, HEADER_BYTES, count * FLOATS_PER_POSE),
+    ages: new Float32Array(buffer, HEADER_BYTES + posesBytes, count),
+  };
+}

@@ -1,0 +1,49 @@
+type Child = Node | string | null;
+
+interface Props {
+  class?: string;
+  title?: string;
+  role?: string;
+  tabIndex?: number;
+  data?: Readonly<Record<string, string>>;
+  aria?: Readonly<Record<string, string>>;
+  onClick?: (event: MouseEvent) => void;
+}
+
+/** Makes an element: `h("div", { class: "row" }, "text", child)`. */
+export function h<K extends keyof HTMLElementTagNameMap>(
+  tag: K,
+  props: Props = {},
+  ...children: readonly Child[]
+): HTMLElementTagNameMap[K] {
+  const element: HTMLElement = document.createElement(tag);
+  if (props.class !== undefined) element.className = props.class;
+  if (props.title !== undefined) element.title = props.title;
+  if (props.role !== undefined) element.setAttribute("role", props.role);
+  if (props.tabIndex !== undefined) element.tabIndex = props.tabIndex;
+  for (const [name, value] of Object.entries(props.data ?? {})) element.dataset[name] = value;
+  for (const [name, value] of Object.entries(props.aria ?? {})) element.setAttribute(`aria-${name}`, value);
+  if (props.onClick) element.addEventListener("click", props.onClick);
+  element.append(...children.filter((child) => child !== null));
+  return element as HTMLElementTagNameMap[K];
+}
+
+/** A push button; `label` is what it does, for those who do not see the icon. */
+export function button(label: string, onClick: () => void, className: string, ...children: readonly Child[]): HTMLButtonElement {
+  const element = h("button", { class: className, title: label, aria: { label }, onClick }, ...children);
+  element.type = "button";
+  return element;
+}
+
+/** Runs `work` once before the next painting, however often it is asked for. */
+export function coalesced(work: () => void): () => void {
+  let due = false;
+  return () => {
+    if (due) return;
+    due = true;
+    requestAnimationFrame(() => {
+      due = false;
+      work();
+    });
+  };
+}

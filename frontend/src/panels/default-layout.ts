@@ -1,0 +1,57 @@
+import type { AddPanelOptions, Direction, DockviewApi } from "dockview-core/dist/esm";
+import { strings } from "../strings";
+import type { PanelId } from "./panel";
+
+interface Home {
+  /** Where the panel goes: beside the first of these that is open. */
+  beside: readonly (readonly [PanelId, Direction])[];
+  width?: number;
+  height?: number;
+  inactive?: boolean;
+}
+
+/** RViz's places: Displays left, the scene in the middle, everything else right. */
+const HOMES: Readonly<Record<PanelId, Home>> = {
+  scene: { beside: [] },
+  displays: { beside: [["scene", "left"]], width: 320 },
+  views: {
+    beside: [
+      ["joints", "above"],
+      ["diagnostics", "above"],
+      ["scene", "right"],
+    ],
+    width: 290,
+    height: 290,
+  },
+  joints: {
+    beside: [
+      ["diagnostics", "within"],
+      ["views", "below"],
+      ["scene", "right"],
+    ],
+    width: 290,
+  },
+  diagnostics: {
+    beside: [
+      ["joints", "within"],
+      ["views", "below"],
+      ["scene", "right"],
+    ],
+    width: 290,
+    inactive: true,
+  },
+};
+
+/** Adds panels at their usual places. */
+export function addPanels(api: DockviewApi, ids: readonly PanelId[]): void {
+  for (const id of ids) {
+    const { beside, width, height, inactive } = HOMES[id];
+    const found = beside.find(([other]) => api.getPanel(other) !== undefined);
+    const options: AddPanelOptions = { id, component: id, tabComponent: id, title: strings.panels[id] };
+    if (width !== undefined) options.initialWidth = width;
+    if (height !== undefined) options.initialHeight = height;
+    if (inactive !== undefined) options.inactive = inactive;
+    const position = found && { referencePanel: found[0], direction: found[1] };
+    api.addPanel(position ? { ...options, floating: false, position } : options);
+  }
+}

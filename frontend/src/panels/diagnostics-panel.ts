@@ -1,0 +1,74 @@
+import { h } from "../dom";
+import { icon, LEVEL_ICONS } from "../icons";
+import type { DiagnosticItem } from "../protocol.gen";
+import type { Session } from "../state/session";
+import { strings } from "../strings";
+import type { Panel } from "./panel";
+import { placeText, shortPath } from "./place";
+
+/** What is wrong with the description, with the lines it is about. */
+export class DiagnosticsPanel implements Panel {
+  readonly id = "diagnostics";
+  readonly icon = "warn";
+  readonly element = h("div", { class: "panel diagnostics" });
+
+  constructor(private readonly session: Session) {
+    this.element.setAttribute("aria-live", "polite");
+    session.diagnosticsChanged.on(() => this.show());
+    this.show();
+  }
+
+  private show(): void {
+    const { diagnostics } = this.session;
+    if (diagnostics.length === 0) {
+      this.element.replaceChildren(
+        h("p", { class: "empty" }, icon("check", "level-ok"), strings.diagnostics.none),
+      );
+      return;
+    }
+    this.element.replaceChildren(...diagnostics.map(card));
+  }
+}
+
+function card(item: DiagnosticItem): HTMLElement {
+  const place = item.file === null ? "" : placeText(shortPath(item.file), item.line, item.column);
+  const notes = item.notes.map((note) => {
+    const at = note.file === null ? "" : placeText(shortPath(note.file), note.line, note.column);
+    return h(
+      "li",
+      {},
+      h("span", { class: "tag" }, strings.diagnostics.note),
+      note.message,
+      at ? h("span", { class: "place", title: placeText(note.file, note.line, note.column) }, at) : null,
+    );
+  });
+  const hints = item.hints.map((hint) =>
+    h("li", { class: "hint-line" }, h("span", { class: "tag" }, strings.diagnostics.hint), hint),
+  );
+  return h(
+    "article",
+    { class: `diagnostic ${item.severity}` },
+    h(
+      "header",
+      {},
+      icon(LEVEL_ICONS[item.severity], `level-${item.severity}`),
+      h("strong", {}, item.message),
+      h("code", { class: "code" }, item.code),
+    ),
+    place ? h("div", { class: "place", title: placeText(item.file, item.line, item.column) }, icon("file"), place) : null,
+    excerpt(item),
+    notes.length + hints.length > 0 ? h("ul", {}, ...notes, ...hints) : null,
+  );
+}
+
+/** The source line with the part in question marked. */
+function excerpt(item: DiagnosticItem): HTMLElement | null {
+  if (item.excerpt === "") return null;
+  const text = item.excerpt;
+  const start = Math.min(Math.max(0, (item.column ?? 1) - 1), text.length);
+  const sameLine = item.end_line === null || item.end_line === item.line;
+  const end = sameLine && item.end_column !== null ? Math.min(item.end_column - 1, text.length) : text.length;
+  const code = h("code", {}, text.slice(0, start));
+  code.append(h("mark", {}, text.slice(start, Math.max(end, start + 1))), text.slice(Math.max(end, start + 1)));
+  return h("pre", { class: "excerpt" }, h("span", { class: "line-number" }, String(item.line ?? "")), code);
+}

@@ -1,0 +1,80 @@
+// The package's main file writes its styles into the page at run time, which our content security policy forbids.
+import { createDockview, type DockviewApi, type IContentRenderer } from "dockview-core/dist/esm";
+import { strings } from "../strings";
+import { addPanels } from "./default-layout";
+import type { Panel, PanelId } from "./panel";
+import { PanelTab } from "./panel-tab";
+
+const LAYOUT_KEY = "linkwright.layout.1";
+
+/** The dockable panels; their arrangement is remembered by the browser. */
+export class Dock {
+  private readonly api: DockviewApi;
+  private readonly panels: ReadonlyMap<string, Panel>;
+
+  constructor(parent: HTMLElement, panels: readonly Panel[]) {
+    this.panels = new Map(panels.map((panel) => [panel.id, panel]));
+    this.api = createDockview(parent, {
+      createComponent: ({ name }) => this.content(name),
+      createTabComponent: ({ id }) => new PanelTab(this.panels.get(id)?.icon ?? "panels", id !== "scene"),
+      theme: { name: "linkwright", className: "dockview-theme-linkwright" },
+      disableFloatingGroups: true,
+      noPanelsOverlay: "emptyGroup",
+    });
+    // Panels get their sizes when they are added; the dock's own observer would tell its size only later.
+    this.api.layout(parent.clientWidth, parent.clientHeight);
+    if (!this.restore()) this.reset();
+    this.api.onDidLayoutChange(() => this.remember());
+  }
+
+  isOpen(id: PanelId): boolean {
+    return this.api.getPanel(id) !== undefined;
+  }
+
+  /** Opens a panel where it belongs, or brings it to the front. */
+  open(id: PanelId): void {
+    const panel = this.api.getPanel(id);
+    if (panel) panel.api.setActive();
+    else addPanels(this.api, [id]);
+  }
+
+  close(id: PanelId): void {
+    const panel = this.api.getPanel(id);
+    if (panel) this.api.removePanel(panel);
+  }
+
+  /** The arrangement of the first visit. */
+  reset(): void {
+    const joints = this.api.getPanel("joints") !== undefined;
+    this.api.clear();
+    addPanels(this.api, ["scene", "displays", "views", "diagnostics", ...(joints ? (["joints"] as const) : [])]);
+  }
+
+  private content(name: string): IContentRenderer {
+    const panel = this.panels.get(name);
+    if (!panel) throw new Error(`no panel '${name}'`);
+    return { element: panel.element, init: () => undefined };
+  }
+
+  private restore(): boolean {
+    const saved = localStorage.getItem(LAYOUT_KEY);
+    if (saved === null) return false;
+    try {
+      this.api.fromJSON(JSON.parse(saved) as Parameters<DockviewApi["fromJSON"]>[0]);
+      for (const panel of this.api.panels) panel.api.setTitle(title(panel.id));
+      return this.isOpen("scene");
+    } catch {
+      // A layout of another version of the page: start over.
+      this.api.clear();
+      return false;
+    }
+  }
+
+  private remember(): void {
+    localStorage.setItem(LAYOUT_KEY, JSON.stringify(this.api.toJSON()));
+  }
+}
+
+function title(id: string): string {
+  return strings.panels[id as PanelId];
+}

@@ -1,0 +1,131 @@
+import { h } from "../dom";
+import { icon } from "../icons";
+import type { JointControl } from "../protocol.gen";
+import { strings } from "../strings";
+import { clamp, parseNumber } from "../tree/numbers";
+
+export type AngleUnit = "rad" | "deg";
+
+const SLIDER_STEPS = 2000;
+/** After the user's last touch, how long the server's positions wait before they move the slider, ms. */
+const HANDS_OFF_MS = 250;
+
+/** A joint of the Joints panel: name, number, slider, limits. */
+export class JointRow {
+  readonly element: HTMLElement;
+  private readonly slider = h("input", { class: "slider" });
+  private readonly field = h("input", { class: "field numeric" });
+  private readonly unit = h("span", { class: "unit" });
+  private readonly limits = [h("span"), h("span")] as const;
+  private position = 0;
+  private touchedAt = -Infinity;
+  private dragging = false;
+
+  constructor(
+    readonly joint: JointControl,
+    private angles: AngleUnit,
+    private readonly moved: (position: number) => void,
+  ) {
+    const follower = joint.mimic !== null;
+    const name = h("span", { class: "joint-name", title: joint.name }, joint.name);
+    const mimic = follower
+      ? h("span", { class: "mimic", title: strings.joints.follows(joint.mimic ?? "") }, icon("link"), joint.mimic)
+      : null;
+    this.slider.type = "range";
+    this.slider.min = "0";
+    this.slider.max = String(SLIDER_STEPS);
+    this.field.type = "text";
+    this.field.inputMode = "decimal";
+    this.slider.disabled = this.field.disabled = follower;
+    this.slider.setAttribute("aria-label", joint.name);
+    this.field.setAttribute("aria-label", strings.joints.position(joint.name));
+    this.listen();
+    this.element = h(
+      "div",
+      { class: follower ? "joint follower" : "joint", data: { joint: joint.name } },
+      h("div", { class: "joint-head" }, name, mimic, h("span", { class: "spacer" }), this.field, this.unit),
+      h("div", { class: "joint-slide" }, this.limits[0], this.slider, this.limits[1]),
+    );
+    this.setAngles(angles);
+  }
+
+  setAngles(angles: AngleUnit): void {
+    this.angles = angles;
+    const { lower, upper, kind } = this.joint;
+    const words = strings.joints;
+    this.unit.textContent = kind === "prismatic" ? words.metres : angles === "deg" ? words.degrees : words.radians;
+    this.limits[0].textContent = this.format(lower);
+    this.limits[1].textContent = this.format(upper);
+    this.show();
+  }
+
+  /** The server's position; it waits while the user's hand is on the row. */
+  setPosition(position: number): void {
+    if (this.dragging || performance.now() - this.touchedAt < HANDS_OFF_MS) return;
+    this.position = position;
+    this.show();
+  }
+
+  private listen(): void {
+    this.slider.addEventListener("input", () => {
+      const { lower, upper } = this.joint;
+      this.take(lower + (Number(this.slider.value) / SLIDER_STEPS) * (upper - lower));
+    });
+    this.slider.addEventListener("pointerdown", () => (this.dragging = true));
+    for (const end of ["pointerup", "pointercancel", "blur"]) {
+      this.slider.addEventListener(end, () => (this.dragging = false));
+    }
+    this.field.addEventListener("focus", () => this.field.select());
+    this.field.addEventListener("blur", () => this.readField());
+    this.field.addEventListener("keydown", (event) => {
+      if (event.key === "Enter") this.readField();
+      else if (event.key === "Escape") this.show(true);
+      else if (event.key === "ArrowUp") this.take(this.position + this.step);
+      else if (event.key === "ArrowDown") this.take(this.position - this.step);
+      else return;
+      event.preventDefault();
+      event.stopPropagation();
+    });
+  }
+
+  private readField(): void {
+    if (this.field.value === this.format(this.position)) return;
+    const value = parseNumber(this.field.value);
+    if (value === null) this.show(true);
+    else this.take(value / this.scale);
+  }
+
+  private take(position: number): void {
+    this.touchedAt = performance.now();
+    this.position = clamp(position, this.joint.lower, this.joint.upper);
+    this.show(true);
+    this.moved(this.position);
+  }
+
+  private show(force = false): void {
+    const { lower, upper } = this.joint;
+    const part = upper > lower ? (this.position - lower) / (upper - lower) : 0;
+    if (!this.dragging) this.slider.value = String(Math.round(part * SLIDER_STEPS));
+    this.slider.style.setProperty("--part", String(clamp(part, 0, 1)));
+    const zero = upper > lower ? (this.joint.zero - lower) / (upper - lower) : 0;
+    this.slider.style.setProperty("--zero", String(clamp(zero, 0, 1)));
+    this.slider.setAttribute("aria-valuetext", `${this.format(this.position)} ${this.unit.textContent ?? ""}`);
+    if (force || document.activeElement !== this.field) this.field.value = this.format(this.position);
+  }
+
+  private get scale(): number {
+    return this.joint.kind !== "prismatic" && this.angles === "deg" ? 180 / Math.PI : 1;
+  }
+
+  /** What an arrow key in the number field moves: 1 degree, 0.01 rad, 1 mm. */
+  private get step(): number {
+    if (this.joint.kind === "prismatic") return 0.001;
+    return this.angles === "deg" ? Math.PI / 180 : 0.01;
+  }
+
+  private format(position: number): string {
+    const digits = this.scale !== 1 ? 1 : 3;
+    const text = (position * this.scale).toFixed(digits);
+    return Number(text) === 0 ? (0).toFixed(digits) : text;
+  }
+}

@@ -1,0 +1,10 @@
+/** The end of a path is what tells files apart: at most its last `parts` parts. */
+export function shortPath(path: string, parts = 3): string {
+  const all = path.split(/[\\/]/).filter((part) => part !== "");
+  return all.length <= parts ? path : `…/${all.slice(-parts).join("/")}`;
+}
+
+/** `file:line:column` with whatever of it is known. */
+export function placeText(file: string | null, line: number | null, column: number | null): string {
+  return [file, line, column].filter((part) => part !== null).join(":");
+}

@@ -1,0 +1,64 @@
+import { button, h } from "../dom";
+import { icon } from "../icons";
+import type { LinkScene } from "../protocol.gen";
+import type { Session } from "../state/session";
+import { strings } from "../strings";
+import { placeText, shortPath } from "./place";
+
+/** The selected link: where it is written, and through which macros it came. */
+export class SelectionCard {
+  readonly element = h("div", { class: "selection-card", role: "status" });
+
+  constructor(private readonly session: Session) {
+    session.selection.changed.on(() => this.update());
+    this.update();
+  }
+
+  private update(): void {
+    const link = this.session.selection.selected?.link;
+    this.element.hidden = !link;
+    if (!link) return;
+    const words = strings.selection;
+    const clear = button(words.clear, () => this.session.selection.select(null), "tool bare", icon("close"));
+    this.element.replaceChildren(
+      h("header", {}, icon("cube"), h("strong", { title: words.title }, link.name), h("span", { class: "spacer" }), clear),
+      ...details(link),
+      place(link),
+      ...trail(link),
+    );
+  }
+}
+
+function details(link: LinkScene): HTMLElement[] {
+  const words = strings.selection;
+  const rows: [string, string][] = [];
+  if (link.parent_joint !== null) rows.push([words.joint, link.parent_joint]);
+  if (link.frame !== link.name) rows.push([words.frame, link.frame]);
+  return rows.map(([name, value]) => h("div", { class: "detail" }, h("span", {}, name), h("span", {}, value)));
+}
+
+function place(link: LinkScene): HTMLElement {
+  const words = strings.selection;
+  const at = link.place;
+  if (!at) return h("p", { class: "hint" }, words.noPlace);
+  const full = placeText(at.file, at.line, at.column);
+  const copy = button(
+    words.copy,
+    () => {
+      void navigator.clipboard.writeText(full).then(() => {
+        copy.classList.add("done");
+        copy.title = words.copied;
+      });
+    },
+    "tool bare",
+    icon("copy"),
+  );
+  const text = h("span", { class: "place", title: full }, icon("file"), placeText(shortPath(at.file), at.line, at.column));
+  return h("div", { class: "card-place" }, text, copy);
+}
+
+function trail(link: LinkScene): HTMLElement[] {
+  const steps = link.place?.trail ?? [];
+  if (steps.length === 0) return [];
+  return [h("ol", { class: "trail" }, ...steps.map((step) => h("li", {}, step)))];
+}

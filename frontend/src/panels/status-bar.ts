@@ -1,0 +1,58 @@
+import { h } from "../dom";
+import type { Stage } from "../scene/stage";
+import type { Session } from "../state/session";
+import { strings } from "../strings";
+
+const REFRESH_MS = 500;
+
+/** Connection, fixed frame, robot and drawing rate, at the foot of the page. */
+export class StatusBar {
+  readonly element: HTMLElement;
+  private readonly connection = h("span", { class: "connection", role: "status" });
+  private readonly fixedFrame = h("span", { class: "status-value" });
+  private readonly robot = h("span", { class: "status-item" });
+  private readonly rate = h("span", { class: "status-item rate" });
+
+  constructor(
+    private readonly session: Session,
+    private readonly stage: Stage | null,
+  ) {
+    this.element = h(
+      "footer",
+      { class: "status-bar" },
+      this.connection,
+      h("span", { class: "status-item" }, h("span", { class: "status-name" }, strings.status.fixedFrame), this.fixedFrame),
+      this.robot,
+      h("span", { class: "spacer" }),
+      h("span", { class: "status-item mouse" }, strings.scene.mouse),
+      h("span", { class: "spacer" }),
+      this.rate,
+    );
+    session.connection.stateChanged.on(() => this.update());
+    session.displays.treeChanged.on(() => this.update());
+    session.displays.valueChanged.on(() => this.update());
+    session.robotChanged.on(() => this.update());
+    setInterval(() => this.updateRate(), REFRESH_MS);
+    this.update();
+    this.updateRate();
+  }
+
+  private update(): void {
+    const { connection, displays, robot } = this.session;
+    this.connection.textContent = strings.connection[connection.state];
+    this.connection.dataset["state"] = connection.state;
+    this.fixedFrame.textContent = displays.fixedFrame;
+    this.robot.replaceChildren(
+      h("span", { class: "status-value" }, robot ? robot.name : strings.status.noRobot),
+      robot ? h("span", { class: "status-name" }, strings.status.links(robot.links.length)) : "",
+    );
+  }
+
+  private updateRate(): void {
+    if (!this.stage) return;
+    const rate = this.stage.loop.framesPerSecond(performance.now());
+    const text = rate === null ? strings.status.idle : strings.status.fps(rate);
+    if (this.rate.textContent !== text) this.rate.textContent = text;
+    this.rate.title = strings.status.frames(this.stage.loop.framesDrawn);
+  }
+}

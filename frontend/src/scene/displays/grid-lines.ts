@@ -1,0 +1,43 @@
+/** What a grid looks like; lengths in metres. */
+export interface GridShape {
+  cells: number;
+  normalCells: number;
+  cellSize: number;
+  plane: string;
+}
+
+/**
+ * Both ends (x y z, x y z) of every line of a grid centred on the origin, as RViz's Grid builds it: `normalCells` + 1
+ * layers of `cells` x `cells` cells, joined by lines along the normal.
+ */
+export function gridLines({ cells, normalCells, cellSize, plane }: GridShape): Float32Array {
+  const points: number[] = [];
+  const extent = (cells * cellSize) / 2;
+  const top = (normalCells * cellSize) / 2;
+  const line = (a: readonly number[], b: readonly number[]): void => {
+    points.push(...turned(a, plane), ...turned(b, plane));
+  };
+  for (let layer = 0; layer <= normalCells; layer++) {
+    const z = top - layer * cellSize;
+    for (let i = 0; i <= cells; i++) {
+      const at = extent - i * cellSize;
+      line([at, -extent, z], [at, extent, z]);
+      line([-extent, at, z], [extent, at, z]);
+    }
+  }
+  if (normalCells > 0) {
+    for (let i = 0; i <= cells; i++) {
+      for (let j = 0; j <= cells; j++) {
+        const [x, y] = [extent - i * cellSize, extent - j * cellSize];
+        line([x, y, -top], [x, y, top]);
+      }
+    }
+  }
+  return new Float32Array(points);
+}
+
+function turned([a = 0, b = 0, normal = 0]: readonly number[], plane: string): [number, number, number] {
+  if (plane === "XZ") return [a, normal, b];
+  if (plane === "YZ") return [normal, a, b];
+  return [a, b, normal];
+}

@@ -1,0 +1,64 @@
+import { BufferGeometry, Float32BufferAttribute, Group, LineBasicMaterial, LineSegments } from "three";
+import { FIXED_FRAME } from "../../state/view";
+import { WideLines } from "../objects/wide-lines";
+import { framePose } from "../pose";
+import type { Drawing, DrawingContext } from "./drawing";
+import { gridLines } from "./grid-lines";
+
+/** rviz_default_plugins/Grid */
+export class GridDrawing implements Drawing {
+  readonly root = new Group();
+  private readonly lines = new LineSegments(new BufferGeometry(), new LineBasicMaterial());
+  private readonly billboards = new WideLines();
+  private frame = "";
+
+  constructor(private readonly context: DrawingContext) {
+    this.root.matrixAutoUpdate = false;
+    this.root.add(this.lines, this.billboards.root);
+    this.propertiesChanged();
+  }
+
+  propertiesChanged(): void {
+    const { rows } = this.context.display;
+    const segments = gridLines({
+      cells: rows.number(10, "Plane Cell Count"),
+      normalCells: rows.number(0, "Normal Cell Count"),
+      cellSize: rows.number(1, "Cell Size"),
+      plane: rows.text("XY", "Plane"),
+    });
+    const color = rows.text("#a0a0a4", "Color");
+    const alpha = rows.number(0.5, "Alpha");
+    const wide = rows.text("Lines", "Line Style") === "Billboards";
+    const offset = rows.vector("Offset");
+    this.lines.visible = !wide;
+    this.lines.position.set(...offset);
+    this.billboards.root.position.set(...offset);
+    this.billboards.setSegments(wide ? segments : new Float32Array(0));
+    this.billboards.setStyle(color, alpha, rows.number(0.03, "Line Style", "Line Width"));
+    this.lines.geometry.dispose();
+    this.lines.geometry = new BufferGeometry().setAttribute("position", new Float32BufferAttribute(segments, 3));
+    this.lines.material.color.set(color);
+    this.lines.material.opacity = alpha;
+    this.lines.material.transparent = alpha < 1;
+    this.lines.material.depthWrite = alpha >= 1;
+    this.lines.material.needsUpdate = true;
+    this.frame = rows.text(FIXED_FRAME, "Reference Frame");
+  }
+
+  update(): void {
+    const { frames, displays } = this.context.session;
+    if (this.frame === FIXED_FRAME || this.frame === displays.fixedFrame) {
+      this.root.matrix.identity();
+    } else {
+      // Without a transform RViz leaves the grid where it was.
+      framePose(frames, frames.row(this.frame), this.root.matrix);
+    }
+    this.root.matrixWorldNeedsUpdate = true;
+  }
+
+  dispose(): void {
+    this.lines.geometry.dispose();
+    this.lines.material.dispose();
+    this.billboards.dispose();
+  }
+}

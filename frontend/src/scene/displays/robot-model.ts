@@ -1,0 +1,93 @@
+import { Group, type Object3D, type Raycaster } from "three";
+import type { RobotScene } from "../../protocol.gen";
+import { RobotDrawing } from "../robot/robot-drawing";
+import type { Drawing, DrawingContext, Hit } from "./drawing";
+
+/** A new robot takes the place of the old one when its meshes are there, or after this long without them. */
+const SWAP_WITHIN_MS = 300;
+
+/** rviz_default_plugins/RobotModel */
+export class RobotModelDrawing implements Drawing {
+  readonly root = new Group();
+  private shown: RobotDrawing | null = null;
+  private next: RobotDrawing | null = null;
+  private styleIsOld = true;
+  private readonly forget: () => void;
+
+  constructor(private readonly context: DrawingContext) {
+    const { session, display } = context;
+    this.root.matrixAutoUpdate = false;
+    const take = (robot: RobotScene | undefined): void => {
+      if (robot?.display === display.id) this.take(robot);
+    };
+    this.forget = session.robotChanged.on(take);
+    take(session.robots.get(display.id));
+  }
+
+  /** Visuals drawn now. */
+  get visualsDrawn(): number {
+    return this.root.visible ? (this.shown?.visualsDrawn ?? 0) : 0;
+  }
+
+  propertiesChanged(): void {
+    this.styleIsOld = true;
+  }
+
+  update(): void {
+    if (this.styleIsOld) this.shown?.style(this.context.display.rows);
+    this.styleIsOld = false;
+    this.shown?.place(this.context.session.frames);
+  }
+
+  settled(): boolean {
+    return this.next === null && (this.shown?.isSettled ?? true);
+  }
+
+  pick(ray: Raycaster): Hit | null {
+    return this.shown?.pick(ray) ?? null;
+  }
+
+  objectsOf(link: string): readonly Object3D[] {
+    return this.shown?.objectsOf(link) ?? [];
+  }
+
+  dispose(): void {
+    this.forget();
+    this.next?.dispose();
+    this.shown?.dispose();
+  }
+
+  private take(scene: RobotScene): void {
+    const { session, display, meshes, invalidate } = this.context;
+    this.next?.dispose();
+    const robot = new RobotDrawing(
+      scene,
+      meshes,
+      (link, url, error) => {
+        session.connection.send({ type: "mesh_status", display: display.id, link, url, error });
+      },
+      () => {
+        this.styleIsOld = true;
+        invalidate();
+      },
+    );
+    this.next = robot;
+    if (robot.isSettled || this.shown === null) {
+      this.show(robot);
+      return;
+    }
+    const timeout = new Promise((resolve) => setTimeout(resolve, SWAP_WITHIN_MS));
+    void Promise.race([robot.settled, timeout]).then(() => {
+      if (this.next === robot) this.show(robot);
+    });
+  }
+
+  private show(robot: RobotDrawing): void {
+    this.shown?.dispose();
+    this.shown = robot;
+    this.next = null;
+    this.root.add(robot.root);
+    this.styleIsOld = true;
+    this.context.invalidate();
+  }
+}

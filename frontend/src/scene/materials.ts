@@ -1,0 +1,79 @@
+import {
+  Color,
+  DoubleSide,
+  FrontSide,
+  MeshBasicMaterial,
+  MeshLambertMaterial,
+  NoColorSpace,
+  RepeatWrapping,
+  TextureLoader,
+  type Material,
+  type Texture,
+} from "three";
+
+/** What a surface looks like; equal looks share one material. */
+export interface Look {
+  color: readonly [number, number, number];
+  alpha: number;
+  map: Texture | null;
+  vertexColors: boolean;
+  doubleSided: boolean;
+}
+
+/** RViz's material for what has none: RVIZ/ShadedRed. */
+export const RVIZ_RED = [1, 0, 0] as const;
+/** From this alpha on RViz blends and stops writing depth. */
+const OPAQUE_FROM = 0.9998;
+
+/** RViz's white of a link without a transform. */
+export const errorMaterial = new MeshBasicMaterial({ color: 0xffffff, side: DoubleSide });
+
+/** Hands out materials; many links of one colour make one material. */
+export class MaterialPool {
+  private readonly materials = new Map<string, MeshLambertMaterial>();
+  private readonly used = new Set<string>();
+
+  get(look: Look): Material {
+    const key = [...look.color, look.alpha, look.map?.uuid, look.vertexColors, look.doubleSided].join();
+    this.used.add(key);
+    let material = this.materials.get(key);
+    if (!material) {
+      const seeThrough = look.alpha < OPAQUE_FROM;
+      material = new MeshLambertMaterial({
+        color: new Color(...look.color),
+        opacity: look.alpha,
+        transparent: seeThrough,
+        depthWrite: !seeThrough,
+        map: look.map,
+        vertexColors: look.vertexColors,
+        side: look.doubleSided ? DoubleSide : FrontSide,
+      });
+      this.materials.set(key, material);
+    }
+    return material;
+  }
+
+  /** Runs `paint`, which asks for every material still wanted, and lets go of the others. */
+  renew(paint: () => void): void {
+    this.used.clear();
+    paint();
+    for (const [key, material] of this.materials) {
+      if (this.used.has(key)) continue;
+      material.dispose();
+      this.materials.delete(key);
+    }
+  }
+
+  dispose(): void {
+    for (const material of this.materials.values()) material.dispose();
+    this.materials.clear();
+  }
+}
+
+/** Loads the texture of a URDF material. */
+export async function loadTexture(url: string): Promise<Texture> {
+  const texture = await new TextureLoader().loadAsync(url);
+  texture.colorSpace = NoColorSpace;
+  texture.wrapS = texture.wrapT = RepeatWrapping;
+  return texture;
+}

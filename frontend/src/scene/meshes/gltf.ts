@@ -1,0 +1,14 @@
+import { LoaderUtils } from "three";
+import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
+import { flatten, type MeshTemplate } from "./mesh-template";
+import { TextureWait } from "./texture-wait";
+
+/** glTF, text or binary: y up by its specification, turned to z up as RViz does. */
+export async function readGltf(data: ArrayBuffer, url: string): Promise<MeshTemplate> {
+  const wait = new TextureWait();
+  const { scene } = await new GLTFLoader(wait.manager).parseAsync(data, LoaderUtils.extractUrlBase(url));
+  scene.rotation.set(Math.PI / 2, 0, 0);
+  const parts = flatten(scene, () => true);
+  if (parts.length === 0) throw new Error("the glTF file has no meshes");
+  return { parts, problem: await wait.settle() };
+}

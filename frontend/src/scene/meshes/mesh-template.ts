@@ -1,0 +1,59 @@
+import {
+  Mesh,
+  NoColorSpace,
+  type BufferGeometry,
+  type Material,
+  type MeshPhongMaterial,
+  type Object3D,
+  type Texture,
+} from "three";
+
+/** A material that came with a mesh file. */
+export interface OwnMaterial {
+  color: readonly [number, number, number];
+  opacity: number;
+  map: Texture | null;
+  vertexColors: boolean;
+}
+
+/** One geometry of a mesh, in the mesh's frame; `materials` has one entry, or one for each group of the geometry. */
+export interface MeshPart {
+  geometry: BufferGeometry;
+  materials: readonly (OwnMaterial | null)[];
+}
+
+/** A mesh file as it is drawn: shared by every link that shows it. */
+export interface MeshTemplate {
+  parts: readonly MeshPart[];
+  /** What is missing although the mesh can be drawn, such as a texture. */
+  problem: string | null;
+}
+
+/** What Assimp, and with it RViz, gives a mesh that says nothing about its colour. */
+export const UNCOLOURED_GREY = 0.6;
+
+/** Flattens what a loader made. `isOwn` tells the materials of the file from those the loader made up. */
+export function flatten(root: Object3D, isOwn: (material: Material) => boolean): MeshPart[] {
+  root.updateMatrixWorld(true);
+  const parts: MeshPart[] = [];
+  root.traverse((object) => {
+    if (!(object instanceof Mesh)) return;
+    const mesh = object as Mesh<BufferGeometry, Material | Material[]>;
+    const geometry = mesh.geometry.clone().applyMatrix4(mesh.matrixWorld);
+    if (!geometry.getAttribute("normal")) geometry.computeVertexNormals();
+    const materials = Array.isArray(mesh.material) ? mesh.material : [mesh.material];
+    parts.push({ geometry, materials: materials.map((material) => (isOwn(material) ? own(material) : null)) });
+  });
+  return parts;
+}
+
+function own(material: Material): OwnMaterial {
+  const { color, map } = material as Partial<MeshPhongMaterial>;
+  if (map) map.colorSpace = NoColorSpace;
+  return {
+    color: color ? [color.r, color.g, color.b] : [UNCOLOURED_GREY, UNCOLOURED_GREY, UNCOLOURED_GREY],
+    opacity: material.opacity,
+    map: map ?? null,
+    vertexColors: material.vertexColors,
+  };
+}

@@ -1,0 +1,36 @@
+import { LoaderUtils } from "three";
+import { MTLLoader } from "three/addons/loaders/MTLLoader.js";
+import { OBJLoader } from "three/addons/loaders/OBJLoader.js";
+import { flatten, type MeshTemplate } from "./mesh-template";
+import { TextureWait } from "./texture-wait";
+
+/** Wavefront OBJ with its MTL files and their textures. */
+export async function readObj(data: ArrayBuffer, url: string): Promise<MeshTemplate> {
+  const text = new TextDecoder().decode(data);
+  const folder = LoaderUtils.extractUrlBase(url);
+  const wait = new TextureWait();
+  const loader = new OBJLoader(wait.manager);
+  const problems: string[] = [];
+  const known = new Set<string>();
+  for (const name of materialFiles(text)) {
+    const response = await fetch(folder + name.split("/").map(encodeURIComponent).join("/"));
+    if (!response.ok) {
+      problems.push(`could not load material file '${name}'`);
+      continue;
+    }
+    const materials = new MTLLoader(wait.manager).parse(await response.text(), folder);
+    materials.preload();
+    for (const each of Object.keys(materials.materials)) known.add(each);
+    loader.setMaterials(materials);
+  }
+  const parts = flatten(loader.parse(text), (material) => known.has(material.name));
+  if (parts.length === 0) throw new Error("the OBJ file has no faces");
+  const missing = await wait.settle();
+  if (missing) problems.push(missing);
+  return { parts, problem: problems.length > 0 ? problems.join("; ") : null };
+}
+
+/** The files named by `mtllib` lines. A name may contain spaces: one line, one file. */
+export function materialFiles(obj: string): string[] {
+  return [...obj.matchAll(/^[ \t]*mtllib[ \t]+(.+?)[ \t]*\r?$/gm)].map((match) => match[1] ?? "");
+}

@@ -1,0 +1,35 @@
+import { LoadingManager } from "three";
+
+/** A loading manager that knows when the textures a loader started have come, and which did not. */
+export class TextureWait {
+  readonly manager: LoadingManager;
+  private readonly missing: string[] = [];
+  private pending = 0;
+  private wake: (() => void) | null = null;
+
+  constructor() {
+    const manager = new LoadingManager();
+    const { itemStart, itemEnd, itemError } = manager;
+    manager.itemStart = (url): void => {
+      this.pending += 1;
+      itemStart(url);
+    };
+    manager.itemEnd = (url): void => {
+      this.pending -= 1;
+      itemEnd(url);
+      if (this.pending === 0) this.wake?.();
+    };
+    manager.itemError = (url): void => {
+      this.missing.push(decodeURIComponent(url.split("/").pop() ?? url));
+      itemError(url);
+    };
+    this.manager = manager;
+  }
+
+  /** Waits for what was started so far; a sentence about what is missing, or null. */
+  async settle(): Promise<string | null> {
+    if (this.pending > 0) await new Promise<void>((resolve) => (this.wake = resolve));
+    if (this.missing.length === 0) return null;
+    return `could not load texture ${this.missing.map((name) => `'${name}'`).join(", ")}`;
+  }
+}

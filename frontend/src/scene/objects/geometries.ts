@@ -1,0 +1,54 @@
+import {
+  BoxGeometry,
+  CapsuleGeometry,
+  ConeGeometry,
+  CylinderGeometry,
+  Float32BufferAttribute,
+  SphereGeometry,
+  type BufferGeometry,
+} from "three";
+import { mergeGeometries } from "three/addons/utils/BufferGeometryUtils.js";
+
+/** Shapes of size one, shared by everything that scales them; cylinder along z. */
+export const unitBox = new BoxGeometry(1, 1, 1);
+export const unitCylinder = new CylinderGeometry(1, 1, 1, 40).rotateX(Math.PI / 2);
+export const unitSphere = new SphereGeometry(1, 32, 20).rotateX(Math.PI / 2);
+
+const capsules = new Map<number, BufferGeometry>();
+
+/** A capsule of radius 1 along z whose cylinder is `length` long. */
+export function capsule(length: number): BufferGeometry {
+  let geometry = capsules.get(length);
+  if (!geometry) {
+    geometry = new CapsuleGeometry(1, length, 12, 32).rotateX(Math.PI / 2);
+    capsules.set(length, geometry);
+  }
+  return geometry;
+}
+
+/** Three cylinders along x, y and z in red, green and blue, as RViz's Axes. Metres. */
+export function axesGeometry(length: number, radius: number, segments = 8): BufferGeometry {
+  const along = (): CylinderGeometry => new CylinderGeometry(radius, radius, length, segments);
+  return mergeGeometries([
+    paint(along().rotateZ(-Math.PI / 2).translate(length / 2, 0, 0), 1, 0, 0),
+    paint(along().translate(0, length / 2, 0), 0, 1, 0),
+    paint(along().rotateX(Math.PI / 2).translate(0, 0, length / 2), 0, 0, 1),
+  ]);
+}
+
+/** From the origin one metre along z, radius one. */
+export function arrowShaftGeometry(): BufferGeometry {
+  return new CylinderGeometry(1, 1, 1, 8).rotateX(Math.PI / 2).translate(0, 0, 0.5);
+}
+
+/** Base at the origin, tip one metre along z, radius one. */
+export function arrowHeadGeometry(): BufferGeometry {
+  return new ConeGeometry(1, 1, 10).rotateX(Math.PI / 2).translate(0, 0, 0.5);
+}
+
+function paint(geometry: BufferGeometry, r: number, g: number, b: number): BufferGeometry {
+  const count = geometry.getAttribute("position").count;
+  const colors = new Float32Array(count * 3);
+  for (let i = 0; i < count; i++) colors.set([r, g, b], i * 3);
+  return geometry.setAttribute("color", new Float32BufferAttribute(colors, 3));
+}

@@ -1,0 +1,70 @@
+import { CanvasTexture, LinearFilter, LinearMipmapLinearFilter } from "three";
+
+const SIZE = 1024;
+const FONT_PX = 44;
+const MARGIN_PX = 6;
+const CELL_HEIGHT_PX = 60;
+const FONT = `600 ${FONT_PX}px "Liberation Sans", "Noto Sans", Arial, "Noto Sans CJK SC", sans-serif`;
+
+/** Where a character is in the atlas; sizes in units of the line height. */
+export interface Glyph {
+  /** u, v of the lower left corner, width and height, 0 to 1. */
+  uv: readonly [number, number, number, number];
+  width: number;
+  advance: number;
+}
+
+/** One texture with every character that was ever asked for, white with a dark rim. */
+export class GlyphAtlas {
+  readonly texture: CanvasTexture;
+  private readonly context: CanvasRenderingContext2D;
+  private readonly glyphs = new Map<string, Glyph>();
+  private x = 0;
+  private y = 0;
+
+  constructor() {
+    const canvas = document.createElement("canvas");
+    canvas.width = canvas.height = SIZE;
+    const context = canvas.getContext("2d");
+    if (!context) throw new Error("This browser gives no 2D canvas");
+    this.context = context;
+    this.texture = new CanvasTexture(canvas);
+    this.texture.minFilter = LinearMipmapLinearFilter;
+    this.texture.magFilter = LinearFilter;
+    this.texture.premultiplyAlpha = true;
+  }
+
+  /** The glyph of a character, drawn when it is new; a full atlas answers with the blank. */
+  glyph(character: string): Glyph {
+    let glyph = this.glyphs.get(character);
+    if (!glyph) {
+      glyph = this.draw(character);
+      this.glyphs.set(character, glyph);
+      this.texture.needsUpdate = true;
+    }
+    return glyph;
+  }
+
+  private draw(character: string): Glyph {
+    const { context } = this;
+    context.font = FONT;
+    const advance = context.measureText(character).width;
+    const width = Math.ceil(advance) + 2 * MARGIN_PX;
+    if (this.x + width > SIZE) {
+      this.x = 0;
+      this.y += CELL_HEIGHT_PX;
+    }
+    if (this.y + CELL_HEIGHT_PX > SIZE) return { uv: [0, 0, 0, 0], width: 0, advance: advance / CELL_HEIGHT_PX };
+    context.textBaseline = "alphabetic";
+    context.lineJoin = "round";
+    context.lineWidth = 5;
+    context.strokeStyle = "rgba(12, 14, 18, 0.75)";
+    context.fillStyle = "white";
+    const baseline = this.y + CELL_HEIGHT_PX - 16;
+    context.strokeText(character, this.x + MARGIN_PX, baseline);
+    context.fillText(character, this.x + MARGIN_PX, baseline);
+    const uv = [this.x / SIZE, 1 - (this.y + CELL_HEIGHT_PX) / SIZE, width / SIZE, CELL_HEIGHT_PX / SIZE] as const;
+    this.x += width;
+    return { uv, width: width / CELL_HEIGHT_PX, advance: advance / CELL_HEIGHT_PX };
+  }
+}

@@ -1,0 +1,121 @@
+import { Group, Mesh, MeshLambertMaterial, type Object3D } from "three";
+import type { LinkScene } from "../../protocol.gen";
+import type { FrameStore } from "../../state/frames";
+import type { MaterialPool } from "../materials";
+import { axesGeometry } from "../objects/geometries";
+import { framePose } from "../pose";
+import { LinkTrail } from "./link-trail";
+import { ShapeDrawing } from "./shape-drawing";
+
+/** How a link is to be drawn: the display's properties and the link's own, together. */
+export interface LinkStyle {
+  enabled: boolean;
+  visual: boolean;
+  collision: boolean;
+  /** Robot's times link's. */
+  alpha: number;
+  axes: boolean;
+  trail: boolean;
+}
+
+const AXES_LENGTH = 0.1;
+const AXES_RADIUS = 0.01;
+
+/** One link: its visuals and collisions in the frame of its name. */
+export class LinkDrawing {
+  readonly root = new Group();
+  readonly visuals: readonly ShapeDrawing[];
+  readonly collisions: readonly ShapeDrawing[];
+  private readonly visualGroup = new Group();
+  private readonly collisionGroup = new Group();
+  private axes: Mesh | null = null;
+  private trail: LinkTrail | null = null;
+  private style: LinkStyle = { enabled: true, visual: true, collision: false, alpha: 1, axes: false, trail: false };
+  private posed = false;
+  private lost = false;
+
+  constructor(
+    readonly link: LinkScene,
+    private readonly pool: MaterialPool,
+    /** Where things in the fixed frame go, such as the trail. */
+    private readonly world: Object3D,
+  ) {
+    // RViz paints collisions with the material of the link's first visual.
+    const color = link.visuals[0]?.color ?? null;
+    this.visuals = link.visuals.map((shape) => new ShapeDrawing(shape));
+    this.collisions = link.collisions.map((shape) => new ShapeDrawing({ ...shape, color: shape.color ?? color }));
+    for (const each of this.visuals) this.visualGroup.add(each.root);
+    for (const each of this.collisions) this.collisionGroup.add(each.root);
+    this.visualGroup.matrixAutoUpdate = this.collisionGroup.matrixAutoUpdate = false;
+    this.root.matrixAutoUpdate = false;
+    this.root.visible = false;
+    this.root.add(this.visualGroup, this.collisionGroup);
+  }
+
+  /** Shapes drawn now. */
+  get visualsDrawn(): number {
+    if (!this.root.visible || !this.visualGroup.visible) return 0;
+    return this.visuals.filter((each) => each.drawn).length;
+  }
+
+  /** The meshes that can be seen now. */
+  get visibleMeshes(): Mesh[] {
+    if (!this.root.visible) return [];
+    const shown = [
+      ...(this.visualGroup.visible ? this.visuals : []),
+      ...(this.collisionGroup.visible ? this.collisions : []),
+    ];
+    return shown.flatMap((each) => each.meshes);
+  }
+
+  setStyle(style: LinkStyle): void {
+    this.style = style;
+    this.visualGroup.visible = style.visual && style.enabled;
+    this.collisionGroup.visible = style.collision && style.enabled;
+    this.showAxes(style.axes && style.enabled);
+    this.showTrail(style.trail && style.enabled);
+    this.paint();
+  }
+
+  paint(): void {
+    for (const each of [...this.visuals, ...this.collisions]) each.paint(this.pool, this.style.alpha, this.lost);
+  }
+
+  /** Moves to the frame's pose. Without a transform RViz leaves a link where it was, in white. */
+  place(frames: FrameStore): void {
+    const found = framePose(frames, frames.row(this.link.frame), this.root.matrix);
+    this.posed ||= found;
+    this.root.visible = this.posed;
+    this.root.matrixWorldNeedsUpdate = true;
+    if (found) this.trail?.follow(this.root.matrix);
+    if (this.posed && found === this.lost) {
+      this.lost = !found;
+      this.paint();
+    }
+  }
+
+  dispose(): void {
+    this.root.removeFromParent();
+    this.showAxes(false);
+    this.showTrail(false);
+    for (const each of [...this.visuals, ...this.collisions]) each.dispose();
+  }
+
+  private showAxes(show: boolean): void {
+    if (show === (this.axes !== null)) return;
+    if (this.axes) {
+      this.axes.removeFromParent();
+      this.axes.geometry.dispose();
+      this.axes = null;
+      return;
+    }
+    this.axes = new Mesh(axesGeometry(AXES_LENGTH, AXES_RADIUS, 12), new MeshLambertMaterial({ vertexColors: true }));
+    this.root.add(this.axes);
+  }
+
+  private showTrail(show: boolean): void {
+    if (show === (this.trail !== null)) return;
+    this.trail?.dispose();
+    this.trail = show ? new LinkTrail(this.world) : null;
+  }
+}

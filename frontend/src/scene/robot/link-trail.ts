@@ -1,0 +1,39 @@
+import { Vector3, type Matrix4, type Object3D } from "three";
+import { WideLines } from "../objects/wide-lines";
+
+const LENGTH = 2;
+const ELEMENTS = 100;
+const WIDTH = 0.01;
+const COLOR = 0x008080;
+
+/** The ribbon behind a link: its last 2 m in 100 elements. */
+export class LinkTrail {
+  private readonly ribbon = new WideLines();
+  /** Newest first; the first one moves with the link. */
+  private points: Vector3[] = [];
+
+  constructor(world: Object3D) {
+    world.add(this.ribbon.root);
+    this.ribbon.setStyle(COLOR, 1, WIDTH);
+    this.ribbon.setSegments(new Float32Array(0));
+  }
+
+  follow(pose: Matrix4): void {
+    const at = new Vector3().setFromMatrixPosition(pose);
+    const [head, neck] = this.points;
+    if (head?.equals(at)) return;
+    if (!head || !neck || head.distanceTo(neck) >= LENGTH / ELEMENTS) this.points.unshift(at);
+    else this.points[0] = at;
+    this.points.length = Math.min(this.points.length, ELEMENTS);
+    const segments = new Float32Array(Math.max(0, this.points.length - 1) * 6);
+    this.points.forEach((point, i) => {
+      if (i > 0) segments.set(point.toArray(), i * 6 - 3);
+      if (i < this.points.length - 1) segments.set(point.toArray(), i * 6);
+    });
+    this.ribbon.setSegments(segments);
+  }
+
+  dispose(): void {
+    this.ribbon.dispose();
+  }
+}

@@ -1,0 +1,126 @@
+import { Group, type Object3D, type Raycaster } from "three";
+import type { RobotScene } from "../../protocol.gen";
+import type { PropertyNode, PropertyRows } from "../../state/properties";
+import type { FrameStore } from "../../state/frames";
+import type { Hit } from "../displays/drawing";
+import { MaterialPool } from "../materials";
+import type { MeshLibrary } from "../meshes/mesh-library";
+import { LinkDrawing } from "./link-drawing";
+import type { ShapeDrawing } from "./shape-drawing";
+
+/** Told once for each mesh of each link: `error` is null when all of it is drawn. */
+export type MeshReport = (link: string, url: string, error: string | null) => void;
+
+/** One description of a robot, as links. */
+export class RobotDrawing {
+  readonly root = new Group();
+  /** Done when every mesh and texture is there or has failed. */
+  readonly settled: Promise<void>;
+  private readonly pool = new MaterialPool();
+  private readonly links: ReadonlyMap<string, LinkDrawing>;
+  private readonly linkOf = new Map<number, string>();
+  private loading: number;
+
+  constructor(scene: RobotScene, meshes: MeshLibrary, report: MeshReport, changed: () => void) {
+    this.links = new Map(scene.links.map((link) => [link.name, new LinkDrawing(link, this.pool, this.root)]));
+    for (const link of this.links.values()) this.root.add(link.root);
+    const loads: Promise<void>[] = [];
+    for (const link of this.links.values()) {
+      for (const shape of [...link.visuals, ...link.collisions]) {
+        if (shape.shape.kind !== "mesh" && shape.shape.texture === null) continue;
+        loads.push(this.load(link, shape, meshes, report, changed));
+      }
+    }
+    this.loading = loads.length;
+    this.settled = Promise.all(loads).then(() => undefined);
+  }
+
+  get isSettled(): boolean {
+    return this.loading === 0;
+  }
+
+  get visualsDrawn(): number {
+    let count = 0;
+    for (const link of this.links.values()) count += link.visualsDrawn;
+    return count;
+  }
+
+  style(rows: PropertyRows): void {
+    this.pool.renew(() => this.styleLinks(rows));
+  }
+
+  place(frames: FrameStore): void {
+    for (const link of this.links.values()) link.place(frames);
+  }
+
+  pick(ray: Raycaster): Hit | null {
+    this.linkOf.clear();
+    const targets = [...this.links.values()].flatMap((link) => {
+      const seen = link.visibleMeshes;
+      for (const mesh of seen) this.linkOf.set(mesh.id, link.link.name);
+      return seen;
+    });
+    const [nearest] = ray.intersectObjects(targets, false);
+    const link = nearest && this.linkOf.get(nearest.object.id);
+    return nearest && link !== undefined ? { link, distance: nearest.distance } : null;
+  }
+
+  objectsOf(link: string): readonly Object3D[] {
+    return this.links.get(link)?.visibleMeshes ?? [];
+  }
+
+  dispose(): void {
+    for (const link of this.links.values()) link.dispose();
+    this.root.removeFromParent();
+    this.pool.dispose();
+  }
+
+  private styleLinks(rows: PropertyRows): void {
+    const own = linkRows(rows.find("Links"));
+    const alpha = rows.number(1, "Alpha");
+    const visual = rows.bool(true, "Visual Enabled");
+    const collision = rows.bool(false, "Collision Enabled");
+    for (const [name, link] of this.links) {
+      const row = own.get(name);
+      const child = (title: string): unknown => row?.children.find((each) => each.name === title)?.value;
+      const linkAlpha = child("Alpha");
+      link.setStyle({
+        visual,
+        collision,
+        enabled: row?.value !== false,
+        alpha: alpha * (typeof linkAlpha === "number" ? linkAlpha : 1),
+        axes: child("Show Axes") === true,
+        trail: child("Show Trail") === true,
+      });
+    }
+  }
+
+  private async load(
+    link: LinkDrawing,
+    shape: ShapeDrawing,
+    meshes: MeshLibrary,
+    report: MeshReport,
+    changed: () => void,
+  ): Promise<void> {
+    const { kind, url } = shape.shape;
+    let error: string | null = null;
+    try {
+      error = await shape.load(meshes);
+      link.paint();
+    } catch (reason) {
+      error = reason instanceof Error ? reason.message : String(reason);
+    }
+    this.loading -= 1;
+    if (kind === "mesh" && url !== null) report(link.link.name, url, error);
+    changed();
+  }
+}
+
+/** The rows of links, however the tree below Links is arranged: only links have a trail. */
+function linkRows(top: PropertyNode | undefined): Map<string, PropertyNode> {
+  const result = new Map<string, PropertyNode>();
+  for (const node of top?.walk() ?? []) {
+    if (node.children.some((child) => child.name === "Show Trail")) result.set(node.name, node);
+  }
+  return result;
+}

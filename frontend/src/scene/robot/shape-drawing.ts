@@ -1,0 +1,130 @@
+import { Group, Mesh, type BufferGeometry, type Material, type Texture } from "three";
+import type { Shape } from "../../protocol.gen";
+import { errorMaterial, loadTexture, RVIZ_RED, type Look, type MaterialPool } from "../materials";
+import type { MeshLibrary } from "../meshes/mesh-library";
+import { UNCOLOURED_GREY, type MeshTemplate, type OwnMaterial } from "../meshes/mesh-template";
+import { capsule, unitBox, unitCylinder, unitSphere } from "../objects/geometries";
+
+/** A part of a shape: what is drawn, and with which materials of the file's own. */
+interface Part {
+  mesh: Mesh<BufferGeometry, Material | Material[]>;
+  own: readonly (OwnMaterial | null)[];
+}
+
+/** One visual or collision of a link. */
+export class ShapeDrawing {
+  readonly root = new Group();
+  private parts: Part[] = [];
+  private texture: Texture | null = null;
+  private problem: string | null = null;
+
+  constructor(readonly shape: Shape) {
+    const [x = 0, y = 0, z = 0] = shape.position;
+    const [qx = 0, qy = 0, qz = 0, qw = 1] = shape.quaternion;
+    this.root.position.set(x, y, z);
+    this.root.quaternion.set(qx, qy, qz, qw);
+    this.buildPrimitive();
+    this.root.updateMatrix();
+    this.root.matrixAutoUpdate = false;
+  }
+
+  /** False for a mesh that is not there (yet). */
+  get drawn(): boolean {
+    return this.parts.length > 0;
+  }
+
+  get meshes(): readonly Mesh[] {
+    return this.parts.map((part) => part.mesh);
+  }
+
+  /**
+   * Fetches what the shape needs: its mesh, its texture.
+   *
+   * @returns what is missing although the shape is drawn, or null.
+   * @throws Error when the mesh cannot be drawn.
+   */
+  async load(library: MeshLibrary): Promise<string | null> {
+    const { url, format, texture } = this.shape;
+    if (this.shape.kind === "mesh" && url !== null) this.buildMesh(await library.load(url, format ?? ""));
+    const problem = this.problem;
+    if (texture === null) return problem;
+    try {
+      this.texture = await loadTexture(texture);
+      return problem;
+    } catch {
+      return `could not load texture '${decodeURIComponent(texture.split("/").pop() ?? texture)}'`;
+    }
+  }
+
+  /** Paints with the robot's and the link's alpha multiplied in; `lost` is RViz's white of links without transform. */
+  paint(pool: MaterialPool, alpha: number, lost: boolean): void {
+    for (const { mesh, own } of this.parts) {
+      const materials = own.map((each) => (lost ? errorMaterial : pool.get(this.look(each, alpha))));
+      const [only = errorMaterial] = materials;
+      mesh.material = materials.length === 1 ? only : materials;
+    }
+  }
+
+  dispose(): void {
+    this.texture?.dispose();
+  }
+
+  private buildPrimitive(): void {
+    const [a = 1, b = 1, c = 1] = this.shape.size;
+    switch (this.shape.kind) {
+      case "box":
+        this.addPart(unitBox, [null]).scale.set(a, b, c);
+        break;
+      case "cylinder":
+        this.addPart(unitCylinder, [null]).scale.set(a, a, b);
+        break;
+      case "capsule":
+        this.addPart(capsule(a > 0 ? b / a : 0), [null]).scale.setScalar(a);
+        break;
+      case "sphere":
+        this.addPart(unitSphere, [null]).scale.setScalar(a);
+        break;
+      case "mesh":
+        break;
+    }
+    this.freeze();
+  }
+
+  private buildMesh(template: MeshTemplate): void {
+    const [x = 1, y = 1, z = 1] = this.shape.size;
+    for (const part of template.parts) this.addPart(part.geometry, part.materials).scale.set(x, y, z);
+    this.problem = template.problem;
+    this.freeze();
+  }
+
+  private addPart(geometry: BufferGeometry, own: readonly (OwnMaterial | null)[]): Mesh {
+    const mesh = new Mesh<BufferGeometry, Material | Material[]>(geometry, errorMaterial);
+    this.parts.push({ mesh, own });
+    this.root.add(mesh);
+    return mesh;
+  }
+
+  private freeze(): void {
+    for (const { mesh } of this.parts) {
+      mesh.updateMatrix();
+      mesh.matrixAutoUpdate = false;
+    }
+  }
+
+  /**
+   * RViz's rule: a part with a material of its own keeps it; any other takes the URDF's. Without one, a shape or STL is
+   * RViz's red and another mesh the grey that RViz's mesh reader puts in.
+   */
+  private look(own: OwnMaterial | null, alpha: number): Look {
+    const doubleSided = this.shape.kind === "mesh";
+    if (own) {
+      const { color, map, vertexColors } = own;
+      return { color, map, vertexColors, alpha: alpha * own.opacity, doubleSided };
+    }
+    const grey = doubleSided && !this.shape.format?.startsWith("stl");
+    const bare: readonly number[] = grey ? [UNCOLOURED_GREY, UNCOLOURED_GREY, UNCOLOURED_GREY] : RVIZ_RED;
+    // A texture replaces the colour.
+    const [r = 0, g = 0, b = 0, a = 1] = this.texture ? [1, 1, 1, 1] : (this.shape.color ?? bare);
+    return { color: [r, g, b], map: this.texture, vertexColors: false, alpha: alpha * a, doubleSided };
+  }
+}

@@ -1,0 +1,127 @@
+import type { Display, Property, PropertyValue, StatusLevel, StatusRow, Tree } from "../protocol.gen";
+import { PropertyNode, PropertyRows } from "./properties";
+import { Signal } from "./signal";
+
+/** One display as the server describes it. */
+export class DisplayState {
+  readonly id: string;
+  readonly cls: string;
+  name = "";
+  enabled = false;
+  supported = false;
+  level: StatusLevel = "ok";
+  status: readonly StatusRow[] = [];
+  rows = new PropertyRows([]);
+
+  constructor(display: Display) {
+    this.id = display.id;
+    this.cls = display.cls;
+    this.update(display);
+  }
+
+  get enabledId(): string {
+    return `${this.id}/Enabled`;
+  }
+
+  update(display: Display): void {
+    this.name = display.name;
+    this.enabled = display.enabled;
+    this.supported = display.supported;
+    this.level = display.level;
+    this.status = display.status;
+    this.setProperties(display.properties);
+  }
+
+  setProperties(properties: readonly Property[]): void {
+    // The enable box stands on the display's own row.
+    const rest = properties.filter((property) => property.id !== this.enabledId);
+    this.rows = new PropertyRows(rest.map((property) => new PropertyNode(property)));
+  }
+}
+
+/** The Displays tree of the server: global options, global status and every display. */
+export class DisplaysState {
+  /** Displays came or went. */
+  readonly treeChanged = new Signal();
+  /** The rows below a display are new ones. */
+  readonly rowsChanged = new Signal<DisplayState>();
+  readonly statusChanged = new Signal<DisplayState | null>();
+  readonly enabledChanged = new Signal<DisplayState>();
+  /** One value; `display` is null for a global option. */
+  readonly valueChanged = new Signal<{ node: PropertyNode; display: DisplayState | null }>();
+  readonly displays: DisplayState[] = [];
+  globalOptions = new PropertyRows([]);
+  globalStatus: readonly StatusRow[] = [];
+  globalLevel: StatusLevel = "ok";
+  private owners = new Map<string, { node: PropertyNode; display: DisplayState | null }>();
+
+  setTree(tree: Tree): void {
+    const known = new Map(this.displays.map((display) => [display.id, display]));
+    const next = tree.displays.map((display) => {
+      const old = known.get(display.id);
+      if (old?.cls !== display.cls) return new DisplayState(display);
+      old.update(display);
+      return old;
+    });
+    this.displays.splice(0, this.displays.length, ...next);
+    this.globalOptions = new PropertyRows(tree.global_options.map((property) => new PropertyNode(property)));
+    this.globalStatus = tree.global_status;
+    this.globalLevel = tree.global_level;
+    this.index();
+    this.treeChanged.emit();
+  }
+
+  setRows(id: string, properties: readonly Property[]): void {
+    const display = this.find(id);
+    if (!display) return;
+    display.setProperties(properties);
+    this.index();
+    this.rowsChanged.emit(display);
+  }
+
+  setStatus(id: string, level: StatusLevel, status: readonly StatusRow[]): void {
+    if (id === "global") {
+      this.globalLevel = level;
+      this.globalStatus = status;
+      this.statusChanged.emit(null);
+      return;
+    }
+    const display = this.find(id);
+    if (!display) return;
+    display.level = level;
+    display.status = status;
+    this.statusChanged.emit(display);
+  }
+
+  setValue(id: string, value: PropertyValue, options: readonly string[] | null): void {
+    const owner = this.owners.get(id);
+    if (owner) {
+      if (owner.node.value === value && !options) return;
+      owner.node.value = value;
+      if (options) owner.node.options = options;
+      this.valueChanged.emit(owner);
+      return;
+    }
+    const display = this.displays.find((each) => each.enabledId === id);
+    if (!display || typeof value !== "boolean" || display.enabled === value) return;
+    display.enabled = value;
+    this.enabledChanged.emit(display);
+  }
+
+  find(id: string): DisplayState | undefined {
+    return this.displays.find((display) => display.id === id);
+  }
+
+  get fixedFrame(): string {
+    return this.globalOptions.text("", "Fixed Frame");
+  }
+
+  private index(): void {
+    this.owners = new Map();
+    const add = (rows: PropertyRows, display: DisplayState | null): void => {
+      for (const top of rows.nodes) for (const node of top.walk()) this.owners.set(node.id, { node, display });
+    };
+    add(this.globalOptions, null);
+    for (const display of this.displays) add(display.rows, display);
+  }
+}

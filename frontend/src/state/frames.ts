@@ -1,0 +1,90 @@
+import type { FrameTable } from "../protocol.gen";
+import type { Transforms } from "../connection/transforms";
+import { Signal } from "./signal";
+
+/** Position (m) and orientation of a frame in the fixed frame. */
+export interface FramePose {
+  position: [number, number, number];
+  orientation: [number, number, number, number];
+}
+
+const NOTHING = new Float32Array(0);
+
+/** The newest pose of every frame. Rows are those of the frame table; a row of NaN has no transform. */
+export class FrameStore {
+  /** The names, or their parents, are others now. */
+  readonly tableChanged = new Signal();
+  /** At least one pose differs from before. */
+  readonly posesChanged = new Signal();
+  /** Only the ages went on. */
+  readonly agesChanged = new Signal();
+  names: readonly string[] = [];
+  parents: readonly number[] = [];
+  poses: Float32Array = NOTHING;
+  ages: Float32Array = NOTHING;
+  stamp = 0;
+  private revision = -1;
+  private rows = new Map<string, number>();
+  private early: Transforms | null = null;
+
+  setTable(table: FrameTable): void {
+    const before = this.rows;
+    const { poses, ages } = this;
+    this.revision = table.revision;
+    this.names = table.names;
+    this.parents = table.parents;
+    this.rows = new Map(table.names.map((name, row) => [name, row]));
+    this.poses = new Float32Array(table.names.length * 7).fill(NaN);
+    this.ages = new Float32Array(table.names.length);
+    for (const [name, row] of this.rows) {
+      const old = before.get(name);
+      if (old === undefined) continue;
+      this.poses.set(poses.subarray(old * 7, old * 7 + 7), row * 7);
+      this.ages[row] = ages[old] ?? 0;
+    }
+    this.tableChanged.emit();
+    if (this.early?.revision === table.revision) this.apply(this.early);
+    this.early = null;
+  }
+
+  /** Takes the newest poses; those of a table that has not arrived yet wait for it, older ones are dropped. */
+  setTransforms(transforms: Transforms): void {
+    if (transforms.revision === this.revision) this.apply(transforms);
+    else if (transforms.revision > this.revision) this.early = transforms;
+  }
+
+  /** Row of a frame, or -1. */
+  row(name: string): number {
+    return this.rows.get(name) ?? -1;
+  }
+
+  has(row: number): boolean {
+    return row >= 0 && !Number.isNaN(this.poses[row * 7] ?? NaN);
+  }
+
+  /** Every frame that has a pose. */
+  snapshot(): Record<string, FramePose> {
+    const result: Record<string, FramePose> = {};
+    this.names.forEach((name, row) => {
+      if (!this.has(row)) return;
+      const [x = 0, y = 0, z = 0, qx = 0, qy = 0, qz = 0, qw = 1] = this.poses.subarray(row * 7, row * 7 + 7);
+      result[name] = { position: [x, y, z], orientation: [qx, qy, qz, qw] };
+    });
+    return result;
+  }
+
+  private apply(transforms: Transforms): void {
+    if (transforms.poses.length !== this.poses.length) return;
+    const changed = !sameNumbers(this.poses, transforms.poses);
+    this.poses = transforms.poses;
+    this.ages = transforms.ages;
+    this.stamp = transforms.stamp;
+    if (changed) this.posesChanged.emit();
+    else this.agesChanged.emit();
+  }
+}
+
+function sameNumbers(a: Float32Array, b: Float32Array): boolean {
+  for (let i = 0; i < a.length; i++) if (!Object.is(a[i], b[i])) return false;
+  return true;
+}

@@ -1,0 +1,73 @@
+import type { Property, PropertyKind, PropertyValue } from "../protocol.gen";
+
+/** One row of a property tree; the value changes in place, the rest does not. */
+export class PropertyNode {
+  readonly id: string;
+  readonly name: string;
+  readonly kind: PropertyKind;
+  readonly description: string;
+  readonly minimum: number | null;
+  readonly maximum: number | null;
+  readonly readOnly: boolean;
+  readonly expanded: boolean;
+  readonly children: readonly PropertyNode[];
+  value: PropertyValue;
+  options: readonly string[];
+
+  constructor(property: Property) {
+    this.id = property.id;
+    this.name = property.name;
+    this.kind = property.kind;
+    this.value = property.value;
+    this.description = property.description;
+    this.options = property.options;
+    this.minimum = property.minimum;
+    this.maximum = property.maximum;
+    this.readOnly = property.read_only;
+    this.expanded = property.expanded;
+    this.children = property.children.map((child) => new PropertyNode(child));
+  }
+
+  /** This row and everything below it. */
+  *walk(): Generator<PropertyNode> {
+    yield this;
+    for (const child of this.children) yield* child.walk();
+  }
+}
+
+/** Rows addressed by their names, as RViz's documentation writes them: `number(1, "Line Style", "Line Width")`. */
+export class PropertyRows {
+  private byName: Map<string, PropertyNode>;
+
+  constructor(public nodes: readonly PropertyNode[]) {
+    this.byName = new Map(nodes.map((node) => [node.name, node]));
+  }
+
+  find(...path: readonly string[]): PropertyNode | undefined {
+    const [first, ...rest] = path;
+    let node = first === undefined ? undefined : this.byName.get(first);
+    for (const name of rest) node = node?.children.find((child) => child.name === name);
+    return node;
+  }
+
+  /** Value of a number row; `fallback` where there is none. */
+  number(fallback: number, ...path: readonly string[]): number {
+    const value = this.find(...path)?.value;
+    return typeof value === "number" ? value : fallback;
+  }
+
+  bool(fallback: boolean, ...path: readonly string[]): boolean {
+    const value = this.find(...path)?.value;
+    return typeof value === "boolean" ? value : fallback;
+  }
+
+  text(fallback: string, ...path: readonly string[]): string {
+    const value = this.find(...path)?.value;
+    return typeof value === "string" ? value : fallback;
+  }
+
+  /** X, Y and Z below the row at `path`. */
+  vector(...path: readonly string[]): [number, number, number] {
+    return [this.number(0, ...path, "X"), this.number(0, ...path, "Y"), this.number(0, ...path, "Z")];
+  }
+}

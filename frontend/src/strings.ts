@@ -1,0 +1,23 @@
+import { en, type Strings } from "./strings/en";
+import { zh } from "./strings/zh";
+
+export type Language = "en" | "zh";
+
+const LANGUAGE_KEY = "linkwright.language";
+
+function preferred(): Language {
+  const chosen = localStorage.getItem(LANGUAGE_KEY);
+  if (chosen === "en" || chosen === "zh") return chosen;
+  return navigator.language.toLowerCase().startsWith("zh") ? "zh" : "en";
+}
+
+export const language: Language = preferred();
+
+/** The page's words in the user's language. */
+export const strings: Strings = language === "zh" ? zh : en;
+
+/** Remembers the choice and shows the page anew. */
+export function chooseLanguage(next: Language): void {
+  localStorage.setItem(LANGUAGE_KEY, next);
+  location.reload();
+}

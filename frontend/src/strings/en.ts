@@ -1,0 +1,127 @@
+/** Every word of the page that does not come from the server. */
+export const en = {
+  panels: {
+    displays: "Displays",
+    scene: "3D View",
+    views: "Views",
+    joints: "Joints",
+    diagnostics: "Diagnostics",
+  },
+  titlebar: {
+    panels: "Panels",
+    resetLayout: "Reset layout",
+    language: "中文",
+    languageHint: "Show this page in Chinese",
+  },
+  tree: {
+    globalOptions: "Global Options",
+    globalStatus: "Global Status",
+    status: "Status",
+    levels: { ok: "Ok", warn: "Warn", error: "Error" },
+    notDrawn: "not drawn",
+    notDrawnHelp: "Linkwright keeps this display in the file but does not draw it.",
+    enabledHelp: "Switches this display on and off.",
+    helpHint: "Select a row to read what it means.",
+    fixedFrame: "<Fixed Frame>",
+    pickColor: "Pick a colour",
+    frames: "Known frames",
+    noDisplays: "No displays",
+  },
+  views: {
+    current: "Current View",
+    type: "Type",
+    orbit: "Orbit",
+    zero: "Zero",
+    zeroHint: "RViz's starting view: 10 m away, looking at the origin",
+    reset: "Reset",
+    resetHint: "The view of the configuration file (Z)",
+    names: {
+      nearClip: "Near Clip Distance",
+      invertZ: "Invert Z Axis",
+      targetFrame: "Target Frame",
+      distance: "Distance",
+      shapeSize: "Focal Shape Size",
+      shapeFixed: "Focal Shape Fixed Size",
+      yaw: "Yaw",
+      pitch: "Pitch",
+      focalPoint: "Focal Point",
+    },
+    help: {
+      nearClip: "Anything closer to the camera than this is not drawn, m.",
+      invertZ: "Turns the camera upside down, for frames whose z axis points down.",
+      targetFrame: "The frame the camera follows; the focal point is relative to its position.",
+      distance: "Distance from the focal point, m.",
+      shapeSize: "Diameter of the yellow disc at the focal point, m.",
+      shapeFixed: "Keeps the disc that size; otherwise it grows with the distance.",
+      yaw: "Rotation of the camera around z, rad.",
+      pitch: "How far the camera looks down, rad.",
+      focalPoint: "The point the camera turns around, m.",
+    },
+  },
+  joints: {
+    randomize: "Randomize",
+    randomizeHint: "Move every joint to a random position within its limits",
+    center: "Center",
+    centerHint: "Move every joint to its zero position",
+    radians: "rad",
+    degrees: "deg",
+    metres: "m",
+    unitHint: "Unit of rotating joints",
+    filter: "Filter joints",
+    follows: (joint: string): string => `follows ${joint}`,
+    position: (joint: string): string => `Position of ${joint}`,
+    none: "No joints to move.",
+    noMatch: "No joint of that name.",
+  },
+  diagnostics: {
+    none: "No problems found.",
+    summary: (errors: number, warnings: number): string =>
+      [errors > 0 ? plural(errors, "error") : "", warnings > 0 ? plural(warnings, "warning") : ""]
+        .filter((part) => part !== "")
+        .join(", "),
+    hint: "Hint",
+    note: "Note",
+    lastGood: "The last good robot stays until this is mended.",
+    show: "Show",
+    more: (count: number): string => `and ${count} more`,
+  },
+  selection: {
+    title: "Selected link",
+    frame: "Frame",
+    joint: "Parent joint",
+    source: "Source",
+    noPlace: "No source position is known.",
+    copy: "Copy the place",
+    copied: "Copied",
+    clear: "Clear the selection (Esc)",
+  },
+  scene: {
+    label: "3D view",
+    waiting: "Waiting for a robot description",
+    mouse: "Left: rotate.  Middle: move.  Right or wheel: zoom.  Shift: more.  F: focus.  Z: reset.",
+    noWebgl: "This browser gives no WebGL 2, which the 3D view needs.",
+  },
+  connection: {
+    connecting: "Connecting",
+    connected: "Connected",
+    reconnecting: "Connection lost, trying again",
+    ended: "The program has ended",
+    endedHint: "Start linkwright again and this page goes on by itself.",
+    outdated: "This page is of another version than the program. Close it and open the program's address anew.",
+  },
+  status: {
+    fps: (count: number): string => `${count} fps`,
+    idle: "idle",
+    fixedFrame: "Fixed frame",
+    links: (count: number): string => plural(count, "link"),
+    noRobot: "no robot",
+    frames: (count: number): string => `${count} frames drawn`,
+  },
+  close: "Close",
+};
+
+function plural(count: number, noun: string): string {
+  return `${count} ${noun}${count === 1 ? "" : "s"}`;
+}
+
+export type Strings = typeof en;

@@ -1,0 +1,18 @@
+/** `#303030` as RViz writes it: `48; 48; 48`. */
+export function formatColor(hex: string): string {
+  const match = /^#([0-9a-f]{2})([0-9a-f]{2})([0-9a-f]{2})$/i.exec(hex);
+  if (!match) return hex;
+  return match
+    .slice(1)
+    .map((part) => parseInt(part, 16))
+    .join("; ");
+}
+
+/** Reads `48; 48; 48`, `48, 48, 48`, `48 48 48` or `#303030`; null when it is no colour. */
+export function parseColor(text: string): string | null {
+  const trimmed = text.trim();
+  if (/^#[0-9a-f]{6}$/i.test(trimmed)) return trimmed.toLowerCase();
+  const parts = trimmed.split(/[\s;,]+/).map(Number);
+  if (parts.length !== 3 || parts.some((part) => !Number.isInteger(part) || part < 0 || part > 255)) return null;
+  return `#${parts.map((part) => part.toString(16).padStart(2, "0")).join("")}`;
+}

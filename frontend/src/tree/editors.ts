@@ -1,0 +1,157 @@
+import { h } from "../dom";
+import type { PropertyValue } from "../protocol.gen";
+import { strings } from "../strings";
+import { formatColor, parseColor } from "./colors";
+import { FrameEditor } from "./frame-editor";
+import { clamp, formatNumber, parseNumber, stepFor } from "./numbers";
+import { TextEditor } from "./text-editor";
+import type { TreeItem } from "./tree-item";
+
+/** The right half of a row. */
+export interface Editor {
+  readonly element: HTMLElement;
+  /** Shows the item's value, unless the user is just editing it. */
+  show(item: TreeItem): void;
+  /** Takes the keyboard; false when there is nothing to edit. */
+  focus(): boolean;
+  /** Space on the row: flips a box. */
+  toggle?(): void;
+}
+
+/** Makes the editor for an item; `current` gives the newest item of the row, `frames` the frames to offer. */
+export function createEditor(item: TreeItem, current: () => TreeItem, frames: () => readonly string[]): Editor {
+  const commit = (value: PropertyValue): void => current().set?.(value);
+  if (item.kind === "group") return new PlainText();
+  if (item.readOnly === true || !item.set) return item.kind === "bool" ? new CheckBox(commit) : new PlainText();
+  switch (item.kind) {
+    case "bool":
+      return new CheckBox(commit);
+    case "enum":
+      return new Choice(commit);
+    case "color":
+      return new ColorEditor(commit);
+    case "frame":
+      return new FrameEditor(commit, frames);
+    case "int":
+    case "float":
+      return numberEditor(item.kind === "int", current, commit);
+    case "string":
+      return new TextEditor({ format: display, parse: (text) => text, commit });
+  }
+}
+
+function display(value: PropertyValue): string {
+  if (typeof value === "number") return formatNumber(value);
+  return value === null ? "" : String(value);
+}
+
+function numberEditor(whole: boolean, current: () => TreeItem, commit: (value: PropertyValue) => void): Editor {
+  const legal = (value: number): number => {
+    const { minimum, maximum } = current();
+    return clamp(whole ? Math.round(value) : value, minimum ?? null, maximum ?? null);
+  };
+  return new TextEditor({
+    numeric: true,
+    format: display,
+    parse: (text) => {
+      const value = parseNumber(text);
+      return value === null ? null : legal(value);
+    },
+    step: (text, direction) => {
+      const value = parseNumber(text);
+      if (value === null) return null;
+      const step = stepFor(value, whole);
+      return legal(Number((value + direction * step).toPrecision(12)));
+    },
+    commit,
+  });
+}
+
+class PlainText implements Editor {
+  readonly element = h("span", { class: "value-text" });
+
+  show(item: TreeItem): void {
+    const text = item.kind === "group" ? String(item.value ?? "") : display(item.value);
+    if (this.element.textContent !== text) this.element.textContent = text;
+    this.element.title = text;
+  }
+
+  focus(): boolean {
+    return false;
+  }
+}
+
+class CheckBox implements Editor {
+  readonly element = h("input", { class: "check" });
+
+  constructor(private readonly commit: (value: PropertyValue) => void) {
+    this.element.type = "checkbox";
+    this.element.tabIndex = -1;
+    this.element.addEventListener("change", () => commit(this.element.checked));
+  }
+
+  show(item: TreeItem): void {
+    this.element.checked = item.value === true;
+    this.element.disabled = item.readOnly === true || !item.set;
+    this.element.setAttribute("aria-label", item.name);
+  }
+
+  focus(): boolean {
+    return false;
+  }
+
+  toggle(): void {
+    if (this.element.disabled) return;
+    this.element.checked = !this.element.checked;
+    this.commit(this.element.checked);
+  }
+}
+
+class Choice implements Editor {
+  readonly element = h("select", { class: "choice" });
+  private options = "";
+
+  constructor(commit: (value: PropertyValue) => void) {
+    this.element.tabIndex = -1;
+    this.element.addEventListener("change", () => commit(this.element.value));
+  }
+
+  show(item: TreeItem): void {
+    const value = String(item.value ?? "");
+    const options = [...new Set([...(item.options ?? []), value])];
+    if (options.join("\n") !== this.options) {
+      this.options = options.join("\n");
+      this.element.replaceChildren(...options.map((option) => new Option(option)));
+    }
+    this.element.value = value;
+    this.element.setAttribute("aria-label", item.name);
+  }
+
+  focus(): boolean {
+    this.element.focus();
+    return true;
+  }
+}
+
+class ColorEditor implements Editor {
+  readonly element: HTMLElement;
+  private readonly swatch = h("input", { class: "swatch", title: strings.tree.pickColor });
+  private readonly text: TextEditor;
+
+  constructor(commit: (value: PropertyValue) => void) {
+    this.text = new TextEditor({ format: (value) => formatColor(String(value)), parse: parseColor, commit });
+    this.swatch.type = "color";
+    this.swatch.tabIndex = -1;
+    this.swatch.addEventListener("input", () => commit(this.swatch.value));
+    this.element = h("span", { class: "color-editor" }, this.swatch, this.text.element);
+  }
+
+  show(item: TreeItem): void {
+    this.swatch.value = String(item.value);
+    this.text.show(item);
+  }
+
+  focus(): boolean {
+    return this.text.focus();
+  }
+}

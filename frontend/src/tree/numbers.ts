@@ -1,0 +1,27 @@
+/** A number as a property row shows it: at most six significant digits, no trailing zeros. */
+export function formatNumber(value: number): string {
+  if (!Number.isFinite(value)) return String(value);
+  const text = String(Number(value.toPrecision(6)));
+  return text === "-0" ? "0" : text;
+}
+
+/** Reads what a user typed, a comma for a point included; null when it is no number. */
+export function parseNumber(text: string): number | null {
+  const trimmed = text.trim().replace(",", ".");
+  if (trimmed === "") return null;
+  const value = Number(trimmed);
+  return Number.isFinite(value) ? value : null;
+}
+
+export function clamp(value: number, minimum: number | null, maximum: number | null): number {
+  if (minimum !== null && value < minimum) return minimum;
+  if (maximum !== null && value > maximum) return maximum;
+  return value;
+}
+
+/** How much an arrow key changes a number: a step of its own size, 1 for whole numbers. */
+export function stepFor(value: number, whole: boolean): number {
+  if (whole) return 1;
+  const size = Math.abs(value);
+  return size < 0.1 ? 0.01 : 10 ** (Math.floor(Math.log10(size)) - 1);
+}

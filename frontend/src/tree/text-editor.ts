@@ -1,0 +1,81 @@
+import { h } from "../dom";
+import type { PropertyValue } from "../protocol.gen";
+import type { Editor } from "./editors";
+import type { TreeItem } from "./tree-item";
+
+export interface TextEditorOptions {
+  format: (value: PropertyValue) => string;
+  /** The value of a text, or null when it is none: the old value comes back. */
+  parse: (text: string) => PropertyValue;
+  commit: (value: PropertyValue) => void;
+  /** What the up and down keys make of a text. */
+  step?: (text: string, direction: 1 | -1) => number | null;
+  numeric?: boolean;
+}
+
+/** A line of text that becomes a value on Enter or when it is left, and the old one again on Escape. */
+export class TextEditor implements Editor {
+  readonly element: HTMLInputElement;
+  private shown = "";
+
+  constructor(private readonly options: TextEditorOptions) {
+    this.element = h("input", { class: options.numeric === true ? "field numeric" : "field" });
+    this.element.type = "text";
+    this.element.tabIndex = -1;
+    this.element.spellcheck = false;
+    this.element.autocomplete = "off";
+    if (options.numeric === true) this.element.inputMode = "decimal";
+    this.element.addEventListener("focus", () => this.element.select());
+    this.element.addEventListener("blur", () => this.take());
+    this.element.addEventListener("keydown", (event) => this.keyed(event));
+  }
+
+  show(item: TreeItem): void {
+    const text = this.options.format(item.value);
+    const editing = document.activeElement === this.element && this.element.value !== this.shown;
+    this.shown = text;
+    if (!editing && this.element.value !== text) this.element.value = text;
+    this.element.setAttribute("aria-label", item.name);
+  }
+
+  focus(): boolean {
+    this.element.focus();
+    return true;
+  }
+
+  private take(): void {
+    if (this.element.value === this.shown) return;
+    const value = this.options.parse(this.element.value);
+    this.element.value = value === null ? this.shown : this.options.format(value);
+    if (value === null) return;
+    this.shown = this.element.value;
+    this.options.commit(value);
+  }
+
+  private keyed(event: KeyboardEvent): void {
+    if (event.key === "Enter") {
+      this.take();
+      leave(this.element);
+    } else if (event.key === "Escape") {
+      this.element.value = this.shown;
+      leave(this.element);
+    } else if ((event.key === "ArrowUp" || event.key === "ArrowDown") && this.options.step) {
+      const value = this.options.step(this.element.value, event.key === "ArrowUp" ? 1 : -1);
+      if (value !== null) {
+        this.element.value = this.options.format(value);
+        this.take();
+      }
+    } else {
+      // The tree's own keys do not apply while a text is edited.
+      event.stopPropagation();
+      return;
+    }
+    event.preventDefault();
+    event.stopPropagation();
+  }
+}
+
+/** Gives the keyboard back to the row. */
+function leave(element: HTMLElement): void {
+  element.closest<HTMLElement>("[role=treeitem]")?.focus();
+}

@@ -1,0 +1,29 @@
+import type { IconName } from "../icons";
+import type { PropertyKind, PropertyValue, StatusLevel } from "../protocol.gen";
+
+/** One row of a property tree, as the tree draws it. */
+export interface TreeItem {
+  /** Unique in its tree and the same from one refresh to the next. */
+  readonly key: string;
+  readonly name: string;
+  readonly kind: PropertyKind;
+  readonly value: PropertyValue;
+  readonly description: string;
+  readonly icon?: IconName;
+  /** Colours the row; a sign is shown too unless it is a display's own row. */
+  readonly level?: StatusLevel;
+  readonly showLevelIcon?: boolean;
+  readonly strong?: boolean;
+  readonly muted?: boolean;
+  /** Shown behind the name, small. */
+  readonly badge?: string;
+  readonly options?: readonly string[];
+  readonly minimum?: number | null;
+  readonly maximum?: number | null;
+  readonly readOnly?: boolean;
+  /** Whether the row is open before the user decides. */
+  readonly expanded?: boolean;
+  readonly children?: () => readonly TreeItem[];
+  /** Takes an edit; a row without it is read-only. */
+  readonly set?: (value: PropertyValue) => void;
+}

@@ -1,0 +1,62 @@
+import { h } from "../dom";
+import { icon, LEVEL_ICONS } from "../icons";
+import { createEditor, type Editor } from "./editors";
+import type { TreeItem } from "./tree-item";
+
+/** One row's elements; it lives as long as its key is visible. */
+export class TreeRow {
+  readonly element: HTMLElement;
+  readonly editor: Editor;
+  private readonly twist = h("span", { class: "twist" }, icon("chevron"));
+  private readonly signs = h("span", { class: "signs" });
+  private readonly title = h("span", { class: "row-title" });
+  private readonly badge = h("span", { class: "row-badge" });
+  private signKey = "";
+
+  constructor(
+    public item: TreeItem,
+    readonly depth: number,
+    frames: () => readonly string[],
+  ) {
+    this.editor = createEditor(item, () => this.item, frames);
+    const name = h("div", { class: "row-name" }, this.twist, this.signs, this.title, this.badge);
+    name.style.paddingLeft = `${6 + depth * 14}px`;
+    const value = h("div", { class: "row-value" }, this.editor.element);
+    this.element = h("div", { class: "row", role: "treeitem", tabIndex: -1, data: { key: item.key } }, name, value);
+    this.element.setAttribute("aria-level", String(depth + 1));
+  }
+
+  show(item: TreeItem, expanded: boolean): void {
+    this.item = item;
+    const { classList } = this.element;
+    classList.toggle("strong", item.strong === true);
+    classList.toggle("muted", item.muted === true);
+    classList.toggle("warn", item.level === "warn");
+    classList.toggle("error", item.level === "error");
+    this.twist.classList.toggle("leaf", !item.children);
+    if (item.children) this.element.setAttribute("aria-expanded", String(expanded));
+    else this.element.removeAttribute("aria-expanded");
+    if (this.title.textContent !== item.name) this.title.textContent = item.name;
+    this.title.title = item.name;
+    const badge = item.badge ?? "";
+    if (this.badge.textContent !== badge) this.badge.textContent = badge;
+    this.showSigns(item);
+    this.editor.show(item);
+  }
+
+  set selected(selected: boolean) {
+    this.element.classList.toggle("selected", selected);
+    this.element.setAttribute("aria-selected", String(selected));
+    this.element.tabIndex = selected ? 0 : -1;
+  }
+
+  private showSigns(item: TreeItem): void {
+    const level = item.showLevelIcon === true && item.level ? item.level : "";
+    const key = `${item.icon ?? ""} ${level}`;
+    if (key === this.signKey) return;
+    this.signKey = key;
+    this.signs.replaceChildren();
+    if (item.icon) this.signs.append(icon(item.icon));
+    if (level) this.signs.append(icon(LEVEL_ICONS[level], `level-${level}`));
+  }
+}

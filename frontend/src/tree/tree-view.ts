@@ -1,0 +1,180 @@
+import { coalesced, h } from "../dom";
+import { Signal } from "../state/signal";
+import type { TreeItem } from "./tree-item";
+import { TreeRow } from "./tree-row";
+
+interface Line {
+  item: TreeItem;
+  depth: number;
+  expanded: boolean;
+}
+
+/** A property tree: names left, values right, everything reachable by keyboard. */
+export class TreeView {
+  readonly element: HTMLElement;
+  readonly selected = new Signal<TreeItem>();
+  /** Redraws before the next painting, reading all items anew. */
+  readonly refresh = coalesced(() => this.render());
+  private readonly rows = new Map<string, TreeRow>();
+  private readonly expansion = new Map<string, boolean>();
+  private lines: Line[] = [];
+  private selectedKey: string | null = null;
+  private scrollTo: string | null = null;
+
+  constructor(
+    label: string,
+    private readonly items: () => readonly TreeItem[],
+    private readonly frames: () => readonly string[],
+  ) {
+    this.element = h("div", { class: "tree", role: "tree", aria: { label } });
+    this.element.addEventListener("click", (event) => this.clicked(event));
+    this.element.addEventListener("dblclick", (event) => this.doubleClicked(event));
+    this.element.addEventListener("keydown", (event) => this.keyed(event));
+    this.element.addEventListener("focusin", (event) => {
+      const key = keyOf(event.target);
+      if (key !== null) this.select(key);
+    });
+    this.refresh();
+  }
+
+  /** Opens the rows of `path`, from the top, and selects and shows the last one without taking the keyboard. */
+  reveal(path: readonly string[]): void {
+    for (const key of path.slice(0, -1)) this.expansion.set(key, true);
+    this.selectedKey = path.at(-1) ?? null;
+    this.scrollTo = this.selectedKey;
+    this.refresh();
+  }
+
+  private render(): void {
+    this.lines = [];
+    this.flatten(this.items(), 0);
+    const keep = new Set<string>();
+    const elements: HTMLElement[] = [];
+    for (const { item, depth, expanded } of this.lines) {
+      let row = this.rows.get(item.key);
+      // A row of another kind needs another editor.
+      if (row?.item.kind !== item.kind || row.depth !== depth || !row.item.set !== !item.set) {
+        row = new TreeRow(item, depth, this.frames);
+        this.rows.set(item.key, row);
+      }
+      row.show(item, expanded);
+      row.selected = item.key === this.selectedKey;
+      keep.add(item.key);
+      elements.push(row.element);
+    }
+    for (const key of this.rows.keys()) if (!keep.has(key)) this.rows.delete(key);
+    arrange(this.element, elements);
+    const [first] = elements;
+    if (first && (this.selectedKey === null || !keep.has(this.selectedKey))) first.tabIndex = 0;
+    if (this.scrollTo !== null) this.rows.get(this.scrollTo)?.element.scrollIntoView({ block: "nearest" });
+    this.scrollTo = null;
+  }
+
+  private flatten(items: readonly TreeItem[], depth: number): void {
+    for (const item of items) {
+      const expanded = item.children !== undefined && this.isExpanded(item);
+      this.lines.push({ item, depth, expanded });
+      if (expanded && item.children) this.flatten(item.children(), depth + 1);
+    }
+  }
+
+  private isExpanded(item: TreeItem): boolean {
+    return this.expansion.get(item.key) ?? item.expanded ?? false;
+  }
+
+  private setExpanded(item: TreeItem, expanded: boolean): void {
+    if (!item.children) return;
+    this.expansion.set(item.key, expanded);
+    this.refresh();
+  }
+
+  private select(key: string): void {
+    if (key === this.selectedKey) return;
+    if (this.selectedKey !== null) {
+      const before = this.rows.get(this.selectedKey);
+      if (before) before.selected = false;
+    }
+    this.selectedKey = key;
+    const row = this.rows.get(key);
+    if (!row) return;
+    row.selected = true;
+    this.selected.emit(row.item);
+  }
+
+  private clicked(event: MouseEvent): void {
+    const target = event.target as HTMLElement;
+    const row = this.rows.get(keyOf(target) ?? "");
+    if (!row) return;
+    this.select(row.item.key);
+    if (target.closest(".twist")) this.setExpanded(row.item, !this.isExpanded(row.item));
+    if (!target.closest(".row-value")) row.element.focus({ preventScroll: true });
+  }
+
+  private doubleClicked(event: MouseEvent): void {
+    const target = event.target as HTMLElement;
+    const row = this.rows.get(keyOf(target) ?? "");
+    if (row && target.closest(".row-name") && !target.closest(".twist")) {
+      this.setExpanded(row.item, !this.isExpanded(row.item));
+    }
+  }
+
+  private keyed(event: KeyboardEvent): void {
+    const index = this.lines.findIndex((line) => line.item.key === this.selectedKey);
+    const line = this.lines[index];
+    const row = line && this.rows.get(line.item.key);
+    if (!row || !(event.target as HTMLElement).matches("[role=treeitem], .check")) return;
+    switch (event.key) {
+      case "ArrowDown":
+        this.focusLine(index + 1);
+        break;
+      case "ArrowUp":
+        this.focusLine(index - 1);
+        break;
+      case "Home":
+        this.focusLine(0);
+        break;
+      case "End":
+        this.focusLine(this.lines.length - 1);
+        break;
+      case "ArrowRight":
+        if (line.expanded) this.focusLine(index + 1);
+        else this.setExpanded(line.item, true);
+        break;
+      case "ArrowLeft":
+        if (line.expanded) this.setExpanded(line.item, false);
+        else this.focusLine(this.lines.findLastIndex((each, i) => i < index && each.depth < line.depth));
+        break;
+      case " ":
+        if (row.editor.toggle) row.editor.toggle();
+        else this.setExpanded(line.item, !line.expanded);
+        break;
+      case "Enter":
+      case "F2":
+        if (!row.editor.focus()) this.setExpanded(line.item, !line.expanded);
+        break;
+      default:
+        return;
+    }
+    event.preventDefault();
+  }
+
+  private focusLine(index: number): void {
+    const key = this.lines[index]?.item.key;
+    if (key !== undefined) this.rows.get(key)?.element.focus();
+  }
+}
+
+function keyOf(target: EventTarget | null): string | null {
+  return (target as HTMLElement | null)?.closest<HTMLElement>(".row")?.dataset["key"] ?? null;
+}
+
+/** Puts exactly these elements into `parent`, in order, moving only those that are out of place. */
+function arrange(parent: HTMLElement, elements: readonly HTMLElement[]): void {
+  const wanted = new Set<Element>(elements);
+  for (const child of [...parent.children]) if (!wanted.has(child)) child.remove();
+  let next = parent.firstElementChild;
+  for (const element of elements) {
+    if (element === next) next = next.nextElementSibling;
+    else parent.insertBefore(element, next);
+  }
+}

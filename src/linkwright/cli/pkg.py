@@ -1,0 +1,156 @@
+"""``linkwright pkg``: work with ROS packages; ``pkg create`` makes a new one."""
+
+from __future__ import annotations
+
+import argparse
+import subprocess
+import sys
+from collections.abc import Sequence
+from datetime import datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from linkwright.diagnostics import print_diagnostics
+
+if TYPE_CHECKING:
+    from linkwright.workspace.create import Maintainer
+
+NAME = "pkg"
+HELP = "create ROS packages"
+
+
+class _ListLicenses(argparse.Action):
+    """Takes a licence; for ``?`` it lists the known ones and ends, as ``--help`` does."""
+
+    def __call__(
+        self,
+        parser: argparse.ArgumentParser,
+        namespace: argparse.Namespace,
+        values: str | Sequence[Any] | None,
+        option_string: str | None = None,  # noqa: ARG002 - argparse passes it
+    ) -> None:
+        if values == "?":
+            from linkwright.workspace.licenses import known_licenses
+
+            print("\n".join(["Supported licenses:", *known_licenses()]))
+            parser.exit(0)
+        setattr(namespace, self.dest, values)
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    from linkwright.workspace.create import BUILD_TYPES, DEFAULT_DESCRIPTION, DEFAULT_LICENSE
+
+    verbs = parser.add_subparsers(dest="verb", metavar="COMMAND", required=True, title="commands")
+    create = verbs.add_parser(
+        "create", help="create a new package", description="create a new package, laid out as ros2 pkg create does"
+    )
+    create.add_argument("name", metavar="NAME", help="the package's name: lower-case letters, digits, underscores")
+    create.add_argument(
+        "--package-format",
+        "--package_format",
+        type=int,
+        default=3,
+        choices=(2, 3),
+        help="format of package.xml, default 3",
+    )
+    create.add_argument(
+        "--description", metavar="TEXT", default=DEFAULT_DESCRIPTION, help="one sentence for package.xml"
+    )
+    create.add_argument(
+        "--license",
+        metavar="LICENSE",
+        action=_ListLicenses,
+        default=DEFAULT_LICENSE,
+        help="SPDX identifier or any words; LICENSE is written for a known identifier; '?' lists those",
+    )
+    create.add_argument(
+        "--destination-directory",
+        metavar="FOLDER",
+        default=".",
+        help="the folder to create the package in, default the current one",
+    )
+    create.add_argument(
+        "--build-type", choices=BUILD_TYPES, default="ament_cmake", help="what builds the package, default ament_cmake"
+    )
+    create.add_argument(
+        "--dependencies", metavar="PACKAGE", nargs="+", default=[], help="packages that this one depends on"
+    )
+    create.add_argument(
+        "--maintainer-email",
+        metavar="EMAIL",
+        help="the maintainer's address, default git's user.email or login@todo.todo",
+    )
+    create.add_argument(
+        "--maintainer-name", metavar="TEXT", help="the maintainer's name, default git's user.name or the login name"
+    )
+    create.add_argument("--node-name", metavar="NODE", help="begin with an executable of this name")
+    create.add_argument("--library-name", metavar="LIBRARY", help="begin with a library of this name")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Create the package, printing each step as ``ros2 pkg create`` does."""
+    from linkwright.workspace.create import PackageRequest, create_package
+
+    request = PackageRequest(
+        name=arguments.name,
+        maintainer=_maintainer(arguments.maintainer_name, arguments.maintainer_email),
+        year=datetime.now().astimezone().year,
+        destination=Path(arguments.destination_directory),
+        package_format=arguments.package_format,
+        build_type=arguments.build_type,
+        description=arguments.description,
+        license=arguments.license,
+        dependencies=tuple(dict.fromkeys(arguments.dependencies)),
+        node_name=arguments.node_name,
+        library_name=arguments.library_name,
+    )
+    warnings = create_package(request, print)
+    print_diagnostics(warnings, sys.stderr)
+    return 0
+
+
+def _maintainer(name: str | None, email: str | None) -> Maintainer:
+    """The maintainer as given; what is missing comes from git's configuration, then from the login name."""
+    from linkwright.workspace.create import Maintainer
+    from linkwright.workspace.naming import is_email
+
+    login = _login()
+    if not name:
+        name = _git("user.name") or login
+    if not email:
+        # An address without a domain, which git itself may make up, would be refused by colcon.
+        configured = _git("user.email")
+        email = configured if is_email(configured) else f"{_address_part(login)}@todo.todo"
+    return Maintainer(name, email)
+
+
+def _git(key: str) -> str:
+    """A value of git's configuration, or nothing when there is no git or no such value."""
+    try:
+        result = subprocess.run(  # noqa: S603 - fixed words, no shell
+            ["git", "config", key],  # noqa: S607 - the user's own git, found as the shell finds it
+            capture_output=True,
+            encoding="utf-8",
+            errors="replace",
+            timeout=5,
+            check=False,
+        )
+    except (OSError, subprocess.TimeoutExpired):
+        return ""
+    return result.stdout.strip()
+
+
+def _login() -> str:
+    import getpass
+
+    try:
+        return getpass.getuser()
+    except (OSError, KeyError, ImportError):  # a container's user id without a name
+        return "user"
+
+
+def _address_part(login: str) -> str:
+    import re
+
+    return re.sub(r"[^A-Za-z0-9_%+-]+", "-", login).strip("-") or "user"

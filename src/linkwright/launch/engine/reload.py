@@ -1,0 +1,187 @@
+"""Live reload: a saved model file is expanded anew and given to the nodes that show it.
+
+The nodes stay, and with them joint positions and the camera. A model that cannot be read leaves the last good one
+standing and shows what is wrong until it is repaired.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Iterable
+from pathlib import Path
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, display_path
+from linkwright.launch.engine.descriptions import Descriptions, XacroCall
+from linkwright.launch.engine.file_watch import FileWatch, real
+from linkwright.launch.engine.log import LaunchLog
+
+_SETTLE_SECONDS = 0.06
+"""Wait before a failure is believed: an editor may be in the middle of writing."""
+_MISSING_ATTEMPTS = 8
+"""How many such waits a missing file is given: some editors delete it before they write it."""
+_CATCH_UP_SECONDS = 0.4
+"""When the files are compared once with their state at the first expansion, for changes before the watch began."""
+
+Apply = Callable[[str], None]
+"""Takes the new text of a description."""
+
+
+class LiveReload:
+    """Watches the files of the descriptions of a launch.
+
+    Args:
+        descriptions: what expands them.
+        show: takes all findings of the moment, to be shown in the viewer.
+        log: where findings are printed.
+    """
+
+    def __init__(
+        self, descriptions: Descriptions, show: Callable[[list[Diagnostic]], None], log: LaunchLog
+    ) -> None:
+        self._descriptions = descriptions
+        self._show = show
+        self._log = log
+        self._targets: dict[XacroCall, list[Apply]] = {}
+        self._findings: dict[object, tuple[Diagnostic, ...]] = {}
+        self._stamps: dict[Path, int] = {}
+        self._watch: FileWatch | None = None
+        self._running: dict[XacroCall, asyncio.Task[None]] = {}
+        self._again: set[XacroCall] = set()
+        self._closed = False
+
+    def bind(self, call: XacroCall, apply: Apply) -> None:
+        """Call `apply` with every new text of a description."""
+        self._targets.setdefault(call, []).append(apply)
+        if self._watch is not None:
+            self._watch_files()
+
+    def unbind(self, call: XacroCall, apply: Apply) -> None:
+        """Call `apply` no longer."""
+        self._targets[call].remove(apply)
+
+    def report(self, about: object, diagnostics: Iterable[Diagnostic]) -> None:
+        """Print what is wrong with a description, if it is news, and show it; nothing wrong clears what was."""
+        findings = tuple(diagnostics)
+        if findings == self._findings.get(about, ()):
+            return
+        self._findings[about] = findings
+        self._log.diagnostics(findings)
+        self._show(self.findings())
+
+    def findings(self) -> list[Diagnostic]:
+        """All that is wrong now."""
+        return [finding for findings in self._findings.values() for finding in findings]
+
+    def start(self) -> None:
+        """Begin to watch; needs the running event loop."""
+        if self._closed or not self._targets:
+            return
+        self._watch = FileWatch(self._on_change, self._on_watch_failure)
+        for call in self._targets:
+            for path in self._files_of_interest(call):
+                self._stamps[path] = _stamp(path)
+        self._watch_files()
+        asyncio.get_running_loop().call_later(_CATCH_UP_SECONDS, self._catch_up)
+
+    def close(self) -> None:
+        """Watch no longer."""
+        self._closed = True
+        if self._watch is not None:
+            self._watch.close()
+        for task in self._running.values():
+            task.cancel()
+
+    # --- which files ----------------------------------------------------------------------------------------
+
+    def _files_of_interest(self, call: XacroCall) -> set[Path]:
+        """The files that a description was read from, and those that its errors speak of."""
+        files = {call.path, *self._descriptions.files_of(call)}
+        for finding in self._findings.get(call, ()):
+            spans = (finding.span, *(note.span for note in finding.notes))
+            files.update(Path(span.file) for span in spans if span and not span.file.startswith("<"))
+        return files
+
+    def _watch_files(self) -> None:
+        if self._watch is not None:
+            self._watch.watch({file for call in self._targets for file in self._files_of_interest(call)})
+
+    def _on_watch_failure(self, reason: str) -> None:
+        self._log.warning("launch", f"model files are not watched for changes: {reason}")
+
+    def _catch_up(self) -> None:
+        changed = {path for path, stamp in self._stamps.items() if _stamp(path) != stamp}
+        if changed:
+            self._on_change(changed)
+
+    # --- a change -------------------------------------------------------------------------------------------
+
+    def _on_change(self, paths: set[Path]) -> None:
+        if self._closed:
+            return
+        for call in self._targets:
+            files = self._files_of_interest(call)
+            # While a model is broken, any file beside it may be the missing piece.
+            if self._is_broken(call) or not paths.isdisjoint(files | {real(file) for file in files}):
+                self._start_reload(call)
+
+    def _is_broken(self, call: XacroCall) -> bool:
+        return any(finding.severity is Severity.ERROR for finding in self._findings.get(call, ()))
+
+    def _start_reload(self, call: XacroCall) -> None:
+        if call in self._running:
+            self._again.add(call)
+            return
+        task = asyncio.get_running_loop().create_task(self._reload(call))
+        self._running[call] = task
+        task.add_done_callback(lambda _: self._after_reload(call))
+
+    def _after_reload(self, call: XacroCall) -> None:
+        del self._running[call]
+        if call in self._again and not self._closed:
+            self._again.discard(call)
+            self._start_reload(call)
+
+    async def _reload(self, call: XacroCall) -> None:
+        for attempt in range(_MISSING_ATTEMPTS):
+            text, findings = await self._read(call)
+            if text is not None:
+                self._apply(call, text, findings)
+                return
+            present = all(path.is_file() for path in self._files_of_interest(call))
+            if attempt > 0 and present:
+                break
+            await asyncio.sleep(_SETTLE_SECONDS)
+            if call in self._again:
+                return  # there is a newer change, which starts over
+        self.report(call, findings)
+        self._watch_files()
+
+    async def _read(self, call: XacroCall) -> tuple[str | None, tuple[Diagnostic, ...]]:
+        """The text and what is remarkable about it; no text where the model has no robot."""
+        loop = asyncio.get_running_loop()
+        try:
+            expansion = await loop.run_in_executor(None, self._descriptions.expansion, call)
+        except LinkwrightError as error:
+            return None, error.diagnostics
+        text = self._descriptions.remember(call, expansion)
+        reading = self._descriptions.library.read(text)
+        findings = (*expansion.diagnostics, *reading.diagnostics)
+        return (None if reading.robot is None else text), findings
+
+    def _apply(self, call: XacroCall, text: str, findings: tuple[Diagnostic, ...]) -> None:
+        was_broken = self._is_broken(call)
+        try:
+            for apply in tuple(self._targets[call]):
+                apply(text)
+        except LinkwrightError as error:
+            findings = (*findings, *error.diagnostics)
+        self._log.info("launch", f"{'repaired' if was_broken else 'reloaded'} {display_path(call.path)}")
+        self.report(call, findings)
+        self._watch_files()
+
+
+def _stamp(path: Path) -> int:
+    try:
+        return path.stat().st_mtime_ns
+    except OSError:
+        return 0

@@ -1,0 +1,76 @@
+"""The command line of ``rviz2``, as far as our viewer obeys it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, did_you_mean
+
+if TYPE_CHECKING:
+    from linkwright.viewer import RvizConfig
+
+_CONFIG = ("-d", "--display-config")
+_FIXED_FRAME = ("-f", "--fixed-frame")
+_WITHOUT_MEANING_HERE = {
+    "-s": 1,
+    "--splash-screen": 1,
+    "-l": 0,
+    "--ogre-log": 0,
+    "--stereo": 0,
+    "--fullscreen": 0,
+    "--force-x11": 0,
+}
+
+
+def read_viewer_config(arguments: Sequence[str]) -> tuple[RvizConfig, list[Diagnostic]]:
+    """The configuration that the arguments ask for, and what is to be said of them.
+
+    As in RViz, a file that cannot be read is told about, and the default configuration takes its place.
+    """
+    from linkwright.viewer import RvizConfig
+
+    path, fixed_frame, findings = _read(arguments)
+    config: RvizConfig | None = None
+    if path:
+        try:
+            config = RvizConfig.load(path)
+        except LinkwrightError as error:
+            findings += error.diagnostics
+    if config is None:
+        config = RvizConfig.default()
+    if fixed_frame:
+        config.options.set(("Fixed Frame",), fixed_frame)
+    return config, findings
+
+
+def _read(arguments: Sequence[str]) -> tuple[str | None, str | None, list[Diagnostic]]:
+    path: str | None = None
+    fixed_frame: str | None = None
+    findings: list[Diagnostic] = []
+    waiting = iter(arguments)
+    for argument in waiting:
+        if argument == "--ros-args":
+            for each in waiting:  # names and remappings of a node; the viewer shows what the file says
+                if each == "--":
+                    break
+        elif argument in _CONFIG or argument in _FIXED_FRAME:
+            value = next(waiting, None)
+            if value is None:
+                findings.append(_remark(f"argument '{argument}' of rviz2 needs a value"))
+            elif argument in _CONFIG:
+                path = value
+            else:
+                fixed_frame = value
+        elif argument in _WITHOUT_MEANING_HERE:
+            for _ in range(_WITHOUT_MEANING_HERE[argument]):
+                next(waiting, None)
+        elif argument:
+            known = (*_CONFIG, *_FIXED_FRAME, *_WITHOUT_MEANING_HERE)
+            findings.append(_remark(f"argument '{argument}' of rviz2 is unknown", did_you_mean(argument, known)))
+    return path, fixed_frame, findings
+
+
+def _remark(message: str, hint: str | None = None) -> Diagnostic:
+    return replace(Diagnostic("LAUNCH144", message, hint=hint), severity=Severity.WARNING)

@@ -1,0 +1,98 @@
+"""Where in a launch file something was written, for the messages about it."""
+
+from __future__ import annotations
+
+import os
+import sys
+from dataclasses import dataclass, replace
+from pathlib import Path
+from types import CodeType, FrameType
+
+import linkwright
+from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText, Span
+
+_OURS = str(Path(linkwright.__file__).parent) + os.sep
+_SHIPPED_PACKAGES = _OURS + "robots" + os.sep
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A point of a running program; its line and column are worked out when a message needs them."""
+
+    code: CodeType
+    instruction: int
+    line: int
+
+    @classmethod
+    def of_caller(cls) -> Place | None:
+        """The nearest frame on the stack that is not Linkwright's own; None where there is none."""
+        frame: FrameType | None = sys._getframe(1)
+        while frame is not None and is_ours(frame.f_code.co_filename):
+            frame = frame.f_back
+        return None if frame is None else cls(frame.f_code, frame.f_lasti, frame.f_lineno)
+
+    @property
+    def file(self) -> str:
+        """The file of the program text."""
+        return self.code.co_filename
+
+    def source(self) -> SourceText | None:
+        """The program text; None where it cannot be read again."""
+        return read_source(self.file)
+
+    def span(self, source: SourceText | None = None) -> Span:
+        """The expression at the place, or its line where Python (3.10) keeps no columns."""
+        positions = getattr(self.code, "co_positions", None)
+        if positions is not None:
+            exact = _nth(positions(), self.instruction // 2)
+            if exact is not None and None not in exact:
+                return self._exact_span(exact, source)
+        text = source.line(self.line) if source else ""
+        start = len(text) - len(text.lstrip()) + 1
+        return Span(self.file, self.line, start, self.line, max(len(text.rstrip()), start) + 1)
+
+    def _exact_span(self, exact: tuple[int, int, int, int], source: SourceText | None) -> Span:
+        line, end_line, start, end = exact
+        if source:
+            start = _characters(source.line(line), start)
+            end = _characters(source.line(end_line), end)
+        return Span(self.file, line, start + 1, end_line, end + 1)
+
+
+def is_ours(filename: str) -> bool:
+    """Whether a program file belongs to Linkwright itself (and not to a robot package that it ships)."""
+    return filename.startswith(_OURS) and not filename.startswith(_SHIPPED_PACKAGES)
+
+
+def read_source(filename: str) -> SourceText | None:
+    """The text of a program file, or None where it cannot be read."""
+    try:
+        return SourceText(filename, Path(filename).read_text(encoding="utf-8", errors="replace"))
+    except (OSError, ValueError):
+        return None
+
+
+def located(error: LinkwrightError, place: Place | None) -> LinkwrightError:
+    """The error with a place for those of its diagnostics that name none; errors with a place stay as they are."""
+    if place is None or any(diagnostic.span for diagnostic in error.diagnostics):
+        return error
+    source = place.source()
+    span = place.span(source)
+    error.diagnostics = tuple(replace(each, span=span, source=source) for each in error.diagnostics)
+    return error
+
+
+def error_at(place: Place | None, code: str, message: str, hint: str | None = None) -> LinkwrightError:
+    """A new error about what was written at a place."""
+    return located(LinkwrightError(Diagnostic(code, message, hint=hint)), place)
+
+
+def _nth(positions: object, index: int) -> tuple[int, int, int, int] | None:
+    for number, position in enumerate(positions):  # type: ignore[var-annotated,arg-type]
+        if number == index:
+            return position  # type: ignore[no-any-return]
+    return None
+
+
+def _characters(line: str, byte_offset: int) -> int:
+    return len(line.encode("utf-8")[:byte_offset].decode("utf-8", errors="replace"))

@@ -1,0 +1,136 @@
+"""Exceptions inside a user's launch file, told without a traceback: what, where, and the nearest name."""
+
+from __future__ import annotations
+
+import inspect
+import re
+import sys
+import sysconfig
+from collections.abc import Iterable
+from traceback import walk_tb
+from types import FrameType, TracebackType
+from typing import Any
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, did_you_mean
+from linkwright.launch.places import Place, is_ours, located, read_source
+
+_LIBRARY = tuple({sysconfig.get_path("stdlib"), sysconfig.get_path("purelib"), sysconfig.get_path("platlib")})
+_CANNOT_IMPORT = re.compile(r"cannot import name '([^']+)' from '([^']+)'")
+_UNEXPECTED_ARGUMENT = re.compile(r"([\w.]+)\(\) got an unexpected keyword argument '([^']+)'")
+
+
+def explain(error: Exception, where: str, fallback: Place | None = None) -> LinkwrightError:
+    """An exception as an error with the user's own line.
+
+    Args:
+        error: what was raised.
+        where: what was running, such as "launch file 'x.launch.py'".
+        fallback: the place to name when no line of the user's was running.
+
+    Returns:
+        The error itself if it is a LinkwrightError, with a place where it had none; else a LAUNCH104.
+    """
+    trail = list(_user_places(error.__traceback__))
+    place = trail[-1] if trail else fallback
+    if isinstance(error, LinkwrightError):
+        return located(error, place)
+    kind = type(error).__name__
+    text = str(error.args[0]) if isinstance(error, KeyError) and error.args else str(error)
+    message = f"{where} raised {kind}: {text}" if text else f"{where} raised {kind}"
+    message = message.splitlines()[0].rstrip(".")
+    source = place.source() if place else None
+    span = place.span(source) if place else None
+    notes = tuple(Note("called from here", each.span(read_source(each.file))) for each in reversed(trail[:-1]))
+    return LinkwrightError(
+        Diagnostic("LAUNCH104", message, span, notes=notes, hint=_hint(error), source=source)
+    )
+
+
+def _user_places(traceback: TracebackType | None) -> Iterable[Place]:
+    if traceback is None:
+        return
+    current: TracebackType | None = traceback
+    for frame, line in walk_tb(traceback):
+        assert current is not None
+        if _is_users(frame.f_code.co_filename):
+            yield Place(frame.f_code, current.tb_lasti, line)
+        current = current.tb_next
+
+
+def _is_users(filename: str) -> bool:
+    if filename.startswith("<") or is_ours(filename):
+        return False
+    return not filename.startswith(tuple(folder for folder in _LIBRARY if folder))
+
+
+def _hint(error: Exception) -> str | None:
+    """What the user may have meant."""
+    if isinstance(error, ImportError):
+        return _import_hint(error)
+    if isinstance(error, NameError):
+        frame = _innermost_frame(error)
+        known = {**frame.f_globals, **frame.f_locals} if frame else {}
+        name = getattr(error, "name", None)
+        return did_you_mean(name, known) if name else None
+    if isinstance(error, AttributeError):
+        name, owner = getattr(error, "name", None), getattr(error, "obj", None)
+        return did_you_mean(name, (each for each in dir(owner) if not each.startswith("_"))) if name else None
+    if isinstance(error, TypeError):
+        return _keyword_hint(error)
+    return None
+
+
+def _import_hint(error: ImportError) -> str | None:
+    found = _CANNOT_IMPORT.search(str(error))
+    if found:
+        name, module = found.groups()
+        return did_you_mean(name, (each for each in dir(sys.modules.get(module)) if not each.startswith("_")))
+    missing = error.name or ""
+    parent, _, name = missing.rpartition(".")
+    if parent in sys.modules:
+        import pkgutil
+
+        siblings = [each.name for each in pkgutil.iter_modules(getattr(sys.modules[parent], "__path__", ()))]
+        return did_you_mean(name, siblings)
+    known = did_you_mean(missing, ("launch", "launch_ros", "ament_index_python"))
+    return known or f"install the Python package that provides '{missing}'" if missing else None
+
+
+def _keyword_hint(error: TypeError) -> str | None:
+    """The nearest argument name for a call with one that does not exist."""
+    found = _UNEXPECTED_ARGUMENT.search(str(error))
+    frame = _innermost_frame(error, users_only=True)
+    if not found or frame is None:
+        return None
+    function, name = found.groups()
+    called = _called_objects(frame, function.partition(".")[0])
+    names = {parameter for each in called for parameter in _parameter_names(each)}
+    return did_you_mean(name, names)
+
+
+def _called_objects(frame: FrameType, class_name: str) -> list[Any]:
+    """Classes that the frame knows and that are, or derive from, the one whose constructor complained."""
+    known = [*frame.f_globals.values(), *frame.f_locals.values()]
+    return [
+        each
+        for each in known
+        if (inspect.isclass(each) and any(base.__name__ == class_name for base in each.__mro__))
+        or (inspect.isfunction(each) and each.__name__ == class_name)
+    ]
+
+
+def _parameter_names(called: Any) -> Iterable[str]:
+    functions = [base.__init__ for base in called.__mro__] if inspect.isclass(called) else [called]
+    for function in functions:
+        if inspect.isfunction(function):
+            for parameter in inspect.signature(function).parameters.values():
+                if parameter.kind in (parameter.KEYWORD_ONLY, parameter.POSITIONAL_OR_KEYWORD):
+                    yield parameter.name
+
+
+def _innermost_frame(error: Exception, users_only: bool = False) -> FrameType | None:
+    frame = None
+    for each, _ in walk_tb(error.__traceback__):
+        if not users_only or _is_users(each.f_code.co_filename):
+            frame = each
+    return frame

@@ -1,0 +1,175 @@
+"""Which joints joint_state_publisher publishes, in which order, within which limits, and which follow which."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import isfinite, pi
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.nodes.joint_settings import Dependence, JointSettings
+from linkwright.nodes.robot_transforms import MOVING_TYPES
+from linkwright.urdf import Joint, JointType, Robot
+
+Array = NDArray[np.float64]
+
+_UNLIMITED_SPAN = {"revolute": 2.0 * pi, "continuous": 2.0 * pi, "prismatic": 2.0}
+"""How far a slider reaches for a joint whose limits are infinite: a turn, or two metres."""
+
+
+@dataclass(frozen=True, slots=True)
+class JointRange:
+    """A joint that is published, with the positions it may take (rad or m); both limits are finite.
+
+    `zero` is where it starts: its entry in ``zeros``, else 0, or the middle where 0 is not within the limits.
+    """
+
+    name: str
+    kind: JointType
+    lower: float
+    upper: float
+    zero: float
+
+    def clamp(self, position: float) -> float:
+        """The nearest position within the limits."""
+        return min(max(position, self.lower), self.upper)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class JointLayout:
+    """The joints of a robot as joint_state_publisher sees them.
+
+    Attributes:
+        ranges: every published joint by name, in file order, which is the order of messages.
+        free: those that follow no other, in the same order; arrays of positions have one number for each.
+        dependent: the others, by name, with what each follows directly.
+        masters: array, shape (n,), the index in `free` of what each published joint comes down to; -1 where a chain
+            ends at a joint that does not move.
+        factor: array, shape (n,): published position = factor * position of the master + offset.
+        offset: array, shape (n,).
+        problems: what is wrong with the description for this purpose; joints concerned are left out or stand still.
+    """
+
+    ranges: Mapping[str, JointRange]
+    free: tuple[JointRange, ...]
+    dependent: Mapping[str, Dependence]
+    masters: NDArray[np.intp]
+    factor: Array
+    offset: Array
+    problems: tuple[str, ...]
+
+
+def empty_layout() -> JointLayout:
+    """The layout before there is a description."""
+    return JointLayout({}, (), {}, np.zeros(0, dtype=np.intp), np.zeros(0), np.zeros(0), ())
+
+
+def layout_of(robot: Robot, settings: JointSettings) -> JointLayout:
+    """Work out the layout for a robot.
+
+    Raises:
+        LinkwrightError: joints follow each other in a circle (NODE202).
+    """
+    problems: list[str] = []
+    ranges: dict[str, JointRange] = {}
+    dependent: dict[str, Dependence] = {}
+    for joint in robot.joints.values():
+        if joint.type not in MOVING_TYPES:
+            continue
+        limits = _limits(joint, settings, problems)
+        if limits is None:
+            continue
+        zero = settings.zeros.get(joint.name, _default_zero(*limits))
+        ranges[joint.name] = JointRange(joint.name, joint.type, *limits, zero)
+        # The parameter comes before the <mimic>, and stays when the description changes. In the ROS node it is
+        # overwritten.
+        if joint.name in settings.dependent_joints:
+            dependent[joint.name] = settings.dependent_joints[joint.name]
+        elif settings.use_mimic_tags and joint.mimic is not None:
+            dependent[joint.name] = Dependence(joint.mimic.joint, joint.mimic.multiplier, joint.mimic.offset)
+    free = tuple(ranges[name] for name in ranges if name not in dependent)
+    index = {joint.name: number for number, joint in enumerate(free)}
+    resolved = [_resolve(name, dependent) for name in ranges]
+    for name, (master, _, _) in zip(ranges, resolved, strict=True):
+        if master not in index:
+            problems.append(f"joint '{name}' follows joint '{master}', which does not move")
+    return JointLayout(
+        ranges,
+        free,
+        dependent,
+        np.array([index.get(master, -1) for master, _, _ in resolved], dtype=np.intp),
+        np.array([factor for _, factor, _ in resolved], dtype=np.float64),
+        np.array([offset for *_, offset in resolved], dtype=np.float64),
+        tuple(problems),
+    )
+
+
+def _resolve(name: str, dependent: Mapping[str, Dependence]) -> tuple[str, float, float]:
+    """The joint at the end of a chain, and the factor and offset along it."""
+    chain = [name]
+    factor, offset = 1.0, 0.0
+    while (link := dependent.get(name)) is not None:
+        offset += factor * link.offset
+        factor *= link.factor
+        name = link.parent
+        if name in chain:
+            message = f"Found an infinite recursive mimic chain: {[*chain, name]}"
+            raise LinkwrightError(Diagnostic("NODE202", message))
+        chain.append(name)
+    return name, factor, offset
+
+
+def _default_zero(lower: float, upper: float) -> float:
+    return (lower + upper) / 2.0 if lower > 0.0 or upper < 0.0 else 0.0
+
+
+def _limits(joint: Joint, settings: JointSettings, problems: list[str]) -> tuple[float, float] | None:
+    if joint.type == "continuous":
+        lower, upper = -pi, pi
+    else:
+        missing = _missing_limit(joint)
+        if missing is not None or joint.limit is None:
+            problems.append(
+                f'Limits must be specified for joint "{joint.name}" of type "{joint.type}"'
+                if missing is None
+                else f'"{missing}" limit must be specified for joint "{joint.name}" of type "{joint.type}"'
+            )
+            return None
+        lower, upper = joint.limit.lower, joint.limit.upper
+    if settings.use_smallest_joint_limits and joint.safety is not None:
+        if _is_given(joint, "safety_controller", "soft_lower_limit"):
+            lower = max(lower, joint.safety.soft_lower_limit)
+        if _is_given(joint, "safety_controller", "soft_upper_limit"):
+            upper = min(upper, joint.safety.soft_upper_limit)
+    return _finite(min(lower, upper), max(lower, upper), _UNLIMITED_SPAN[joint.type])
+
+
+def _missing_limit(joint: Joint) -> str | None:
+    """A limit that urdfdom takes for 0 because it is absent, and joint_state_publisher refuses."""
+    if joint.limit is None:
+        return None
+    for name, value in (("lower", joint.limit.lower), ("upper", joint.limit.upper)):
+        if isfinite(value) and not _is_given(joint, "limit", name):
+            return name
+    return None
+
+
+def _is_given(joint: Joint, tag: str, attribute: str) -> bool:
+    """Whether the file has the attribute. A joint that was not read from a file has them all."""
+    if joint.element is None:
+        return True
+    element = joint.element.first(tag)
+    return element is not None and attribute in element.attributes
+
+
+def _finite(lower: float, upper: float, span: float) -> tuple[float, float]:
+    if isfinite(lower) and isfinite(upper):
+        return lower, upper
+    if isfinite(lower):
+        return lower, lower + span
+    if isfinite(upper):
+        return upper - span, upper
+    return -span / 2.0, span / 2.0

@@ -1,0 +1,165 @@
+"""The sliders of joint_state_publisher_gui, without a picture of them: whoever draws them reads and moves them here."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from math import isfinite
+from random import Random
+from typing import Literal
+
+from linkwright.graph import Node, run_logged
+from linkwright.nodes.joint_positions import JointPositions
+from linkwright.urdf import JointType
+
+PanelChange = Literal["sliders", "positions"]
+PanelCallback = Callable[[PanelChange], object]
+
+
+@dataclass(frozen=True, slots=True)
+class JointSlider:
+    """A row of the panel.
+
+    Attributes:
+        name: the joint.
+        kind: revolute, continuous or prismatic.
+        lower: where the slider begins, rad or m; finite.
+        upper: where it ends.
+        zero: where "Center" puts the joint.
+        mimic: the joint that this one follows, directly; such a row cannot be moved. None for a free joint.
+    """
+
+    name: str
+    kind: JointType
+    lower: float
+    upper: float
+    zero: float
+    mimic: str | None = None
+
+
+class JointPanel:
+    """The joints that can be moved, and where they are.
+
+    Args:
+        node: its executor runs the callbacks of subscribers.
+        joints: the state that is moved.
+        publish_soon: called when a position was changed here.
+        random: for `randomize`.
+    """
+
+    def __init__(
+        self, node: Node, joints: JointPositions, publish_soon: Callable[[], None], random: Random | None = None
+    ) -> None:
+        self._joints = joints
+        self._publish_soon = publish_soon
+        self._random = random or Random()  # noqa: S311  # no secrets here
+        self._sliders: list[JointSlider] = []
+        self._subscribers: list[PanelCallback] = []
+        self._logger = node.get_logger()
+        self._sliders_changed = node.create_guard_condition(lambda: self._tell("sliders"))
+        self._positions_changed = node.create_guard_condition(lambda: self._tell("positions"))
+
+    def sliders(self) -> list[JointSlider]:
+        """The rows, in the order of the description's file.
+
+        Joints whose limits leave them no room have none, nor has what follows such a joint.
+        """
+        return list(self._sliders)
+
+    def positions(self) -> dict[str, float]:
+        """Where the joints of all rows are, rad or m."""
+        published = dict(zip(self._joints.layout.ranges, self._joints.published().tolist(), strict=True))
+        return {slider.name: published[slider.name] for slider in self._sliders}
+
+    def set_position(self, name: str, value: float) -> bool:
+        """Move a joint, within its limits.
+
+        Args:
+            name: the joint.
+            value: rad or m.
+
+        Returns:
+            Whether it was moved: False for a joint that has no row (any more), follows another, or a value that is
+            not a finite number.
+        """
+        slider = next((row for row in self._sliders if row.name == name and row.mimic is None), None)
+        if slider is None or not isfinite(value):
+            return False
+        self._joints.set(name, self._joints.layout.ranges[name].clamp(value))
+        self._moved()
+        return True
+
+    def randomize(self) -> None:
+        """Put every joint anywhere within its limits."""
+        self._logger.info("Randomizing")
+        for slider in self._free():
+            self._joints.set(slider.name, self._random.uniform(slider.lower, slider.upper))
+        self._moved()
+
+    def center(self) -> None:
+        """Put every joint where it started: at its zero, which is not the middle of its range."""
+        self._logger.info("Centering")
+        for slider in self._free():
+            self._joints.set(slider.name, self._joints.layout.ranges[slider.name].clamp(slider.zero))
+        self._moved()
+
+    def subscribe(self, callback: PanelCallback) -> Callable[[], None]:
+        """Have a callback told of changes: ``"sliders"`` when the rows are others, ``"positions"`` when joints moved.
+
+        Changes of one turn of the event loop are told once.
+
+        Returns:
+            A function that ends it.
+        """
+        self._subscribers.append(callback)
+
+        def unsubscribe() -> None:
+            if callback in self._subscribers:
+                self._subscribers.remove(callback)
+
+        return unsubscribe
+
+    def rebuild(self) -> None:
+        """Make the rows anew for the layout that the joints have now."""
+        layout = self._joints.layout
+        movable = {joint.name for joint in layout.free if joint.lower != joint.upper}
+        free = layout.free
+        masters = [free[master].name if master >= 0 else "" for master in layout.masters.tolist()]
+        zeros = [free[master].zero if master >= 0 else 0.0 for master in layout.masters.tolist()]
+        self._sliders = [
+            JointSlider(
+                joint.name,
+                joint.kind,
+                joint.lower,
+                joint.upper,
+                factor * zero + offset,
+                layout.dependent[joint.name].parent if joint.name in layout.dependent else None,
+            )
+            for joint, master, zero, factor, offset in zip(
+                layout.ranges.values(),
+                masters,
+                zeros,
+                layout.factor.tolist(),
+                layout.offset.tolist(),
+                strict=True,
+            )
+            if master in movable
+        ]
+        self._sliders_changed.trigger()
+        self.notice_positions()
+
+    def notice_positions(self) -> None:
+        """Joints were moved from elsewhere."""
+        self._positions_changed.trigger()
+
+    def _free(self) -> list[JointSlider]:
+        return [slider for slider in self._sliders if slider.mimic is None]
+
+    def _moved(self) -> None:
+        self._publish_soon()
+        self.notice_positions()
+
+    def _tell(self, change: PanelChange) -> None:
+        for callback in tuple(self._subscribers):
+            run_logged(self._logger, "joint panel callback", partial(callback, change))

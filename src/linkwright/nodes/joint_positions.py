@@ -1,0 +1,132 @@
+"""Where the joints of joint_state_publisher are."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.messages import JointState
+from linkwright.nodes.joint_layout import JointLayout, JointRange, empty_layout
+from linkwright.nodes.joint_settings import JointSettings
+
+Array = NDArray[np.float64]
+
+
+class _Quantity:
+    """One number for each free joint, where there is one: NaN stands for none."""
+
+    def __init__(self, values: Array) -> None:
+        self.values = values
+
+    def spread(self, layout: JointLayout, *, scaled: bool, shifted: bool) -> Array | None:
+        """The numbers for a message, one for each published joint; None when there are none at all.
+
+        A joint that follows one without a number has 0, as in the ROS node.
+        """
+        if np.isnan(self.values).all():
+            return None
+        spread: Array = np.append(self.values, 0.0)[layout.masters]  # masters are -1 for what does not move
+        if scaled:
+            spread *= layout.factor
+        if shifted:
+            spread += layout.offset
+        spread[np.isnan(spread)] = 0.0
+        return spread
+
+
+class JointPositions:
+    """Positions (rad or m), velocities and efforts of the free joints; all others follow from them.
+
+    Args:
+        settings: which quantities joints have from the start.
+    """
+
+    def __init__(self, settings: JointSettings) -> None:
+        self.layout = empty_layout()
+        self._rows: dict[str, int] = {}
+        self._forward = np.ones(0, dtype=np.bool_)
+        self._position, self._velocity, self._effort = (_Quantity(np.zeros(0)) for _ in range(3))
+        self.take_over(self.layout, settings)
+
+    def take_over(self, layout: JointLayout, settings: JointSettings) -> None:
+        """Change to another layout.
+
+        Joints that were free before and still are keep their state, moved into the new limits, if it ever was other
+        than where they start; the others begin at zero.
+        """
+        before, rows_before = self._free_states(), self._rows
+        zeros_before = {joint.name: joint.zero for joint in self.layout.free}
+        self.layout = layout
+        self._rows = {joint.name: row for row, joint in enumerate(layout.free)}
+        start = [joint.zero if settings.publish_default_positions else np.nan for joint in layout.free]
+        count = len(layout.free)
+        self._position = _Quantity(np.array(start, dtype=np.float64))
+        self._velocity = _Quantity(np.full(count, 0.0 if settings.publish_default_velocities else np.nan))
+        self._effort = _Quantity(np.full(count, 0.0 if settings.publish_default_efforts else np.nan))
+        self._forward = np.ones(count, dtype=np.bool_)
+        self._lower = np.array([joint.lower for joint in layout.free])
+        self._upper = np.array([joint.upper for joint in layout.free])
+        self._wraps = np.array([joint.kind == "continuous" for joint in layout.free], dtype=np.bool_)
+        for joint in layout.free:
+            row = rows_before.get(joint.name)
+            if row is not None:
+                self._keep(joint, before[:, row], zeros_before[joint.name])
+
+    def hear(self, message: JointState) -> None:
+        """Take over what a message says of free joints; positions outside of limits too."""
+        for number, name in enumerate(message.name):
+            row = self._rows.get(name)
+            if row is None:
+                continue
+            for quantity, given in (
+                (self._position, message.position),
+                (self._velocity, message.velocity),
+                (self._effort, message.effort),
+            ):
+                if number < len(given):
+                    quantity.values[row] = given[number]
+
+    def sweep(self, delta: float) -> None:
+        """Move every free joint by delta (rad or m), turning round at limits; continuous ones start over."""
+        position, forward = self._position.values, self._forward
+        position += np.where(forward, delta, -delta)
+        beyond = forward & (position > self._upper)
+        below = ~forward & (position < self._lower)
+        position[beyond] = np.where(self._wraps, self._lower, self._upper)[beyond]
+        position[below] = self._lower[below]
+        self._forward = (forward & ~(beyond & ~self._wraps)) | below
+
+    def set(self, name: str, position: float) -> None:
+        """Move a free joint; KeyError when there is none of that name."""
+        self._position.values[self._rows[name]] = position
+
+    def published(self) -> Array:
+        """Positions of all published joints in the order of messages; 0 for those without one."""
+        positions = self._position.spread(self.layout, scaled=True, shifted=True)
+        return np.zeros(len(self.layout.ranges)) if positions is None else positions
+
+    def fill(self, message: JointState) -> None:
+        """Write names and quantities into a message; those that no joint has stay empty."""
+        message.name = list(self.layout.ranges)
+        velocities = self._velocity.spread(self.layout, scaled=True, shifted=False)
+        efforts = self._effort.spread(self.layout, scaled=False, shifted=False)
+        if self.layout.dependent or not np.isnan(self._position.values).all():
+            message.position = self.published()
+        if velocities is not None:
+            message.velocity = velocities
+        if efforts is not None:
+            message.effort = efforts
+
+    def _free_states(self) -> Array:
+        return np.array([self._position.values, self._velocity.values, self._effort.values])
+
+    def _keep(self, joint: JointRange, state: Array, zero_before: float) -> None:
+        row = self._rows[joint.name]
+        position, velocity, effort = state.tolist()
+        starts_without = np.isnan(self._position.values[row])
+        if not np.isnan(position) and (position != zero_before or starts_without):
+            self._position.values[row] = joint.clamp(position)
+        if not np.isnan(velocity):
+            self._velocity.values[row] = velocity
+        if not np.isnan(effort):
+            self._effort.values[row] = effort

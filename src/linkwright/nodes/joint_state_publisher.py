@@ -1,0 +1,203 @@
+"""joint_state_publisher: joint states for a robot that has nothing to measure them.
+
+It follows the ROS 2 node of that name (2.4), with these deliberate differences:
+
+- The parameters ``dependent_joints.*`` come before ``<mimic>`` tags and stay when the description changes.
+- A new description leaves joints that were there before where they are, and the first message comes at once.
+- A parameter that is changed while the node runs takes effect.
+- Infinite limits become a range that a slider can show, and a description that cannot be used leaves the last one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Protocol
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.graph import (
+    DEFAULT_QOS,
+    DESCRIPTION_QOS,
+    Graph,
+    Node,
+    Parameter,
+    SetParametersResult,
+    Subscription,
+    Timer,
+)
+from linkwright.messages import Header, JointState, String
+from linkwright.nodes.joint_layout import layout_of
+from linkwright.nodes.joint_positions import JointPositions
+from linkwright.nodes.joint_settings import JointSettings, declare_settings, settings_from
+from linkwright.nodes.options import NodeOptions, create_node, starting
+from linkwright.urdf import Robot
+
+
+class Watcher(Protocol):
+    """Who wants to know of changes."""
+
+    def rebuild(self) -> None:
+        """The robot or the settings have changed."""
+
+    def notice_positions(self) -> None:
+        """Joints were moved by a source or the sweep."""
+
+
+class JointStatePublisher:
+    """The running node.
+
+    Args:
+        graph: where it lives.
+        options: how it is started; its one argument may be a URDF file, else it waits for the topic
+            ``robot_description``.
+
+    Raises:
+        LinkwrightError: it cannot start: parameters that mean nothing (NODE201), joints that follow each other in a
+            circle (NODE202), a file that cannot be read (NODE203, or what is wrong in it), too many arguments
+            (NODE204).
+    """
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        self._library = options.library
+        self._node, arguments = create_node(graph, options, "joint_state_publisher")
+        self._watchers: list[Watcher] = []
+        self._robot: Robot | None = None
+        self._sources: list[Subscription[JointState]] = []
+        with starting(self._node):
+            declare_settings(self._node)
+            self._settings = self._read_settings()
+            self._joints = JointPositions(self._settings)
+            robot = self._robot_from_arguments(arguments)
+            self._publisher = self._node.create_publisher(JointState, "joint_states", DEFAULT_QOS)
+            self._soon = self._node.create_guard_condition(self._publish_now)
+            self._timer: Timer = self._node.create_timer(1.0 / self._settings.rate, self._on_timer)
+            self._subscribe_to_sources()
+            self._node.add_on_set_parameters_callback(self._check_parameters)
+            self._node.add_post_set_parameters_callback(self._apply_parameters)
+            if robot is not None:
+                self._configure(robot)
+            else:
+                self._wait_for_description()
+
+    @property
+    def joints(self) -> JointPositions:
+        """Where the joints are."""
+        return self._joints
+
+    @property
+    def node(self) -> Node:
+        """Its node in the graph."""
+        return self._node
+
+    def close(self) -> None:
+        """End it."""
+        self._node.destroy_node()
+
+    def watch(self, watcher: Watcher) -> None:
+        """Tell somebody of changes from now on."""
+        self._watchers.append(watcher)
+
+    def publish_soon(self) -> None:
+        """Publish as soon as the loop gets to it: once, however often this is called before."""
+        self._soon.trigger()
+
+    def _robot_from_arguments(self, arguments: Sequence[str]) -> Robot | None:
+        if not arguments:
+            return None
+        if len(arguments) > 1:
+            unknown = " ".join(arguments[1:])
+            raise LinkwrightError(
+                Diagnostic("NODE204", f"unrecognized arguments: {unknown}", hint="the only argument is a URDF file")
+            )
+        path = arguments[0]
+        try:
+            text = Path(path).read_text(encoding="utf-8")
+        except (OSError, UnicodeDecodeError) as error:
+            reason = getattr(error, "strerror", None) or error
+            raise LinkwrightError(Diagnostic("NODE203", f"URDF file '{path}' cannot be read: {reason}")) from error
+        reading = self._library.read(text)
+        if reading.robot is None:
+            raise LinkwrightError(*reading.diagnostics)
+        return reading.robot
+
+    def _wait_for_description(self) -> None:
+        self._node.get_logger().info("Waiting for robot_description to be published on the robot_description topic...")
+        self._node.create_subscription(String, "robot_description", self._on_description, DESCRIPTION_QOS)
+
+    def _on_description(self, message: String) -> None:
+        robot = self._library.read(message.data).robot
+        if robot is None:
+            self._node.get_logger().warning("Invalid robot_description given, ignoring")
+            return
+        try:
+            self._configure(robot)
+        except LinkwrightError as error:
+            self._node.get_logger().error(str(error))
+
+    def _configure(self, robot: Robot) -> None:
+        layout = layout_of(robot, self._settings)
+        self._joints.take_over(layout, self._settings)
+        self._robot = robot
+        for problem in layout.problems:
+            self._node.get_logger().warning(problem)
+        for watcher in self._watchers:
+            watcher.rebuild()
+        self.publish_soon()
+
+    def _read_settings(self, changed: Sequence[Parameter] = ()) -> JointSettings:
+        node = self._node
+        values = {name: node.get_parameter(name).value for name in node.list_parameters()}
+        return settings_from(values | {parameter.name: parameter.value for parameter in changed})
+
+    def _check_parameters(self, parameters: list[Parameter]) -> SetParametersResult:
+        try:
+            settings = self._read_settings(parameters)
+            if self._robot is not None:
+                layout_of(self._robot, settings)
+        except LinkwrightError as error:
+            return SetParametersResult(successful=False, reason=str(error))
+        return SetParametersResult(successful=True)
+
+    def _apply_parameters(self, parameters: list[Parameter]) -> None:  # noqa: ARG002  # all are read anew
+        before, self._settings = self._settings, self._read_settings()
+        if self._settings.rate != before.rate:
+            self._timer.timer_period_ns = round(1e9 / self._settings.rate)
+            self._timer.reset()
+        if self._settings.source_list != before.source_list:
+            self._subscribe_to_sources()
+        if self._robot is not None:
+            self._configure(self._robot)
+
+    def _subscribe_to_sources(self) -> None:
+        for source in self._sources:
+            self._node.destroy_subscription(source)
+        self._sources = [
+            self._node.create_subscription(JointState, topic, self._on_source, DEFAULT_QOS)
+            for topic in self._settings.source_list
+        ]
+
+    def _on_source(self, message: JointState) -> None:
+        self._joints.hear(message)
+        self._notify_moved()
+
+    def _on_timer(self) -> None:
+        if self._settings.delta > 0:
+            self._joints.sweep(self._settings.delta)
+            self._notify_moved()
+        self._publish()
+
+    def _notify_moved(self) -> None:
+        for watcher in self._watchers:
+            watcher.notice_positions()
+
+    def _publish_now(self) -> None:
+        # The next periodic message comes a whole period later: another one right behind would only make
+        # robot_state_publisher hold the next move of a slider back.
+        self._timer.reset()
+        self._publish()
+
+    def _publish(self) -> None:
+        message = JointState(Header(self._node.get_clock().now().to_msg()))
+        self._joints.fill(message)
+        if message.name:
+            self._publisher.publish(message)

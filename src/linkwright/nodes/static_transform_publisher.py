@@ -1,0 +1,153 @@
+"""static_transform_publisher of tf2_ros: one transform that never changes, from the command line to ``/tf_static``."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import sqrt
+
+import numpy as np
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.graph import STATIC_TF_PUBLISHER_QOS, Graph, Node
+from linkwright.kinematics import quaternion_from_rpy
+from linkwright.messages import TFMessage, TransformBatch
+from linkwright.nodes.options import NodeOptions, create_node, starting
+
+USAGE = (
+    "static_transform_publisher [--x X] [--y Y] [--z Z] [--qx QX] [--qy QY] [--qz QZ] [--qw QW] "
+    "[--roll ROLL] [--pitch PITCH] [--yaw YAW] --frame-id FRAME_ID --child-frame-id CHILD_FRAME_ID"
+)
+_TRANSLATION = ("--x", "--y", "--z")
+_QUATERNION = ("--qx", "--qy", "--qz", "--qw")
+_ANGLES = ("--roll", "--pitch", "--yaw")
+_FRAMES = ("--frame-id", "--child-frame-id")
+_OLD_WITH_ANGLES = (*_TRANSLATION, "--yaw", "--pitch", "--roll", *_FRAMES)
+_OLD_WITH_QUATERNION = (*_TRANSLATION, *_QUATERNION, *_FRAMES)
+
+
+@dataclass(frozen=True, slots=True)
+class StaticTransform:
+    """What the command line says: pose (metres, unit quaternion x y z w) of the child frame in the parent frame.
+
+    `old_style` tells that the values were given by position, which tf2_ros calls deprecated.
+    """
+
+    translation: tuple[float, float, float]
+    rotation: tuple[float, float, float, float]
+    frame_id: str
+    child_frame_id: str
+    old_style: bool
+
+
+def parse_arguments(arguments: Sequence[str]) -> StaticTransform:
+    """Read the command line: options with names, or the older eight or nine values by position.
+
+    By position: ``x y z yaw pitch roll frame child`` or ``x y z qx qy qz qw frame child``.
+
+    Raises:
+        LinkwrightError: it is wrong, in the words of tf2_ros.
+    """
+    given, positional = _split(arguments)
+    old_style = bool(positional)
+    if old_style:
+        names = {8: _OLD_WITH_ANGLES, 9: _OLD_WITH_QUATERNION}.get(len(positional))
+        if names is None:
+            raise _usage_error("Extra unparsed arguments on command-line")
+        if given:
+            raise _usage_error("Cannot specify both new-style (flags) and old-style (arguments)")
+        given = dict(zip(names, positional, strict=True))
+    if any(name in given for name in _ANGLES) and any(name in given for name in _QUATERNION):
+        raise _usage_error("Cannot specify both quaternion and Euler rotations")
+    for name, what in zip(_FRAMES, ("Frame id", "Child frame id"), strict=True):
+        if not given.get(name):
+            raise _usage_error(f"{what} must not be empty")
+    x, y, z = (_number(given, name, 0.0) for name in _TRANSLATION)
+    return StaticTransform(
+        (x, y, z), _rotation(given), given["--frame-id"], given["--child-frame-id"], old_style=old_style
+    )
+
+
+class StaticTransformPublisher:
+    """The running node.
+
+    Raises:
+        LinkwrightError: the command line is wrong (NODE301).
+    """
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        name = graph.unique_node_name("static_transform_publisher", options.namespace)
+        self._node, arguments = create_node(graph, options, name)
+        with starting(self._node):
+            self._publish(parse_arguments(arguments))
+
+    @property
+    def node(self) -> Node:
+        """Its node in the graph."""
+        return self._node
+
+    def close(self) -> None:
+        """End it."""
+        self._node.destroy_node()
+
+    def _publish(self, transform: StaticTransform) -> None:
+        logger = self._node.get_logger()
+        if transform.old_style:
+            logger.warning("Old-style arguments are deprecated; see --help for new-style arguments")
+        publisher = self._node.create_publisher(TFMessage, "/tf_static", STATIC_TF_PUBLISHER_QOS)
+        batch = TransformBatch(
+            (transform.frame_id,),
+            (transform.child_frame_id,),
+            self._node.get_clock().now_ns(),
+            np.array([[*transform.translation, *transform.rotation]]),
+        )
+        publisher.publish(TFMessage(batch=batch))
+        translation = ", ".join(f"'{value:f}'" for value in transform.translation)
+        rotation = ", ".join(f"'{value:f}'" for value in transform.rotation)
+        logger.info(
+            f"Spinning until stopped - publishing transform\ntranslation: ({translation})\n"
+            f"rotation: ({rotation})\nfrom '{transform.frame_id}' to '{transform.child_frame_id}'"
+        )
+
+
+def _split(arguments: Sequence[str]) -> tuple[dict[str, str], list[str]]:
+    named, positional = {}, []
+    known = {*_TRANSLATION, *_QUATERNION, *_ANGLES, *_FRAMES}
+    waiting = iter(arguments)
+    for argument in waiting:
+        if argument in known:
+            value = next(waiting, None)
+            if value is None:
+                raise _usage_error(f"Not enough arguments for {argument}")
+            named[argument] = value
+        else:
+            positional.append(argument)
+    return named, positional
+
+
+def _rotation(given: dict[str, str]) -> tuple[float, float, float, float]:
+    if any(name in given for name in _ANGLES):
+        x, y, z, w = quaternion_from_rpy([_number(given, name, 0.0) for name in _ANGLES]).tolist()
+        return x, y, z, w
+    x, y, z = (_number(given, name, 0.0) for name in _QUATERNION[:3])
+    w = _number(given, "--qw", 1.0)
+    length = sqrt(x * x + y * y + z * z + w * w)
+    if length == 0.0:
+        raise _usage_error("The quaternion must not be zero")
+    return x / length, y / length, z / length, w / length
+
+
+def _number(given: dict[str, str], name: str, default: float) -> float:
+    text = given.get(name)
+    if text is None:
+        return default
+    try:
+        return float(text)
+    except ValueError:
+        raise _usage_error(f"Failed to parse {name} argument as float") from None
+
+
+def _usage_error(reason: str) -> LinkwrightError:
+    return LinkwrightError(
+        Diagnostic("NODE301", f"error parsing command line arguments: {reason}", hint=f"usage: {USAGE}")
+    )

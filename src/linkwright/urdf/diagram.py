@@ -1,0 +1,40 @@
+"""Graphviz text laid out as a picture."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, display_path
+
+PICTURE_ENDINGS = (".pdf", ".svg", ".png")
+
+
+def render(gv_text: str, path: str | Path) -> None:
+    """Lay out Graphviz text with dot and write the picture; the file's ending picks PDF, SVG or PNG.
+
+    Raises:
+        LinkwrightError: URDF201 for another ending, URDF202 without a usable pygraphviz, URDF203 when Graphviz fails
+            or the file cannot be written.
+    """
+    path = Path(path)
+    ending = path.suffix.lower()
+    if ending not in PICTURE_ENDINGS:
+        hint = did_you_mean(ending, PICTURE_ENDINGS) or f"it is one of {', '.join(PICTURE_ENDINGS)}"
+        raise LinkwrightError(
+            Diagnostic("URDF201", f"a picture cannot be written as '{ending or path.name}'", hint=hint)
+        )
+    try:
+        from pygraphviz import AGraph  # type: ignore[import-untyped]  # it ships no types
+    except ImportError as error:
+        hint = "install pygraphviz 2.0 or newer, whose wheels carry Graphviz"
+        raise LinkwrightError(Diagnostic("URDF202", f"Graphviz is not available: {error}", hint=hint)) from error
+    try:
+        graph = AGraph(string=gv_text)
+        picture = graph.draw(format=ending[1:], prog="dot")
+        path.write_bytes(picture)
+    except OSError as error:
+        raise LinkwrightError(
+            Diagnostic("URDF203", f"'{display_path(path)}' cannot be written: {error.strerror or error}")
+        ) from error
+    except Exception as error:
+        raise LinkwrightError(Diagnostic("URDF203", f"Graphviz could not lay out the diagram: {error}")) from error

@@ -1,0 +1,29 @@
+"""The structure of a robot as Graphviz text, to the byte as ``urdf_to_graphviz`` writes it."""
+
+from __future__ import annotations
+
+from linkwright.urdf.model import Robot
+from linkwright.urdf.rotation import quaternion_of, rpy_from_quaternion
+from linkwright.urdf.tree import parent_joints, walk
+
+
+def to_gv(robot: Robot) -> str:
+    """The links as boxes and the joints as ellipses, labelled with xyz in metres and rpy in radians.
+
+    Numbers have six significant digits, as C++ streams print them; the angles come back from the quaternion.
+    """
+    lines = ["digraph G {", "node [shape=box];", f'"{robot.root}" [label="{robot.root}"];']
+    below = [joint for joint, _ in walk(robot)]
+    lines += [f'"{joint.child}" [label="{joint.child}"];' for joint in below]
+    lines.append("node [shape=ellipse, color=blue, fontcolor=blue];")
+    above = parent_joints(robot)
+    for joint in below:
+        # For a link with two parents urdfdom prints the joint it kept, under either of them.
+        kept = above[joint.child]
+        x, y, z = kept.origin.xyz
+        roll, pitch, yaw = rpy_from_quaternion(quaternion_of(kept.origin))
+        label = f"xyz: {x:g} {y:g} {z:g} \\nrpy: {roll:g} {pitch:g} {yaw:g}"
+        lines.append(f'"{joint.parent}" -> "{kept.name}" [label="{label}"]')
+        lines.append(f'"{kept.name}" -> "{joint.child}"')
+    lines += ["}", ""]
+    return "\n".join(lines)

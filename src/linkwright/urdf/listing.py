@@ -1,0 +1,23 @@
+"""The link tree as text, to the byte as ``check_urdf`` prints it."""
+
+from __future__ import annotations
+
+from linkwright.urdf.model import Robot
+from linkwright.urdf.tree import children_of, walk
+
+
+def tree_text(robot: Robot) -> str:
+    """The robot's name and its links, children in the order of their joints' names, four blanks a level."""
+    lines = [
+        f"robot name is: {robot.name}",
+        "---------- Successfully Parsed XML ---------------",
+        f"root Link: {robot.root} has {len(children_of(robot)[robot.root])} child(ren)",
+    ]
+    counts: list[int] = []
+    for joint, depth in walk(robot):
+        del counts[depth:]
+        if len(counts) < depth:
+            counts.append(0)
+        counts[depth - 1] += 1
+        lines.append(f"{'    ' * depth}child({counts[depth - 1]}):  {joint.child}")
+    return "\n".join(lines) + "\n"

@@ -1,0 +1,194 @@
+"""Reading a URDF document into a robot, with everything that is wrong with it told at once.
+
+It accepts what urdfdom 3.0.1 accepts and, for files of version 1.1 and 1.2, what urdfdom 6.0.0 accepts. Where urdfdom
+stops at the first error, it goes on.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from linkwright.diagnostics import Diagnostic, did_you_mean
+from linkwright.urdf.findings import Findings
+from linkwright.urdf.joints import read_joint
+from linkwright.urdf.links import read_link
+from linkwright.urdf.materials import MaterialTable
+from linkwright.urdf.model import Joint, Link, Robot
+from linkwright.urdf.schema import NEWEST_VERSION, Version
+from linkwright.urdf.tree import find_root
+from linkwright.xmltree import Document, Element
+
+_INTEGER = re.compile(r"\s*([+-]?[0-9]+)").fullmatch
+_OTHER_FORMATS = {
+    "sdf": "an SDF model",
+    "mujoco": "a MuJoCo model",
+    "launch": "a launch file",
+    "package": "a package.xml",
+    "COLLADA": "a COLLADA mesh",
+}
+_FIRST_NAMES = 3
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """What came of reading a description.
+
+    Attributes:
+        robot: the robot, or None when urdfdom would refuse the model. It may be there beside errors: urdfdom, and so
+            we, keep a model whose link has a malformed part, and drop that part.
+        diagnostics: all errors and warnings, in the order of the text.
+    """
+
+    robot: Robot | None
+    diagnostics: tuple[Diagnostic, ...]
+
+
+def read(document: Document) -> Reading:
+    """Read a URDF document; it never raises for what the document says."""
+    findings = Findings()
+    robot = _read_robot(document.root, findings)
+    return Reading(None if findings.rejected else robot, findings.in_order())
+
+
+def _read_robot(root: Element, findings: Findings) -> Robot | None:
+    if root.tag != "robot":
+        _explain_root(root, findings)
+        return None
+    name = root.attributes.get("name")
+    if name is None:
+        findings.reject("URDF103", "<robot> has no 'name'", root, hint='add name="..."')
+        name = ""
+    findings.version = _read_version(root, findings)
+
+    link_elements: list[Element] = []
+    joint_elements: list[Element] = []
+    extensions: list[Element] = []
+    materials = MaterialTable(findings)
+    for child in root.children:
+        if isinstance(child, Element):
+            tag = child.tag
+            if tag == "link":
+                link_elements.append(child)
+            elif tag == "joint":
+                joint_elements.append(child)
+            elif tag == "material":
+                materials.define(child)
+            else:
+                extensions.append(child)
+
+    links: dict[str, Link] = {}
+    for element in link_elements:
+        link = read_link(element, materials, findings)
+        if link.name in links:
+            findings.duplicate("link", link.name, element, links[link.name].element)
+        else:
+            links[link.name] = link
+    materials.report_undefined()
+
+    joints: dict[str, Joint] = {}
+    all_joints = [read_joint(element, findings) for element in joint_elements]
+    for joint, element in zip(all_joints, joint_elements, strict=True):
+        if joint.name in joints:
+            findings.duplicate("joint", joint.name, element, joints[joint.name].element)
+        else:
+            joints[joint.name] = joint
+
+    if not links:
+        _explain_no_links(root, extensions, findings)
+        return None
+    _report_leftover_xacro(root, extensions, findings)
+    root_name = find_root(links, all_joints, findings)
+    _check_mimics(joints, findings)
+    return Robot(
+        name,
+        root_name,
+        links,
+        joints,
+        materials.known,
+        findings.version,
+        tuple(extensions),
+        root,
+    )
+
+
+def _read_version(root: Element, findings: Findings) -> Version:
+    written = root.attributes.get("version")
+    if written is None:
+        return 1, 0
+    parts = written.split(".")
+    numbers = [int(match[1]) for part in parts if (match := _INTEGER(part))]
+    if len(parts) != 2 or len(numbers) != 2 or min(numbers) < 0:
+        message = f"'version' of <robot> is not of the form x.y: '{written}'"
+        findings.reject("URDF104", message, root, "version", hint="write 1.0, 1.1 or 1.2, or leave it out")
+        return NEWEST_VERSION
+    version = numbers[0], numbers[1]
+    if not (1, 0) <= version <= NEWEST_VERSION:
+        message = f"there is no URDF version '{written}'"
+        findings.reject("URDF104", message, root, "version", hint="the versions are 1.0, 1.1 and 1.2")
+        return NEWEST_VERSION
+    return version
+
+
+def _explain_root(root: Element, findings: Findings) -> None:
+    if root.tag.startswith("xacro:"):
+        hint = "a xacro file has <robot> as its root too"
+    elif root.tag in _OTHER_FORMATS:
+        hint = f"this is {_OTHER_FORMATS[root.tag]}, not a robot description"
+    else:
+        hint = did_you_mean(root.tag, ["robot"]) or "a URDF file has <robot> as its root"
+    findings.reject("URDF101", f"the root element is <{root.tag}>, not <robot>", root, hint=hint)
+
+
+def _explain_no_links(root: Element, extensions: list[Element], findings: Findings) -> None:
+    text = root.source.text if root.source is not None else ""
+    macro = re.search(r"<xacro:macro\s[^>]*?name\s*=\s*[\"']([^\"'\s]+)", text)
+    if any(element.tag.startswith("xacro:") for element in extensions):
+        hint = "expand the file with xacro first"
+    elif macro:
+        hint = f"it only defines macros: include it in another file and call one there, <xacro:{macro[1]} .../>"
+    else:
+        hint = 'add <link name="base_link"/>'
+    findings.reject("URDF106", "the robot has no links", root, hint=hint)
+
+
+def _report_leftover_xacro(root: Element, extensions: list[Element], findings: Findings) -> None:
+    left = [element for element in extensions if element.tag.startswith("xacro:")]
+    if not left:
+        return
+    names = list(dict.fromkeys(f"<{element.tag}>" for element in left))
+    shown = ", ".join(names[:_FIRST_NAMES]) + (", ..." if len(names) > _FIRST_NAMES else "")
+    hint = "expand the file with xacro"
+    if "xmlns:xacro" not in root.attributes:
+        hint += '; <robot> must declare xmlns:xacro="http://www.ros.org/wiki/xacro"'
+    findings.warning("URDF102", f"xacro did not evaluate {shown}, which URDF readers ignore", left[0], hint=hint)
+
+
+def _check_mimics(joints: dict[str, Joint], findings: Findings) -> None:
+    """Warn of mimic joints that follow nothing; urdfdom does not look."""
+    for joint in joints.values():
+        if joint.mimic is None:
+            continue
+        assert joint.element is not None
+        element = joint.element.first("mimic")
+        assert element is not None
+        target = joint.mimic.joint
+        if target not in joints:
+            message = f"joint '{joint.name}' mimics '{target}', which does not exist"
+            findings.warning(
+                "URDF180", message, element, "joint", hint=did_you_mean(target, joints.keys() - {joint.name})
+            )
+            continue
+        chain = [joint.name]
+        while target in joints and target not in chain:
+            chain.append(target)
+            mimic = joints[target].mimic
+            if mimic is None:
+                break
+            target = mimic.joint
+        else:
+            if target == joint.name:
+                message = f"joint '{joint.name}' mimics itself"
+                if len(chain) > 1:
+                    message = f"the mimic joints go in a circle: {' -> '.join([*chain, target])}"
+                findings.warning("URDF181", message, element, "joint", hint="one joint must move by itself")

@@ -1,0 +1,187 @@
+"""The tree that joints make of links: checking it while reading, walking it afterwards.
+
+Children come in the order of their joints' names, as urdfdom's maps give them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from linkwright.diagnostics import Note, Span, did_you_mean
+from linkwright.urdf.findings import Findings
+from linkwright.urdf.model import Joint, Link, Robot
+from linkwright.xmltree import Element
+
+
+def children_of(robot: Robot) -> Mapping[str, tuple[Joint, ...]]:
+    """For every link the joints that hang from it, in the order of their names; empty for a leaf."""
+    children: dict[str, list[Joint]] = {name: [] for name in robot.links}
+    for _, joint in sorted(robot.joints.items()):
+        children[joint.parent].append(joint)
+    return {name: tuple(joints) for name, joints in children.items()}
+
+
+def parent_joints(robot: Robot) -> Mapping[str, Joint]:
+    """For every link but the root the joint above it; of several the last by name, as in urdfdom."""
+    return {joint.child: joint for _, joint in sorted(robot.joints.items())}
+
+
+def walk(robot: Robot) -> Iterator[tuple[Joint, int]]:
+    """The joints below the root, depth first, each with its depth from 1."""
+    children = children_of(robot)
+    stack = [(joint, 1) for joint in reversed(children[robot.root])]
+    while stack:
+        joint, depth = stack.pop()
+        yield joint, depth
+        stack.extend((below, depth + 1) for below in reversed(children[joint.child]))
+
+
+def find_root(links: Mapping[str, Link], joints: Sequence[Joint], findings: Findings) -> str:
+    """Check that the joints make a tree of the links; the root's name, empty when there is no one root.
+
+    urdfdom refuses unknown links and any number of roots but one. It overlooks loops away from the root, links with
+    two parents and, at the price of a crash later, loops below the root; those we refuse.
+    """
+    if not _ends_exist(links, joints, findings):
+        return ""
+    moved = {joint.child for joint in joints}
+    roots = [name for name in links if name not in moved]
+    if not roots:
+        findings.rejected = True
+        _report_loop(_loop_from(joints[0].child, joints), joints, "no link is the root", findings)
+        return ""
+    if len(roots) > 1:
+        _report_roots(roots, links, findings)
+        return ""
+    if not _is_tree(roots[0], links, joints, moved):
+        _check_parents(joints, findings)
+        _check_reachable(roots[0], links, joints, findings)
+    return roots[0]
+
+
+def _ends_exist(links: Mapping[str, Link], joints: Sequence[Joint], findings: Findings) -> bool:
+    good = True
+    for joint in joints:
+        for tag, name in (("parent", joint.parent), ("child", joint.child)):
+            if name in links and name:
+                continue
+            good = False
+            if not name:
+                continue  # missing, and that was said
+            assert joint.element is not None
+            end = joint.element.first(tag)
+            assert end is not None
+            hint = did_you_mean(name, links) or f'add <link name="{name}"/>'
+            message = f"{tag} link '{name}' of joint '{joint.name}' does not exist"
+            findings.reject("URDF150", message, end, "link", hint=hint)
+    return good
+
+
+def _report_roots(roots: Sequence[str], links: Mapping[str, Link], findings: Findings) -> None:
+    quoted = [f"'{name}'" for name in roots]
+    listed = f"{', '.join(quoted[:-1])} and {quoted[-1]}" if len(roots) < 6 else f"{', '.join(quoted[:5])}, ..."
+    places = [Note(f"'{name}' has no parent", _place(links[name].element)) for name in roots[:5]]
+    element = links[roots[1]].element
+    assert element is not None
+    findings.reject(
+        "URDF152",
+        f"{len(roots)} links have no parent joint where a robot has one root: {listed}",
+        element,
+        "name",
+        hint=f"connect all but one of them with joints, such as a fixed joint from '{roots[0]}' to '{roots[1]}'",
+        notes=places,
+    )
+
+
+def _is_tree(root: str, links: Mapping[str, Link], joints: Sequence[Joint], moved: set[str]) -> bool:
+    """Whether no link has two parents and all hang from the root."""
+    if len(moved) != len(joints):
+        return False
+    parents = {joint.child: joint.parent for joint in joints}
+    hanging = {root}
+    for link in links:
+        path: list[str] = []
+        while link not in hanging:
+            if len(path) > len(links):
+                return False
+            path.append(link)
+            link = parents[link]
+        hanging.update(path)
+    return True
+
+
+def _check_parents(joints: Sequence[Joint], findings: Findings) -> None:
+    above: dict[str, Joint] = {}
+    for joint in joints:
+        first = above.setdefault(joint.child, joint)
+        if first is joint:
+            continue
+        assert joint.element is not None
+        end = joint.element.first("child")
+        assert end is not None
+        findings.error(
+            "URDF151",
+            f"link '{joint.child}' is the child of two joints, '{first.name}' and '{joint.name}'",
+            end,
+            "link",
+            hint="a link has one parent: remove one of the joints, or add a link for it",
+            notes=(Note(f"'{first.name}' is here", _place(first.element)),),
+        )
+
+
+def _check_reachable(root: str, links: Mapping[str, Link], joints: Sequence[Joint], findings: Findings) -> None:
+    below: dict[str, list[str]] = {}
+    for joint in joints:
+        below.setdefault(joint.parent, []).append(joint.child)
+    # Depth first with an explicit stack; a link on the present path that comes up again closes a loop.
+    seen, path = {root}, {root}
+    stack = [(root, iter(below.get(root, ())))]
+    while stack:
+        name, rest = stack[-1]
+        child = next(rest, None)
+        if child is None:
+            path.discard(name)
+            stack.pop()
+        elif child in path:
+            loop = [link for link, _ in stack]
+            loop = [*loop[loop.index(child) :], child]
+            findings.rejected = True
+            _report_loop(loop, joints, "a robot is a tree", findings)
+            return
+        elif child not in seen:
+            seen.add(child)
+            path.add(child)
+            stack.append((child, iter(below.get(child, ()))))
+    lost = [name for name in links if name not in seen]
+    if lost:
+        consequence = f"{len(lost)} links do not hang from the root '{root}'"
+        _report_loop(_loop_from(lost[0], joints), joints, consequence, findings)
+
+
+def _loop_from(link: str, joints: Sequence[Joint]) -> list[str]:
+    """Up from a link through parent joints until one comes up again: that loop, from parent to child."""
+    parents = {joint.child: joint.parent for joint in joints}
+    path = [link]
+    while path[-1] in parents and parents[path[-1]] not in path:
+        path.append(parents[path[-1]])
+    top = parents[path[-1]]
+    loop = path[path.index(top) :]
+    return [top, *reversed(loop)]
+
+
+def _report_loop(loop: Sequence[str], joints: Sequence[Joint], consequence: str, findings: Findings) -> None:
+    closing = next(joint for joint in joints if joint.parent == loop[-2] and joint.child == loop[-1])
+    assert closing.element is not None
+    end = closing.element.first("child")
+    assert end is not None
+    findings.error(
+        "URDF153",
+        f"the joints go in a circle, {' -> '.join(loop)}, and {consequence}",
+        end,
+        "link",
+        hint="remove or turn around one of these joints; URDF cannot describe a closed chain",
+    )
+
+
+def _place(element: Element | None) -> Span | None:
+    return None if element is None else element.span()

@@ -1,0 +1,148 @@
+"""Attribute values as urdfdom reads them: numbers and vectors, and what to say about bad ones.
+
+urdfdom hands an attribute to a C++ stream in the classic locale and wants all of it used up. So a blank may lead a
+number but not follow it; ``1e3``, ``.5``, ``5.`` and ``+1`` are numbers; ``inf``, ``nan``, ``0x10``, ``0,5`` and the
+empty text are not. A vector is split at the space character alone.
+"""
+
+from __future__ import annotations
+
+import re
+from functools import lru_cache
+from math import isinf, radians
+
+from linkwright.urdf.model import Vector3
+
+_DIGITS = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
+_NUMBER = re.compile(rf"[ \t\n\v\f\r]*{_DIGITS}").fullmatch
+_PIECE = rf"[\t\n\v\f\r]*({_DIGITS})"
+_VECTOR3 = re.compile(rf" *{_PIECE} +{_PIECE} +{_PIECE} *").fullmatch
+
+_UNITS = {
+    "deg": ("angles are in radians", 0.017453292519943295),
+    "degrees": ("angles are in radians", 0.017453292519943295),
+    "°": ("angles are in radians", 0.017453292519943295),
+    "rad": ("the unit is not written", 1.0),
+    "m": ("the unit is not written", 1.0),
+    "mm": ("lengths are in metres", 0.001),
+    "cm": ("lengths are in metres", 0.01),
+    "kg": ("the unit is not written", 1.0),
+    "g": ("masses are in kilograms", 0.001),
+}
+_WITH_UNIT = re.compile(rf"\s*({_DIGITS})\s*(\D+?)\s*").fullmatch
+
+# Values repeat ("0 0 0", "1"): remembering them is worth a third of the reader's time.
+_REMEMBERED = 4096
+
+
+@lru_cache(maxsize=_REMEMBERED)
+def number(text: str) -> float:
+    """The number an attribute says.
+
+    Raises:
+        ValueError: it says none, or one too large for a double.
+    """
+    if not _NUMBER(text):
+        raise ValueError(text)
+    value = float(text)
+    if isinf(value):
+        raise ValueError(text)
+    return value
+
+
+@lru_cache(maxsize=_REMEMBERED)
+def vector3(text: str) -> Vector3:
+    """Three numbers separated by spaces.
+
+    Raises:
+        ValueError: another count, or one of them is no number.
+    """
+    match = _VECTOR3(text)
+    if not match:
+        raise ValueError(text)
+    x, y, z = map(float, match.groups())
+    if isinf(x) or isinf(y) or isinf(z):
+        raise ValueError(text)
+    return x, y, z
+
+
+def numbers(text: str) -> tuple[float, ...]:
+    """Any count of numbers separated by spaces.
+
+    Raises:
+        ValueError: one of them is no number; its only argument is that piece.
+    """
+    return tuple(number(piece) for piece in text.split(" ") if piece)
+
+
+def number_hint(text: str) -> str | None:
+    """How to mend a value that is no number, or None when it cannot be guessed."""
+    stripped = text.strip()
+    if not stripped:
+        return "give a number"
+    if "${" in text or "$(" in text:
+        return "xacro did not evaluate this: expand the file with xacro first"
+    if _reads(stripped):
+        return f"remove the blank after it: '{text.rstrip()}'"
+    if _reads(stripped.replace("\u2212", "-")):
+        return f"write the minus sign as a hyphen: '{stripped.replace(chr(0x2212), '-')}'"
+    if stripped.count(",") == 1 and _reads(stripped.replace(",", ".")):
+        return f"write the decimal point as a point: '{stripped.replace(',', '.')}'"
+    if stripped.lower().lstrip("+-") in ("inf", "infinity", "nan") or re.fullmatch(_DIGITS, stripped):
+        return "only finite numbers are read"
+    if re.fullmatch("[+-]?0[xX][0-9a-fA-F]+", stripped):
+        return f"write it in decimal: '{int(stripped, 16)}'"
+    if "pi" in stripped.lower():
+        return "URDF has no 'pi': write 3.14159..., or use xacro, where ${pi} works"
+    if len(stripped.split()) > 1 and all(map(_reads, stripped.split())):
+        return "give one number"
+    united = _WITH_UNIT(text)
+    if united and united[2] in _UNITS:
+        why, factor = _UNITS[united[2]]
+        return f"{why}: '{float(united[1]) * factor:.6g}'"
+    return None
+
+
+def vector_hint(text: str, count: int) -> str | None:
+    """How to mend a value that is not `count` numbers separated by spaces, or None."""
+    if "${" in text or "$(" in text:
+        return number_hint(text)
+    if not text.strip():
+        return f"give {count} numbers separated by spaces"
+    pieces = text.split()
+    if len(pieces) == count and all(map(_reads, pieces)):
+        return f"separate the numbers with spaces, not tabs or line breaks: '{' '.join(pieces)}'"
+    pieces = [piece for piece in re.split(r"[,;\s]+", text.strip()) if piece]
+    if len(pieces) == count and all(map(_reads, pieces)) and re.search("[,;]", text):
+        return f"separate the numbers with spaces, not commas: '{' '.join(pieces)}'"
+    pieces = text.replace(",", ".").split()
+    if "," in text and len(pieces) == count and all(map(_reads, pieces)):
+        return f"write the decimal point as a point: '{' '.join(pieces)}'"
+    bad = next((piece for piece in text.split() if not _reads(piece)), None)
+    if bad is None:
+        return f"give {count} numbers, not {len(text.split())}"
+    hint = number_hint(bad)
+    return f"'{bad}': {hint}" if hint else f"'{bad}' is not a number"
+
+
+def looks_like_degrees(*angles: float) -> bool:
+    """Whether angles that should be radians can hardly be: one is a whole multiple of 5, several turns far."""
+    return any(not -10 < angle < 10 and angle % 5 == 0 and -720 <= angle <= 720 for angle in angles)
+
+
+def degrees_hint(*angles: float) -> str:
+    """What angles are in radians, taken as degrees."""
+    return f"angles are in radians: '{' '.join(f'{radians(angle):.6g}' for angle in angles)}'"
+
+
+def plain(value: float) -> str:
+    """A number as short as it can be written without loss, in a form the reader accepts."""
+    return repr(value).removesuffix(".0")
+
+
+def _reads(text: str) -> bool:
+    try:
+        number(text)
+    except ValueError:
+        return False
+    return True

@@ -1,0 +1,67 @@
+"""rviz_default_plugins/Grid."""
+
+from __future__ import annotations
+
+from linkwright.viewer.displays.base import ViewerDisplay
+from linkwright.viewer.property_store import Path
+from linkwright.viewer.protocol import StatusRow
+from linkwright.viewer.schema import FIXED_FRAME, PropertySpec, vector
+
+
+class GridDisplay(ViewerDisplay):
+    """A grid in a plane of a frame."""
+
+    CLASS = "rviz_default_plugins/Grid"
+    SCHEMA = (
+        PropertySpec("Reference Frame", "frame", FIXED_FRAME, "The frame whose origin is the middle of the grid."),
+        PropertySpec("Plane Cell Count", "int", 10, "Cells along each side of the grid.", minimum=1, maximum=1000),
+        PropertySpec(
+            "Normal Cell Count",
+            "int",
+            0,
+            "Layers of cells along the normal of the plane; more than 0 makes a lattice.",
+            minimum=0,
+            maximum=100,
+        ),
+        PropertySpec("Cell Size", "float", 1.0, "Side of a cell, in metres.", minimum=0.0001),
+        PropertySpec(
+            "Line Style",
+            "enum",
+            "Lines",
+            "Lines are one pixel wide; billboards have a width in metres.",
+            options=("Lines", "Billboards"),
+            children=(
+                PropertySpec(
+                    "Line Width",
+                    "float",
+                    0.03,
+                    "Width of the lines, in metres.",
+                    minimum=0.001,
+                    when=(("Line Style",), "Billboards"),
+                ),
+            ),
+        ),
+        PropertySpec("Color", "color", "#a0a0a4", "Colour of the lines."),
+        PropertySpec("Alpha", "float", 0.5, "Opacity of the lines: 0 is invisible.", minimum=0.0, maximum=1.0),
+        PropertySpec("Plane", "enum", "XY", "The plane the grid lies in.", options=("XY", "XZ", "YZ")),
+        vector("Offset", "Where the grid's middle is in the reference frame, in metres."),
+    )
+
+    def start(self) -> None:
+        """Say whether the reference frame can be placed."""
+        self.frames_changed()
+
+    def changed(self, path: Path) -> None:
+        """Another reference frame has another status."""
+        if path == ("Reference Frame",):
+            self.frames_changed()
+
+    def frames_changed(self) -> None:
+        """Say whether the reference frame can be placed."""
+        frames = self.stage.frames
+        frame = self.properties.text("Reference Frame")
+        if frame == FIXED_FRAME or frame in frames.placed:
+            self.set_status([StatusRow("Transform", "ok", "Transform OK")])
+        else:
+            text = f"Could not transform from [{frame}] to [{frames.fixed_frame}]"
+            self.set_status([StatusRow("Transform", "error", text)])

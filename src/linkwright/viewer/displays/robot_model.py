@@ -1,0 +1,190 @@
+"""rviz_default_plugins/RobotModel."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from linkwright.diagnostics import Diagnostic, Severity
+from linkwright.urdf import Link, Robot
+from linkwright.viewer.displays.base import Stage, ViewerDisplay
+from linkwright.viewer.displays.description_source import DESCRIPTION_SPECS, DescriptionSource
+from linkwright.viewer.mesh_files import MeshIndex
+from linkwright.viewer.property_store import Path, Schema
+from linkwright.viewer.protocol import MeshStatus, RobotScene, ServerMessage, StatusRow
+from linkwright.viewer.robot_scene import SceneBuilder
+from linkwright.viewer.rviz_config import DisplayConfig
+from linkwright.viewer.schema import PropertySpec
+
+_STATIC = (
+    PropertySpec("Visual Enabled", "bool", True, "Draw what the robot looks like."),
+    PropertySpec("Collision Enabled", "bool", False, "Draw the shapes that contacts are worked out with."),
+    PropertySpec("Update Interval", "float", 0.0, "Seconds between updates; 0 for every frame.", minimum=0.0),
+    PropertySpec("Alpha", "float", 1.0, "Opacity of all links: 0 is invisible.", minimum=0.0, maximum=1.0),
+    *DESCRIPTION_SPECS,
+    PropertySpec("TF Prefix", "string", "", "What stands before a slash and the link's name in the name of its frame."),
+)
+_SOURCE_NAMES = frozenset(spec.name for spec in DESCRIPTION_SPECS)
+_ALL = ("Links", "All Links Enabled")
+_ALL_SPEC = PropertySpec(_ALL[1], "bool", True, "Set the boxes of all links.")
+_LINK_EXTRAS = (
+    PropertySpec("Show Trail", "bool", False, "Draw the way that the link went."),
+    PropertySpec("Show Axes", "bool", False, "Draw the axes of the link's frame."),
+)
+_LINK_ALPHA = PropertySpec("Alpha", "float", 1.0, "Opacity of this link.", minimum=0.0, maximum=1.0)
+_MOST_FINDINGS = 5
+
+
+class RobotModelDisplay(ViewerDisplay):
+    """A robot, from a description on a topic or in a file.
+
+    A description that cannot be read leaves the last good robot standing, where RViz would show none. Frames of links
+    that a new description lacks are taken out of tf; RViz would show them for as long as it runs.
+    """
+
+    CLASS = "rviz_default_plugins/RobotModel"
+
+    def __init__(self, stage: Stage, identity: str, config: DisplayConfig) -> None:
+        self._links_spec = PropertySpec("Links", "group", children=(_ALL_SPEC,))
+        super().__init__(stage, identity, config)
+        self.robot: Robot | None = None
+        self.scene = RobotScene(display=identity, revision=0, name="", links=[])
+        self._source = DescriptionSource(
+            stage.node, stage.library, stage.finder, self.properties, self._described, self._refused
+        )
+        self._description: list[StatusRow] = []
+        self._file_problems: dict[str, list[str]] = {}
+        self._page_problems: dict[tuple[str, str], str] = {}
+
+    def schema(self) -> Schema:
+        """The fixed properties, and rows for each link."""
+        return (*_STATIC, self._links_spec)
+
+    def start(self) -> None:
+        """Follow the source of the description."""
+        problem = self._source.follow()
+        by_topic = self.properties.text("Description Source") == "Topic"
+        name = "Topic" if by_topic else "Description File"
+        if problem is not None:
+            self._description = [StatusRow(name, "error", problem)]
+        elif by_topic:
+            self._description = [StatusRow(name, "warn", "No messages received")]
+        else:
+            self._description = []
+        self._show_status()
+
+    def stop(self) -> None:
+        """Leave the source; the page may read the robot's files no more."""
+        self._source.close()
+        self.stage.meshes.replace(self.id, {})
+
+    def changed(self, path: Path) -> None:
+        """Follow another source or prefix, or the box over all links."""
+        if path[0] in _SOURCE_NAMES:
+            self.start()
+        elif path == ("TF Prefix",) and self.robot is not None:
+            self._show_robot(self.robot)
+        elif path == _ALL:
+            value = self.properties.flag(*_ALL)
+            for spec in self._links_spec.children[1:]:
+                if spec.kind == "bool":
+                    self.properties.set(("Links", spec.name), value)
+            self.publish_properties()
+
+    def frames_changed(self) -> None:
+        """Say which links can be placed."""
+        self._show_status()
+
+    def messages(self) -> list[ServerMessage]:
+        """The robot."""
+        return [self.scene]
+
+    def mesh_status(self, status: MeshStatus) -> None:
+        """Take what a page says about a mesh of this robot; what it says of others is stale and passed over."""
+        link = next((link for link in self.scene.links if link.name == status.link), None)
+        if link is None or not any(shape.url == status.url for shape in (*link.visuals, *link.collisions)):
+            return
+        key = (status.link, status.url)
+        known = self._page_problems.get(key)
+        if status.error is None:
+            self._page_problems.pop(key, None)
+        else:
+            name = status.url.partition("?")[0].rpartition("/")[2]
+            self._page_problems[key] = f"Could not load mesh '{name}': {status.error[:500]}"
+            if self._page_problems[key] != known:
+                self.stage.node.get_logger().error(f"Link '{status.link}': {self._page_problems[key]}")
+        self._show_status()
+
+    # --- descriptions ------------------------------------------------------------------------------------------
+
+    def _described(self, text: str) -> None:
+        if not text.strip():
+            self._description = [StatusRow("URDF", "error", "URDF is empty")]
+            self._show_status()
+            return
+        reading = self.stage.library.read(text)
+        if reading.robot is None:
+            self._refused(reading.diagnostics)
+            return
+        self._description = [StatusRow("URDF", "ok", "URDF parsed OK")]
+        if self.properties.text("Description Source") == "Topic":
+            self._description.insert(0, StatusRow("Topic", "ok", "OK"))
+        self._show_robot(reading.robot)
+
+    def _refused(self, diagnostics: Sequence[Diagnostic]) -> None:
+        errors = [each for each in diagnostics if each.severity is Severity.ERROR]
+        is_xml = not any(each.code.startswith("XML") for each in errors)
+        text = "URDF failed Model parse" if is_xml else "URDF failed XML parse"
+        self._description = [StatusRow("URDF", "error", text)]
+        for error in errors[:_MOST_FINDINGS]:
+            where = f"{error.span}: " if error.span else ""
+            self._description.append(StatusRow(error.code, "error", where + error.message))
+        self._show_status()
+
+    def _show_robot(self, robot: Robot) -> None:
+        before = {link.frame for link in self.scene.links}
+        builder = SceneBuilder(MeshIndex(self.stage.finder))
+        links = builder.links(robot, self.properties.text("TF Prefix"))
+        self.stage.meshes.replace(self.id, builder.index.folders)
+        self._log_new_problems(builder.problems)
+        self._file_problems = builder.problems
+        self._page_problems.clear()
+        self.robot = robot
+        if self.scene.name != robot.name or self.scene.links != links:
+            self.scene = RobotScene(self.id, self.scene.revision + 1, robot.name, links)
+            self.stage.publish(self.scene)
+        self._list_links(robot)
+        self.stage.robot_changed(before - {link.frame for link in links})
+        self._show_status()
+
+    def _list_links(self, robot: Robot) -> None:
+        rows = tuple(_link_spec(robot.links[name]) for name in sorted(robot.links))
+        spec = PropertySpec("Links", "group", description="The links of the robot.", children=(_ALL_SPEC, *rows))
+        if spec != self._links_spec:
+            self._links_spec = spec
+            self.publish_properties()
+
+    def _log_new_problems(self, problems: dict[str, list[str]]) -> None:
+        for link, texts in problems.items():
+            for text in texts:
+                if text not in self._file_problems.get(link, ()):
+                    self.stage.node.get_logger().error(f"Link '{link}': {text}")
+
+    # --- status ------------------------------------------------------------------------------------------------
+
+    def _show_status(self) -> None:
+        links = sorted(self.scene.links, key=lambda link: link.name)
+        self.set_status(self._description + [self._link_status(link.name, link.frame) for link in links])
+
+    def _link_status(self, name: str, frame: str) -> StatusRow:
+        problems = [problem] if (problem := self.stage.frames.problem(frame)) else []
+        problems += self._file_problems.get(name, ())
+        problems += [text for (link, _), text in self._page_problems.items() if link == name]
+        if problems:
+            return StatusRow(name, "error", "; ".join(problems))
+        return StatusRow(name, "ok", "Transform OK")
+
+
+def _link_spec(link: Link) -> PropertySpec:
+    if not link.visuals and not link.collisions:
+        return PropertySpec(link.name, "group", description="A link without shapes.", children=_LINK_EXTRAS)
+    return PropertySpec(link.name, "bool", True, "Draw the shapes of this link.", children=(_LINK_ALPHA, *_LINK_EXTRAS))

@@ -1,0 +1,133 @@
+"""rviz_default_plugins/TF."""
+
+from __future__ import annotations
+
+import re
+
+from linkwright.viewer.displays.base import ViewerDisplay
+from linkwright.viewer.property_store import Path, Schema
+from linkwright.viewer.protocol import StatusRow
+from linkwright.viewer.schema import PropertySpec
+
+_STATIC = (
+    PropertySpec("Show Names", "bool", False, "Write each frame's name beside it."),
+    PropertySpec("Show Axes", "bool", True, "Draw each frame's axes: x red, y green, z blue."),
+    PropertySpec("Show Arrows", "bool", True, "Draw an arrow from each frame to its parent."),
+    PropertySpec("Marker Scale", "float", 1.0, "Size of names, axes and arrows.", minimum=0.0),
+    PropertySpec("Update Interval", "float", 0.0, "Seconds between updates; 0 for every frame.", minimum=0.0),
+    PropertySpec(
+        "Frame Timeout",
+        "float",
+        15.0,
+        "Seconds until a frame that is heard of no more is gone: grey from the first third on, away from the second.",
+        minimum=1.0,
+    ),
+    PropertySpec(
+        "Filter (whitelist)", "string", "", "A regular expression: only frames in whose name it is found are shown."
+    ),
+    PropertySpec(
+        "Filter (blacklist)", "string", "", "A regular expression: frames in whose name it is found are not shown."
+    ),
+)
+_FILTERS = (("Filter (whitelist)",), ("Filter (blacklist)",))
+_ALL = ("Frames", "All Enabled")
+_DEEPEST = 60
+"""Rows of the Tree nest no deeper, so that no chain of frames is too long for the page's JSON."""
+
+
+class TfDisplay(ViewerDisplay):
+    """Axes, names and arrows of the frames that tf knows.
+
+    RViz's read-only rows of a frame (parent, position, orientation) are the page's own: it has the poses.
+    """
+
+    CLASS = "rviz_default_plugins/TF"
+
+    _shown: tuple[str, ...] = ()
+    _parents: tuple[tuple[str, str | None], ...] = ()
+    _schema: Schema | None = None
+
+    def schema(self) -> Schema:
+        """The fixed properties, a box for each frame, and the tree of frames."""
+        if self._schema is None:
+            self._schema = (*_STATIC, self._frames_spec(), self._tree_spec())
+        return self._schema
+
+    def start(self) -> None:
+        """List the frames there are."""
+        self.frames_changed()
+
+    def changed(self, path: Path) -> None:
+        """Follow a filter, or the box over all frames."""
+        if path in _FILTERS:
+            self.frames_changed()
+        elif path == _ALL:
+            value = self.properties.flag(*_ALL)
+            for name in self._shown:
+                self.properties.set(("Frames", name), value)
+            self.publish_properties()
+
+    def frames_changed(self) -> None:
+        """List the frames anew, and say which of them can be placed."""
+        frames = self.stage.frames
+        problems: list[StatusRow] = []
+        accepts = self._filter(problems)
+        shown = tuple(sorted(name for name in frames.names if accepts(name)))
+        above = {
+            name: frames.names[parent] if parent >= 0 else None
+            for name, parent in zip(frames.names, frames.parents, strict=True)
+        }
+        parents = tuple((name, above[name]) for name in shown)
+        if (shown, parents) != (self._shown, self._parents):
+            self._shown, self._parents, self._schema = shown, parents, None
+            self.publish_properties()
+        self.set_status(problems + [self._frame_status(name) for name in shown])
+
+    def _frame_status(self, name: str) -> StatusRow:
+        problem = self.stage.frames.problem(name)
+        return StatusRow(name, "warn", problem) if problem else StatusRow(name, "ok", "Transform OK")
+
+    def _filter(self, problems: list[StatusRow]) -> _FrameFilter:
+        patterns: list[re.Pattern[str] | None] = []
+        for (name,) in _FILTERS:
+            text = self.properties.text(name)
+            try:
+                patterns.append(re.compile(text) if text else None)
+            except re.error as error:
+                problems.append(StatusRow(name, "error", f"Not a regular expression: {error}"))
+                patterns.append(None)
+        return _FrameFilter(*patterns)
+
+    def _frames_spec(self) -> PropertySpec:
+        boxes = tuple(
+            PropertySpec(name, "bool", True, "Draw this frame.", nested=True) for name in self._shown if name != _ALL[1]
+        )
+        every = PropertySpec(_ALL[1], "bool", True, "Set the boxes of all frames.")
+        return PropertySpec("Frames", "group", description="The frames that tf knows.", children=(every, *boxes))
+
+    def _tree_spec(self) -> PropertySpec:
+        below: dict[str | None, list[str]] = {}
+        shown = set(self._shown)
+        for name, parent in self._parents:
+            below.setdefault(parent if parent in shown else None, []).append(name)
+        roots = tuple(_tree(name, below, 1) for name in below.get(None, ()))
+        return PropertySpec("Tree", "group", description="How the frames hang together.", children=roots)
+
+
+class _FrameFilter:
+    def __init__(self, only: re.Pattern[str] | None, without: re.Pattern[str] | None) -> None:
+        self._only = only
+        self._without = without
+
+    def __call__(self, name: str) -> bool:
+        if self._only is not None and not self._only.search(name):
+            return False
+        return self._without is None or not self._without.search(name)
+
+
+def _tree(name: str, below: dict[str | None, list[str]], depth: int) -> PropertySpec:
+    names = below.get(name, [])
+    if names and depth == _DEEPEST:
+        rest = PropertySpec("...", "group", description="The chain goes on; it is too long to be shown here.")
+        return PropertySpec(name, "group", children=(rest,))
+    return PropertySpec(name, "group", children=tuple(_tree(child, below, depth + 1) for child in names))

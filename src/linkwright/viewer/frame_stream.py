@@ -1,0 +1,209 @@
+"""Transforms from the graph to the pages: no more of them than the Frame Rate, at once after quiet, only news."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.graph import (
+    STATIC_TF_SUBSCRIPTION_QOS,
+    TF_QOS,
+    FrameSnapshot,
+    Node,
+    TransformBuffer,
+)
+from linkwright.messages import TFMessage
+from linkwright.viewer.frame_view import FrameView
+from linkwright.viewer.protocol import FrameTable, pack_transforms
+
+_SHORTEST_PAUSE = 0.004
+"""Seconds between two looks at the buffer that find nothing new, so that a flood of equal transforms costs little."""
+
+_AGE_PERIOD = 0.25
+"""Seconds between looks when nothing arrives: frames that are heard of no more must fade."""
+
+_FADE_STEP = 0.02
+"""Part of the Frame Timeout by which an age must differ to be sent anew; younger than a third of it all look alike."""
+
+_IDENTITY = np.array([[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]])
+
+
+@dataclass(slots=True)
+class StreamSettings:
+    """What the stream asks for whenever it looks.
+
+    Attributes:
+        fixed_frame: the Fixed Frame.
+        rate: most updates a second, hertz.
+        fade_time: shortest Frame Timeout of the displays, seconds; None when no display shows ages.
+        own_frames: frames that robots have links for, which tf may not know.
+        watched: whether anybody sees the result.
+    """
+
+    fixed_frame: Callable[[], str]
+    rate: Callable[[], float]
+    fade_time: Callable[[], float | None]
+    own_frames: Callable[[], frozenset[str]]
+    watched: Callable[[], bool]
+
+
+class FrameStream:
+    """Keeps the tf buffer of the viewer and sends what changed in it.
+
+    A robot of a single link has no transforms, so tf does not know its frame. When that is the Fixed Frame it is sent
+    all the same, as the identity: RViz places a frame in itself without asking tf.
+
+    Args:
+        node: to subscribe with.
+        settings: see there.
+        on_table: called with a new frame table, before transforms that need it.
+        on_transforms: called with each binary frame.
+        on_frames: called when frames came or went, or can be placed now or no more.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        settings: StreamSettings,
+        *,
+        on_table: Callable[[FrameTable], None],
+        on_transforms: Callable[[bytes], None],
+        on_frames: Callable[[FrameView], None],
+    ) -> None:
+        self._node = node
+        self._settings = settings
+        self._on_table = on_table
+        self._on_transforms = on_transforms
+        self._on_frames = on_frames
+        self._clock = node.get_clock()
+        self._buffer = TransformBuffer(node.get_logger().warning)
+        self._loop = asyncio.get_running_loop()
+        self._soon: asyncio.Handle | None = None
+        self._ageing: asyncio.Handle | None = None
+        self._sent_at = self._looked_at = float("-inf")
+        self._stamp_ns = 0
+        self._structure: tuple[Any, ...] = ()
+        self._table = FrameTable(0, [], [])
+        self._poses: NDArray[np.float32] = np.empty((0, 7), dtype=np.float32)
+        self._ages: NDArray[np.float64] = np.empty(0)
+        self._placed = b""
+        self._frame = b""
+
+    def start(self) -> None:
+        """Subscribe, and begin."""
+        self._node.create_subscription(TFMessage, "/tf", lambda message: self._take(message, False), TF_QOS)
+        self._node.create_subscription(
+            TFMessage, "/tf_static", lambda message: self._take(message, True), STATIC_TF_SUBSCRIPTION_QOS
+        )
+        self._age()
+
+    def close(self) -> None:
+        """Send no more."""
+        for handle in (self._soon, self._ageing):
+            if handle is not None:
+                handle.cancel()
+        self._soon = self._ageing = None
+
+    def robot_changed(self, gone: set[str]) -> None:
+        """Forget the frames that a new robot lacks, and look whether it has one that tf does not know."""
+        known = gone.intersection(self._buffer.frames())
+        if known:
+            self._buffer.remove(known)
+        self._wake()
+
+    def refresh(self) -> None:
+        """Look now, whoever watches: the Fixed Frame or the robot is another, or a page opens."""
+        if self._soon is not None:
+            self._soon.cancel()
+        self._look()
+
+    @property
+    def opening(self) -> tuple[FrameTable, bytes]:
+        """The frame table and the last binary frame, for a page that opens; empty before there is one."""
+        return self._table, self._frame
+
+    def _take(self, message: TFMessage, static: bool) -> None:
+        batch = message.batch
+        self._buffer.update(TFMessage(batch=batch), static=static, now_ns=self._clock.now_ns())
+        self._stamp_ns = max(self._stamp_ns, batch.stamp_ns)
+        self._wake()
+
+    def _wake(self) -> None:
+        if self._soon is not None or not self._settings.watched():
+            return
+        due = max(self._sent_at + 1.0 / self._settings.rate(), self._looked_at + _SHORTEST_PAUSE)
+        if due <= self._loop.time():
+            self._soon = self._loop.call_soon(self._look)
+        else:
+            self._soon = self._loop.call_at(due, self._look)
+
+    def _age(self) -> None:
+        self._ageing = self._loop.call_later(_AGE_PERIOD, self._age)
+        if self._settings.fade_time() is not None and self._ages.any():
+            self._wake()
+
+    def _look(self) -> None:
+        self._soon = None
+        self._looked_at = self._loop.time()
+        fixed_frame = self._settings.fixed_frame()
+        snapshot = self._buffer.snapshot(fixed_frame, self._clock.now_ns())
+        poses, ages = snapshot.poses, snapshot.ages
+        alone = fixed_frame not in snapshot.names and fixed_frame in self._settings.own_frames()
+        if alone:
+            poses, ages = np.concatenate([poses, _IDENTITY]), np.append(ages, 0.0)
+        changed = self._compare_structure(snapshot, fixed_frame if alone else None)
+        rows = poses.astype(np.float32)
+        if changed or self._is_news(rows, ages):
+            self._send(rows, ages)
+        self._tell_displays(snapshot, rows, fixed_frame, changed)
+
+    def _compare_structure(self, snapshot: FrameSnapshot, alone: str | None) -> bool:
+        structure = (snapshot.revision, alone)
+        if structure == self._structure:
+            return False
+        self._structure = structure
+        names, parents = list(snapshot.names), list(snapshot.parents)
+        if alone is not None:
+            names.append(alone)
+            parents.append(-1)
+        self._table = FrameTable(self._table.revision + 1, names, parents)
+        self._on_table(self._table)
+        return True
+
+    def _is_news(self, poses: NDArray[np.float32], ages: NDArray[np.float64]) -> bool:
+        if poses.tobytes() != self._poses.tobytes():
+            return True
+        fade_time = self._settings.fade_time()
+        if fade_time is None:
+            return False
+        looks = np.clip(ages, fade_time / 3, fade_time) - np.clip(self._ages, fade_time / 3, fade_time)
+        return bool(np.abs(looks).max(initial=0.0) > _FADE_STEP * fade_time)
+
+    def _send(self, poses: NDArray[np.float32], ages: NDArray[np.float64]) -> None:
+        self._poses, self._ages = poses, ages
+        self._sent_at = self._looked_at
+        self._frame = pack_transforms(self._table.revision, self._stamp_ns / 1e9, poses, ages)
+        self._on_transforms(self._frame)
+
+    def _tell_displays(
+        self, snapshot: FrameSnapshot, poses: NDArray[np.float32], fixed_frame: str, changed: bool
+    ) -> None:
+        has_pose = ~np.isnan(poses[:, 0])
+        placed = has_pose.tobytes() + fixed_frame.encode()
+        if not changed and placed == self._placed:
+            return
+        self._placed = placed
+        names = self._table.names
+        self._on_frames(
+            FrameView(
+                fixed_frame=fixed_frame,
+                names=snapshot.names,
+                parents=snapshot.parents,
+                placed=frozenset(names[row] for row in np.flatnonzero(has_pose)) | {fixed_frame},
+            )
+        )

@@ -1,0 +1,162 @@
+"""Properties declared once: what a display has, its defaults and bounds, and which values are taken.
+
+From a `PropertySpec` come the row of the page, the reading and writing of the .rviz file, and the checks of what the
+page sends. Names and defaults are RViz's; so is clamping a number into its bounds.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+
+from linkwright.viewer.protocol import PropertyKind, PropertyValue
+
+FIXED_FRAME = "<Fixed Frame>"
+"""Stands for whatever the Fixed Frame is, where RViz asks for a frame."""
+
+MAXIMUM_TEXT = 4096
+"""Longest string taken from a page, characters."""
+
+_HEX_COLOUR = re.compile(r"#[0-9a-fA-F]{6}")
+_RVIZ_COLOUR = re.compile(r"\s*(\d{1,6})\s*;\s*(\d{1,6})\s*;\s*(\d{1,6})\s*")
+_BOOLEANS = {"true": True, "1": True, "yes": True, "on": True, "false": False, "0": False, "no": False, "off": False}
+
+
+@dataclass(frozen=True, slots=True)
+class PropertySpec:
+    """One property.
+
+    Attributes:
+        name: as RViz shows it and as the file spells its key.
+        kind: what values it takes; a ``group`` takes none.
+        default: RViz's default.
+        description: the tooltip.
+        options: of an ``enum``.
+        minimum: of an ``int`` or ``float``, inclusive.
+        maximum: of an ``int`` or ``float``, inclusive.
+        children: the rows below it.
+        when: path within the display and value of the property that must hold for this row to be shown.
+        expanded: whether its children show at the start.
+        nested: whether the file keeps its value under ``Value``, because it has parts there.
+    """
+
+    name: str
+    kind: PropertyKind
+    default: PropertyValue = None
+    description: str = ""
+    options: tuple[str, ...] = ()
+    minimum: float | None = None
+    maximum: float | None = None
+    children: tuple[PropertySpec, ...] = ()
+    when: tuple[tuple[str, ...], PropertyValue] | None = None
+    expanded: bool = False
+    nested: bool = False
+
+
+def vector(name: str, description: str) -> PropertySpec:
+    """Three floats X, Y, Z in metres, 0 by default, as RViz's VectorProperty stores them."""
+    return PropertySpec(
+        name, "group", description=description, children=tuple(PropertySpec(axis, "float", 0.0) for axis in "XYZ")
+    )
+
+
+def accept(spec: PropertySpec, value: object) -> PropertyValue:
+    """The value to store for one that a page sent: of the kind's type, clamped into the bounds.
+
+    Raises:
+        ValueError: when it is none for this property; the text says what is expected.
+    """
+    taken = _take(spec, value)
+    if taken is None:
+        raise ValueError(f"{_EXPECTED[spec.kind].format(options=', '.join(spec.options))}, not {_shown(value)}")
+    return taken
+
+
+def from_text(spec: PropertySpec, text: str) -> PropertyValue:
+    """The value that a scalar of a .rviz file stands for.
+
+    Raises:
+        ValueError: when it stands for none; the text says what is expected.
+    """
+    return accept(spec, _converted(spec.kind, text.strip()))
+
+
+def to_text(spec: PropertySpec, value: PropertyValue) -> str:
+    """The spelling of a value in a .rviz file."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, float):
+        text = repr(value)
+        mantissa, exponent, power = text.partition("e")
+        return f"{mantissa}.0e{power}" if exponent and "." not in mantissa else text
+    if spec.kind == "color" and isinstance(value, str):
+        return "; ".join(str(int(value[start : start + 2], 16)) for start in (1, 3, 5))
+    return str(value)
+
+
+_EXPECTED = {
+    "group": "no value is expected",
+    "bool": "true or false is expected",
+    "int": "a whole number is expected",
+    "float": "a finite number is expected",
+    "string": f"a text of at most {MAXIMUM_TEXT} characters is expected",
+    "color": "a colour such as #a0a0a4 is expected",
+    "enum": "one of {options} is expected",
+    "frame": "the name of a frame is expected",
+}
+
+
+def _take(spec: PropertySpec, value: object) -> PropertyValue:
+    kind = spec.kind
+    if kind == "bool":
+        return value if isinstance(value, bool) else None
+    if kind in ("int", "float"):
+        return _number(spec, value)
+    if not isinstance(value, str) or len(value) > MAXIMUM_TEXT or kind == "group":
+        return None
+    if kind == "enum":
+        return value if value in spec.options else None
+    if kind == "color":
+        return value.lower() if _HEX_COLOUR.fullmatch(value) else None
+    if kind == "frame":
+        return value.strip().removeprefix("/") or None  # tf2 knows no leading slash; RViz strips it too
+    return value
+
+
+def _number(spec: PropertySpec, value: object) -> int | float | None:
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        return None
+    try:
+        number = float(value)
+    except OverflowError:
+        return None
+    if not math.isfinite(number):
+        return None
+    if spec.minimum is not None:
+        number = max(number, float(spec.minimum))
+    if spec.maximum is not None:
+        number = min(number, float(spec.maximum))
+    if spec.kind == "float":
+        return number
+    return int(number) if number.is_integer() and abs(number) < 2**53 else None
+
+
+def _converted(kind: PropertyKind, text: str) -> object:
+    if kind == "bool":
+        return _BOOLEANS.get(text.lower(), text)
+    if kind in ("int", "float"):
+        try:
+            return float(text)
+        except ValueError:
+            return text
+    if kind == "color":
+        found = _RVIZ_COLOUR.fullmatch(text)
+        if found:
+            return "#" + "".join(f"{min(int(part), 255):02x}" for part in found.groups())
+    return text
+
+
+def _shown(value: object) -> str:
+    text = repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."

@@ -1,0 +1,29 @@
+"""Licences by their SPDX identifiers, with the texts that go into a new package's ``LICENSE``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+_TEXTS = Path(__file__).with_name("license_texts")
+
+
+def known_licenses() -> list[str]:
+    """The identifiers whose texts are at hand, in alphabetical order."""
+    return sorted(path.name.removesuffix(".txt") for path in _TEXTS.glob("*.txt"))
+
+
+def license_text(identifier: str, *, year: int, holder: str) -> str | None:
+    """The text of a licence with its copyright line filled in, or None when the identifier is not known.
+
+    The Lesser GPL is a set of permissions on top of the GPL, so its text is followed by that one.
+    """
+    if identifier not in known_licenses():
+        return None
+    text = _read(identifier)
+    if identifier.startswith("LGPL-"):
+        text += "\n" + _read(identifier.removeprefix("L"))
+    return text.replace("<year> <holder>", f"{year} {holder}")
+
+
+def _read(identifier: str) -> str:
+    return (_TEXTS / f"{identifier}.txt").read_text(encoding="utf-8")

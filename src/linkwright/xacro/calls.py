@@ -1,0 +1,268 @@
+"""Macros: defining them and calling them."""
+
+from __future__ import annotations
+
+from typing import Any, NoReturn
+
+from linkwright.diagnostics import Note, did_you_mean
+from linkwright.xacro.expander import PREFIX, Expander, Site
+from linkwright.xacro.faults import Fault, attribute_name
+from linkwright.xacro.macros import Macro, MacroTable, Parameter, parse_parameters
+from linkwright.xacro.origin import Frame
+from linkwright.xacro.scope import Scope
+from linkwright.xacro.tags import check_attributes, warn_of_global
+from linkwright.xmltree import Element
+
+
+def define_macro(expander: Expander, site: Site) -> None:
+    """``<xacro:macro name params>``: defines a macro."""
+    node = site.node
+    expander.sweep(site)
+    check_attributes(expander, node, ("name",), ("params",))
+    name, span = node.attributes["name"], node.attribute_span("name")
+    if name == "call":
+        expander.fail_at("XAC407", "a macro cannot be named 'call'", node, span, "'xacro:call' has another meaning")
+    if "." in name:
+        hint = "a dot stands between a namespace and a macro"
+        expander.fail_at("XAC407", f"the name of the macro '{name}' has a dot", node, span, hint)
+    if name.startswith(PREFIX):
+        name = name[len(PREFIX) :]
+        message = f"the macro '{name}' is named with the prefix 'xacro:', which only its calls have"
+        expander.session.warn("XAC411", message, span, f'write name="{name}"')
+    try:
+        parameters = parse_parameters(node.attributes.get("params", ""))
+    except Fault as fault:
+        fault.place_in_attribute(node, "params")
+        expander.fail(fault)
+    site.macros.define(name, Macro(name, parameters, node))
+
+
+def call_dynamically(expander: Expander, site: Site) -> None:
+    """``<xacro:call macro>``: calls the macro whose name the attribute gives."""
+    node = site.node
+    if not node.attributes.get("macro"):
+        expander.fail_at("XAC301", "'xacro:call' lacks its attribute 'macro'", node, node.span())
+    name = expander.text_value(node, "macro", site.scope)
+    attributes = {given: value for given, value in node.attributes.items() if given != "macro"}
+    call = Element(PREFIX + name, attributes, node.source, node.offset)
+    call.children = node.children
+    _Call(expander, site._replace(node=call), name, written_in="macro").run()
+
+
+def call_macro(expander: Expander, site: Site) -> None:
+    """``<xacro:NAME ...>``: calls a macro."""
+    _Call(expander, site, site.node.tag[len(PREFIX) :], written_in=None).run()
+
+
+class _Call:
+    """One call of a macro.
+
+    The arguments and then the blocks are evaluated in the caller's scope, then the defaults of what was not given;
+    then the body is expanded in a scope of its own.
+    """
+
+    def __init__(self, expander: Expander, site: Site, name: str, written_in: str | None) -> None:
+        self._expander = expander
+        self._site = site
+        self._node = site.node
+        self._name = name
+        self._written_in = written_in
+
+    def run(self) -> None:
+        expander, site = self._expander, self._site
+        macro, around, macros = self._resolve()
+        scope = Scope(around, expander.session)
+        missing = self._take_arguments(macro, scope)
+        missing = self._take_blocks(macro, missing, scope)
+        missing = self._take_defaults(macro, missing, scope)
+        if missing:
+            self._report_missing(macro, missing)
+        container = self._expand_body(macro, scope, MacroTable(macros))
+        output = site.parent.children
+        mark = expander.sweeper.sweep(output, followed=site.followed)
+        expander.lift_namespaces(container, site)
+        expander.splice(container, site)
+        if mark:
+            expander.sweeper.mark(output)
+
+    # finding the macro
+
+    def _resolve(self) -> tuple[Macro, Scope, MacroTable]:
+        site, name = self._site, self._name
+        found = site.macros.find(name)
+        if isinstance(found, Macro):
+            return found, site.scope, site.macros
+        *namespaces, last = name.split(".")
+        scope, macros = site.scope, site.macros
+        for namespace in namespaces:
+            inner = macros.find(namespace)
+            if not isinstance(inner, MacroTable) or namespace not in scope:
+                self._report_unknown()
+            macros = inner
+            scope = scope.lookup(namespace)
+            if not isinstance(scope, Scope):
+                self._report_unknown()
+        found = macros.find(last) if namespaces else found
+        if not isinstance(found, Macro):
+            self._report_unknown()
+        return found, scope, macros
+
+    def _report_unknown(self) -> NoReturn:
+        node, name = self._node, self._name
+        known = list(self._site.macros.names())
+        hint = did_you_mean(name, known)
+        if hint is None and name in _TAGS:
+            hint = f"write xacro:{_TAGS[name]}"
+        if hint is None and known:
+            listed = ", ".join(sorted(set(known))[:10])
+            hint = f"the macros defined so far are {listed}"
+        elif hint is None:
+            hint = "no macro is defined before this; is an include missing?"
+        span = node.span() if self._written_in is None else node.attribute_span(self._written_in)
+        self._expander.fail_at("XAC401", f"there is no macro '{name}'", node, span, hint)
+
+    # binding the parameters
+
+    def _take_arguments(self, macro: Macro, scope: Scope) -> list[Parameter]:
+        """Bind the attributes of the call; what is returned are the parameters that they leave."""
+        expander, node = self._expander, self._node
+        left = list(macro.parameters)
+        for name, text in node.attributes.items():
+            parameter = next((candidate for candidate in left if candidate.name == name), None)
+            if parameter is None:
+                self._report_unknown_parameter(macro, name)
+            left.remove(parameter)
+            value = expander.value(node, name, self._site.scope) if "$" in text else text
+            warn_of_global(expander, node, name, name)
+            scope.define(name, value)
+        return left
+
+    def _take_blocks(self, macro: Macro, left: list[Parameter], scope: Scope) -> list[Parameter]:
+        container = Element(self._node.tag)
+        if self._node.children:
+            self._expander.children(self._node.children, container, self._site.scope, self._site.macros)
+        blocks = container.elements()
+        remaining = []
+        for parameter in left:
+            if not parameter.is_block:
+                remaining.append(parameter)
+                continue
+            block = next(blocks, None)
+            if block is None:
+                self._report_missing_block(macro, parameter)
+            scope.bind(parameter.name, block)
+        unused = next(blocks, None)
+        if unused is not None:
+            self._report_unused_block(macro, unused)
+        return remaining
+
+    def _take_defaults(self, macro: Macro, left: list[Parameter], scope: Scope) -> list[Parameter]:
+        remaining = []
+        for parameter in left:
+            if parameter.forward or parameter.default is not None:
+                scope.define(parameter.name, self._default(macro, parameter))
+            else:
+                remaining.append(parameter)
+        return remaining
+
+    def _default(self, macro: Macro, parameter: Parameter) -> Any:
+        caller, node = self._site.scope, self._node
+        try:
+            if parameter.forward and parameter.name in caller:
+                return caller.lookup(parameter.name)
+            if parameter.default is None:
+                message = f"there is no property '{parameter.name}' to forward to the macro '{macro.name}'"
+                hint = f'define it before the call, or write {parameter.name}="..."'
+                fault = Fault("XAC409", message, hint=hint)
+                fault.notes.append(self._definition(macro, parameter))
+                fault.place_at(node)
+                raise fault
+            if "$" not in parameter.default:
+                return parameter.default
+            return self._expander.session.evaluate(parameter.default, caller)
+        except Fault as fault:
+            if fault.span is None:
+                if fault.start is None and parameter.default is not None:
+                    fault.start, fault.end = 0, len(parameter.default)
+                fault.place_in_attribute(macro.body, "params", parameter.default_start)
+                fault.passing = f"the default of '{parameter.name}' is used by this call"
+                fault.place_at(node)
+            self._expander.fail(fault)
+
+    # the body
+
+    def _expand_body(self, macro: Macro, scope: Scope, macros: MacroTable) -> Element:
+        expander, session = self._expander, self._expander.session
+        around = session.frame
+        expander.enter(Frame(macro.name, self._node, around))
+        try:
+            body = macro.body
+            container = Element(body.tag)
+            for name, value in body.attributes.items():
+                if name == "xmlns:xacro" or ("$" not in value and not name.startswith("xmlns:")):
+                    continue
+                if name.startswith("xmlns:") or session.changes(value):
+                    evaluated = expander.text_value(body, name, scope)
+                    if name.startswith("xmlns:"):
+                        container.attributes[name] = evaluated
+            expander.children(body.children, container, scope, macros)
+        finally:
+            session.frame = around
+        return container
+
+    # mistakes
+
+    def _report_unknown_parameter(self, macro: Macro, name: str) -> NoReturn:
+        node = self._node
+        known = [parameter.name for parameter in macro.parameters if not parameter.is_block]
+        hint = did_you_mean(name, [candidate for candidate in known if candidate not in node.attributes])
+        if hint is None and f"*{name}" in {parameter.name.replace("**", "*") for parameter in macro.parameters}:
+            hint = f"'{name}' is a block: write it as an element inside the call"
+        if hint is None:
+            hint = f"its parameters are {', '.join(known)}" if known else "it has no parameters"
+        message = f"the macro '{macro.name}' has no parameter '{name}'"
+        span = attribute_name(node, name)
+        self._expander.fail_at("XAC402", message, node, span, hint, self._definition(macro))
+
+    def _report_missing(self, macro: Macro, missing: list[Parameter]) -> None:
+        node = self._node
+        twice = [parameter.name for parameter in missing if parameter.name in node.attributes]
+        if twice:
+            message = f"the macro '{macro.name}' declares its parameter '{twice[0]}' twice"
+            span = node.span()
+            self._expander.fail_at("XAC408", message, node, span, None, self._definition(macro, missing[0]))
+        names = [f"'{parameter.name}'" for parameter in missing]
+        what = f"parameter {names[0]}" if len(names) == 1 else f"parameters {', '.join(names)}"
+        message = f"the call of the macro '{macro.name}' lacks its {what}"
+        hint = "write " + " ".join(f'{parameter.name}="..."' for parameter in missing)
+        if any(sign in parameter.name for parameter in missing for sign in "${}()"):
+            hint = "a default with blanks in it ends at the first one; put it in quotes"
+        note = self._definition(macro, missing[0])
+        self._expander.fail_at("XAC403", message, node, node.span(), hint, note)
+
+    def _report_missing_block(self, macro: Macro, parameter: Parameter) -> NoReturn:
+        node = self._node
+        name = parameter.name.lstrip("*")
+        message = f"the call of the macro '{macro.name}' lacks an element for its block '{name}'"
+        hint = "write the element between the tags of the call"
+        note = self._definition(macro, parameter)
+        self._expander.fail_at("XAC404", message, node, node.span(), hint, note)
+
+    def _report_unused_block(self, macro: Macro, block: Element) -> None:
+        count = sum(parameter.is_block for parameter in macro.parameters)
+        takes = "no element" if count == 0 else "one element" if count == 1 else f"{count} elements"
+        message = f"the element '{block.tag}' is one too many for the macro '{macro.name}'"
+        hint = f"it takes {takes}"
+        note = self._definition(macro)
+        self._expander.fail_at("XAC405", message, block, block.span(), hint, note)
+
+    def _definition(self, macro: Macro, parameter: Parameter | None = None) -> Note:
+        body = macro.body
+        if parameter is not None:
+            fault = Fault("", "", parameter.start, parameter.start + len(parameter.name))
+            fault.place_in_attribute(body, "params")
+            return Note(f"'{parameter.name}' is declared here", fault.span)
+        return Note(f"the macro '{macro.name}' is defined here", body.span())
+
+
+_TAGS = {"insert": "insert_block", "block": "insert_block", "prop": "property", "else": "unless", "elif": "if"}

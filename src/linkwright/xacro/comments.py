@@ -1,0 +1,62 @@
+"""Comments that belong to what is expanded away.
+
+A comment just above a property, macro, argument, include, condition or macro call tells about that tag, and goes with
+it. Which comments go follows ros/xacro to the letter: of a run of comments upwards those go that are separated by
+blank text with at most one newline; and a marker is left behind at which the next such run stops. There is one marker
+in a document: it moves. It is blank text, so all that may be seen of it is that an element with text and a marker is
+no longer written on one line.
+"""
+
+from __future__ import annotations
+
+from linkwright.xmltree import Comment, Node, Text
+
+
+class CommentSweeper:
+    """Takes away the comments above tags that are expanded, in one document."""
+
+    def __init__(self) -> None:
+        self._marker = Text("\n\n")
+        self._home: list[Node] | None = None
+
+    def sweep(self, siblings: list[Node], *, followed: bool) -> bool:
+        """Take away the comments at the end of a list of siblings, which are those above the tag.
+
+        Args:
+            siblings: the nodes above the tag, as they came out.
+            followed: whether anything stands below the tag.
+
+        Returns:
+            Whether the caller is to `mark` the place below the tag.
+        """
+        at = len(siblings) - 1
+        while at >= 0:
+            node = siblings[at]
+            if isinstance(node, Text) and not node.cdata and _is_small_gap(node.data):
+                at -= 1
+            if at >= 0 and isinstance(siblings[at], Comment):
+                del siblings[at]
+                at -= 1
+            else:
+                return followed
+        return False
+
+    def mark(self, siblings: list[Node]) -> None:
+        """Move the marker to the end of a list of siblings."""
+        home = self._home
+        if home is not None:
+            for at in range(len(home) - 1, -1, -1):
+                if home[at] is self._marker:
+                    del home[at]
+                    break
+        siblings.append(self._marker)
+        self._home = siblings
+
+    def moved(self, old: list[Node], new: list[Node]) -> None:
+        """The nodes of a list have become the end of another one."""
+        if self._home is old:
+            self._home = new
+
+
+def _is_small_gap(data: str) -> bool:
+    return data.isspace() and data.count("\n") <= 1

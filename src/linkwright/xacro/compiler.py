@@ -1,0 +1,452 @@
+"""From the syntax tree of an expression to nested closures.
+
+There is one method for each kind of node that expressions may use; a node of any other kind is refused. A closure
+takes the environment and gives the value of its node; what it does to values goes through the sandbox. Every closure
+that can fail knows its place in the text, which makes the columns in messages exact.
+"""
+
+from __future__ import annotations
+
+import ast
+import operator
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any
+
+from linkwright.xacro import sandbox
+from linkwright.xacro.faults import Fault
+from linkwright.xacro.functions import Function, bind_parameters
+from linkwright.xacro.sandbox import RefusalError
+
+if TYPE_CHECKING:
+    from linkwright.xacro.scope import Environment
+
+Closure = Callable[[Any], Any]
+_Binder = Callable[["Environment", Any], None]
+
+_CHANGING = frozenset(
+    {
+        *("add", "append", "clear", "discard", "extend", "insert", "pop", "popitem", "remove", "reverse"),
+        *("setdefault", "sort", "update"),
+    }
+)
+
+_FAILURES = (
+    ArithmeticError,
+    LookupError,
+    AttributeError,
+    MemoryError,
+    RuntimeError,
+    TypeError,
+    ValueError,
+    RefusalError,
+)
+"""What Python's operations raise when the values do not fit."""
+
+_UNARY: dict[str, Callable[[Any], Any]] = {
+    "Not": operator.not_,
+    "USub": operator.neg,
+    "UAdd": operator.pos,
+    "Invert": operator.invert,
+}
+
+_COMPARISONS: dict[str, Callable[[Any, Any], Any]] = {
+    "Eq": operator.eq,
+    "NotEq": operator.ne,
+    "Lt": operator.lt,
+    "LtE": operator.le,
+    "Gt": operator.gt,
+    "GtE": operator.ge,
+    "Is": operator.is_,
+    "IsNot": operator.is_not,
+    "In": lambda item, container: sandbox.contains(container, item),
+    "NotIn": lambda item, container: not sandbox.contains(container, item),
+}
+
+
+class Compiler:
+    """Compiles the nodes of one expression.
+
+    Args:
+        source: the text that was parsed.
+        shift: how many characters stand before it in the text that it was taken from.
+
+    Attributes:
+        changes: whether a compiled node may change a value.
+    """
+
+    def __init__(self, source: str, shift: int) -> None:
+        self._source = source
+        self._shift = shift
+        self.changes = False
+
+    def compile(self, node: ast.AST) -> Closure:
+        """The closure of a node.
+
+        Raises:
+            Fault: XAC204 when expressions may not use such a node.
+        """
+        kind = node.__class__.__name__
+        method = getattr(self, f"_{kind.lower()}", None)
+        if method is None:
+            start, end = self._place(node)
+            raise Fault("XAC204", f"'{self._segment(start, end)}' may not be used in an expression", start, end)
+        closure: Closure = method(node)
+        return closure
+
+    # places and failures
+
+    def _place(self, node: Any) -> tuple[int, int]:
+        source = self._source
+        start, end = node.col_offset, node.end_col_offset
+        if not source.isascii() or "\n" in source:
+            lines = source.split("\n")  # columns count UTF-8 bytes
+            start, end = (
+                sum(len(line) + 1 for line in lines[: number - 1])
+                + len(lines[number - 1].encode()[:column].decode("utf-8", "replace"))
+                for number, column in ((node.lineno, start), (node.end_lineno, end))
+            )
+        return start + self._shift, end + self._shift
+
+    def _segment(self, start: int, end: int) -> str:
+        return self._source[start - self._shift : end - self._shift]
+
+    def _failure(self, error: Exception, start: int, end: int) -> Fault:
+        segment = self._segment(start, end)
+        if len(segment) > 60:
+            segment = f"{segment[:57]}..."
+        if isinstance(error, RefusalError):
+            return Fault("XAC204", f"'{segment}' is refused: {error}", start, end)
+        words = str(error) or error.__class__.__name__
+        hint = None
+        if isinstance(error, KeyError):
+            words = f"there is no key {error}"
+        elif isinstance(error, TypeError) and "str" in words and ("concatenate" in words or "+:" in words):
+            hint = "turn the number into text with str(...)"
+        elif isinstance(error, RecursionError):
+            words = "it is nested too deeply"
+        return Fault("XAC202", f"cannot evaluate '{segment}': {words}", start, end, hint)
+
+    # names and constants
+
+    def name(self, name: str, start: int) -> Closure:
+        """The closure of a name that stands at an offset of the source."""
+        place = (start + self._shift, start + self._shift + len(name))
+        if name.startswith("__"):
+            raise Fault("XAC204", f"the name '{name}' may not be used in an expression", *place)
+
+        def look_up(env: Environment) -> Any:
+            try:
+                return env.lookup(name)
+            except KeyError:
+                raise env.session.undefined(name, env, *place) from None
+
+        return look_up
+
+    def _name(self, node: ast.Name) -> Closure:
+        return self.name(node.id, self._place(node)[0] - self._shift)
+
+    def _constant(self, node: ast.Constant) -> Closure:
+        value = node.value
+        return lambda _env: value
+
+    def _namedexpr(self, node: ast.NamedExpr) -> Closure:
+        name, value = node.target.id, self.compile(node.value)
+        self.name(name, 0)
+        self.changes = True
+
+        def assign(env: Environment) -> Any:
+            result = value(env)
+            env.assign(name, result)
+            return result
+
+        return assign
+
+    # operators
+
+    def _binop(self, node: ast.BinOp) -> Closure:
+        left, right = self.compile(node.left), self.compile(node.right)
+        apply = sandbox.OPERATORS[node.op.__class__.__name__]
+        start, end = self._place(node)
+
+        def binary(env: Environment) -> Any:
+            a, b = left(env), right(env)
+            try:
+                return apply(a, b)
+            except _FAILURES as error:
+                raise self._failure(error, start, end) from None
+
+        return binary
+
+    def _unaryop(self, node: ast.UnaryOp) -> Closure:
+        operand = self.compile(node.operand)
+        apply = _UNARY[node.op.__class__.__name__]
+        start, end = self._place(node)
+
+        def unary(env: Environment) -> Any:
+            value = operand(env)
+            try:
+                return apply(value)
+            except _FAILURES as error:
+                raise self._failure(error, start, end) from None
+
+        return unary
+
+    def _boolop(self, node: ast.BoolOp) -> Closure:
+        first, *rest = [self.compile(value) for value in node.values]
+        stops_at = isinstance(node.op, ast.Or)
+
+        def boolean(env: Environment) -> Any:
+            value = first(env)
+            for operand in rest:
+                if bool(value) is stops_at:
+                    break
+                value = operand(env)
+            return value
+
+        return boolean
+
+    def _compare(self, node: ast.Compare) -> Closure:
+        first = self.compile(node.left)
+        rest = [
+            (_COMPARISONS[op.__class__.__name__], self.compile(value))
+            for op, value in zip(node.ops, node.comparators, strict=True)
+        ]
+        start, end = self._place(node)
+
+        def compare(env: Environment) -> Any:
+            left = first(env)
+            result: Any = True
+            for test, operand in rest:
+                right = operand(env)
+                try:
+                    result = test(left, right)
+                except _FAILURES as error:
+                    raise self._failure(error, start, end) from None
+                if not result:
+                    break
+                left = right
+            return result
+
+        return compare
+
+    def _ifexp(self, node: ast.IfExp) -> Closure:
+        test, then, otherwise = self.compile(node.test), self.compile(node.body), self.compile(node.orelse)
+        return lambda env: then(env) if test(env) else otherwise(env)
+
+    # reaching into values
+
+    def _attribute(self, node: ast.Attribute) -> Closure:
+        value, name = self.compile(node.value), node.attr
+        start, end = self._place(node)
+        start_of_name = end - len(name)
+        if name.startswith("__"):
+            raise Fault("XAC204", f"'.{name}' may not be used in an expression", start_of_name, end)
+
+        def attribute(env: Environment) -> Any:
+            owner = value(env)
+            try:
+                return sandbox.attribute(owner, name)
+            except AttributeError as error:
+                hint = env.session.nearest_attribute(owner, name)
+                raise Fault("XAC205", str(error), start_of_name, end, hint) from None
+            except _FAILURES as error:
+                raise self._failure(error, start, end) from None
+
+        return attribute
+
+    def _subscript(self, node: ast.Subscript) -> Closure:
+        value, key = self.compile(node.value), self.compile(node.slice)
+        start, end = self._place(node)
+
+        def subscript(env: Environment) -> Any:
+            owner, index = value(env), key(env)
+            try:
+                return sandbox.subscript(owner, index)
+            except (AttributeError, KeyError) as error:
+                words = f"there is no key {error}" if isinstance(error, KeyError) else str(error)
+                hint = env.session.nearest_attribute(owner, str(index))
+                raise Fault("XAC205", words, start, end, hint) from None
+            except _FAILURES as error:
+                raise self._failure(error, start, end) from None
+
+        return subscript
+
+    def _slice(self, node: ast.Slice) -> Closure:
+        parts = [self.compile(part) if part else None for part in (node.lower, node.upper, node.step)]
+        return lambda env: slice(*[part(env) if part else None for part in parts])
+
+    # calls
+
+    def _call(self, node: ast.Call) -> Closure:
+        function = self.compile(node.func)
+        positional = [self._argument(argument) for argument in node.args]
+        named = [(keyword.arg, self.compile(keyword.value)) for keyword in node.keywords]
+        plain = not named and not any(starred for starred, _ in positional)
+        simple = [closure for _, closure in positional]
+        start, end = self._place(node)
+        if isinstance(node.func, ast.Attribute) and node.func.attr in _CHANGING:
+            self.changes = True
+
+        def call(env: Environment) -> Any:
+            called = function(env)
+            if plain:
+                arguments = [closure(env) for closure in simple]
+                keywords: dict[str, Any] = {}
+            else:
+                arguments, keywords = _arguments(env, positional, named)
+            try:
+                sandbox.check_call(called)
+                return sandbox.check_size(called(*arguments, **keywords))
+            except Fault as fault:
+                if fault.span is None and fault.start is None:
+                    fault.start, fault.end = start, end
+                raise
+            except _FAILURES as error:
+                raise self._failure(error, start, end) from None
+
+        return call
+
+    def _argument(self, node: ast.expr) -> tuple[bool, Closure]:
+        if isinstance(node, ast.Starred):
+            return True, self.compile(node.value)
+        return False, self.compile(node)
+
+    def _lambda(self, node: ast.Lambda) -> Closure:
+        parameters = bind_parameters(node.args, self.compile)
+        body = self.compile(node.body)
+        return lambda env: Function(parameters(env), body, env)
+
+    # displays
+
+    def _list(self, node: ast.List) -> Closure:
+        return self._display(node, list)
+
+    def _tuple(self, node: ast.Tuple) -> Closure:
+        return self._display(node, tuple)
+
+    def _set(self, node: ast.Set) -> Closure:
+        return self._display(node, set)
+
+    def _display(self, node: ast.List | ast.Tuple | ast.Set, kind: Callable[[list[Any]], Any]) -> Closure:
+        items = [self._argument(item) for item in node.elts]
+        start, end = self._place(node)
+
+        def display(env: Environment) -> Any:
+            try:
+                return sandbox.check_size(kind(_arguments(env, items, [])[0]))
+            except (RefusalError, TypeError) as error:
+                raise self._failure(error, start, end) from None
+
+        return display
+
+    def _dict(self, node: ast.Dict) -> Closure:
+        items = [
+            (self.compile(key) if key else None, self.compile(value))
+            for key, value in zip(node.keys, node.values, strict=True)
+        ]
+        start, end = self._place(node)
+
+        def display(env: Environment) -> Any:
+            result: dict[Any, Any] = {}
+            try:
+                for key, value in items:
+                    result.update(value(env) if key is None else {key(env): value(env)})
+                return sandbox.check_size(result)
+            except (RefusalError, TypeError, ValueError) as error:
+                raise self._failure(error, start, end) from None
+
+        return display
+
+    # comprehensions
+
+    def _listcomp(self, node: ast.ListComp) -> Closure:
+        return self._collected(node, node.elt, list)
+
+    def _setcomp(self, node: ast.SetComp) -> Closure:
+        return self._collected(node, node.elt, set)
+
+    def _collected(
+        self, node: ast.ListComp | ast.SetComp, element: ast.expr, kind: Callable[[Iterator[Any]], Any]
+    ) -> Closure:
+        item, turns = self.compile(element), self._turns(node.generators)
+        start, end = self._place(node)
+
+        def comprehension(env: Environment) -> Any:
+            try:
+                return sandbox.check_size(kind(item(inner) for inner in turns(env)))
+            except (RefusalError, TypeError, ValueError) as error:
+                raise self._failure(error, start, end) from None
+
+        return comprehension
+
+    def _dictcomp(self, node: ast.DictComp) -> Closure:
+        key, value, turns = self.compile(node.key), self.compile(node.value), self._turns(node.generators)
+        start, end = self._place(node)
+
+        def comprehension(env: Environment) -> Any:
+            try:
+                return sandbox.check_size({key(inner): value(inner) for inner in turns(env)})
+            except (RefusalError, TypeError, ValueError) as error:
+                raise self._failure(error, start, end) from None
+
+        return comprehension
+
+    def _generatorexp(self, node: ast.GeneratorExp) -> Closure:
+        item, turns = self.compile(node.elt), self._turns(node.generators)
+        return lambda env: (item(inner) for inner in turns(env))
+
+    def _turns(self, generators: list[ast.comprehension]) -> Callable[[Environment], Iterator[Environment]]:
+        """What runs through the loops of a comprehension, giving the environment of each turn."""
+        loops = []
+        for generator in generators:
+            if generator.is_async:
+                raise Fault("XAC204", "'async' may not be used in an expression")
+            conditions = [self.compile(condition) for condition in generator.ifs]
+            loops.append((self._target(generator.target), self.compile(generator.iter), conditions))
+
+        def run(env: Environment, depth: int) -> Iterator[Environment]:
+            bind, items, conditions = loops[depth]
+            for item in items(env):
+                env.session.budget.step()
+                bind(env, item)
+                if all(condition(env) for condition in conditions):
+                    if depth + 1 < len(loops):
+                        yield from run(env, depth + 1)
+                    else:
+                        yield env
+
+        return lambda env: run(env.inner(), 0)
+
+    def _target(self, node: ast.expr) -> _Binder:
+        if isinstance(node, ast.Name):
+            name = node.id
+            self.name(name, 0)
+            return lambda env, value: env.bind(name, value)
+        if isinstance(node, (ast.Tuple, ast.List)) and not any(isinstance(item, ast.Starred) for item in node.elts):
+            binders = [self._target(item) for item in node.elts]
+
+            def unpack(env: Environment, value: Any) -> None:
+                values = list(value)
+                if len(values) != len(binders):
+                    raise ValueError(f"{len(binders)} values are expected and {len(values)} given")
+                for bind, item in zip(binders, values, strict=True):
+                    bind(env, item)
+
+            return unpack
+        start, end = self._place(node)
+        raise Fault("XAC204", f"'{self._segment(start, end)}' may not be used in an expression", start, end)
+
+
+def _arguments(
+    env: Environment, positional: list[tuple[bool, Closure]], named: list[tuple[str | None, Closure]]
+) -> tuple[list[Any], dict[str, Any]]:
+    arguments: list[Any] = []
+    for starred, closure in positional:
+        if starred:
+            arguments.extend(closure(env))
+        else:
+            arguments.append(closure(env))
+    keywords: dict[str, Any] = {}
+    for name, closure in named:
+        keywords.update({name: closure(env)} if name else closure(env))
+    return arguments, keywords

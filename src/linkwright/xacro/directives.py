@@ -1,0 +1,114 @@
+"""The tags of the language, but for macro calls: what each one does."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from linkwright.diagnostics import did_you_mean
+from linkwright.xacro.calls import call_dynamically, define_macro
+from linkwright.xacro.expander import Expander, Site
+from linkwright.xacro.includes import include
+from linkwright.xacro.literals import truth
+from linkwright.xacro.properties import define_property
+from linkwright.xacro.tags import check_attributes
+from linkwright.xmltree import Element
+
+
+def declare_argument(expander: Expander, site: Site) -> None:
+    """``<xacro:arg name default/>``: gives an argument a value, unless it has one."""
+    node, session = site.node, expander.session
+    check_attributes(expander, node, ("name", "default"), ())
+    name = node.attributes["name"]
+    if name not in session.arguments:
+        session.arguments[name] = expander.text_value(node, "default", site.scope)
+    expander.sweep(site)
+
+
+def expand_condition(expander: Expander, site: Site) -> None:
+    """``<xacro:if value>`` and ``<xacro:unless value>``: keeps what it holds, or does not."""
+    node, scope, session = site.node, site.scope, expander.session
+    output = site.parent.children
+    waiting: list[Any] = []  # the marker stands below the tag, unless something inside takes it
+    if expander.sweeper.sweep(output, followed=site.followed):
+        expander.sweeper.mark(waiting)
+    check_attributes(expander, node, ("value",), ())
+    value = expander.value(node, "value", scope)
+    try:
+        keep = truth(value)
+    except ValueError:
+        message = f"the condition '{node.attributes['value']}' gives '{value}', which is neither true nor false"
+        hint = "it must be true, false or a whole number"
+        expander.fail_at("XAC305", message, node, node.attribute_span("value"), hint)
+    if keep is (node.tag == "xacro:if"):
+        if "$" in node.attributes["value"] and session.changes(node.attributes["value"]):
+            expander.attributes(node, scope)  # ros/xacro evaluates the attributes of what it keeps once more
+        container = Element(node.tag)
+        expander.children(node.children, container, scope, site.macros)
+        expander.splice(container, site)
+    if waiting:
+        expander.sweeper.mark(output)
+
+
+def insert_block(expander: Expander, site: Site) -> None:
+    """``<xacro:insert_block name/>``: evaluates a block and puts it here."""
+    node, scope = site.node, site.scope
+    check_attributes(expander, node, ("name",), ())
+    name = node.attributes["name"]
+    if f"**{name}" in scope:
+        block: Element = scope.lookup(f"**{name}")
+        container = Element(node.tag)
+        expander.children(block.children, container, scope, site.macros)
+        expander.splice(container, site)
+    elif f"*{name}" in scope:
+        expander.element(scope.lookup(f"*{name}"), site.parent.children, scope, site.macros)
+    else:
+        known = [block.lstrip("*") for block in scope.blocks()]
+        hint = did_you_mean(name, known)
+        if hint is None and name in scope:
+            hint = f"'{name}' is a property with a value: write ${{{name}}}"
+        expander.fail_at("XAC406", f"there is no block '{name}'", node, node.attribute_span("name"), hint)
+
+
+def expand_element(expander: Expander, site: Site) -> None:
+    """``<xacro:element xacro:name>``: an element whose tag is evaluated; it may turn out to be any tag."""
+    node = site.node
+    if "xacro:name" not in node.attributes:
+        expander.fail_at("XAC301", "'xacro:element' lacks its attribute 'xacro:name'", node, node.span())
+    tag = expander.text_value(node, "xacro:name", site.scope)
+    if not tag:
+        span = node.attribute_span("xacro:name")
+        expander.fail_at("XAC309", "the name of this element is empty", node, span)
+    attributes = {name: value for name, value in node.attributes.items() if name != "xacro:name"}
+    renamed = Element(tag, attributes, node.source, node.offset)
+    renamed.children = node.children
+    if tag.startswith("xacro:"):
+        expander.directive(site._replace(node=renamed))
+    else:
+        expander.element(renamed, site.parent.children, site.scope, site.macros)
+
+
+def set_attribute(expander: Expander, site: Site) -> None:
+    """``<xacro:attribute name value/>``: sets an attribute of the element around it."""
+    node = site.node
+    check_attributes(expander, node, ("name", "value"), ())
+    name = expander.text_value(node, "name", site.scope)
+    if not name:
+        span = node.attribute_span("name")
+        expander.fail_at("XAC309", "the name of this attribute is empty", node, span)
+    site.parent.attributes[name] = expander.text_value(node, "value", site.scope)
+
+
+DIRECTIVES: Mapping[str, Callable[[Expander, Site], None]] = {
+    "xacro:arg": declare_argument,
+    "xacro:attribute": set_attribute,
+    "xacro:call": call_dynamically,
+    "xacro:element": expand_element,
+    "xacro:if": expand_condition,
+    "xacro:include": include,
+    "xacro:insert_block": insert_block,
+    "xacro:macro": define_macro,
+    "xacro:property": define_property,
+    "xacro:unless": expand_condition,
+}
+"""Tag -> what expands it; any other tag with the prefix is a macro call."""

@@ -1,0 +1,305 @@
+"""The expansion proper: one walk over the tree, in reading order, that writes a new tree.
+
+Trees that were read are never changed, so each file is parsed once. Every element that comes out keeps the place where
+it was written and knows the macro calls and includes that brought it there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple, NoReturn
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Span
+from linkwright.xacro.comments import CommentSweeper
+from linkwright.xacro.faults import Fault
+from linkwright.xacro.macros import MacroTable
+from linkwright.xacro.origin import Frame, trail
+from linkwright.xacro.scope import Scope
+from linkwright.xacro.session import Session
+from linkwright.xmltree import Comment, Document, Element, Node, Text
+
+PREFIX = "xacro:"
+_DECLARATION = "xmlns:xacro"
+_EVALUATE_COMMENTS = "xacro:eval-comments"
+_EVALUATE_COMMENTS_OFF = "xacro:eval-comments:off"
+_MOST_ERRORS = 20
+
+
+class Site(NamedTuple):
+    """A tag of the language, where it stands.
+
+    Attributes:
+        node: the tag.
+        parent: the element that its expansion goes into.
+        scope: the properties that it sees.
+        macros: the macros that it sees.
+        followed: whether anything stands below it.
+    """
+
+    node: Element
+    parent: Element
+    scope: Scope
+    macros: MacroTable
+    followed: bool
+
+
+class Expander:
+    """Expands one document.
+
+    Attributes:
+        session: what the expansion knows.
+        sweeper: takes away comments above tags of the language.
+    """
+
+    def __init__(self, session: Session) -> None:
+        self.session = session
+        self.sweeper = CommentSweeper()
+        self._errors: list[Diagnostic] = []
+        self._nesting = 0
+
+    def document(self, document: Document) -> Document:
+        """The expansion of a document.
+
+        Raises:
+            LinkwrightError: the mistakes found, each at its place.
+        """
+        root = document.root
+        container = Element("")
+        target = root.attributes.get("xacro:targetNamespace")
+        if target:
+            root = _with_attribute(root, "xmlns", target)
+        try:
+            scope = Scope(self.session.globals, self.session)
+            self.element(root, container.children, scope, MacroTable())
+        except LinkwrightError as error:
+            self._errors += error.diagnostics
+        if self._errors:
+            raise LinkwrightError(*_without_repeats(self._errors))
+        expanded = container.children[0]
+        assert isinstance(expanded, Element), "an ordinary element comes out as an element"
+        result = Document(expanded, document.source)
+        result.prolog, result.epilog = list(document.prolog), list(document.epilog)
+        result.doctype, result.doctype_index = document.doctype, document.doctype_index
+        return result
+
+    # the walk
+
+    def children(self, nodes: Sequence[Node], parent: Element, scope: Scope, macros: MacroTable) -> None:
+        """Expand nodes in order, and put what comes out at the end of a parent.
+
+        Raises:
+            LinkwrightError: a mistake after which going on makes no sense.
+        """
+        output = parent.children
+        last = len(nodes) - 1
+        evaluate_comments = False
+        self._nesting += 1
+        if self._nesting > self.session.limits.nesting:
+            self._too_deep(nodes)
+        for index, node in enumerate(nodes):
+            if isinstance(node, Element):
+                evaluate_comments = False
+                if node.tag.startswith(PREFIX):
+                    self.directive(Site(node, parent, scope, macros, index < last))
+                else:
+                    self.element(node, output, scope, macros)
+            elif isinstance(node, Text):
+                output.append(text := self._text(node, scope))
+                if not text.data.isspace() and text.data and not node.cdata:
+                    evaluate_comments = False
+            elif isinstance(node, Comment):
+                if _EVALUATE_COMMENTS in node.data:
+                    evaluate_comments = _EVALUATE_COMMENTS_OFF not in node.data
+                else:
+                    output.append(self._comment(node, scope) if evaluate_comments else node)
+            else:
+                output.append(node)
+        self._nesting -= 1
+
+    def element(self, node: Element, output: list[Node], scope: Scope, macros: MacroTable) -> None:
+        """Expand an ordinary element: its attributes, then what it holds."""
+        self.pay(node)
+        attributes = self.attributes(node, scope)
+        made = Element(node.tag, attributes, node.source, node.offset, self.session.frame)
+        output.append(made)
+        if node.children:
+            self.children(node.children, made, scope, macros)
+
+    def attributes(self, node: Element, scope: Scope) -> dict[str, str]:
+        """The attributes of an element, evaluated; those of the language are left out."""
+        result: dict[str, str] = {}
+        for name, value in node.attributes.items():
+            if "x" in name and (name.startswith(PREFIX) or name == _DECLARATION):
+                continue
+            if "$" in value:
+                self.session.place = node
+                try:
+                    value = self.session.evaluate_text(value, scope)
+                except Fault as fault:
+                    fault.place_in_attribute(node, name)
+                    self.note(fault)
+            result[name] = value
+        return result
+
+    def directive(self, site: Site) -> None:
+        """Expand a tag of the language or a macro call."""
+        from linkwright.xacro.calls import call_macro
+        from linkwright.xacro.directives import DIRECTIVES
+
+        self.session.place = site.node
+        DIRECTIVES.get(site.node.tag, call_macro)(self, site)
+
+    def _text(self, node: Text, scope: Scope) -> Text:
+        if node.cdata or "$" not in node.data:
+            return Text(node.data, node.source, node.offset, node.cdata)
+        self.session.place = node
+        try:
+            data = self.session.evaluate_text(node.data, scope)
+        except Fault as fault:
+            fault.place_in_text(node)
+            self.note(fault)
+            data = ""
+        return Text(data, node.source, node.offset)
+
+    def _comment(self, node: Comment, scope: Scope) -> Comment:
+        if "$" not in node.data:
+            return node
+        try:
+            data = self.session.evaluate_text(node.data, scope)
+            _check_comment(data)
+        except Fault as fault:
+            inside = Text(node.data, node.source, node.offset + len("<!--"))
+            fault.place_in_text(inside)
+            self.note(fault)
+            data = ""
+        return Comment(data, node.source, node.offset)
+
+    # helpers of the tags
+
+    def value(self, node: Element, name: str, scope: Scope) -> object:
+        """The typed value of an attribute that the element has."""
+        text = node.attributes[name]
+        if "$" not in text:
+            return text
+        try:
+            return self.session.evaluate(text, scope)
+        except Fault as fault:
+            fault.place_in_attribute(node, name)
+            self.fail(fault)
+
+    def text_value(self, node: Element, name: str, scope: Scope) -> str:
+        """The value of an attribute that the element has, as it would be written."""
+        text = node.attributes[name]
+        if "$" not in text:
+            return text
+        try:
+            return self.session.evaluate_text(text, scope)
+        except Fault as fault:
+            fault.place_in_attribute(node, name)
+            self.fail(fault)
+
+    def sweep(self, site: Site) -> None:
+        """Take away the comments above a tag that leaves nothing behind."""
+        output = site.parent.children
+        if self.sweeper.sweep(output, followed=site.followed):
+            self.sweeper.mark(output)
+
+    def splice(self, container: Element, site: Site) -> None:
+        """Put what a container holds in the place of a tag; `xacro:attribute` in it sets the parent's attributes."""
+        output = site.parent.children
+        output.extend(container.children)
+        self.sweeper.moved(container.children, output)
+        for name, value in container.attributes.items():
+            if not name.startswith("xmlns:"):
+                site.parent.attributes[name] = value
+
+    def lift_namespaces(self, container: Element, site: Site) -> None:
+        """Declare on the parent what the root of an include or the tag of a macro declares."""
+        attributes = site.parent.attributes
+        for name, value in container.attributes.items():
+            if not name.startswith("xmlns:"):
+                continue
+            if attributes.setdefault(name, value) != value:
+                message = f"'{name}' is declared as '{value}' here and as '{attributes[name]}' around it"
+                self.session.warn("XAC504", message, site.node.span())
+
+    def enter(self, frame: Frame) -> None:
+        """Begin a macro call or an include.
+
+        Raises:
+            LinkwrightError: XAC601 when there are too many around it.
+        """
+        limit = self.session.limits.depth
+        if frame.depth > limit:
+            fault = Fault("XAC601", f"macro calls and includes are nested more than {limit} deep")
+            fault.hint = "end the recursion with xacro:if or xacro:unless"
+            fault.place_at(frame.site)
+            self.fail(fault)
+        self.pay(frame.site)
+        self.session.frame = frame
+
+    def pay(self, node: Element) -> None:
+        """Count an element or a macro call.
+
+        Raises:
+            LinkwrightError: XAC602 when there are too many.
+        """
+        try:
+            self.session.budget.element()
+        except Fault as fault:
+            fault.place_at(node)
+            self.fail(fault)
+
+    def _too_deep(self, nodes: Sequence[Node]) -> NoReturn:
+        limit = self.session.limits.nesting
+        fault = Fault("XAC601", f"elements are nested more than {limit} deep")
+        for node in nodes:
+            if isinstance(node, Element):
+                fault.place_at(node)
+                break
+        self.fail(fault)
+
+    # mistakes
+
+    def note(self, fault: Fault) -> None:
+        """Keep a mistake after which the walk can go on, unless it is one too many."""
+        diagnostic = self._diagnostic(fault)
+        if fault.code.startswith("XAC6") or fault.code == "XAC701":
+            raise LinkwrightError(diagnostic)
+        self._errors.append(diagnostic)
+        if len(_without_repeats(self._errors)) >= _MOST_ERRORS:
+            raise LinkwrightError(diagnostic)
+
+    def fail(self, fault: Fault) -> NoReturn:
+        """Stop because of a mistake that has its place."""
+        raise LinkwrightError(self._diagnostic(fault)) from None
+
+    def fail_at(
+        self, code: str, message: str, node: Element, span: Span | None, hint: str | None = None, *notes: Note
+    ) -> NoReturn:
+        """Stop because of a mistake at a place."""
+        notes = (*notes, *trail(self.session.frame))
+        raise LinkwrightError(Diagnostic(code, message, span, notes=notes, hint=hint, source=node.source))
+
+    def _diagnostic(self, fault: Fault) -> Diagnostic:
+        notes = (*fault.notes, *trail(self.session.frame))
+        return Diagnostic(fault.code, fault.message, fault.span, notes=notes, hint=fault.hint, source=fault.source)
+
+
+def _check_comment(data: str) -> None:
+    if "--" in data or data.endswith("-"):
+        raise Fault("XAC311", f"the comment would hold '--': '{data.strip()}'")
+
+
+def _with_attribute(element: Element, name: str, value: str) -> Element:
+    changed = Element(element.tag, {**element.attributes, name: value}, element.source, element.offset)
+    changed.children = element.children
+    return changed
+
+
+def _without_repeats(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
+    """The diagnostics, each mistake once: a macro that is called often makes the same one as often."""
+    seen: dict[tuple[str, str, Span | None], Diagnostic] = {}
+    for diagnostic in diagnostics:
+        seen.setdefault((diagnostic.code, diagnostic.message, diagnostic.span), diagnostic)
+    return list(seen.values())

@@ -1,0 +1,113 @@
+"""Expressions: the part of Python that may stand in ``${...}``.
+
+An expression is parsed by Python itself and turned, once for each text, into nested closures (see `compiler`), so
+nothing is ever handed to Python's own ``eval``.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+import warnings
+from types import GeneratorType
+from typing import TYPE_CHECKING, Any
+
+from linkwright.xacro.compiler import Closure, Compiler
+from linkwright.xacro.faults import Fault
+
+if TYPE_CHECKING:
+    from linkwright.xacro.scope import Scope
+
+_LONGEST = 20_000
+_ITERATORS = frozenset({GeneratorType, enumerate, filter, map, reversed, zip})
+"""What is run through before it becomes a value: nested thousands deep, these would overflow the stack."""
+_WARNS = re.compile(r"\\|\d[a-zA-Z]")
+_HINTS = (
+    ("{", "'}' ends the expression, so there is no way to write a dict or set in it; load one from YAML"),
+    ("&&", "write 'and'"),
+    ("||", "write 'or'"),
+    ("!", "write 'not'"),
+    ("$", "names in an expression are written without a dollar sign"),
+    ("?", "write 'A if CONDITION else B'"),
+)
+
+
+class Expression:
+    """A compiled expression.
+
+    Attributes:
+        source: its text.
+        changes: whether evaluating it may change a value, as ``items.pop(0)`` does.
+    """
+
+    __slots__ = ("_closure", "changes", "source")
+
+    def __init__(self, source: str) -> None:
+        self.source = source
+        stripped = source.strip()
+        compiler = Compiler(stripped, len(source) - len(source.lstrip()))
+        if stripped.isidentifier() and stripped not in _KEYWORDS:
+            self._closure: Closure = compiler.name(stripped, 0)
+        else:
+            self._closure = compiler.compile(_parse(source, stripped).body)
+        self.changes = compiler.changes
+
+    def evaluate(self, scope: Scope) -> Any:
+        """The value of the expression in a scope.
+
+        Raises:
+            Fault: it has none; the offsets count from the beginning of the source.
+        """
+        value = self._closure(scope)
+        return iter(list(value)) if value.__class__ in _ITERATORS else value
+
+
+_KEYWORDS = frozenset(
+    {
+        *("False", "None", "True", "and", "as", "assert", "async", "await", "break", "class", "continue", "def"),
+        *("del", "elif", "else", "except", "finally", "for", "from", "global", "if", "import", "in", "is"),
+        *("lambda", "nonlocal", "not", "or", "pass", "raise", "return", "try", "while", "with", "yield"),
+    }
+)
+
+
+def is_identifier(name: str) -> bool:
+    """Whether a name can be that of a property: a Python identifier that is no keyword."""
+    return name.isidentifier() and name not in _KEYWORDS
+
+
+def _parse(source: str, stripped: str) -> ast.Expression:
+    if not stripped:
+        raise Fault("XAC102", "the expression is empty", hint="write a property or a value between the braces")
+    if len(stripped) > _LONGEST:
+        raise Fault("XAC102", f"the expression is longer than {_LONGEST:,} characters")
+    try:
+        if _WARNS.search(stripped):
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                return ast.parse(stripped, mode="eval")
+        return ast.parse(stripped, mode="eval")
+    except SyntaxError as error:
+        raise _syntax_fault(source, stripped, error) from None
+    except (ValueError, MemoryError, RecursionError) as error:
+        raise Fault("XAC102", f"'{_shortened(stripped)}' is not an expression: {error or 'too deep'}") from None
+
+
+def _syntax_fault(source: str, stripped: str, error: SyntaxError) -> Fault:
+    words = error.msg.removeprefix("f-string: ")
+    message = f"'{_shortened(stripped)}' is not an expression: {words}"
+    hint = next((hint for sign, hint in _HINTS if sign in stripped), None)
+    if "!=" in stripped and hint == "write 'not'":
+        hint = None
+    fault = Fault("XAC102", message, hint=hint)
+    lines = stripped.split("\n")
+    if error.lineno and error.offset and error.lineno <= len(lines):
+        shift = len(source) - len(source.lstrip())
+        before = sum(len(line) + 1 for line in lines[: error.lineno - 1])
+        at = min(before + error.offset - 1, max(0, len(stripped) - 1))
+        fault.start, fault.end = shift + at, shift + at + 1
+    return fault
+
+
+def _shortened(text: str) -> str:
+    return text if len(text) <= 60 else f"{text[:57]}..."

@@ -1,0 +1,110 @@
+"""A mistake found while evaluating a text, on its way to becoming a diagnostic.
+
+Whoever finds a mistake knows the text and the offsets in it, but not the element that holds the text. So a `Fault`
+starts with offsets, is placed by whoever evaluates an element's text, and grows a note for each property on the way.
+"""
+
+from __future__ import annotations
+
+from linkwright.diagnostics import Note, SourceText, Span
+from linkwright.xmltree import Element, Text
+from linkwright.xmltree.positions import attribute_name_range, attribute_value_range, raw_offset
+
+
+class Fault(Exception):  # noqa: N818 - it is on its way to a diagnostic, and no part of the public errors
+    """A user's mistake.
+
+    Attributes:
+        code: the diagnostic's code.
+        message: the diagnostic's message.
+        start: offset of the mistake in the text being evaluated, or None for all of it.
+        end: where it ends (exclusive), or None.
+        hint: how to mend it.
+        span: the place of the mistake, once it is known.
+        source: the text that the span is in.
+        notes: how the evaluation came to that place, innermost first.
+        passing: what the next place on the way out is to be noted as, such as "property 'a' is used here".
+    """
+
+    def __init__(
+        self, code: str, message: str, start: int | None = None, end: int | None = None, hint: str | None = None
+    ) -> None:
+        super().__init__(message)
+        self.code = code
+        self.message = message
+        self.start = start
+        self.end = end
+        self.hint = hint
+        self.span: Span | None = None
+        self.source: SourceText | None = None
+        self.notes: list[Note] = []
+        self.passing = "from here"
+
+    def within(self, start: int, end: int, shift: int | None = None) -> None:
+        """Seen from the text around: the mistake is inside its `start` to `end`, or at `shift` plus its offsets."""
+        if self.start is None or self.end is None or shift is None:
+            self.start, self.end = start, end
+        else:
+            self.start, self.end = self.start + shift, self.end + shift
+
+    def place_in_attribute(self, element: Element, name: str, shift: int = 0) -> None:
+        """The text is the value of an attribute, or the part of it that begins at `shift`."""
+        start = None if self.start is None else self.start + shift
+        end = None if self.end is None else self.end + shift
+        self._place(element.source, attribute_part(element, name, start, end))
+
+    def place_in_text(self, text: Text) -> None:
+        """The text is character data."""
+        self._place(text.source, text_part(text, self.start, self.end))
+
+    def place_at(self, element: Element) -> None:
+        """The text is none that was written; the element stands for it."""
+        self._place(element.source, element.span())
+
+    def _place(self, source: SourceText | None, span: Span | None) -> None:
+        if self.span is None:
+            self.source, self.span = source, span
+        elif span is not None:
+            self.notes.append(Note(self.passing, span))
+        self.start = self.end = None
+
+
+def attribute_part(element: Element, name: str, start: int | None, end: int | None) -> Span | None:
+    """The place of a part of an attribute's value, as exactly as it can be told."""
+    source = element.source
+    if source is None:
+        return None
+    written = attribute_value_range(source.text, element.offset, name)
+    if written is None or start is None or end is None:
+        return element.attribute_span(name)
+    value = element.attributes.get(name)
+    raw = source.text[written[0] : written[1]]
+    if raw == value:
+        return source.span(written[0] + start, written[0] + end)
+    if "&" not in raw and "\n" not in raw and "\t" not in raw and value is not None:
+        return source.span(*written)  # a block that was evaluated: the value is no longer what was written
+    return source.span(raw_offset(source.text, *written, start), raw_offset(source.text, *written, end))
+
+
+def attribute_name(element: Element, name: str) -> Span | None:
+    """The place of an attribute's name; that of the element where it has no such attribute."""
+    source = element.source
+    if source is None:
+        return None
+    written = attribute_name_range(source.text, element.offset, name)
+    return source.span(*written) if written else element.span()
+
+
+def text_part(text: Text, start: int | None, end: int | None) -> Span | None:
+    """The place of a part of some character data, as exactly as it can be told."""
+    source = text.source
+    if source is None:
+        return None
+    whole = source.text
+    limit = whole.find("<", text.offset)
+    limit = len(whole) if limit < 0 else limit
+    if start is None or end is None:
+        return source.span(text.offset, limit)
+    if whole.startswith(text.data, text.offset):
+        return source.span(text.offset + start, text.offset + end)
+    return source.span(raw_offset(whole, text.offset, limit, start), raw_offset(whole, text.offset, limit, end))

@@ -1,0 +1,115 @@
+"""Lambdas of expressions."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from linkwright.xacro.scope import Environment, Local
+
+_Closure = Callable[[Any], Any]
+
+
+@dataclass(frozen=True)
+class Parameters:
+    """The parameters of a lambda, with the values of their defaults.
+
+    Attributes:
+        positional: names that take positional arguments.
+        positional_only: how many of them take nothing else.
+        keyword_only: names that take keyword arguments only.
+        rest: the name that takes all further positional arguments, or None.
+        keywords: the name that takes all further keyword arguments, or None.
+        defaults: the values of those that need not be given.
+    """
+
+    positional: tuple[str, ...]
+    positional_only: int
+    keyword_only: tuple[str, ...]
+    rest: str | None
+    keywords: str | None
+    defaults: dict[str, Any]
+
+    def bound(self, arguments: tuple[Any, ...], named: dict[str, Any]) -> dict[str, Any]:
+        """Parameter -> value for a call.
+
+        Raises:
+            TypeError: the arguments do not fit.
+        """
+        values: dict[str, Any] = dict(zip(self.positional, arguments, strict=False))
+        further = arguments[len(self.positional) :]
+        if further and self.rest is None:
+            raise TypeError(f"the lambda takes {len(self.positional)} arguments and {len(arguments)} are given")
+        if self.rest is not None:
+            values[self.rest] = further
+        others: dict[str, Any] = {}
+        for name, value in named.items():
+            known = name in self.positional[self.positional_only :] or name in self.keyword_only
+            if known and name in values:
+                raise TypeError(f"the lambda is given '{name}' twice")
+            if known:
+                values[name] = value
+            elif self.keywords is not None:
+                others[name] = value
+            else:
+                raise TypeError(f"the lambda has no parameter '{name}'")
+        if self.keywords is not None:
+            values[self.keywords] = others
+        for name in (*self.positional, *self.keyword_only):
+            if name not in values:
+                if name not in self.defaults:
+                    raise TypeError(f"the lambda is not given its parameter '{name}'")
+                values[name] = self.defaults[name]
+        return values
+
+
+class Function:
+    """A lambda."""
+
+    __slots__ = ("_around", "_body", "_parameters")
+
+    def __init__(self, parameters: Parameters, body: _Closure, around: Environment) -> None:
+        self._parameters = parameters
+        self._body = body
+        self._around = around
+
+    def __repr__(self) -> str:
+        return "<lambda>"
+
+    def __call__(self, *arguments: Any, **named: Any) -> Any:
+        """The value of the body for some arguments."""
+        budget = self._around.session.budget
+        budget.enter_lambda()
+        try:
+            return self._body(Local(self._around, self._parameters.bound(arguments, named)))
+        finally:
+            budget.leave_lambda()
+
+
+def bind_parameters(
+    arguments: ast.arguments, compile_node: Callable[[ast.AST], _Closure]
+) -> Callable[[Environment], Parameters]:
+    """What gives the parameters of a lambda when the lambda is evaluated; its defaults are evaluated then."""
+    positional = tuple(argument.arg for argument in (*arguments.posonlyargs, *arguments.args))
+    keyword_only = tuple(argument.arg for argument in arguments.kwonlyargs)
+    defaults = {
+        name: compile_node(default)
+        for name, default in zip(reversed(positional), reversed(arguments.defaults), strict=False)
+    }
+    for name, default in zip(keyword_only, arguments.kw_defaults, strict=True):
+        if default is not None:
+            defaults[name] = compile_node(default)
+
+    def bind(env: Environment) -> Parameters:
+        return Parameters(
+            positional=positional,
+            positional_only=len(arguments.posonlyargs),
+            keyword_only=keyword_only,
+            rest=arguments.vararg.arg if arguments.vararg else None,
+            keywords=arguments.kwarg.arg if arguments.kwarg else None,
+            defaults={name: default(env) for name, default in defaults.items()},
+        )
+
+    return bind

@@ -1,0 +1,143 @@
+"""``<xacro:include>``: the content of other files."""
+
+from __future__ import annotations
+
+import os
+import re
+from glob import glob
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean
+from linkwright.xacro import sources
+from linkwright.xacro.expander import Expander, Site
+from linkwright.xacro.literals import truth
+from linkwright.xacro.macros import MacroTable
+from linkwright.xacro.origin import Frame, trail
+from linkwright.xacro.scope import Namespace, Scope
+from linkwright.xacro.tags import check_attributes, warn_of_global
+from linkwright.xmltree import Document, Element
+
+_MISSING = "XML101"
+_PATTERN = re.compile(r"[*\[?]")
+
+
+def include(expander: Expander, site: Site) -> None:
+    """Put the content of a file, or of all files that match a pattern, in the place of the tag."""
+    node, session = site.node, expander.session
+    check_attributes(expander, node, ("filename",), ("ns", "optional"))
+    scope, macros = _tables(expander, site)
+    optional = _is_optional(expander, node)
+    child = next(node.elements(), None)
+    if child is not None:
+        session.warn("XAC503", f"'{child.tag}' inside an include means nothing", child.span())
+    contents: list[Element] = []
+    for path in _paths(expander, site):
+        session.depends_on(path)
+        container = _content(expander, site, path, scope, macros, optional=optional)
+        if container is not None:
+            expander.lift_namespaces(container, site)
+            contents.append(container)
+    output = site.parent.children
+    mark = expander.sweeper.sweep(output, followed=site.followed)
+    for container in contents:
+        expander.splice(container, site)
+    if mark:
+        expander.sweeper.mark(output)
+
+
+def _tables(expander: Expander, site: Site) -> tuple[Scope, MacroTable]:
+    if not site.node.attributes.get("ns"):
+        return site.scope, site.macros
+    name = expander.text_value(site.node, "ns", site.scope)
+    macros = MacroTable()
+    site.macros.define(name, macros)
+    scope = Namespace(site.scope, expander.session)
+    warn_of_global(expander, site.node, name, "ns")
+    site.scope.bind(name, scope)
+    return scope, macros
+
+
+def _is_optional(expander: Expander, node: Element) -> bool:
+    written = node.attributes.get("optional")
+    if written is None:
+        return False
+    try:
+        return truth(written)
+    except ValueError:
+        message = f"'optional' is '{written}', which is neither true nor false"
+        hint = "write true or false; it is not evaluated"
+        expander.fail_at("XAC305", message, node, node.attribute_span("optional"), hint)
+
+
+def _paths(expander: Expander, site: Site) -> list[str]:
+    name = expander.text_value(site.node, "filename", site.scope)
+    path = expander.session.absolute(name)
+    if not _PATTERN.search(path):
+        return [path]
+    paths = sorted(glob(path))  # noqa: PTH207 - kept as it is written
+    if not paths:
+        span = site.node.attribute_span("filename")
+        expander.session.warn("XAC502", f"no file matches '{path}'", span)
+    return paths
+
+
+def _content(
+    expander: Expander, site: Site, path: str, scope: Scope, macros: MacroTable, *, optional: bool
+) -> Element | None:
+    session = expander.session
+    around, file = session.frame, session.file
+    try:
+        document = _document(expander, site, path)
+    except LinkwrightError as error:
+        if optional and error.diagnostics[0].code == _MISSING:
+            return None
+        raise
+    expander.enter(Frame(None, site.node, around))
+    session.file = path
+    try:
+        root = document.root
+        container = Element(root.tag, expander.attributes(root, scope), root.source, root.offset)
+        declared = {name: value for name, value in container.attributes.items() if name.startswith("xmlns:")}
+        container.attributes = declared
+        expander.children(root.children, container, scope, macros)
+    finally:
+        session.frame, session.file = around, file
+    return container
+
+
+def _document(expander: Expander, site: Site, path: str) -> Document:
+    try:
+        return sources.read(path)
+    except LinkwrightError as error:
+        node, frame = site.node, expander.session.frame
+        found = error.diagnostics[0]
+        if found.span is None:
+            hint = found.hint or _nearest_file(path)
+            diagnostic = Diagnostic(
+                found.code,
+                found.message,
+                node.attribute_span("filename"),
+                notes=trail(frame),
+                hint=hint,
+                source=node.source,
+            )
+        else:
+            notes = (*found.notes, Frame(None, node, frame).note(), *trail(frame))
+            diagnostic = Diagnostic(
+                found.code, found.message, found.span, notes=notes, hint=xml_hint(found), source=found.source
+            )
+        raise LinkwrightError(diagnostic) from None
+
+
+def xml_hint(diagnostic: Diagnostic) -> str | None:
+    """The hint of a mistake in the XML; for the prefix of this language it says how that is declared."""
+    if diagnostic.code == "XML205" and diagnostic.message.startswith("the prefix 'xacro'"):
+        return 'declare it on the root element: xmlns:xacro="http://www.ros.org/wiki/xacro"'
+    return diagnostic.hint
+
+
+def _nearest_file(path: str) -> str | None:
+    folder, name = os.path.split(path)
+    try:
+        return did_you_mean(name, os.listdir(folder or "."))  # noqa: PTH208 - names are wanted, not paths
+    except (OSError, ValueError):
+        return f"there is no folder '{folder}'"

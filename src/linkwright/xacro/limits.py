@@ -1,0 +1,55 @@
+"""How far an expansion may go before it is stopped.
+
+A description comes from a stranger as often as from a colleague: whatever it says, opening it must end, and soon.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from threading import Lock
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """Bounds of one expansion; the defaults are far above what any real robot needs.
+
+    Attributes:
+        depth: how many macro calls and includes may be active at once.
+        nesting: how deep elements may nest, counting those of the macro calls around them.
+        elements: how many elements may be produced and macros called, together.
+        steps: how often the comprehensions and lambdas of all expressions may run, together.
+    """
+
+    depth: int = 200
+    nesting: int = 1000
+    elements: int = 500_000
+    steps: int = 1_000_000
+
+
+_FRAMES_PER_LEVEL = 6
+_lock = Lock()
+_active = 0
+_before = 0
+
+
+@contextmanager
+def room_for(limits: Limits) -> Iterator[None]:
+    """Raise Python's recursion limit so that our own limits are met first; put it back when nobody needs it."""
+    global _active, _before  # noqa: PLW0603 - the recursion limit is one for the whole process
+    with _lock:
+        if _active == 0:
+            _before = sys.getrecursionlimit()
+        _active += 1
+        wanted = _before + limits.nesting * _FRAMES_PER_LEVEL
+        if wanted > sys.getrecursionlimit():
+            sys.setrecursionlimit(wanted)
+    try:
+        yield
+    finally:
+        with _lock:
+            _active -= 1
+            if _active == 0:
+                sys.setrecursionlimit(_before)

@@ -1,0 +1,47 @@
+"""From what is written to a value: the literal rule, and what counts as true.
+
+Both are ros/xacro's, on which real robots rely: ``007`` is 7, ``true`` is True, but ``TRUE``, ``0x10`` and ``1_000``
+are strings.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+_NEVER_A_LITERAL = re.compile(r"[A-EGHJ-MO-SU-Za-eghj-mo-su-z$/<>(\[\"]")
+_BOOLEANS = {"true": True, "True": True, "false": False, "False": False}
+
+
+def literal(value: Any) -> Any:
+    """The value of a string that may be a number or a boolean; anything else as it is.
+
+    Single quotes around a string are taken off and keep it a string.
+    """
+    if not isinstance(value, str) or not value:
+        return value
+    if value[0] == "'" and value[-1] == "'" and len(value) >= 2:
+        return value[1:-1]
+    if "_" in value or _NEVER_A_LITERAL.match(value):
+        return value
+    try:
+        return int(value)
+    except ValueError:
+        pass
+    try:
+        return float(value)
+    except ValueError:
+        pass
+    return _BOOLEANS.get(value, value)
+
+
+def truth(value: Any) -> bool:
+    """Whether a condition holds: ``true``, ``True``, ``false``, ``False`` or a whole number; else Python's truth.
+
+    Raises:
+        ValueError: the value is a string that says neither.
+    """
+    if not isinstance(value, str):
+        return bool(value)
+    known = _BOOLEANS.get(value)
+    return bool(int(value)) if known is None else known

@@ -1,0 +1,120 @@
+"""Macros: their parameters, and the tables they are found in."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from linkwright.xacro.faults import Fault
+from linkwright.xmltree import Element
+
+_PARAMETER = re.compile(
+    r"""
+    \s* (?P<name>[^\s:=]+?) \s*
+    (?P<sign>:?=) \s*
+    (?P<forward>\^\|?)?
+    (?P<default> \$\{.*?\} | \$\(.*?\) | (?: '[^']*' | "[^"]*" | [^\s'"] )+ | )
+    (?:\s+|$)
+    """,
+    re.VERBOSE,
+)
+_BARE = re.compile(r"\s*(?P<name>\S+)\s*")
+_SIGN = re.compile(r"\s*[^\s:=]+\s*:?=")
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """A parameter of a macro.
+
+    Attributes:
+        name: its name; that of a block begins with one or two asterisks.
+        default: the text of its default, or None.
+        forward: whether it takes the caller's property of the same name when it is not given.
+        start: offset of its name in the list of parameters.
+        default_start: offset of its default there.
+    """
+
+    name: str
+    default: str | None
+    forward: bool
+    start: int
+    default_start: int
+
+    @property
+    def is_block(self) -> bool:
+        """Whether it takes an element of the call rather than an attribute."""
+        return self.name.startswith("*")
+
+
+def parse_parameters(text: str) -> tuple[Parameter, ...]:
+    """The parameters that the ``params`` of a macro declare.
+
+    Raises:
+        Fault: XAC412 for a default whose quotes do not match.
+    """
+    parameters: list[Parameter] = []
+    at = 0
+    while at < len(text):
+        match = _PARAMETER.match(text, at)
+        if match is not None:
+            default = match["default"] or None
+            parameters.append(
+                Parameter(match["name"], default, bool(match["forward"]), match.start("name"), match.start("default"))
+            )
+        elif _SIGN.match(text, at):
+            end = len(text.rstrip())
+            raise Fault("XAC412", "this parameter's default has a quote that is never closed", at, end)
+        else:
+            match = _BARE.match(text, at)
+            if match is None:
+                break  # only blanks are left
+            parameters.append(Parameter(match["name"], None, False, match.start("name"), match.end("name")))
+        at = match.end()
+    return tuple(parameters)
+
+
+class Macro:
+    """A macro: its parameters, and the element that holds its body."""
+
+    __slots__ = ("body", "name", "parameters")
+
+    def __init__(self, name: str, parameters: tuple[Parameter, ...], body: Element) -> None:
+        self.name = name
+        self.parameters = parameters
+        self.body = body
+
+
+class MacroTable:
+    """The macros of a scope, and the table around it; a namespace's table has none around it."""
+
+    __slots__ = ("_entries", "_parent")
+
+    def __init__(self, parent: MacroTable | None = None) -> None:
+        self._parent = parent
+        self._entries: dict[str, Macro | MacroTable] = {}
+
+    def define(self, name: str, entry: Macro | MacroTable) -> None:
+        """Give a name to a macro or to the table of a namespace; an earlier one of that name is forgotten."""
+        self._entries[name] = entry
+
+    def find(self, name: str) -> Macro | MacroTable | None:
+        """What has a name, here or in a table around."""
+        table: MacroTable | None = self
+        while table is not None:
+            entry = table._entries.get(name)
+            if entry is not None:
+                return entry
+            table = table._parent
+        return None
+
+    def names(self) -> Iterator[str]:
+        """The full names of all macros that can be called from here."""
+        table: MacroTable | None = self
+        while table is not None:
+            for name, entry in table._entries.items():
+                if isinstance(entry, Macro):
+                    yield name
+                else:
+                    yield from (f"{name}.{inner}" for inner in entry.names())
+            table = table._parent

@@ -1,0 +1,73 @@
+"""How an element came to be where it is: the macro calls and includes on the way."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from linkwright.diagnostics import Note, Span
+from linkwright.xmltree import Element
+
+_SHOWN = 10
+
+
+class Frame:
+    """A macro call or an include, and the one that it happened in.
+
+    Attributes:
+        macro: the macro's name, or None for an include.
+        site: the element that calls or includes.
+        around: the frame that the call or include happened in, or None.
+        depth: how many frames there are, this one included.
+    """
+
+    __slots__ = ("around", "depth", "macro", "site")
+
+    def __init__(self, macro: str | None, site: Element, around: Frame | None) -> None:
+        self.macro = macro
+        self.site = site
+        self.around = around
+        self.depth: int = 1 if around is None else around.depth + 1
+
+    def note(self) -> Note:
+        """What a message says of it."""
+        what = "included from here" if self.macro is None else f"in macro '{self.macro}' called here"
+        return Note(what, self.site.span())
+
+
+@dataclass(frozen=True, slots=True)
+class Origin:
+    """Where an element of an expansion comes from.
+
+    Attributes:
+        span: where it is written; None for an element made by a program.
+        trail: the macro calls and includes that brought it where it is, innermost first.
+    """
+
+    span: Span | None
+    trail: tuple[Note, ...]
+
+
+def frames(innermost: Frame | None) -> Iterator[Frame]:
+    """The frames from the innermost one outwards."""
+    frame = innermost
+    while frame is not None:
+        yield frame
+        frame = frame.around
+
+
+def trail(innermost: Frame | None) -> tuple[Note, ...]:
+    """The notes of all frames, innermost first; of very many, the outermost are counted only."""
+    notes: list[Note] = []
+    for frame in frames(innermost):
+        if len(notes) == _SHOWN and frame.depth > 1:
+            notes.append(Note(f"and {frame.depth} more calls and includes around it"))
+            break
+        notes.append(frame.note())
+    return tuple(notes)
+
+
+def origin_of(element: Element) -> Origin:
+    """Where an element of an expansion comes from."""
+    frame = element.origin
+    return Origin(element.span(), trail(frame if isinstance(frame, Frame) else None))

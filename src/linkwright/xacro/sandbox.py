@@ -1,0 +1,322 @@
+"""What an expression may do to the values it works on.
+
+Expressions come from strangers' files, so nothing here is forbidden by name: what is allowed is listed, and everything
+else is refused. An attribute is reached only on a type listed here and only if it is listed for that type; a type is
+called only if it is listed; and nothing may grow beyond the bounds below.
+"""
+
+from __future__ import annotations
+
+import operator
+import re
+from collections.abc import Callable
+from datetime import date, datetime
+from typing import Any
+
+from linkwright.xacro.scope import Namespace
+from linkwright.xacro.yamldata import YamlDict, YamlList
+
+MAX_LENGTH = 1_000_000
+"""How many characters a string, or items a list, may have."""
+MAX_BITS = 20_000
+"""How many bits a whole number may have."""
+MAX_DIGITS = 1_000
+"""How wide or precise a formatted number may be."""
+
+
+class RefusalError(Exception):
+    """An expression tried something that expressions may not do."""
+
+
+class Module:
+    """A named group of functions and constants, such as ``math``; expressions reach them with a dot."""
+
+    __slots__ = ("name", "values")
+
+    def __init__(self, name: str, values: dict[str, Any]) -> None:
+        self.name = name
+        self.values = values
+
+    def __repr__(self) -> str:
+        return f"<module {self.name}>"
+
+
+_SEQUENCE = {"count", "index"}
+_SET = {
+    *("copy", "difference", "intersection", "isdisjoint", "issubset", "issuperset", "symmetric_difference", "union"),
+}
+_STRING = {
+    *("capitalize", "casefold", "count", "encode", "endswith", "find", "index", "isalnum", "isalpha", "isascii"),
+    *("isdecimal", "isdigit", "isidentifier", "islower", "isnumeric", "isprintable", "isspace", "istitle", "isupper"),
+    *("lower", "lstrip", "partition", "removeprefix", "removesuffix", "rfind", "rindex", "rpartition", "rsplit"),
+    *("rstrip", "split", "splitlines", "startswith", "strip", "swapcase", "title", "upper"),
+}
+_LIST = {*_SEQUENCE, "append", "clear", "copy", "insert", "pop", "remove", "reverse", "sort"}
+_DICT = {"clear", "copy", "get", "items", "keys", "pop", "popitem", "setdefault", "update", "values"}
+
+_ATTRIBUTES: dict[type, set[str]] = {
+    str: _STRING,
+    bytes: {"decode", "hex", *_SEQUENCE},
+    int: {"as_integer_ratio", "bit_length", "conjugate", "denominator", "imag", "numerator", "real"},
+    bool: {"imag", "numerator", "denominator", "real"},
+    float: {"as_integer_ratio", "conjugate", "hex", "imag", "is_integer", "real"},
+    complex: {"conjugate", "imag", "real"},
+    list: _LIST,
+    YamlList: _LIST,
+    tuple: _SEQUENCE,
+    dict: _DICT,
+    YamlDict: _DICT,
+    set: {*_SET, "add", "clear", "discard", "pop", "remove", "update"},
+    frozenset: _SET,
+    range: {*_SEQUENCE, "start", "step", "stop"},
+    slice: {"start", "step", "stop"},
+    date: {"day", "isoformat", "isoweekday", "month", "weekday", "year"},
+    datetime: {"day", "hour", "isoformat", "microsecond", "minute", "month", "second", "weekday", "year"},
+}
+
+CALLABLE_TYPES = frozenset(
+    {bool, complex, dict, enumerate, filter, float, frozenset, int, list, map, reversed, set, slice, str, tuple, zip}
+)
+"""The types that expressions may call."""
+
+
+def attribute(value: Any, name: str) -> Any:
+    """``value.name``, where it is allowed.
+
+    Raises:
+        AttributeError: there is no such attribute.
+        RefusalError: there is one, but expressions may not have it.
+    """
+    kind = value.__class__
+    if kind is Module:
+        return _member(value.values, name, f"'{value.name}' has no '{name}'")
+    if isinstance(value, Namespace):
+        try:
+            return value.lookup(name)
+        except KeyError:
+            raise AttributeError(f"the namespace has no property '{name}'") from None
+    if name in _ATTRIBUTES.get(kind, ()):
+        return getattr(value, name)
+    grown = _GROWING.get((kind, name))
+    if grown is not None:
+        return _Bound(grown, value)
+    if kind is YamlDict:
+        return value[name]
+    if kind is type and value in _ATTRIBUTES and name in _ATTRIBUTES[value]:
+        return getattr(value, name)
+    if name.startswith("_") or hasattr(value, name):
+        raise RefusalError(f"'.{name}' is not available in expressions")
+    raise AttributeError(f"'{kind.__name__}' has no attribute '{name}'")
+
+
+def subscript(value: Any, key: Any) -> Any:
+    """``value[key]``."""
+    if isinstance(value, Namespace):
+        return value.lookup(key)
+    if value.__class__ is Module:
+        return _member(value.values, key, f"'{value.name}' has no '{key}'")
+    if isinstance(value, type):
+        raise TypeError(f"'{value.__name__}' is a type and has no items")
+    return value[key]
+
+
+def contains(container: Any, item: Any) -> bool:
+    """``item in container``."""
+    return item in (container.values if container.__class__ is Module else container)
+
+
+def check_call(function: Any) -> None:
+    """Refuse to call a type that is not listed.
+
+    Raises:
+        RefusalError: it is a type that expressions may not make values of.
+    """
+    if isinstance(function, type) and function not in CALLABLE_TYPES:
+        raise RefusalError(f"'{function.__name__}' may not be called in expressions")
+
+
+def check_size(value: Any) -> Any:
+    """The value itself, unless it is too large.
+
+    Raises:
+        RefusalError: a string, list or number is larger than the bounds; for nested lists everything in them counts.
+    """
+    kind = value.__class__
+    if kind is float or kind is bool:
+        return value
+    if kind is int:
+        if value.bit_length() > MAX_BITS:
+            raise RefusalError(f"the number has more than {MAX_BITS:,} bits")
+    elif kind is str or kind is bytes:
+        _check_length(len(value))
+    elif isinstance(value, (list, tuple, dict, set, frozenset)):
+        _weigh(value)
+    return value
+
+
+def as_text(value: Any) -> str:
+    """``str(value)``, which is what the expansion writes.
+
+    Raises:
+        RefusalError: it would be too long.
+    """
+    if value.__class__ is str:
+        return value
+    return str(check_size(value))
+
+
+def _check_length(length: int) -> None:
+    if length > MAX_LENGTH:
+        raise RefusalError(f"the value has more than {MAX_LENGTH:,} characters or items")
+
+
+def _weigh(value: Any) -> None:
+    weight = 0
+    pending: list[Any] = [value]
+    while pending:
+        item = pending.pop()
+        if isinstance(item, dict):
+            weight += len(item)
+            pending.extend(item.values())
+            pending.extend(key for key in item if isinstance(key, (tuple, str)))
+        elif isinstance(item, (list, tuple, set, frozenset)):
+            weight += len(item)
+            pending.extend(item)
+        elif isinstance(item, (str, bytes)):
+            weight += len(item)
+        _check_length(weight)
+
+
+def _member(values: dict[str, Any], name: Any, message: str) -> Any:
+    try:
+        return values[name]
+    except KeyError:
+        raise AttributeError(message) from None
+
+
+# operators that can make something large out of something small
+
+
+def add(left: Any, right: Any) -> Any:
+    """``left + right``."""
+    if isinstance(left, (str, list, tuple, bytes)) and isinstance(right, (str, list, tuple, bytes)):
+        _check_length(len(left) + len(right))
+    return left + right
+
+
+def multiply(left: Any, right: Any) -> Any:
+    """``left * right``."""
+    if left.__class__ is float or right.__class__ is float:
+        return left * right
+    for sequence, times in ((left, right), (right, left)):
+        if isinstance(sequence, (str, list, tuple, bytes)) and isinstance(times, int):
+            _check_length(len(sequence) * times)
+    return check_size(left * right)
+
+
+def power(base: Any, exponent: Any) -> Any:
+    """``base ** exponent``."""
+    if (
+        isinstance(base, int)
+        and isinstance(exponent, int)
+        and abs(base) > 1
+        and base.bit_length() * exponent > MAX_BITS
+    ):
+        raise RefusalError(f"the number has more than {MAX_BITS:,} bits")
+    return base**exponent
+
+
+def shift_left(value: Any, by: Any) -> Any:
+    """``value << by``."""
+    if isinstance(value, int) and isinstance(by, int) and value.bit_length() + by > MAX_BITS:
+        raise RefusalError(f"the number has more than {MAX_BITS:,} bits")
+    return value << by
+
+
+_FORMAT = re.compile(r"%(?:\([^)]*\))?[-+ #0]*(\*|\d+)?(?:\.(\*|\d+))?")
+
+
+def modulo(left: Any, right: Any) -> Any:
+    """``left % right``, which for a string is formatting."""
+    if isinstance(left, (str, bytes)):
+        pattern = left if isinstance(left, str) else left.decode("latin-1")
+        for width, precision in _FORMAT.findall(pattern):
+            if any(digits == "*" or len(digits) > 4 or int(digits or 0) > MAX_DIGITS for digits in (width, precision)):
+                raise RefusalError(f"'%{width}.{precision}' is wider than {MAX_DIGITS}")
+        check_size(right)
+    return left % right
+
+
+OPERATORS: dict[str, Callable[[Any, Any], Any]] = {
+    "Add": add,
+    "Sub": operator.sub,
+    "Mult": multiply,
+    "Div": operator.truediv,
+    "FloorDiv": operator.floordiv,
+    "Mod": modulo,
+    "Pow": power,
+    "LShift": shift_left,
+    "RShift": operator.rshift,
+    "BitOr": operator.or_,
+    "BitXor": operator.xor,
+    "BitAnd": operator.and_,
+    "MatMult": operator.matmul,
+}
+
+
+# methods that can make something large out of something small
+
+
+class _Bound:
+    """A guarded method of a value."""
+
+    __slots__ = ("_method", "_value")
+
+    def __init__(self, method: Callable[..., Any], value: Any) -> None:
+        self._method = method
+        self._value = value
+
+    def __call__(self, *arguments: Any) -> Any:
+        return self._method(self._value, *arguments)
+
+
+def _padded(name: str) -> Callable[..., Any]:
+    def pad(text: str, width: int, *fill: str) -> Any:
+        _check_length(width)
+        return getattr(text, name)(width, *fill)
+
+    return pad
+
+
+def _expandtabs(text: str, size: int = 8) -> str:
+    _check_length(text.count("\t") * size)
+    return text.expandtabs(size)
+
+
+def _join(text: str, items: Any) -> str:
+    parts = list(items)
+    _check_length(sum(len(part) for part in parts if isinstance(part, str)) + len(text) * len(parts))
+    return text.join(parts)
+
+
+def _replace(text: str, old: str, new: str, count: int = -1) -> str:
+    if isinstance(old, str) and isinstance(new, str):
+        times = text.count(old)
+        _check_length(len(text) + (times if count < 0 else min(count, times)) * max(0, len(new) - len(old)))
+    return text.replace(old, new, count)
+
+
+def _extend(items: list[Any], more: Any) -> None:
+    added = list(more)
+    _check_length(len(items) + len(added))
+    items.extend(added)
+
+
+_GROWING: dict[tuple[type, str], Callable[..., Any]] = {
+    **{(str, name): _padded(name) for name in ("center", "ljust", "rjust", "zfill")},
+    (str, "expandtabs"): _expandtabs,
+    (str, "join"): _join,
+    (str, "replace"): _replace,
+    (list, "extend"): _extend,
+    (YamlList, "extend"): _extend,
+}

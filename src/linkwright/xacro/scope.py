@@ -1,0 +1,187 @@
+"""Where the names in expressions are looked up.
+
+Scopes form a chain. A macro call opens one whose parent is the caller's (dynamic scoping, as in ros/xacro), an
+include with a namespace opens a `Namespace`, and the outermost one holds the names that the language provides.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from linkwright.xacro.faults import Fault
+from linkwright.xacro.literals import literal
+
+if TYPE_CHECKING:
+    from linkwright.xacro.session import Session
+    from linkwright.xmltree import Element
+
+
+class Lazy:
+    """A property that nobody has asked for yet: its text, and where that is written."""
+
+    __slots__ = ("attribute", "element", "resolving", "text")
+
+    def __init__(self, text: str, element: Element | None, attribute: str) -> None:
+        self.text = text
+        self.element = element
+        self.attribute = attribute
+        self.resolving = False
+
+
+class Scope:
+    """A table of names and the scope around it."""
+
+    __slots__ = ("parent", "session", "values")
+
+    def __init__(self, parent: Scope | None, session: Session, values: dict[str, Any] | None = None) -> None:
+        self.parent = parent
+        self.session = session
+        self.values: dict[str, Any] = {} if values is None else values
+
+    def lookup(self, name: str) -> Any:
+        """The value of a name, evaluated if nobody asked for it before.
+
+        Raises:
+            KeyError: no scope of the chain has it.
+            Fault: evaluating it failed.
+        """
+        scope: Scope | None = self
+        while scope is not None:
+            values = scope.values
+            if name in values:
+                value = values[name]
+                return scope._resolve(name, value) if value.__class__ is Lazy else value
+            scope = scope.parent
+        raise KeyError(name)
+
+    def __contains__(self, name: str) -> bool:
+        scope: Scope | None = self
+        while scope is not None:
+            if name in scope.values:
+                return True
+            scope = scope.parent
+        return False
+
+    def define(
+        self, name: str, value: Any, *, lazy: bool = False, element: Element | None = None, attribute: str = "value"
+    ) -> None:
+        """Give a name a value in this scope, after the literal rule.
+
+        Args:
+            name: the name.
+            value: the value; a string is subject to the literal rule.
+            lazy: whether a string is a text to be evaluated when somebody asks for it.
+            element: the element that the text is written in, for messages.
+            attribute: the attribute of it that holds the text.
+        """
+        value = literal(value)
+        if lazy and isinstance(value, str):
+            value = Lazy(value, element, attribute) if "$" in value else literal(value)
+        self.values[name] = value
+
+    def assign(self, name: str, value: Any) -> None:
+        """What ``name := value`` in an expression does: it defines a property here."""
+        self.define(name, value, lazy=True)
+
+    def bind(self, name: str, value: Any) -> None:
+        """Give a name a value as it is."""
+        self.values[name] = value
+
+    def inner(self) -> Local:
+        """The environment of a lambda or comprehension that stands in an expression evaluated here."""
+        return Local(self, {})
+
+    def remove(self, name: str) -> None:
+        """Take a name out of every scope of the chain but the outermost."""
+        scope = self
+        while scope.parent is not None:
+            scope.values.pop(name, None)
+            scope = scope.parent
+
+    def document_scope(self) -> Scope:
+        """The scope of the document, which is just inside the outermost one."""
+        scope = self
+        while scope.parent is not None and scope.parent.parent is not None:
+            scope = scope.parent
+        return scope
+
+    def names(self) -> Iterator[str]:
+        """All names that can be seen from here, for suggestions; blocks left out."""
+        scope: Scope | None = self
+        while scope is not None:
+            yield from (name for name in scope.values if not name.startswith("*"))
+            scope = scope.parent
+
+    def blocks(self) -> Iterator[str]:
+        """The names of all blocks that can be seen from here, with their asterisks."""
+        scope: Scope | None = self
+        while scope is not None:
+            yield from (name for name in scope.values if name.startswith("*"))
+            scope = scope.parent
+
+    def _resolve(self, name: str, lazy: Lazy) -> Any:
+        chain = self.session.resolving
+        if lazy.resolving:
+            circle = " -> ".join([*chain[chain.index(name) :], name])
+            hint = 'evaluate one of them where it is written: lazy_eval="false"'
+            raise Fault("XAC203", f"the property '{name}' is defined by itself: {circle}", hint=hint)
+        if len(chain) >= self.session.limits.depth:
+            raise Fault("XAC601", f"more than {len(chain)} properties are defined by one another")
+        lazy.resolving = True
+        chain.append(name)
+        try:
+            value = literal(self.session.evaluate(lazy.text, self))
+        except Fault as fault:
+            if lazy.element is not None:
+                fault.place_in_attribute(lazy.element, lazy.attribute)
+            fault.passing = f"the property '{name}' is used here"
+            raise
+        finally:
+            lazy.resolving = False
+            chain.pop()
+        self.values[name] = value
+        return value
+
+
+class Namespace(Scope):
+    """The scope of an include with a namespace; expressions reach its properties with a dot."""
+
+    __slots__ = ()
+
+
+class Local:
+    """The variables of a lambda or comprehension, and the environment around it."""
+
+    __slots__ = ("_around", "_values", "session")
+
+    def __init__(self, around: Environment, values: dict[str, Any]) -> None:
+        self._around = around
+        self._values = values
+        self.session: Session = around.session
+
+    def lookup(self, name: str) -> Any:
+        """The value of a name; see `Scope.lookup`."""
+        if name in self._values:
+            return self._values[name]
+        return self._around.lookup(name)
+
+    def bind(self, name: str, value: Any) -> None:
+        """Give a variable its value."""
+        self._values[name] = value
+
+    def assign(self, name: str, value: Any) -> None:
+        """What ``name := value`` does: it defines a property in the scope around."""
+        self._around.assign(name, value)
+
+    def inner(self) -> Local:
+        """The environment of a lambda or comprehension that stands in this one."""
+        return Local(self, {})
+
+    def names(self) -> Iterator[str]:
+        """All names that can be seen from here."""
+        yield from self._values
+        yield from self._around.names()
+
+
+Environment = Scope | Local

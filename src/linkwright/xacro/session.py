@@ -1,0 +1,273 @@
+"""What one expansion knows and has counted: its arguments, packages, files, warnings and limits."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Mapping
+from typing import TYPE_CHECKING, Any, Protocol
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, did_you_mean
+from linkwright.xacro import sandbox, symbols
+from linkwright.xacro.budget import Budget
+from linkwright.xacro.faults import Fault, text_part
+from linkwright.xacro.limits import Limits
+from linkwright.xacro.origin import Frame, trail
+from linkwright.xacro.sandbox import Module
+from linkwright.xacro.scope import Namespace, Scope
+from linkwright.xacro.substitution import package_fault
+from linkwright.xacro.template import compile_template
+from linkwright.xacro.yamldata import YamlDict, YamlError, dotted
+from linkwright.xmltree import Element, Text
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from linkwright.diagnostics import Span
+    from linkwright.xacro.scope import Environment
+
+
+class Packages(Protocol):
+    """What finds the share folder of a package; `linkwright.workspace.PackageFinder` does."""
+
+    def share(self, name: str) -> Path:
+        """The share folder of a package; raises `LinkwrightError` when there is no such package."""
+        ...
+
+
+PackageSource = Mapping[str, Any] | Packages | None
+
+_SAID = {
+    "XAC702": Severity.ERROR,
+    "XAC703": Severity.WARNING,
+    "XAC704": Severity.INFO,
+    "XAC705": Severity.INFO,
+}
+
+
+class Session:
+    """The state of one expansion that is not the tree.
+
+    Attributes:
+        arguments: name -> value of every argument given or declared so far.
+        limits: the bounds of the expansion.
+        budget: what is left of them.
+        file: the file being processed, to whose folder relative paths refer.
+        frame: the innermost macro call or include being processed, or None.
+        place: the element or text being processed, which warnings point to.
+        resolving: the properties being evaluated because of one another, outermost first.
+        dependencies: the files read so far, the main file first.
+        diagnostics: the warnings so far.
+    """
+
+    def __init__(self, file: str, arguments: Mapping[str, str], packages: PackageSource, limits: Limits) -> None:
+        self.arguments: dict[str, str] = {name: str(value) for name, value in arguments.items()}
+        self.limits = limits
+        self.budget = Budget(limits)
+        self.file = file
+        self.frame: Frame | None = None
+        self.place: Element | Text | None = None
+        self.resolving: list[str] = []
+        self.dependencies: dict[str, None] = {file: None}
+        self.diagnostics: list[Diagnostic] = []
+        self._packages = packages
+        self._main_file = file
+        self.globals = Scope(None, self, symbols.global_names(self))
+
+    # texts
+
+    def evaluate(self, text: str, scope: Scope) -> Any:
+        """The value of a text in a scope.
+
+        Raises:
+            Fault: it has none.
+        """
+        return compile_template(text).evaluate(scope)
+
+    def evaluate_text(self, text: str, scope: Scope) -> str:
+        """What is written for a text in a scope.
+
+        Raises:
+            Fault: it has no value.
+        """
+        value = compile_template(text).evaluate(scope)
+        if value.__class__ is str:
+            return value
+        try:
+            return sandbox.as_text(value)
+        except (sandbox.RefusalError, ValueError) as error:
+            raise Fault("XAC202", f"cannot write the value of '{text}': {error}") from None
+
+    def changes(self, text: str) -> bool:
+        """Whether evaluating a text may change a value, as ``${items.pop(0)}`` does."""
+        return compile_template(text).changes
+
+    # names
+
+    def undefined(self, name: str, environment: Environment, start: int, end: int) -> Fault:
+        """The fault for a name that no scope has."""
+        names = [known for known in environment.names() if known != name]
+        python = self.globals.values["python"].values
+        if name in ("true", "false"):
+            hint: str | None = f"write {name.capitalize()}"
+        elif name in python:
+            hint = f"write python.{name}"
+        elif name in self.arguments:
+            hint = f"'{name}' is an argument: write $(arg {name})"
+        else:
+            hint = did_you_mean(name, names)
+        return Fault("XAC201", f"the property '{name}' is not defined", start, end, hint)
+
+    def nearest_attribute(self, owner: Any, name: str) -> str | None:
+        """A hint for a name that a value does not have."""
+        candidates: Iterable[Any] = ()
+        if isinstance(owner, Module):
+            candidates = owner.values
+        elif isinstance(owner, Namespace):
+            candidates = owner.names()
+        elif isinstance(owner, dict):
+            candidates = owner
+        return did_you_mean(name, [candidate for candidate in candidates if isinstance(candidate, str)])
+
+    def argument(self, name: str) -> str:
+        """The value of an argument.
+
+        Raises:
+            Fault: XAC211 when it is neither declared nor given.
+        """
+        try:
+            return self.arguments[name]
+        except (KeyError, TypeError):
+            hint = did_you_mean(str(name), self.arguments)
+            if hint is None:
+                hint = f'declare it before this: <xacro:arg name="{name}" default="..."/>'
+            raise Fault("XAC211", f"the argument '{name}' is not declared", hint=hint) from None
+
+    def package(self, name: str) -> str:
+        """The share folder of a package.
+
+        Raises:
+            Fault: no such package is found.
+        """
+        packages = self._packages
+        if isinstance(packages, Mapping) and name in packages:
+            return str(packages[name])
+        if packages is None or isinstance(packages, Mapping):
+            from pathlib import Path
+
+            from linkwright.workspace import PackageFinder
+
+            start = Path(self._main_file).resolve().parent
+            packages = self._packages = PackageFinder(start=start, extra=packages)
+        try:
+            return str(packages.share(name))
+        except LinkwrightError as error:
+            raise package_fault(error) from None
+
+    def mathematics(self) -> dict[str, Any]:
+        """The names of ``math``, for ``$(eval ...)``."""
+        return symbols.MATHEMATICS
+
+    # files
+
+    @property
+    def working_directory(self) -> str:
+        """What ``$(cwd)`` gives."""
+        return os.getcwd()  # noqa: PTH109 - a string is wanted
+
+    def absolute(self, name: str) -> str:
+        """A file name relative to the file being processed, with that file's folder before it."""
+        return os.path.join(os.path.dirname(self.file), name)  # noqa: PTH118, PTH120 - kept as it is written
+
+    def depends_on(self, file: str) -> None:
+        """Remember that a file was read."""
+        self.dependencies.setdefault(file, None)
+
+    def load_yaml(self, name: str) -> Any:
+        """The value of a YAML file, whose name is relative to the file being processed.
+
+        Raises:
+            Fault: XAC506 when there is no such file or it is not YAML.
+        """
+        from linkwright.xacro import yamldata
+        from linkwright.xmltree.decoding import decode
+        from linkwright.xmltree.reader import read_bytes
+
+        path = self.absolute(name)
+        self.depends_on(path)
+        try:
+            text = decode(read_bytes(path), path)
+        except LinkwrightError as error:
+            fault = Fault("XAC506", error.diagnostics[0].message, hint=_nearest_file(path))
+            raise fault from None
+        try:
+            return yamldata.load(text, self._unit_value)
+        except YamlError as error:
+            raise _yaml_fault(path, text, error) from None
+
+    def _unit_value(self, expression: str) -> Any:
+        from linkwright.xacro.template import compile_expression
+
+        return compile_expression(expression).evaluate(self.globals)
+
+    def dotify(self, mapping: Any = (), **items: Any) -> YamlDict:
+        """A mapping whose items are reached with a dot too."""
+        result: YamlDict = dotted(dict(mapping, **items))
+        return result
+
+    # findings
+
+    def warn(
+        self,
+        code: str,
+        message: str,
+        span: Span | None = None,
+        hint: str | None = None,
+        severity: Severity = Severity.WARNING,
+    ) -> None:
+        """Note a finding that does not stop the expansion; the same one at the same place only once."""
+        place = self.place
+        if span is None and place is not None:
+            span = place.span() if isinstance(place, Element) else text_part(place, None, None)
+        if any((known.code, known.message, known.span) == (code, message, span) for known in self.diagnostics):
+            return
+        source = place.source if place is not None and span is not None else None
+        self.diagnostics.append(Diagnostic(code, message, span, severity, trail(self.frame), hint, source))
+
+    def deprecated(self, better: str, function: Callable[..., Any]) -> Callable[..., Any]:
+        """A function that still has a bare name and warns when it is called by it."""
+        bare = better.partition(".")[2]
+
+        def warning(*arguments: Any, **named: Any) -> Any:
+            self.warn("XAC507", f"calling '{bare}' by its bare name is deprecated", hint=f"write {better}")
+            return function(*arguments, **named)
+
+        return warning
+
+    def say(self, code: str) -> Callable[..., str]:
+        """One of the functions with which a description says something to its user."""
+
+        def said(*words: Any, **_options: Any) -> str:
+            text = " ".join(map(sandbox.as_text, words)) or "here"
+            self.warn(code, text, severity=_SAID[code])
+            return ""
+
+        return said
+
+
+def _yaml_fault(path: str, text: str, error: YamlError) -> Fault:
+    from linkwright.diagnostics import Note, SourceText
+
+    fault = Fault("XAC506", f"'{path}' is not valid YAML: {error.message}")
+    if error.line:
+        source = SourceText(path, text)
+        at = source.offset(error.line, error.column)
+        fault.notes.append(Note("the mistake is here", source.span(at)))
+    return fault
+
+
+def _nearest_file(path: str) -> str | None:
+    folder, name = os.path.split(path)
+    try:
+        return did_you_mean(name, os.listdir(folder or "."))  # noqa: PTH208 - names are wanted, not paths
+    except (OSError, ValueError):
+        return None

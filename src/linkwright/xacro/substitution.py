@@ -1,0 +1,157 @@
+"""Substitution arguments: ``$(arg name)``, ``$(find package)`` and their like.
+
+What is between the parentheses is split at blanks into a command and its arguments. What comes out is looked through
+once more for ``$(find ...)``, so that the value of an argument may hold one.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.xacro.faults import Fault
+
+if TYPE_CHECKING:
+    from linkwright.xacro.session import Session
+
+_COMMANDS = ("arg", "find", "env", "optenv", "dirname", "cwd", "eval")
+_REFERENCE = re.compile(r"\$\(([^()$]+)\)")
+
+
+def substitute(body: str, session: Session) -> str:
+    """The value of ``$(body)``.
+
+    Raises:
+        Fault: the command is unknown, lacks its arguments, or finds nothing; the offsets count from the beginning of
+            the body.
+    """
+    if not body:
+        return "$()"
+    if body == "cwd":
+        return session.working_directory
+    if body.startswith("eval "):
+        return _evaluated(body[len("eval ") :], session)
+    _check_characters(body)
+    value = _command(body, session, only_find=False)
+    if "$(" not in value:
+        return value
+    return _REFERENCE.sub(lambda match: _found_again(match[0], match[1], session), value)
+
+
+def _check_characters(body: str) -> None:
+    for sign in "$(":
+        at = body.find(sign)
+        if at >= 0:
+            raise Fault("XAC213", f"'{sign}' may not stand inside '$(...)'", at, at + 1)
+
+
+def _found_again(whole: str, body: str, session: Session) -> str:
+    return _command(body, session, only_find=True) if body.split(" ", 1)[0] == "find" else whole
+
+
+def _command(body: str, session: Session, *, only_find: bool) -> str:
+    words = [word for word in body.split(" ") if word]
+    command = words[0] if words else ""
+    evaluate = _EVALUATE.get(command)
+    if evaluate is None:
+        from linkwright.diagnostics import did_you_mean
+
+        known = ", ".join(_COMMANDS)
+        hint = did_you_mean(command, _COMMANDS) or f"the commands are {known}"
+        at = body.find(command)
+        raise Fault("XAC212", f"unknown substitution command '{command}'", at, at + len(command), hint)
+    try:
+        return evaluate(words[1:], session)
+    except Fault as fault:
+        if fault.start is None and len(words) > 1 and not only_find:
+            fault.start = body.find(words[1], len(command))
+            fault.end = fault.start + len(words[1])
+        raise
+
+
+def _one(command: str, what: str, words: list[str]) -> str:
+    if len(words) != 1:
+        given = "none is" if not words else f"{len(words)} are"
+        raise Fault("XAC213", f"'$({command} ...)' takes one {what} and {given} given")
+    return words[0]
+
+
+def _argument(words: list[str], session: Session) -> str:
+    return session.argument(_one("arg", "name", words))
+
+
+def _package(words: list[str], session: Session) -> str:
+    return session.package(_one("find", "package", words))
+
+
+def _variable(words: list[str], _session: Session) -> str:
+    name = _one("env", "name", words)
+    value = os.environ.get(name)
+    if value is None:
+        hint = f"write $(optenv {name} DEFAULT) where it need not be set"
+        raise Fault("XAC214", f"the environment variable '{name}' is not set", hint=hint)
+    return value
+
+
+def _optional_variable(words: list[str], _session: Session) -> str:
+    if not words:
+        raise Fault("XAC213", "'$(optenv ...)' takes a name and a default, and nothing is given")
+    return os.environ.get(words[0], " ".join(words[1:]))
+
+
+def _directory(_words: list[str], session: Session) -> str:
+    return str(Path(session.file).resolve().parent)
+
+
+_EVALUATE: dict[str, Callable[[list[str], Session], str]] = {
+    "arg": _argument,
+    "find": _package,
+    "env": _variable,
+    "optenv": _optional_variable,
+    "dirname": _directory,
+}
+
+
+def _evaluated(source: str, session: Session) -> str:
+    from linkwright.xacro.sandbox import as_text
+    from linkwright.xacro.scope import Scope
+    from linkwright.xacro.template import compile_expression
+
+    scope = Scope(None, session, _names_for_eval(session))
+    try:
+        return as_text(compile_expression(source).evaluate(scope))
+    except Fault as fault:
+        if fault.start is not None and fault.end is not None:
+            fault.start, fault.end = fault.start + len("eval "), fault.end + len("eval ")
+        raise
+
+
+def _names_for_eval(session: Session) -> dict[str, Any]:
+    names: dict[str, Any] = {name: _typed(value) for name, value in session.arguments.items()}
+    names.update(session.mathematics())
+    names.update({"list": list, "dict": dict, "map": map, "str": str, "float": float, "int": int})
+    names.update({"true": True, "false": False})
+    names["arg"] = lambda name: _typed(session.argument(name))
+    names["env"] = lambda name: _variable([name], session)
+    names["optenv"] = lambda name, default="": os.environ.get(name, default)
+    names["find"] = session.package
+    return names
+
+
+def _typed(value: str) -> Any:
+    try:
+        return float(value) if "." in value else int(value)
+    except ValueError:
+        return {"true": True, "false": False}.get(value.lower(), value)
+
+
+def package_fault(error: LinkwrightError) -> Fault:
+    """The fault for a package that is not found, with the words of the room that looked for it."""
+    diagnostic = error.diagnostics[0]
+    fault = Fault(diagnostic.code, diagnostic.message, hint=diagnostic.hint)
+    fault.notes.extend(diagnostic.notes)
+    return fault

@@ -1,0 +1,158 @@
+"""The names that the language provides to expressions.
+
+They are those of ros/xacro: a few of Python's functions, all of ``math``, and the groups ``math``, ``python`` and
+``xacro``. Functions that could make something very large, or reach what expressions may not see, are guarded.
+"""
+
+from __future__ import annotations
+
+import builtins
+import math
+import re
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from linkwright.xacro import sandbox
+from linkwright.xacro.faults import Fault
+from linkwright.xacro.sandbox import CALLABLE_TYPES, MAX_BITS, MAX_LENGTH, Module, RefusalError
+
+if TYPE_CHECKING:
+    from linkwright.xacro.session import Session
+
+_BARE = ("list", "dict", "map", "len", "str", "float", "int", "bool", "min", "max", "round")
+_PYTHON = (
+    *_BARE,
+    *("abs", "all", "any", "complex", "divmod", "enumerate", "filter", "frozenset", "hash", "isinstance"),
+    *("issubclass", "ord", "range", "repr", "reversed", "set", "slice", "sorted", "sum", "tuple", "type"),
+    *("vars", "zip"),
+)
+_LARGEST_FACTORIAL = 2_000
+_MOST_LISTS = 1_000
+
+
+def _range(*arguments: Any) -> range:
+    result = range(*arguments)
+    try:
+        too_long = len(result) > MAX_LENGTH
+    except OverflowError:
+        too_long = True
+    if too_long:
+        raise RefusalError(f"the range has more than {MAX_LENGTH:,} items")
+    return result
+
+
+def _round(number: Any, digits: int | None = None) -> Any:
+    if isinstance(number, int) and digits is not None and abs(digits) > MAX_BITS:
+        raise RefusalError("it rounds to too many digits")
+    return round(number, digits)
+
+
+def _sum(items: Any, start: Any = 0) -> Any:
+    summands = list(items)
+    if isinstance(start, (int, float, complex)):
+        return sum(summands, start)
+    if len(summands) > _MOST_LISTS:
+        raise RefusalError(f"it adds more than {_MOST_LISTS:,} lists")
+    total = start
+    for summand in summands:
+        total = sandbox.add(total, summand)
+    return total
+
+
+def _type(value: Any) -> type:
+    kind = type(value)
+    if kind not in CALLABLE_TYPES:
+        raise RefusalError(f"the type '{kind.__name__}' is not available in expressions")
+    return kind
+
+
+def _vars(value: Any) -> dict[str, Any]:
+    if value.__class__ is not Module:
+        raise RefusalError("only the names of 'math', 'python' and 'xacro' can be listed")
+    return dict(value.values)
+
+
+_GUARDED: dict[str, Any] = {"range": _range, "round": _round, "sum": _sum, "type": _type, "vars": _vars}
+
+
+def _factorial(n: Any) -> int:
+    if isinstance(n, int) and n > _LARGEST_FACTORIAL:
+        raise RefusalError(f"the factorial of more than {_LARGEST_FACTORIAL:,}")
+    return math.factorial(n)
+
+
+def _of_two(name: str) -> Callable[..., int]:
+    function = getattr(math, name)
+
+    def guarded(n: Any, *k: Any) -> int:
+        if isinstance(n, int) and n > _LARGEST_FACTORIAL:
+            raise RefusalError(f"'{name}' of more than {_LARGEST_FACTORIAL:,}")
+        result: int = function(n, *k)
+        return result
+
+    return guarded
+
+
+def _prod(items: Any, *, start: Any = 1) -> Any:
+    total = start
+    for item in items:
+        total = sandbox.multiply(total, item)
+    return total
+
+
+MATHEMATICS: dict[str, Any] = {
+    **{name: value for name, value in vars(math).items() if not name.startswith("_")},
+    "factorial": _factorial,
+    "comb": _of_two("comb"),
+    "perm": _of_two("perm"),
+    "prod": _prod,
+}
+"""Everything public in Python's ``math``."""
+
+_PYTHON_NAMES: dict[str, Any] = {name: _GUARDED.get(name, getattr(builtins, name)) for name in _PYTHON}
+
+
+def tokenize(text: str, sep: str = ",; ", skip_empty: bool = True) -> list[str]:
+    """The parts of a text between any of some characters."""
+    inside = re.sub(r"(?<!\\)([\[\]])", r"\\\1", sep)
+    parts = re.split(f"[{inside}]", text)
+    return [part for part in parts if part] if skip_empty else parts
+
+
+def _fatal(*words: Any) -> None:
+    raise Fault("XAC701", " ".join(map(sandbox.as_text, words)))
+
+
+def global_names(session: Session) -> dict[str, Any]:
+    """The names of the outermost scope of one expansion."""
+    functions: dict[str, Any] = {
+        "load_yaml": session.load_yaml,
+        "abs_filename": session.absolute,
+        "dotify": session.dotify,
+    }
+    xacro = Module(
+        "xacro",
+        {
+            **functions,
+            "arg": session.argument,
+            "message": session.say("XAC704"),
+            "warning": session.say("XAC703"),
+            "error": session.say("XAC702"),
+            "print_location": session.say("XAC705"),
+            "fatal": _fatal,
+            "tokenize": tokenize,
+        },
+    )
+    deprecated = {name: session.deprecated(f"xacro.{name}", function) for name, function in functions.items()}
+    for name in ("sorted", "range"):
+        deprecated[name] = session.deprecated(f"python.{name}", _PYTHON_NAMES[name])
+    return {
+        **{name: _PYTHON_NAMES[name] for name in _BARE},
+        "True": True,
+        "False": False,
+        **MATHEMATICS,
+        **deprecated,
+        "math": Module("math", MATHEMATICS),
+        "python": Module("python", _PYTHON_NAMES),
+        "xacro": xacro,
+    }

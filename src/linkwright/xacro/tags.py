@@ -1,0 +1,38 @@
+"""Checks that all tags of the language share."""
+
+from __future__ import annotations
+
+from linkwright.diagnostics import did_you_mean
+from linkwright.xacro.expander import Expander
+from linkwright.xacro.faults import attribute_name
+from linkwright.xmltree import Element
+
+
+def check_attributes(expander: Expander, node: Element, required: tuple[str, ...], optional: tuple[str, ...]) -> None:
+    """Check that a tag has the attributes it needs, and warn of those that mean nothing on it.
+
+    Raises:
+        LinkwrightError: XAC301 when one is missing.
+    """
+    attributes = node.attributes
+    for name in required:
+        if name not in attributes:
+            near = did_you_mean(name, [given for given in attributes if given not in optional])
+            hint = f"write {name}=\"...\" for '{near[14:-2]}'" if near else None
+            expander.fail_at("XAC301", f"'{node.tag}' lacks its attribute '{name}'", node, node.span(), hint)
+    if len(attributes) == len(required):
+        return
+    for name in attributes:
+        if name in required or name in optional or name.startswith("xmlns:"):
+            continue
+        hint = did_you_mean(name, required + optional)
+        message = f"'{node.tag}' knows no attribute '{name}'"
+        expander.session.warn("XAC302", message, attribute_name(node, name), hint)
+
+
+def warn_of_global(expander: Expander, node: Element, name: str, attribute: str) -> None:
+    """Warn that a name which the language provides gets another meaning."""
+    if name in expander.session.globals.values:
+        message = f"'{name}' is a name that xacro provides, and is given another meaning here"
+        span = node.attribute_span(attribute) if attribute == "name" else attribute_name(node, attribute)
+        expander.session.warn("XAC306", message, span)

@@ -1,0 +1,134 @@
+"""Texts with ``${...}`` and ``$(...)`` in them, compiled once for each text and evaluated in any scope.
+
+A text that is exactly one token keeps the type of its value, such as a float or a list; anything else is joined to a
+string. What comes out is not evaluated again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from linkwright.xacro import sandbox
+from linkwright.xacro.expression import Expression
+from linkwright.xacro.faults import Fault
+from linkwright.xacro.lexer import Token, TokenKind, tokenize
+from linkwright.xacro.sandbox import RefusalError
+from linkwright.xacro.substitution import substitute
+
+if TYPE_CHECKING:
+    from linkwright.xacro.scope import Scope
+
+_Part = Callable[["Scope"], Any]
+_BRACKET = len("${")
+_KEPT = 20_000
+
+
+class Template:
+    """A compiled text.
+
+    Attributes:
+        changes: whether evaluating it may change a value, as ``${items.pop(0)}`` does.
+    """
+
+    __slots__ = ("_parts", "changes")
+
+    def __init__(self, text: str) -> None:
+        self.changes = False
+        self._parts = [self._part(token) for token in tokenize(text)]
+
+    def evaluate(self, scope: Scope) -> Any:
+        """The value of the text in a scope.
+
+        Raises:
+            Fault: it has none; the offsets count from the beginning of the text.
+        """
+        if len(self._parts) == 1:
+            return self._parts[0](scope)
+        return "".join([_as_text(part(scope)) for part in self._parts])
+
+    def _part(self, token: Token) -> _Part:
+        kind, text, start, end = token
+        if kind is TokenKind.TEXT:
+            return lambda _scope: text
+        if "$" in text:
+            return self._nested(token)
+        if kind is TokenKind.SUBSTITUTION:
+            return _placed(lambda scope: substitute(text, scope.session), start, end)
+        try:
+            expression = Expression(text)
+        except Fault as fault:
+            fault.within(start, end, start + _BRACKET)
+            raise
+        self.changes = self.changes or expression.changes
+        return _placed(expression.evaluate, start, end)
+
+    def _nested(self, token: Token) -> _Part:
+        """A token whose inside is itself a text: that is evaluated first, and what comes out is the source."""
+        kind, text, start, end = token
+        inner = _placed(compile_template(text).evaluate, start, end)
+        self.changes = True  # nobody knows before it is evaluated
+
+        def part(scope: Scope) -> Any:
+            source = _as_text(inner(scope))
+            try:
+                if kind is TokenKind.SUBSTITUTION:
+                    return substitute(source, scope.session)
+                return compile_expression(source).evaluate(scope)
+            except Fault as fault:
+                fault.within(start, end)
+                raise
+
+        return part
+
+
+_templates: dict[str, Template] = {}
+_expressions: dict[str, Expression] = {}
+
+
+def compile_template(text: str) -> Template:
+    """The template of a text; the same text gives the same template.
+
+    Raises:
+        Fault: XAC101 or XAC102 when the text is malformed.
+    """
+    template = _templates.get(text)
+    if template is None:
+        if len(_templates) >= _KEPT:
+            _templates.clear()
+        template = _templates[text] = Template(text)
+    return template
+
+
+def compile_expression(source: str) -> Expression:
+    """The compiled form of an expression; the same source gives the same one.
+
+    Raises:
+        Fault: XAC102 or XAC204 when it is malformed or forbidden.
+    """
+    expression = _expressions.get(source)
+    if expression is None:
+        if len(_expressions) >= _KEPT:
+            _expressions.clear()
+        expression = _expressions[source] = Expression(source)
+    return expression
+
+
+def _placed(evaluate: _Part, start: int, end: int) -> _Part:
+    def part(scope: Scope) -> Any:
+        try:
+            return evaluate(scope)
+        except Fault as fault:
+            fault.within(start, end, start + _BRACKET)
+            raise
+
+    return part
+
+
+def _as_text(value: Any) -> str:
+    if value.__class__ is str:
+        return value
+    try:
+        return sandbox.as_text(value)
+    except (RefusalError, ValueError) as error:
+        raise Fault("XAC202", f"cannot write the value: {error}") from None

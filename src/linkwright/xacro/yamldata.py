@@ -1,0 +1,119 @@
+"""YAML files as values of expressions.
+
+PyYAML's safe loader reads them, so the language is YAML 1.1: ``yes`` is True, ``012`` is ten, ``1e3`` is a string.
+Six tags turn an expression with a unit into metres or radians. PyYAML is imported when a file is first read.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+UNITS = {
+    "!radians": 1.0,
+    "!degrees": math.pi / 180.0,
+    "!meters": 1.0,
+    "!millimeters": 0.001,
+    "!foot": 0.3048,
+    "!inches": 0.0254,
+}
+"""What one of each unit is in metres or radians."""
+
+
+class YamlDict(dict[Any, Any]):
+    """A mapping whose items are reached with a dot too."""
+
+    __slots__ = ()
+
+    def __getitem__(self, key: Any) -> Any:
+        try:
+            return super().__getitem__(key)
+        except KeyError:
+            raise AttributeError(f"the YAML mapping has no key '{key}'") from None
+
+
+class YamlList(list[Any]):
+    """A sequence read from YAML."""
+
+    __slots__ = ()
+
+
+class YamlError(Exception):
+    """A file that is no YAML; line and column count from 1 and are 0 when they are not known."""
+
+    def __init__(self, message: str, line: int = 0, column: int = 0) -> None:
+        super().__init__(message)
+        self.message = message
+        self.line = line
+        self.column = column
+
+
+def load(text: str, evaluate: Callable[[str], Any]) -> Any:
+    """The value of a YAML text.
+
+    Args:
+        text: the YAML.
+        evaluate: gives the value of the expression that follows a unit tag.
+
+    Raises:
+        YamlError: the text is not YAML, or has a tag that is not known.
+    """
+    import yaml
+
+    class UnitLoader(_fast_loader()):  # type: ignore[misc]
+        """The safe loader plus units; made anew for each file so that PyYAML itself stays as it is."""
+
+    def with_unit(loader: Any, tag: str, node: Any) -> float:
+        return float(evaluate(loader.construct_scalar(node))) * UNITS[f"!{tag}"]
+
+    UnitLoader.add_multi_constructor("!", _only_units(with_unit))
+    loader = UnitLoader(text)
+    try:
+        return dotted(loader.get_single_data())
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark
+        words = error.problem or error.context or "not valid YAML"
+        raise YamlError(words, mark.line + 1 if mark else 0, mark.column + 1 if mark else 0) from None
+    except (yaml.YAMLError, ValueError, TypeError, RecursionError) as error:
+        raise YamlError(str(error).partition("\n")[0] or "not valid YAML") from None
+    finally:
+        loader.dispose()
+
+
+def dotted(value: Any) -> Any:
+    """A value with every dict in it made a `YamlDict` and every list a `YamlList`."""
+    return _dotted(value, {})
+
+
+def _dotted(value: Any, seen: dict[int, Any]) -> Any:
+    if not isinstance(value, (dict, list)):
+        return value
+    known = seen.get(id(value))
+    if known is not None:
+        return known
+    if isinstance(value, dict):
+        mapping = seen[id(value)] = YamlDict()
+        mapping.update((key, _dotted(item, seen)) for key, item in value.items())
+        return mapping
+    sequence = seen[id(value)] = YamlList()
+    sequence.extend(_dotted(item, seen) for item in value)
+    return sequence
+
+
+def _fast_loader() -> Any:
+    import yaml
+
+    return getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+
+
+def _only_units(construct: Callable[[Any, str, Any], float]) -> Callable[[Any, str, Any], float]:
+    def constructor(loader: Any, tag: str, node: Any) -> float:
+        if f"!{tag}" not in UNITS:
+            from yaml.constructor import ConstructorError
+
+            known = ", ".join(UNITS)
+            raise ConstructorError(None, None, f"unknown tag '!{tag}' (known are {known})", node.start_mark)
+        return construct(loader, tag, node)
+
+    return constructor

@@ -1,0 +1,18 @@
+"""XML with positions: read, walk and write."""
+
+from linkwright.xmltree.nodes import Comment, Document, Element, Node, ProcessingInstruction, Text
+from linkwright.xmltree.reader import parse, parse_file
+from linkwright.xmltree.writer import write, write_element
+
+__all__ = [
+    "Comment",
+    "Document",
+    "Element",
+    "Node",
+    "ProcessingInstruction",
+    "Text",
+    "parse",
+    "parse_file",
+    "write",
+    "write_element",
+]

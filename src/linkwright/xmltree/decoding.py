@@ -1,0 +1,60 @@
+"""From the bytes of a file to its text.
+
+A text that is valid UTF-8 is read as UTF-8 whatever its XML declaration says, as ros/xacro does; only a text that is
+not is read in the encoding that it declares.
+"""
+
+from __future__ import annotations
+
+import codecs
+import re
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText
+
+_DECLARED = re.compile(rb"""^\s*<\?xml[^>]*?\bencoding\s*=\s*["']([A-Za-z][A-Za-z0-9._-]*)["']""")
+_BYTE_ORDER_MARKS = (
+    (codecs.BOM_UTF8, "utf-8"),
+    (codecs.BOM_UTF32_LE, "utf-32-le"),
+    (codecs.BOM_UTF32_BE, "utf-32-be"),
+    (codecs.BOM_UTF16_LE, "utf-16-le"),
+    (codecs.BOM_UTF16_BE, "utf-16-be"),
+)
+
+
+def decode(data: bytes, name: str) -> str:
+    """The text of a file, without its byte order mark.
+
+    Raises:
+        LinkwrightError: XML104 when the bytes are no text in the encoding that holds for them.
+    """
+    for mark, encoding in _BYTE_ORDER_MARKS:
+        if data.startswith(mark):
+            return _decode(data[len(mark) :], encoding, name, "its byte order mark says so")
+    try:
+        return data.decode("utf-8")
+    except UnicodeDecodeError:
+        declared = _DECLARED.match(data)
+        if declared is None:
+            return _decode(data, "utf-8", name, "it declares no other encoding")
+        encoding = declared[1].decode("ascii")
+        return _decode(data, encoding, name, "its XML declaration says so")
+
+
+def _decode(data: bytes, encoding: str, name: str, reason: str) -> str:
+    try:
+        return data.decode(encoding)
+    except LookupError:
+        message = f"'{name}' declares the unknown encoding '{encoding}'"
+        raise LinkwrightError(Diagnostic("XML104", message, hint="save the file as UTF-8")) from None
+    except UnicodeDecodeError as error:
+        before = data[: error.start].decode(encoding, "replace")
+        source = SourceText(name, before + data[error.start :].decode(encoding, "replace"))
+        raise LinkwrightError(
+            Diagnostic(
+                "XML104",
+                f"byte 0x{data[error.start]:02x} is not valid {encoding.upper()}",
+                span=source.span(len(before)),
+                hint=f"the file is read as {encoding.upper()}, because {reason}; save it as UTF-8",
+                source=source,
+            )
+        ) from None

@@ -1,0 +1,197 @@
+"""What is wrong with a text that is not well-formed XML, in plain words."""
+
+from __future__ import annotations
+
+import re
+from xml.parsers.expat import ExpatError
+from xml.parsers.expat import errors as expat_errors
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, SourceText
+
+_CODE = expat_errors.codes
+_NO_ELEMENT = _CODE[expat_errors.XML_ERROR_NO_ELEMENTS]
+_INVALID_TOKEN = _CODE[expat_errors.XML_ERROR_INVALID_TOKEN]
+_UNCLOSED_TOKEN = _CODE[expat_errors.XML_ERROR_UNCLOSED_TOKEN]
+_MISMATCH = _CODE[expat_errors.XML_ERROR_TAG_MISMATCH]
+_DUPLICATE = _CODE[expat_errors.XML_ERROR_DUPLICATE_ATTRIBUTE]
+_JUNK = _CODE[expat_errors.XML_ERROR_JUNK_AFTER_DOC_ELEMENT]
+_UNDEFINED_ENTITY = _CODE[expat_errors.XML_ERROR_UNDEFINED_ENTITY]
+_MISPLACED_DECLARATION = _CODE[expat_errors.XML_ERROR_MISPLACED_XML_PI]
+_SYNTAX = _CODE[expat_errors.XML_ERROR_SYNTAX]
+_UNCLOSED_CDATA = _CODE[expat_errors.XML_ERROR_UNCLOSED_CDATA_SECTION]
+
+_CLOSING_TAG = re.compile(r"</\s*([^\s>]*)\s*>?")
+_BARE_ATTRIBUTE = re.compile(r"([^\s=/>\"'<]+)\s*$")
+_UNQUOTED = re.compile(r"([^\s=/>\"'<]+)\s*=\s*$")
+_NAME = re.compile(r"[^\s=/>\"'&;<]+")
+
+_AMPERSAND_HINT = "write '&amp;' for the character '&'"
+_LESS_HINT = "close the quotes of the attribute before it, or write '&lt;' for the character '<'"
+
+
+def syntax_error(
+    source: SourceText, error: ExpatError, offset: int, open_elements: list[tuple[str, int]]
+) -> LinkwrightError:
+    """The error for what expat stumbled over.
+
+    Args:
+        source: the text being read.
+        error: what expat says.
+        offset: character offset at which it stopped.
+        open_elements: name and offset of each element not yet closed, outermost first.
+    """
+    return LinkwrightError(_Fault(source, offset, open_elements).describe(error))
+
+
+def undeclared_prefix(source: SourceText, offset: int, name: str) -> LinkwrightError:
+    """The error for a name whose namespace prefix is declared nowhere around it."""
+    prefix = name.partition(":")[0]
+    return LinkwrightError(
+        Diagnostic(
+            "XML205",
+            f"the prefix '{prefix}' of '{name}' is not declared",
+            span=source.span(offset, offset + len(name)),
+            hint=f'declare it on the root element: xmlns:{prefix}="..."',
+            source=source,
+        )
+    )
+
+
+def forbidden_entity(source: SourceText, offset: int, message: str) -> LinkwrightError:
+    """The error for an entity that would read another file or grow without bound."""
+    return LinkwrightError(
+        Diagnostic(
+            "XML209",
+            message,
+            span=source.span(offset),
+            hint="write the text itself in place of the entity",
+            source=source,
+        )
+    )
+
+
+class _Fault:
+    def __init__(self, source: SourceText, offset: int, open_elements: list[tuple[str, int]]) -> None:
+        self._source = source
+        self._text = source.text
+        self._offset = min(offset, len(source.text))
+        self._open = open_elements
+
+    def describe(self, error: ExpatError) -> Diagnostic:
+        code = error.code
+        if not self._text.strip():
+            message = f"'{self._source.name}' is empty"
+            return Diagnostic("XML105", message, span=self._source.span(0, 0), source=self._source)
+        if code == _MISMATCH:
+            return self._mismatched_tag()
+        if self._offset >= len(self._text.rstrip()) and code in (_NO_ELEMENT, _UNCLOSED_TOKEN) and self._open:
+            return self._never_closed()
+        if code == _UNCLOSED_TOKEN:
+            return self._unclosed_token()
+        if code == _INVALID_TOKEN:
+            return self._invalid_token()
+        if code == _DUPLICATE:
+            return self._at_name("XML204", "the attribute '{}' is given twice", "keep one of the two")
+        if code == _UNDEFINED_ENTITY:
+            return self._undefined_entity()
+        if code == _JUNK:
+            return self._diagnostic(
+                "XML207", "there is content after the end of the root element", hint="a file has one root element"
+            )
+        if code == _MISPLACED_DECLARATION:
+            message = "the XML declaration '<?xml' must be the very first thing in the file"
+            return self._diagnostic("XML206", message, 5, hint="remove what stands before it")
+        if code == _NO_ELEMENT:
+            return self._diagnostic("XML206", "there is no root element", hint="a robot starts with <robot name=...>")
+        if code == _UNCLOSED_CDATA:
+            return self._diagnostic("XML203", "this CDATA section is never closed", 9, hint="close it with ']]>'")
+        if code == _SYNTAX and self._open == []:
+            hint = "an XML file holds nothing but comments before its root element"
+            return self._diagnostic("XML206", "this is not XML", hint=hint)
+        return self._diagnostic("XML206", _words(error))
+
+    def _diagnostic(
+        self, code: str, message: str, length: int = 1, *, at: int | None = None, hint: str | None = None
+    ) -> Diagnostic:
+        start = self._offset if at is None else at
+        span = self._source.span(start, start + length)
+        return Diagnostic(code, message, span=span, hint=hint, source=self._source)
+
+    def _mismatched_tag(self) -> Diagnostic:
+        start = self._text.rfind("</", 0, self._offset + 2)
+        closing = _CLOSING_TAG.match(self._text, max(start, 0))
+        name = closing[1] if closing else ""
+        span = self._source.span(start, closing.end() if closing else start + 2)
+        if not self._open:
+            return Diagnostic("XML201", f"'</{name}>' closes nothing", span=span, source=self._source)
+        inner, opened_at = self._open[-1]
+        note = Note(f"'<{inner}>' is opened here", self._source.span(opened_at, opened_at + 1 + len(inner)))
+        outer = any(name == other for other, _ in self._open[:-1])
+        hint = f"write '</{inner}>' before it" if outer else f"write '</{inner}>', or remove it"
+        return Diagnostic(
+            "XML201",
+            f"'</{name}>' does not close '<{inner}>'",
+            span=span,
+            notes=(note,),
+            hint=hint,
+            source=self._source,
+        )
+
+    def _never_closed(self) -> Diagnostic:
+        name, at = self._open[-1]
+        span = self._source.span(at, at + 1 + len(name))
+        hint = f"write '</{name}>' where it ends"
+        return Diagnostic("XML202", f"'<{name}>' is never closed", span=span, hint=hint, source=self._source)
+
+    def _unclosed_token(self) -> Diagnostic:
+        if self._text.startswith("<!--", self._offset):
+            return self._diagnostic("XML203", "this comment is never closed", 4, hint="close it with '-->'")
+        if self._text.startswith("<![CDATA[", self._offset):
+            return self._diagnostic("XML203", "this CDATA section is never closed", 9, hint="close it with ']]>'")
+        name = _NAME.match(self._text, self._offset + 1)
+        length = 1 + (len(name[0]) if name else 0)
+        hint = "look for a missing '>' or a missing quote"
+        return self._diagnostic("XML203", "this tag is never finished", length, hint=hint)
+
+    def _invalid_token(self) -> Diagnostic:
+        text, at = self._text, self._offset
+        character = text[at : at + 1]
+        before = text[max(0, at - 200) : at]
+        if character and not character.isprintable() and character not in "\t\r\n":
+            return self._diagnostic("XML206", f"the character U+{ord(character):04X} is not allowed in XML")
+        ampersand = re.search(r"&[^\s;&<>\"']*$", text[: at + 1][-60:])
+        if ampersand:
+            start = at + 1 - len(ampersand[0])
+            return self._diagnostic("XML206", "'&' does not begin an entity", at=start, hint=_AMPERSAND_HINT)
+        if re.search(r"<!--(?:(?!-->).)*--$", before, re.DOTALL):
+            message = "'--' is not allowed inside a comment"
+            return self._diagnostic("XML206", message, 2, at=at - 2, hint="use other characters, such as '=='")
+        if before.endswith("<"):
+            return self._diagnostic("XML206", "'<' does not begin a tag", at=at - 1, hint="write '&lt;'")
+        if unquoted := _UNQUOTED.search(before):
+            name = unquoted[1]
+            return self._diagnostic("XML206", f"the value of '{name}' is not in quotes", hint=f'write {name}="..."')
+        if character == "<":
+            return self._diagnostic("XML206", "'<' is not allowed inside a tag", hint=_LESS_HINT)
+        if before[-1:] in ('"', "'") and _NAME.match(character):
+            return self._diagnostic("XML206", "a blank is missing between two attributes")
+        if bare := _BARE_ATTRIBUTE.search(before):
+            at -= len(bare[0])
+            message = f"the attribute '{bare[1]}' has no value"
+            return self._diagnostic("XML206", message, len(bare[1]), at=at, hint=f'write {bare[1]}="..."')
+        return self._diagnostic("XML206", f"{character!r} is not expected here" if character else "the file ends early")
+
+    def _undefined_entity(self) -> Diagnostic:
+        name = _NAME.match(self._text, self._offset + 1)
+        written = f"&{name[0]};" if name else "&"
+        message = f"the entity '{written}' is not defined"
+        return self._diagnostic("XML208", message, len(written), hint=_AMPERSAND_HINT)
+
+    def _at_name(self, code: str, message: str, hint: str) -> Diagnostic:
+        name = _NAME.match(self._text, self._offset)
+        written = name[0] if name else ""
+        return self._diagnostic(code, message.format(written), max(1, len(written)), hint=hint)
+
+
+def _words(error: ExpatError) -> str:
+    return f"this is not well-formed XML: {str(error).partition(':')[0]}"

@@ -1,0 +1,63 @@
+"""Where things stand inside a start tag.
+
+The tree keeps only the offset of each ``<``. What lies inside the tag is found by reading the tag again, which is
+done only for the few places that a message or the viewer asks about.
+"""
+
+from __future__ import annotations
+
+import re
+
+_TAG_NAME = re.compile(r"<[^\s/>]+")
+_ATTRIBUTE = re.compile(r"""\s*([^\s=/>"']+)\s*=\s*("[^"]*"|'[^']*')""")
+_CHARACTER = re.compile(r"&[^;&<]*;|\r\n?|.", re.DOTALL)
+
+
+def attribute_value_range(text: str, offset: int, name: str) -> tuple[int, int] | None:
+    """Character offsets of an attribute's value, without its quotes.
+
+    Args:
+        text: the whole source text.
+        offset: character offset of the start tag's ``<``.
+        name: the attribute's name as written.
+
+    Returns:
+        Start and end (exclusive), or None when the tag does not have the attribute.
+    """
+    at = _TAG_NAME.match(text, offset)
+    while at is not None:
+        at = _ATTRIBUTE.match(text, at.end())
+        if at is not None and at[1] == name:
+            return at.start(2) + 1, at.end(2) - 1
+    return None
+
+
+def attribute_name_range(text: str, offset: int, name: str) -> tuple[int, int] | None:
+    """Character offsets of an attribute's name in the start tag at `offset`, or None when it is not there."""
+    at = _TAG_NAME.match(text, offset)
+    while at is not None:
+        at = _ATTRIBUTE.match(text, at.end())
+        if at is not None and at[1] == name:
+            return at.start(1), at.end(1)
+    return None
+
+
+def raw_offset(text: str, start: int, end: int, index: int) -> int:
+    """Character offset in the source of one character of a value.
+
+    The value may be shorter than what is written: an entity such as ``&lt;`` stands for one character, and so do the
+    two characters of a Windows line end.
+
+    Args:
+        text: the whole source text.
+        start: where the written value begins.
+        end: where it ends (exclusive).
+        index: index of the character in the value as the tree has it.
+    """
+    at = start
+    for _ in range(index):
+        character = _CHARACTER.match(text, at, end)
+        if character is None:
+            return end
+        at = character.end()
+    return at

@@ -1,0 +1,109 @@
+"""Writing a tree as text.
+
+The form is the one that ros/xacro 2.1 gives on Python up to 3.12: minidom's ``toprettyxml`` with two blanks of
+indent, with attributes in alphabetical order, blank text dropped, and an element that holds nothing but text on one
+line. It is the same here on every Python version.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.xmltree.nodes import Comment, Document, Element, Node, ProcessingInstruction, Text
+
+_INDENT = "  "
+
+
+def write(document: Document) -> str:
+    """The document as text, with an XML declaration and a newline at the end.
+
+    Raises:
+        LinkwrightError: XML301 when a comment made by a program holds two dashes, which XML cannot say.
+    """
+    pieces: list[str] = ['<?xml version="1.0" ?>\n']
+    before: list[Node] = list(document.prolog)
+    after: list[Node] = [document.root, *document.epilog]
+    if document.doctype is None:
+        _write_nodes(before + after, pieces.append)
+    else:
+        at = document.doctype_index
+        _write_nodes(before[:at], pieces.append)
+        pieces.append(f"{document.doctype}\n")
+        _write_nodes(before[at:] + after, pieces.append)
+    return "".join(pieces)
+
+
+def write_element(element: Element) -> str:
+    """An element and what it holds as text, without an XML declaration.
+
+    Raises:
+        LinkwrightError: XML301, see `write`.
+    """
+    pieces: list[str] = []
+    _write_nodes([element], pieces.append)
+    return "".join(pieces)
+
+
+def _write_nodes(nodes: Iterable[Node], put: Callable[[str], None]) -> None:
+    # A loop with its own stack: documents may be nested deeper than Python's calls.
+    stack: list[tuple[Iterator[Node], str]] = []
+    remaining = iter(nodes)
+    indent = ""
+    while True:
+        for node in remaining:
+            if isinstance(node, Element):
+                put(f"{indent}<{node.tag}")
+                attributes = node.attributes
+                for name in sorted(attributes):
+                    put(f' {name}="{_escaped(attributes[name])}"')
+                children = node.children
+                if not children:
+                    put("/>\n")
+                elif len(children) == 1 and isinstance(only := children[0], Text) and not only.cdata:
+                    put(f">{_escaped(only.data)}</{node.tag}>\n")
+                else:
+                    put(">\n")
+                    stack.append((remaining, f"{indent}</{node.tag}>\n"))
+                    remaining = iter(children)
+                    indent += _INDENT
+                    break
+            elif isinstance(node, Text):
+                if node.cdata:
+                    put(f"<![CDATA[{node.data.replace(']]>', ']]]]><![CDATA[>')}]]>")
+                elif node.data and not node.data.isspace():
+                    put(f"{indent}{_escaped(node.data)}\n")
+            elif isinstance(node, Comment):
+                put(f"{indent}<!--{_comment(node)}-->\n")
+            else:
+                put(f"{indent}{_instruction(node)}\n")
+        else:
+            if not stack:
+                return
+            remaining, closing = stack.pop()
+            indent = indent[: -len(_INDENT)]
+            put(closing)
+
+
+def _escaped(text: str) -> str:
+    if "&" in text:
+        text = text.replace("&", "&amp;")
+    if "<" in text:
+        text = text.replace("<", "&lt;")
+    if '"' in text:
+        text = text.replace('"', "&quot;")
+    if ">" in text:
+        text = text.replace(">", "&gt;")
+    return text
+
+
+def _comment(node: Comment) -> str:
+    if "--" in node.data:
+        span = node.source.span(node.offset, node.offset + len("<!--")) if node.source else None
+        message = "a comment cannot hold '--'"
+        raise LinkwrightError(Diagnostic("XML301", message, span=span, source=node.source))
+    return node.data
+
+
+def _instruction(node: ProcessingInstruction) -> str:
+    return f"<?{node.target} {node.data}?>"

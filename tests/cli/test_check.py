@@ -1,0 +1,57 @@
+"""`linkwright check`: the tree as check_urdf prints it, findings with their place, exit status."""
+
+from __future__ import annotations
+
+from linkwright.cli import main
+from tests.places import PACKAGE
+
+
+def test_tree_of_a_good_model(capsys):
+    assert main(["check", str(PACKAGE / "urdf" / "mbot_base.urdf")]) == 0
+    captured = capsys.readouterr()
+    assert captured.out.splitlines()[:4] == [
+        "robot name is: mbot",
+        "---------- Successfully Parsed XML ---------------",
+        "root Link: base_link has 4 child(ren)",
+        "    child(1):  back_caster_link",
+    ]
+    assert captured.err == ""
+
+
+def test_xacro_is_expanded_first(capsys):
+    assert main(["check", str(PACKAGE / "urdf" / "mbot_base.xacro")]) == 0
+    assert "base_link has 11 child(ren)" in capsys.readouterr().out
+
+
+def test_independent_errors_are_reported_together(tmp_path, capsys):
+    model = tmp_path / "bad.urdf"
+    model.write_text(
+        '<robot name="r">\n'
+        '  <link name="a"/>\n'
+        '  <link name="b"/>\n'
+        '  <joint name="j" type="revolut"><parent link="a"/><child link="b"/></joint>\n'
+        '  <link name="b"/>\n'
+        "</robot>\n"
+    )
+    assert main(["check", str(model)]) == 1
+    err = capsys.readouterr().err
+    assert f"{model}:4:25" in err
+    assert "did you mean 'revolute'" in err
+    assert f"{model}:5:" in err
+
+
+def test_a_place_behind_a_macro_names_the_call(tmp_path, capsys):
+    model = tmp_path / "bad.xacro"
+    model.write_text(
+        '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
+        '  <xacro:macro name="wheel" params="side">\n'
+        '    <link name="${side}_wheel"><visual><geometry><sphere radius="big"/></geometry></visual></link>\n'
+        "  </xacro:macro>\n"
+        '  <xacro:wheel side="left"/>\n'
+        "</robot>\n"
+    )
+    assert main(["check", str(model)]) == 1
+    err = capsys.readouterr().err
+    assert f"{model}:3:" in err
+    assert f"{model}:5:3" in err
+    assert "wheel" in err

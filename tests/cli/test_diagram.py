@@ -1,0 +1,35 @@
+"""`linkwright diagram`: the .gv text and a picture beside it."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.cli import main
+from tests.places import PACKAGE
+
+MODEL = str(PACKAGE / "urdf" / "mbot_base.urdf")
+
+
+@pytest.mark.parametrize(
+    ("out", "picture", "magic"), [("m", "m.pdf", b"%PDF"), ("m.svg", "m.svg", b"<?xml"), ("m.png", "m.png", b"\x89PNG")]
+)
+def test_writes_text_and_picture(tmp_path, monkeypatch, capsys, out, picture, magic):
+    monkeypatch.chdir(tmp_path)
+    assert main(["diagram", MODEL, out]) == 0
+    assert capsys.readouterr().out == f"Created file m.gv\nCreated file {picture}\n"
+    assert (tmp_path / "m.gv").read_text().startswith("digraph G {\nnode [shape=box];\n")
+    assert (tmp_path / picture).read_bytes().startswith(magic)
+
+
+def test_default_name_is_the_robots(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(["diagram", MODEL]) == 0
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["mbot.gv", "mbot.pdf"]
+
+
+def test_no_robot_no_file(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "bad.urdf").write_text('<robot name="r"/>')
+    assert main(["diagram", "bad.urdf"]) == 1
+    assert "bad.urdf" in capsys.readouterr().err
+    assert [path.name for path in tmp_path.iterdir()] == ["bad.urdf"]

@@ -1,0 +1,77 @@
+"""The command itself: verbs, usage, exit statuses, never a traceback."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+from linkwright import __version__
+from linkwright.cli import main
+from linkwright.cli.command import VERBS
+
+
+def test_no_words_prints_the_overview_as_usage(capsys):
+    assert main([]) == 2
+    printed = capsys.readouterr().out
+    assert all(verb in printed for verb in VERBS)
+
+
+def test_help_lists_every_verb(capsys):
+    assert main(["--help"]) == 0
+    printed = capsys.readouterr().out
+    assert all(f"  {verb} " in printed for verb in VERBS)
+
+
+def test_version(capsys):
+    assert main(["--version"]) == 0
+    assert capsys.readouterr().out == f"linkwright {__version__}\n"
+
+
+def test_unknown_command_names_the_nearest(capsys):
+    assert main(["xarco"]) == 2
+    assert capsys.readouterr().err == "linkwright: there is no command 'xarco'; did you mean 'xacro'?\n"
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_every_verb_has_help(verb, capsys):
+    assert main([verb, "--help"]) == 0
+    assert f"usage: linkwright {verb}" in capsys.readouterr().out
+
+
+def test_wrong_option_is_usage(capsys):
+    assert main(["xacro", "--nonsense", "a.xacro"]) == 2
+    assert "--nonsense" in capsys.readouterr().err
+
+
+def test_a_bug_of_ours_is_said_without_a_traceback(monkeypatch, capsys):
+    def broken(_words):
+        raise ZeroDivisionError("seeded")
+
+    monkeypatch.setattr("linkwright.cli.command._dispatch", broken)
+    assert main(["xacro", "x"]) == 3
+    err = capsys.readouterr().err
+    assert "ZeroDivisionError: seeded" in err
+    assert "Traceback" not in err
+    log = err.rsplit(" ", 1)[1].strip()
+    with open(log, encoding="utf-8") as file:  # noqa: PTH123 - the name is printed text
+        assert "Traceback" in file.read()
+
+
+def test_interrupt_is_130(monkeypatch):
+    def interrupted(_words):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("linkwright.cli.command._dispatch", interrupted)
+    assert main(["xacro", "x"]) == 130
+
+
+def test_a_reader_that_goes_away_is_no_error(tmp_path):
+    model = tmp_path / "long.urdf"
+    links = "".join(f'<link name="l{number}"/>' for number in range(20000))
+    model.write_text(f'<robot name="r">{links}</robot>')
+    command = f"{sys.executable} -m linkwright xacro {model} | head -n 1"
+    done = subprocess.run(["bash", "-o", "pipefail", "-c", command], capture_output=True, text=True, check=False)
+    assert done.stdout == '<?xml version="1.0" ?>\n'
+    assert done.stderr == ""

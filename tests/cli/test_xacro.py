@@ -1,0 +1,72 @@
+"""`linkwright xacro`."""
+
+from __future__ import annotations
+
+import io
+
+import pytest
+
+from linkwright.cli import main
+
+ROBOT = """<?xml version="1.0"?>
+<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:arg name="size" default="1"/>
+  <link name="l${2*$(arg size)}"/>
+</robot>
+"""
+
+
+@pytest.fixture
+def model(tmp_path):
+    path = tmp_path / "r.xacro"
+    path.write_text(ROBOT)
+    return path
+
+
+def test_text_goes_to_standard_output(model, capsys):
+    assert main(["xacro", str(model)]) == 0
+    captured = capsys.readouterr()
+    assert '<link name="l2"/>' in captured.out
+    assert captured.err == ""
+
+
+def test_values_and_output_file(model, tmp_path, capsys):
+    out = tmp_path / "new" / "r.urdf"
+    assert main(["xacro", str(model), "size:=4", "-o", str(out)]) == 0
+    assert '<link name="l8"/>' in out.read_text()
+    assert capsys.readouterr().out == ""
+
+
+def test_standard_input(monkeypatch, capsys):
+    monkeypatch.setattr("sys.stdin", io.StringIO(ROBOT))
+    assert main(["xacro", "-", "size:=3"]) == 0
+    assert '<link name="l6"/>' in capsys.readouterr().out
+
+
+def test_an_error_leaves_no_file_and_shows_the_place(model, tmp_path, capsys):
+    model.write_text(ROBOT.replace("2*", "2*sise*"))
+    out = tmp_path / "r.urdf"
+    assert main(["xacro", str(model), "-o", str(out)]) == 1
+    assert not out.exists()
+    err = capsys.readouterr().err
+    assert f"{model}:4:" in err
+    assert "'sise'" in err
+
+
+def test_missing_file(tmp_path, capsys):
+    assert main(["xacro", str(tmp_path / "none.xacro")]) == 1
+    err = capsys.readouterr().err
+    assert "none.xacro" in err
+    assert "hint" in err
+
+
+def test_value_without_colon(model, capsys):
+    assert main(["xacro", str(model), "size=4"]) == 1
+    err = capsys.readouterr().err
+    assert "'size=4'" in err
+    assert "size:=4" in err
+
+
+def test_output_that_cannot_be_written(model, tmp_path, capsys):
+    assert main(["xacro", str(model), "-o", str(tmp_path)]) == 1
+    assert "cannot write" in capsys.readouterr().err

@@ -1,0 +1,49 @@
+"""The documentation's pages and the code blocks in them."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from tests.places import REPOSITORY
+
+DOCS = REPOSITORY / "docs"
+READMES = (REPOSITORY / "README.md", REPOSITORY / "README.zh-CN.md")
+
+_BLOCK = re.compile(
+    r'^```(?P<language>\w+)(?: title="(?P<title>[^"]+)")?\n(?P<text>.*?)^```$', re.MULTILINE | re.DOTALL
+)
+
+
+@dataclass(frozen=True)
+class Block:
+    """A fenced code block; `title` is the file that a reader is told to put it into, or empty."""
+
+    language: str
+    title: str
+    text: str
+
+
+def pages() -> list[Path]:
+    """Every page that a reader sees, the READMEs among them, without the records of decisions."""
+    found = [path for path in sorted(DOCS.rglob("*.md")) if "decisions" not in path.parts]
+    return [*READMES, *found]
+
+
+def blocks(page: Path) -> list[Block]:
+    """The page's code blocks in order."""
+    return parse_blocks(page.read_text(encoding="utf-8"))
+
+
+def parse_blocks(text: str) -> list[Block]:
+    """The code blocks of a piece of a page."""
+    found = _BLOCK.finditer(text)
+    return [Block(match["language"], match["title"] or "", match["text"]) for match in found]
+
+
+def commands(page: Path) -> list[str]:
+    """The ``linkwright`` lines of the page's shell blocks, without comments."""
+    lines = [line for block in blocks(page) if block.language == "bash" for line in block.text.splitlines()]
+    lines = [line.split(" #")[0].strip() for line in lines]
+    return [line for line in lines if line.startswith("linkwright ")]

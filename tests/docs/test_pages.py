@@ -1,0 +1,87 @@
+"""The documentation says what the program does, in both languages."""
+
+from __future__ import annotations
+
+import argparse
+import re
+import shlex
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from linkwright.cli.command import VERBS, parser_for
+from tests.docs.pages import DOCS, READMES, blocks, commands, pages
+from tests.places import REPOSITORY
+from tests.repository_tools import load_tool
+
+ENGLISH = sorted(path.name for path in DOCS.glob("*.md"))
+
+
+def identifier(page: Path) -> str:
+    return str(page.relative_to(REPOSITORY))
+
+
+def leaves(parser: argparse.ArgumentParser) -> Iterator[argparse.ArgumentParser]:
+    """The parser, or in its place those of the commands below it."""
+    below = [action for action in parser._actions if isinstance(action, argparse._SubParsersAction)]
+    if not below:
+        yield parser
+    for action in below:
+        for subparser in action.choices.values():
+            yield from leaves(subparser)
+
+
+def test_the_command_reference_is_current() -> None:
+    tool = load_tool("command_reference")
+    assert (DOCS / "commands.md").read_text(encoding="utf-8") == tool.generate(), "run tools/command_reference.py"
+
+
+def test_the_check_finds_a_stale_reference(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    tool = load_tool("command_reference")
+    monkeypatch.setattr(tool, "TARGET", tmp_path / "commands.md")
+    assert tool.main(["--check"]) == 1
+    assert tool.main([]) == 0
+    assert tool.main(["--check"]) == 0
+
+
+@pytest.mark.parametrize("page", [DOCS / "commands.md", DOCS / "zh" / "commands.md"], ids=identifier)
+@pytest.mark.parametrize("verb", VERBS)
+def test_every_option_is_documented(page: Path, verb: str) -> None:
+    sections = dict(re.findall(r"^## (.+?)\n(.*?)(?=^## |\Z)", page.read_text("utf-8"), re.MULTILINE | re.DOTALL))
+    for parser in leaves(parser_for(verb)):
+        section = sections[parser.prog]
+        for action in parser._actions:
+            names = [name for name in action.option_strings if "_" not in name] or [str(action.metavar or action.dest)]
+            if names != ["-h", "--help"]:
+                assert any(name in section for name in names), f"{parser.prog} {names}"
+
+
+@pytest.mark.parametrize("page", pages(), ids=identifier)
+def test_commands_in_the_pages_are_accepted(page: Path) -> None:
+    for line in commands(page):
+        words = shlex.split(line)
+        assert words[1] in VERBS, line
+        parser_for(words[1]).parse_args(words[2:])
+
+
+@pytest.mark.parametrize("page", pages(), ids=identifier)
+def test_links_lead_somewhere(page: Path) -> None:
+    for target in re.findall(r"\]\(([^)#\s]+)", page.read_text(encoding="utf-8")):
+        if not target.startswith("https://"):
+            assert (page.parent / target).exists(), target
+
+
+@pytest.mark.parametrize("name", ENGLISH)
+def test_every_page_has_a_chinese_sister_with_the_same_blocks(name: str) -> None:
+    ours, theirs = blocks(DOCS / name), blocks(DOCS / "zh" / name)
+    if name != "commands.md":
+        assert [_without_comments(block.text) for block in theirs] == [_without_comments(block.text) for block in ours]
+
+
+def test_the_readmes_show_the_same_commands() -> None:
+    assert commands(READMES[0]) == commands(READMES[1])
+
+
+def _without_comments(text: str) -> list[str]:
+    return [re.sub(r"\s+# .*", "", line) for line in text.splitlines()]

@@ -1,0 +1,47 @@
+"""The messages on the troubleshooting pages are those that the program prints."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.docs.pages import blocks
+from tests.repository_tools import load_tool
+
+TOOL = load_tool("documented_output")
+
+
+@pytest.mark.parametrize("page", TOOL.PAGES, ids=["en", "zh"])
+def test_output_is_current(page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    assert text == TOOL.refreshed(text), "run tools/documented_output.py"
+
+
+def test_both_languages_show_the_same_cases() -> None:
+    english, chinese = map(blocks, TOOL.PAGES)
+    assert [block.language for block in english].count("text") >= 6
+    assert chinese == english
+
+
+def test_a_stale_page_is_found_and_mended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    page = tmp_path / "page.md"
+    page.write_text(
+        "# Page\n\n## Case\n\n"
+        '```xml title="r.urdf"\n<robot name="r">\n```\n\n'
+        "```bash\nlinkwright check r.urdf\n```\n\n"
+        "```text\nold\n```\n\nThe end.\n",
+        encoding="utf-8",
+    )
+    monkeypatch.setattr(TOOL, "PAGES", [page])
+    assert TOOL.main(["--check"]) == 1
+    assert TOOL.main([]) == 0
+    text = page.read_text(encoding="utf-8")
+    assert "```text\nerror[XML" in text
+    assert text.endswith("```\n\nThe end.\n")
+    assert TOOL.main(["--check"]) == 0
+
+
+def test_a_command_that_does_not_fail_is_no_trouble() -> None:
+    with pytest.raises(RuntimeError, match="exited with 0"):
+        TOOL.output_of(["--version"], [])

@@ -1,0 +1,77 @@
+"""A reader who follows the tutorial ends up with the robots that it promises."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from linkwright.cli import main
+from linkwright.urdf import load
+from tests.docs.pages import DOCS, blocks
+from tests.robots.workspaces import colcon_build
+
+LANGUAGES = {"en": DOCS / "tutorial.md", "zh": DOCS / "zh" / "tutorial.md"}
+BASE = {"base_link", "left_wheel_link", "right_wheel_link", "front_caster_link", "back_caster_link"}
+
+
+@pytest.fixture(params=LANGUAGES)
+def package(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The package as it is after the last step."""
+    monkeypatch.chdir(tmp_path)
+    words = ["my_robot_description", "--build-type", "ament_python", "--dependencies", "urdf", "xacro"]
+    assert main(["pkg", "create", *words, "--license", "MIT", "--destination-directory", "src"]) == 0
+    package = tmp_path / "src" / "my_robot_description"
+    for block in blocks(LANGUAGES[request.param]):
+        path = package / block.title.removesuffix(", more")
+        if block.title.endswith(", more"):
+            text = path.read_text(encoding="utf-8")
+            path.write_text(text.replace("</robot>", block.text + _sisters(block.text) + "</robot>"), encoding="utf-8")
+        elif block.title:
+            path.parent.mkdir(exist_ok=True)
+            path.write_text(block.text, encoding="utf-8")
+    return package
+
+
+def _sisters(text: str) -> str:
+    """What the reader is asked to write alike: the right wheel after the left one, the back caster after the front."""
+    parts = "".join(re.findall(r"  <joint.*?</joint>\n|  <link.*?</link>\n", text, re.DOTALL))
+    if "left_" in parts:
+        return parts.replace("left", "right").replace("0.19", "-0.19")
+    return parts.replace("front", "back").replace("0.18", "-0.18") if "front_" in parts else ""
+
+
+def test_the_models(package: Path) -> None:
+    urdf = load(package / "urdf" / "mbot_base.urdf")
+    xacro = load(package / "urdf" / "mbot_base.xacro")
+    assert set(urdf.links) == BASE | {"camera_link"}
+    assert set(xacro.links) == BASE
+    for robot in (urdf, xacro):
+        assert robot.joints["left_wheel_joint"].origin.xyz == pytest.approx((0, 0.19, -0.05))
+        assert robot.joints["right_wheel_joint"].origin.xyz == pytest.approx((0, -0.19, -0.05))
+        assert robot.joints["front_caster_joint"].origin.xyz == pytest.approx((0.18, 0, -0.095))
+        assert robot.joints["back_caster_joint"].origin.xyz == pytest.approx((-0.18, 0, -0.095))
+
+
+def test_check_prints_the_tree_of_the_page(package: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    capsys.readouterr()
+    assert main(["check", str(package / "urdf" / "mbot_base.xacro")]) == 0
+    printed = capsys.readouterr().out
+    for page in LANGUAGES.values():
+        assert printed in [block.text for block in blocks(page) if block.language == "text"]
+
+
+def test_the_launch_file_lists_its_arguments(package: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["launch", str(package / "launch" / "display.launch.py"), "--show-args"]) == 0
+    printed = capsys.readouterr().out
+    assert all(name in printed for name in ("'gui'", "'model'", "'rvizconfig'"))
+
+
+@pytest.mark.slow
+def test_colcon_installs_everything(package: Path) -> None:
+    workspace = package.parents[1]
+    colcon_build(workspace, package.name)
+    share = workspace / "install" / package.name / "share" / package.name
+    for path in ("urdf/mbot_base.urdf", "urdf/mbot_base.xacro", "launch/display.launch.py", "rviz/urdf.rviz"):
+        assert (share / path).is_file()

@@ -1,0 +1,61 @@
+"""Real colcon builds the robot package, and what it installs is complete."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from linkwright.workspace import PackageFinder
+from tests.places import PACKAGE
+from tests.robots.workspaces import colcon_build, sourced
+
+pytestmark = pytest.mark.slow
+
+INSTALLED_FOLDERS = ("launch", "meshes", "rviz", "urdf")
+
+
+@pytest.fixture(scope="module", params=["copied", "symlinked"])
+def workspace(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A workspace with a copy of the package, built both ways."""
+    workspace = tmp_path_factory.mktemp("ros2_ws")
+    source = workspace / "src" / PACKAGE.name
+    shutil.copytree(PACKAGE, source, ignore=shutil.ignore_patterns("__pycache__", "*.egg-info"))
+    # A file and a folder that setup.py has never heard of.
+    (source / "urdf" / "sensor" / "imu").mkdir()
+    (source / "urdf" / "sensor" / "imu" / "imu_gazebo.xacro").write_text("<robot/>\n", encoding="utf-8")
+    colcon_build(workspace, PACKAGE.name, *(["--symlink-install"] if request.param == "symlinked" else []))
+    return workspace
+
+
+def share(workspace: Path) -> Path:
+    return workspace / "install" / PACKAGE.name / "share" / PACKAGE.name
+
+
+@pytest.mark.parametrize("folder", INSTALLED_FOLDERS)
+def test_every_file_is_installed(workspace: Path, folder: str) -> None:
+    source = workspace / "src" / PACKAGE.name / folder
+    written = sorted(path.relative_to(source) for path in source.rglob("*") if path.is_file())
+    installed = share(workspace) / folder
+    assert written
+    assert sorted(path.relative_to(installed) for path in installed.rglob("*") if path.is_file()) == written
+    assert all((installed / path).read_bytes() == (source / path).read_bytes() for path in written)
+
+
+def test_every_folder_of_the_package_is_known_to_this_test() -> None:
+    folders = {path.name for path in PACKAGE.iterdir() if path.is_dir() and path.name != "__pycache__"}
+    assert folders == {*INSTALLED_FOLDERS, "resource", PACKAGE.name}
+
+
+def test_manifest_and_marker_are_installed(workspace: Path) -> None:
+    assert (share(workspace) / "package.xml").read_bytes() == (PACKAGE / "package.xml").read_bytes()
+    index = share(workspace).parent / "ament_index" / "resource_index" / "packages"
+    assert (index / PACKAGE.name).is_file()
+
+
+def test_sourcing_the_workspace_makes_the_package_known(workspace: Path) -> None:
+    prefix = sourced(workspace, "AMENT_PREFIX_PATH")
+    assert prefix == str(workspace / "install" / PACKAGE.name)
+    finder = PackageFinder(start=Path("/"), environment={"AMENT_PREFIX_PATH": prefix})
+    assert finder.share(PACKAGE.name).resolve() == share(workspace).resolve()

@@ -1,0 +1,126 @@
+"""The package's own papers: manifest, set-up, launch files and RViz configuration."""
+
+from __future__ import annotations
+
+import ast
+import warnings
+from typing import Any
+
+import pytest
+import yaml
+from catkin_pkg.package import Package, parse_package
+
+from tests.places import PACKAGE, TUTORIAL
+
+PUBLISHED = TUTORIAL / "my_robot_description" / "rviz" / "urdf.rviz"
+LAUNCH_FILES = {
+    "display.launch.py": {"gui": "false", "model": "mbot_base.urdf", "rvizconfig": "urdf.rviz"},
+    "display_xacro.launch.py": {"gui": "true", "model": "mbot_base.xacro", "rvizconfig": "urdf.rviz"},
+}
+
+
+@pytest.fixture(scope="module")
+def manifest() -> Package:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # catkin_pkg's own deprecations
+        return parse_package(str(PACKAGE))
+
+
+@pytest.fixture(scope="module")
+def rviz() -> dict[str, Any]:
+    return yaml.safe_load((PACKAGE / "rviz" / "urdf.rviz").read_text(encoding="utf-8"))
+
+
+def test_manifest_is_valid(manifest: Package) -> None:
+    advice: list[str] = []
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        manifest.validate(warnings=advice)
+    assert advice == []
+    assert manifest.name == PACKAGE.name
+    assert manifest.package_format == 3
+    assert manifest.get_build_type() == "ament_python"
+
+
+def test_manifest_names_every_package_that_the_launch_files_need(manifest: Package) -> None:
+    needed = {dependency.name for dependency in manifest.exec_depends}
+    for name in LAUNCH_FILES:
+        tree = ast.parse((PACKAGE / "launch" / name).read_text(encoding="utf-8"))
+        imported = {
+            node.module.split(".")[0] for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) and node.module
+        }
+        assert imported | set(_node_words(tree, "package")) <= needed
+
+
+def test_setup_py_agrees_with_the_manifest(manifest: Package) -> None:
+    tree = ast.parse((PACKAGE / "setup.py").read_text(encoding="utf-8"))
+    (call,) = [node for node in ast.walk(tree) if isinstance(node, ast.Call) and _name(node) == "setup"]
+    values = {word.arg: word.value for word in call.keywords}
+    assert ast.literal_eval(values["version"]) == manifest.version
+    assert [ast.literal_eval(values["license"])] == list(manifest.licenses)
+    assert ast.literal_eval(values["maintainer"]) == manifest.maintainers[0].name
+    assert ast.literal_eval(values["maintainer_email"]) == manifest.maintainers[0].email
+
+
+@pytest.mark.parametrize("name", LAUNCH_FILES)
+def test_launch_arguments(name: str) -> None:
+    tree = ast.parse((PACKAGE / "launch" / name).read_text(encoding="utf-8"))
+    declared = [
+        node for node in ast.walk(tree) if isinstance(node, ast.Call) and _name(node) == "DeclareLaunchArgument"
+    ]
+    found = {}
+    for call in declared:
+        values = {word.arg: word.value for word in call.keywords}
+        # The default's last string constant: the value itself, or the file's name at the end of a path.
+        strings = [node.value for node in ast.walk(values["default_value"]) if isinstance(node, ast.Constant)]
+        found[ast.literal_eval(call.args[0])] = next(text for text in strings if text not in ("urdf", "rviz"))
+        if ast.literal_eval(call.args[0]) == "gui":
+            assert ast.literal_eval(values["choices"]) == ["true", "false"]
+    assert found == LAUNCH_FILES[name]
+
+
+@pytest.mark.parametrize("name", LAUNCH_FILES)
+def test_launch_nodes(name: str) -> None:
+    tree = ast.parse((PACKAGE / "launch" / name).read_text(encoding="utf-8"))
+    started = {"joint_state_publisher", "joint_state_publisher_gui", "robot_state_publisher", "rviz2"}
+    assert set(_node_words(tree, "executable")) == started
+
+
+def test_rviz_configuration(rviz: dict[str, Any]) -> None:
+    manager = rviz["Visualization Manager"]
+    displays = {display["Name"]: display for display in manager["Displays"]}
+    assert list(displays) == ["Grid", "RobotModel", "TF"]
+    assert all(display["Enabled"] and display["Value"] for display in displays.values())
+    assert displays["RobotModel"]["Alpha"] == 0.8
+    assert displays["RobotModel"]["Description Topic"]["Value"] == "/robot_description"
+    view = manager["Views"]["Current"]
+    assert (view["Distance"], view["Pitch"], view["Yaw"]) == (1.7, 0.33, 5.5)
+    assert manager["Global Options"]["Fixed Frame"] == "base_link"
+
+
+@pytest.mark.skipif(not PUBLISHED.is_file(), reason="the tutorial's files are not beside this checkout")
+def test_rviz_configuration_keeps_every_value_of_the_tutorials(rviz: dict[str, Any]) -> None:
+    _assert_within(yaml.safe_load(PUBLISHED.read_text(encoding="utf-8")), rviz, "")
+
+
+def _assert_within(part: Any, whole: Any, place: str) -> None:
+    if isinstance(part, dict):
+        for key, value in part.items():
+            assert key in whole, f"{place}/{key}"
+            _assert_within(value, whole[key], f"{place}/{key}")
+    elif isinstance(part, list):
+        for item in part:
+            same = [other for other in whole if other.get("Class") == item.get("Class")]
+            assert same, f"{place}/{item.get('Class')}"
+            _assert_within(item, same[0], f"{place}/{item.get('Class')}")
+    else:
+        assert whole == part, place
+
+
+def _name(call: ast.Call) -> str:
+    return call.func.id if isinstance(call.func, ast.Name) else ""
+
+
+def _node_words(tree: ast.AST, word: str) -> list[str]:
+    calls = [node for node in ast.walk(tree) if isinstance(node, ast.Call) and _name(node) == "Node"]
+    return [ast.literal_eval(keyword.value) for call in calls for keyword in call.keywords if keyword.arg == word]

@@ -1,0 +1,171 @@
+"""The table of elements and the reader say the same."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.urdf import (
+    Calibration,
+    Dynamics,
+    Limit,
+    Mesh,
+    Mimic,
+    Pose,
+    Safety,
+    read,
+)
+from linkwright.urdf.schema import ROBOT, SHAPES, AttributeRule, ElementRule, Kind, rule_at
+from linkwright.urdf.values import number, numbers
+from linkwright.xmltree import Document, Element, parse
+
+VALUES = {
+    Kind.TEXT: "b",
+    Kind.NUMBER: "1",
+    Kind.VECTOR3: "1 1 1",
+    Kind.QUATERNION: "0 0 0 1",
+    Kind.RGBA: "1 1 1 1",
+    Kind.JOINT_TYPE: "revolute",
+    Kind.VERSION: "1.0",
+}
+ALLOWED = {"URDF171", "URDF180"}  # the joint mimics nothing; without 'version' the limits of URDF 1.2 are ignored
+VERSIONS = ("1.0", "1.2")
+
+
+def full(rule: ElementRule, version: tuple[int, int]) -> Element:
+    """An element with all it may carry, itself as small as can be where only one child counts."""
+    element = Element(
+        rule.tag,
+        {attribute.name: VALUES[attribute.kind] for attribute in rule.attributes if attribute.since <= version},
+    )
+    if rule.tag == "origin":
+        element.attributes.pop("quat_xyzw", None)
+    if rule.tag in ("parent", "robot"):
+        element.attributes["link" if rule.tag == "parent" else "name"] = "a"
+    if rule.tag == "mimic":
+        element.attributes["joint"] = "other"
+    children = rule.children[:1] if rule.tag == "geometry" else rule.children
+    element.children += [full(child, version) for child in children if child.since <= version]
+    return element
+
+
+def full_robot(version: str, shape: ElementRule = SHAPES[0]) -> Element:
+    parsed = tuple(map(int, version.split(".")))
+    robot = full(ROBOT, parsed)
+    robot.attributes["version"] = version
+    robot.children.append(Element("link", {"name": "a"}))
+    for element in everything(robot):
+        if element.tag == "geometry":
+            element.children = [full(shape, parsed)]
+    return robot
+
+
+def everything(element: Element):
+    yield element
+    for child in element.elements():
+        yield from everything(child)
+
+
+def rules(version, rule=ROBOT, path=()):
+    path = (*path, rule.tag)
+    if rule.since <= tuple(map(int, version.split("."))):
+        yield path, rule
+        for child in rule.children:
+            yield from rules(version, child, path)
+
+
+def find(element: Element, path: tuple[str, ...]) -> Element:
+    for tag in path[1:]:
+        element = next(child for child in element.elements(tag) if tag != "link" or child.attributes["name"] == "b")
+    return element
+
+
+def attribute_cases(choose):
+    """Parameters for each attribute of the table that `choose` takes, in each version."""
+    cases = []
+    for version in VERSIONS:
+        parsed = tuple(map(int, version.split(".")))
+        for path, rule in rules(version):
+            for attribute in rule.attributes:
+                if attribute.since <= parsed and choose(attribute, parsed):
+                    name = f"{version}/{'/'.join(path)}@{attribute.name}"
+                    cases.append(pytest.param(version, path, attribute, id=name))
+    return cases
+
+
+def prepared(version, path):
+    shape = next((shape for shape in SHAPES if shape.tag == path[-1]), SHAPES[0])
+    robot = full_robot(version, shape)
+    return robot, find(robot, path)
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+def test_a_robot_with_all_the_table_knows_is_read(version):
+    result = read(Document(full_robot(version)))
+    assert [diagnostic.message for diagnostic in result.diagnostics if diagnostic.code != "URDF180"] == []
+    assert result.robot.joints["b"].safety is not None
+
+
+@pytest.mark.parametrize(
+    ("version", "path", "attribute"), attribute_cases(lambda rule, version: rule.is_required(version))
+)
+def test_what_the_table_requires_is_required(version, path, attribute: AttributeRule):
+    robot, element = prepared(version, path)
+    del element.attributes[attribute.name]
+    assert any(f"no '{attribute.name}'" in diagnostic.message for diagnostic in read(Document(robot)).diagnostics)
+
+
+@pytest.mark.parametrize(("version", "path", "attribute"), attribute_cases(lambda rule, _: rule.kind != Kind.TEXT))
+def test_malformed_values_are_found(version, path, attribute: AttributeRule):
+    robot, element = prepared(version, path)
+    if attribute.name == "quat_xyzw":
+        element.attributes.pop("rpy")
+    element.attributes[attribute.name] = "nonsense"
+    found = read(Document(robot)).diagnostics
+    assert any("'nonsense'" in diagnostic.message for diagnostic in found)
+
+
+@pytest.mark.parametrize(
+    ("version", "path", "attribute"),
+    attribute_cases(
+        lambda rule, version: not rule.is_required(version) and rule.name not in ("lower", "upper", "rgba", "quat_xyzw")
+    ),
+)
+def test_what_the_table_does_not_require_is_optional(version, path, attribute: AttributeRule):
+    robot, element = prepared(version, path)
+    del element.attributes[attribute.name]
+    result = read(Document(robot))
+    assert result.robot is not None
+    assert {diagnostic.code for diagnostic in result.diagnostics} <= ALLOWED
+
+
+@pytest.mark.parametrize(
+    ("path", "values"),
+    [
+        ("robot joint limit", Limit()),
+        ("robot joint mimic", Mimic("")),
+        ("robot joint safety_controller", Safety(0)),
+        ("robot joint dynamics", Dynamics()),
+        ("robot joint calibration", Calibration()),
+        ("robot joint origin", Pose()),
+        ("robot link visual geometry mesh", Mesh("")),
+    ],
+)
+def test_defaults_are_those_of_the_model(path, values):
+    rule = rule_at(path.split())
+    for attribute in rule.attributes:
+        if attribute.default:
+            default = getattr(values, attribute.name)
+            parsed = number(attribute.default) if attribute.kind is Kind.NUMBER else numbers(attribute.default)
+            assert parsed == default
+
+
+def test_paths():
+    assert rule_at(["robot", "joint", "limit"]).attribute("effort").unit == "N m or N"
+    assert rule_at(["robot", "joint", "limt"]) is None
+    assert rule_at(["sdf"]) is None
+    assert rule_at([]) is None
+
+
+def test_the_full_robot_is_what_a_file_would_say():
+    text = '<robot name="a" version="1.0"><link name="b"/></robot>'
+    assert read(parse(text, "x")).robot is not None

@@ -1,0 +1,207 @@
+from __future__ import annotations
+
+import asyncio
+import time
+
+import numpy as np
+import pytest
+
+from linkwright.graph import STATIC_TF_PUBLISHER_QOS, TF_QOS, Graph
+from linkwright.messages import TFMessage, TransformBatch
+from linkwright.viewer.frame_stream import FrameStream, StreamSettings
+from tests.viewer.scene import IDENTITY, unpack
+
+
+class Rig:
+    """A stream, and everything it says."""
+
+    def __init__(self) -> None:
+        self.graph = Graph()
+        node = self.graph.create_node("rig")
+        self._tf = node.create_publisher(TFMessage, "/tf", TF_QOS)
+        self._tf_static = node.create_publisher(TFMessage, "/tf_static", STATIC_TF_PUBLISHER_QOS)
+        self.fixed_frame = "base"
+        self.own_frames: frozenset[str] = frozenset()
+        self.fade_time: float | None = 15.0
+        self.watched = True
+        self.said: list = []
+        self.stream = FrameStream(
+            self.graph.create_node("viewer"),
+            StreamSettings(
+                fixed_frame=lambda: self.fixed_frame,
+                rate=lambda: 30.0,
+                fade_time=lambda: self.fade_time,
+                own_frames=lambda: self.own_frames,
+                watched=lambda: self.watched,
+            ),
+            on_table=self.said.append,
+            on_transforms=lambda frame: self.said.append(unpack(frame)),
+            on_frames=self.said.append,
+        )
+        self.stream.start()
+
+    def send(self, poses, *, static=False, stamp_ns=None):
+        batch = TransformBatch(
+            tuple(parent for parent, _ in poses),
+            tuple(child for _, child in poses),
+            time.time_ns() if stamp_ns is None else stamp_ns,
+            np.array(list(poses.values()), dtype=np.float64),
+        )
+        (self._tf_static if static else self._tf).publish(TFMessage(batch=batch))
+
+    def move(self, x: float, **options):
+        self.send({("base", "tip"): (x, 0, 0, 0, 0, 0, 1)}, **options)
+
+    async def settle(self):
+        await self.graph.settle()
+        await asyncio.sleep(0)
+        await asyncio.sleep(0)
+
+    def kinds(self) -> list[str]:
+        kinds = [type(each).__name__ for each in self.said]
+        self.said.clear()
+        return kinds
+
+    def sent(self) -> list:
+        return [each for each in self.said if type(each).__name__ == "Transforms"]
+
+
+@pytest.fixture
+async def rig():
+    made = Rig()
+    yield made
+    made.stream.close()
+    await made.graph.close()
+
+
+async def test_the_table_comes_before_the_transforms_and_then_the_displays_hear(rig):
+    rig.move(1.0)
+    await rig.settle()
+    table, transforms, frames = rig.said
+    assert (table.names, table.parents) == (["tip", "base"], [1, -1])
+    assert transforms.revision == table.revision
+    assert transforms.poses[0].tolist() == [1, 0, 0, 0, 0, 0, 1]
+    assert frames.names == ("tip", "base")
+    assert frames.placed == {"tip", "base"}
+
+
+async def test_after_quiet_a_change_goes_out_at_once(rig):
+    rig.move(1.0)
+    await asyncio.sleep(0.1)
+    rig.said.clear()
+    rig.move(2.0)
+    await rig.settle()
+    assert rig.kinds() == ["Transforms"]
+
+
+async def test_no_more_than_the_frame_rate_and_the_last_change_is_never_lost(rig):
+    start = time.monotonic()
+    x = 0.0
+    while time.monotonic() - start < 0.5:
+        x += 1.0
+        rig.move(x)
+        await asyncio.sleep(0.001)
+    await asyncio.sleep(0.1)
+    sent = rig.sent()
+    assert 8 <= len(sent) <= 18
+    assert sent[-1].poses[0][0] == x
+
+
+async def test_equal_transforms_are_not_sent_again(rig):
+    rig.move(1.0)
+    await rig.settle()
+    rig.kinds()
+    for _ in range(5):
+        rig.move(1.0)
+        await asyncio.sleep(0.02)
+    assert rig.kinds() == []
+
+
+async def test_frames_that_are_heard_of_no_more_age_on_the_page(rig):
+    rig.fade_time = 0.6
+    rig.send({("base", "fix"): IDENTITY}, static=True)
+    rig.move(1.0)
+    await asyncio.sleep(1.2)
+    ages = [transforms.ages[-1 if len(transforms.ages) < 3 else 2] for transforms in rig.sent()]
+    assert ages[0] < 0.1
+    assert ages == sorted(ages)
+    assert 0.6 < ages[-1]
+    count = len(ages)
+    await asyncio.sleep(0.6)
+    assert len(rig.sent()) == count  # gone is gone
+    assert rig.sent()[-1].ages[0] == 0.0  # static frames never age
+    rig.move(1.0)
+    await rig.settle()
+    assert rig.sent()[-1].ages[2] < 0.1  # heard of again, though it did not move
+
+
+async def test_ages_are_nothing_where_no_display_shows_them(rig):
+    rig.fade_time = None
+    rig.move(1.0)
+    await asyncio.sleep(0.6)
+    assert len(rig.sent()) == 1
+
+
+async def test_nobody_watching_costs_nothing_until_a_page_opens(rig):
+    rig.watched = False
+    rig.move(1.0)
+    await rig.settle()
+    assert rig.said == []
+    rig.stream.refresh()
+    table, frame = rig.stream.opening
+    assert unpack(frame).revision == table.revision
+    assert rig.kinds() == ["FrameTable", "Transforms", "FrameView"]
+
+
+async def test_another_fixed_frame_shows_everything_from_there(rig):
+    rig.move(1.0)
+    await rig.settle()
+    rig.said.clear()
+    rig.fixed_frame = "tip"
+    rig.stream.refresh()
+    transforms, frames = rig.said
+    assert transforms.poses[1][0] == -1.0
+    assert frames.fixed_frame == "tip"
+
+
+async def test_an_unknown_fixed_frame_places_nothing(rig):
+    rig.fixed_frame = "map"
+    rig.move(1.0)
+    await rig.settle()
+    _, transforms, frames = rig.said
+    assert np.isnan(transforms.poses).all()
+    assert frames.placed == {"map"}
+    assert frames.problem("tip") == "No transform from [tip] to [map]"
+
+
+async def test_a_robot_of_one_link_has_its_frame_though_tf_does_not_know_it(rig):
+    rig.own_frames = frozenset({"base"})
+    rig.stream.robot_changed(set())
+    await rig.settle()
+    table, transforms, frames = rig.said
+    assert (table.names, table.parents) == (["base"], [-1])
+    assert transforms.poses.tolist() == [list(IDENTITY)]
+    assert frames.names == ()  # tf does not know it
+    rig.said.clear()
+    rig.move(1.0)
+    await asyncio.sleep(0.05)
+    assert rig.said[0].names == ["tip", "base"]
+
+
+async def test_frames_of_a_robot_that_went_are_gone(rig):
+    rig.send({("base", "tip"): IDENTITY, ("base", "old"): IDENTITY})
+    await rig.settle()
+    rig.said.clear()
+    rig.stream.robot_changed({"old", "never there"})
+    await asyncio.sleep(0.05)
+    table, transforms, frames = rig.said
+    assert table.names == ["tip", "base"]
+    assert len(transforms.poses) == 2
+    assert "old" not in frames.names
+
+
+async def test_the_stamp_is_that_of_the_newest_transform(rig):
+    rig.move(1.0, stamp_ns=2_500_000_000)
+    rig.send({("base", "b"): IDENTITY}, stamp_ns=1_000_000_000)
+    await asyncio.sleep(0.05)
+    assert rig.sent()[-1].stamp == 2.5

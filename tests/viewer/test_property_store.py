@@ -1,0 +1,105 @@
+from __future__ import annotations
+
+import pytest
+import yaml
+
+from linkwright.viewer import yaml_tree
+from linkwright.viewer.property_store import PropertyStore, property_id
+from linkwright.viewer.schema import PropertySpec
+
+SCHEMA = (
+    PropertySpec("Alpha", "float", 0.5, minimum=0.0, maximum=1.0),
+    PropertySpec(
+        "Line Style",
+        "enum",
+        "Lines",
+        options=("Lines", "Billboards"),
+        children=(PropertySpec("Line Width", "float", 0.03, when=(("Line Style",), "Billboards")),),
+    ),
+    PropertySpec(
+        "Links",
+        "group",
+        children=(PropertySpec("a/b%", "bool", True, children=(PropertySpec("Alpha", "float", 1.0),)),),
+    ),
+    PropertySpec("Reference Frame", "frame", "map"),
+)
+
+
+@pytest.fixture
+def section():
+    return yaml_tree.parse("Alpha: 0.25\nLine Style:\n  Line Width: 0.2\n  Value: Billboards\nother: 1\n", "x")
+
+
+@pytest.fixture
+def reported():
+    return []
+
+
+@pytest.fixture
+def store(section, reported):
+    return PropertyStore("display-1", section, lambda: SCHEMA, reported.append, frames=lambda: ["map", "odom"])
+
+
+def test_values_come_from_the_file_then_from_the_defaults(store):
+    assert store.get("Alpha") == 0.25
+    assert store.get("Line Style", "Line Width") == 0.2
+    assert store.get("Links", "a/b%", "Alpha") == 1.0
+    with pytest.raises(KeyError):
+        store.get("Beta")
+
+
+def test_ids_are_unique_whatever_the_names_hold(store):
+    identity = store.identity(("Links", "a/b%", "Alpha"))
+    assert identity == "display-1/Links/a%2Fb%25/Alpha"
+    assert store.find(identity) == ("Links", "a/b%", "Alpha")
+    assert property_id("x", ("a/b",)) != property_id("x", ("a", "b"))
+
+
+@pytest.mark.parametrize("identity", ["display-1", "display-2/Alpha", "display-1/", "display-1/Alpha/x", "", "/"])
+def test_ids_of_nothing_are_not_found(store, identity):
+    assert store.find(identity) is None
+
+
+def test_what_is_set_is_in_the_file_and_nothing_else(store, section):
+    assert store.set(("Alpha",), 2) == 1.0
+    store.set(("Links", "a/b%"), False)
+    store.set(("Reference Frame",), "map")  # as it is by default: not worth a line
+    assert yaml.safe_load(yaml_tree.write(section)) == {
+        "Alpha": 1.0,
+        "Line Style": {"Line Width": 0.2, "Value": "Billboards"},
+        "other": 1,
+        "Links": {"a/b%": {"Value": False}},
+    }
+
+
+def test_rows_that_do_not_apply_are_left_out(store):
+    def widths():
+        return [row.name for row in store.rows()[1].children]
+
+    assert widths() == ["Line Width"]
+    assert store.is_condition(("Line Style",))
+    assert not store.is_condition(("Alpha",))
+    store.set(("Line Style",), "Lines")
+    assert widths() == []
+
+
+def test_frames_are_offered(store):
+    assert store.rows()[3].options == ["map", "odom"]
+    (change,) = store.frame_changes()
+    assert (change.id, change.value, change.options) == ("display-1/Reference Frame", "map", ["map", "odom"])
+
+
+def test_bad_values_are_reported_once(reported):
+    store = PropertyStore("x", yaml_tree.parse("Alpha: lots\n", "f.rviz"), lambda: SCHEMA, reported.append)
+    assert store.get("Alpha") == store.get("Alpha") == 0.5
+    (diagnostic,) = reported
+    assert (diagnostic.code, str(diagnostic.span)) == ("RVIZ201", "f.rviz:1:8")
+
+
+def test_a_base_is_made_only_when_a_value_is_set():
+    document = yaml_tree.parse("a: 1\n", "x")
+    store = PropertyStore("x", document, lambda: SCHEMA, print, base=("Manager", "Options"))
+    assert store.get("Alpha") == 0.5
+    assert yaml_tree.write(document) == "a: 1\n"
+    store.set(("Alpha",), 0.1)
+    assert yaml.safe_load(yaml_tree.write(document)) == {"a": 1, "Manager": {"Options": {"Alpha": 0.1}}}

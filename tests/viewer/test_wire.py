@@ -1,0 +1,98 @@
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from linkwright.viewer import protocol
+from linkwright.viewer.wire import BadMessageError, decode, encode, redundancy_key
+
+FLOATS = st.floats(allow_nan=False, allow_infinity=False)
+MESSAGES = st.one_of(
+    st.builds(protocol.SetProperty, id=st.text(), value=st.none() | st.booleans() | st.integers() | FLOATS | st.text()),
+    st.builds(protocol.SetJoint, name=st.text(), position=FLOATS),
+    st.builds(protocol.RandomizeJoints),
+    st.builds(protocol.CenterJoints),
+    st.builds(protocol.MeshStatus, display=st.text(), link=st.text(), url=st.text(), error=st.none() | st.text()),
+    st.builds(
+        protocol.ViewChanged,
+        view=st.builds(protocol.OrbitView, distance=FLOATS, focal_point=st.lists(FLOATS, max_size=3)),
+    ),
+)
+JSON = st.recursive(
+    st.none() | st.booleans() | st.integers() | FLOATS | st.text(max_size=5),
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=5), inner, max_size=3),
+    max_leaves=6,
+)
+
+
+@given(MESSAGES)
+def test_what_a_page_may_send_is_read(message):
+    assert decode(json.dumps(asdict(message))) == message
+
+
+@given(MESSAGES, st.data())
+def test_a_field_more_or_less_or_of_another_kind_is_refused(message, data):
+    fields = asdict(message)
+    name = data.draw(st.sampled_from(sorted(fields)))
+    with pytest.raises(BadMessageError):
+        decode(json.dumps({key: value for key, value in fields.items() if key != name}))
+    with pytest.raises(BadMessageError):
+        decode(json.dumps(fields | {"more": 1}))
+    with pytest.raises(BadMessageError):
+        decode(json.dumps(fields | {name: {"another": "kind"}}))
+
+
+@given(JSON, JSON)
+def test_anything_else_is_refused_and_nothing_worse(first, second):
+    for data in (first, {"type": first}, {"type": "set_joint", "name": first, "position": second, "x": 1}):
+        with pytest.raises(BadMessageError):
+            decode(json.dumps(data))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "{",
+        "[]",
+        "null",
+        "[" * 100_000,
+        '{"type": "set_joint", "name": "a", "position": NaN}',
+        '{"type": "set_joint", "name": "a", "position": 1e999}',
+        '{"type": "set_joint", "name": "a", "position": ' + "9" * 400 + "}",
+        '{"type": "set_joint", "name": "a", "position": true}',
+        '{"type": "set_joint", "name": "a", "position": "1"}',
+        '{"type": "set_property", "id": "x", "value": [1]}',
+        '{"type": "hello"}',
+        '{"type": ["set_joint"]}',
+    ],
+)
+def test_bad_messages_are_refused(text):
+    with pytest.raises(BadMessageError):
+        decode(text)
+
+
+def test_whole_numbers_are_floats_where_floats_are_meant():
+    position = decode('{"type": "set_joint", "name": "a", "position": 1}').position
+    assert (position, type(position)) == (1.0, float)
+
+
+def test_messages_of_the_server_are_plain_json():
+    row = protocol.Property("a/b", "b", "float", 0.5, children=[protocol.Property("a/b/c", "c", "group")])
+    message = protocol.DisplayProperties("a", [row])
+    assert json.loads(encode(message)) == asdict(message)
+    assert json.loads(encode(protocol.JointPositions({"轮": 1.0}))) == {
+        "positions": {"轮": 1.0},
+        "type": "joint_positions",
+    }
+
+
+def test_keys_tell_what_makes_what_needless():
+    assert redundancy_key(protocol.PropertyChanged("a/b", 1)) != redundancy_key(protocol.PropertyChanged("a/c", 1))
+    assert redundancy_key(protocol.PropertyChanged("a/b", 1)) == redundancy_key(protocol.PropertyChanged("a/b", 2))
+    assert redundancy_key(protocol.RobotScene("a", 1, "", [])) != redundancy_key(protocol.RobotScene("b", 1, "", []))
+    assert redundancy_key(protocol.Joints(None)) != redundancy_key(protocol.JointPositions({}))

@@ -1,0 +1,81 @@
+"""Bring the messages on the troubleshooting pages up to date with what the program prints.
+
+Usage: python tools/documented_output.py [--check]
+
+A section of these pages that can be tried has fenced blocks with titles (the files), one ``bash`` block (the command) and
+one ``text`` block, which this program fills with what the command writes to standard error in a folder of these files.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shlex
+import subprocess
+import sys
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+
+DOCS = Path(__file__).resolve().parent.parent / "docs"
+PAGES = (DOCS / "troubleshooting.md", DOCS / "zh" / "troubleshooting.md")
+
+_SECTION = re.compile(r"(?=^## )", re.MULTILINE)
+_FILE = re.compile(r'^```\w+ title="([^"]+)"\n(.*?)^```$', re.MULTILINE | re.DOTALL)
+_COMMAND = re.compile(r"^```bash\nlinkwright (.*?)\n```$", re.MULTILINE)
+_OUTPUT = re.compile(r"(?<=^```text\n).*?(?=^```$)", re.MULTILINE | re.DOTALL)
+# A folder's look must not depend on where the program is run, nor on a workspace that happens to be sourced.
+_LEFT_OUT = ("AMENT_PREFIX_PATH", "COLCON_PREFIX_PATH", "ROS_PACKAGE_PATH")
+
+
+def refreshed(page: str) -> str:
+    """The text of a page with every output as it is now."""
+    return "".join(_refreshed_section(section) for section in _SECTION.split(page))
+
+
+def output_of(words: Sequence[str], files: Sequence[tuple[str, str]]) -> str:
+    """What ``linkwright`` with these words writes to standard error in a folder of these files (path, text)."""
+    environment = {name: value for name, value in os.environ.items() if name not in _LEFT_OUT}
+    with tempfile.TemporaryDirectory() as folder:
+        for name, text in files:
+            path = Path(folder) / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text, encoding="utf-8")
+        result = subprocess.run(
+            [sys.executable, "-m", "linkwright", *words],
+            cwd=folder,
+            env=environment,
+            capture_output=True,
+            encoding="utf-8",
+            timeout=60,
+            check=False,
+        )
+    if result.returncode != 1:
+        raise RuntimeError(f"linkwright {shlex.join(words)} exited with {result.returncode}, not 1:\n{result.stderr}")
+    return result.stderr
+
+
+def _refreshed_section(section: str) -> str:
+    command = _COMMAND.search(section)
+    if command is None or _OUTPUT.search(section) is None:
+        return section
+    output = output_of(shlex.split(command[1]), _FILE.findall(section))
+    return _OUTPUT.sub(lambda _: output, section, count=1)
+
+
+def main(words: Sequence[str]) -> int:
+    """Write the pages, or with ``--check`` say whether they are current."""
+    stale = False
+    for page in PAGES:
+        before = page.read_text(encoding="utf-8")
+        after = refreshed(before)
+        if before != after and "--check" in words:
+            print(f"{page} is stale: run python tools/documented_output.py", file=sys.stderr)
+            stale = True
+        elif before != after:
+            page.write_text(after, encoding="utf-8", newline="\n")
+    return int(stale)
+
+
+if __name__ == "__main__":
+    raise SystemExit(main(sys.argv[1:]))
