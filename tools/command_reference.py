@@ -56,7 +56,7 @@ def describe(parser: argparse.ArgumentParser, help_text: str) -> Iterator[str]:
     text = parser.description or help_text
     yield f"{text[:1].upper()}{text[1:].rstrip('.')}.\n"
     yield f"```text\n{usage(parser)}\n```\n"
-    rows = [row(action) for action in arguments(parser)]
+    rows = [row(parser, action) for action in arguments(parser)]
     yield "\n".join(["| argument | meaning |", "| --- | --- |", *rows]) + "\n"
     if parser.epilog:
         yield f"{parser.epilog}\n"
@@ -70,7 +70,9 @@ def arguments(parser: argparse.ArgumentParser) -> list[argparse.Action]:
 
 
 def usage(parser: argparse.ArgumentParser) -> str:
-    """How the command is called, on as many lines as it takes."""
+    """How the command is called, on as many lines as it takes; the command's own wording where it has one."""
+    if parser.usage is not None:
+        return parser.usage
     words = [_usage_word(action) for action in arguments(parser)]
     lines = [parser.prog]
     indent = " " * (len(parser.prog) + 1)
@@ -82,12 +84,17 @@ def usage(parser: argparse.ArgumentParser) -> str:
     return "\n".join(lines)
 
 
-def row(action: argparse.Action) -> str:
+def row(parser: argparse.ArgumentParser, action: argparse.Action) -> str:
     """One row of a command's table."""
     values = _values(action)
-    names = ", ".join(f"`{name}{f' {values}' if values else ''}`" for name in _shown_names(action))
-    meaning = escape((action.help or "").replace("%%", "%"), quote=False).replace("|", "\\|")
-    return f"| {names or '`' + values.strip('[]') + '`'} | {meaning} |"
+    names = [f"{name} {values}".rstrip() for name in _shown_names(action)] or [values]
+    shown = ", ".join(f"`{name}`" for name in names)
+    meaning = escape(parser._get_formatter()._expand_help(action), quote=False)
+    return f"| {_cell(shown)} | {_cell(meaning)} |"
+
+
+def _cell(text: str) -> str:
+    return text.replace("|", "\\|")
 
 
 def _subcommands(parser: argparse.ArgumentParser) -> Iterator[tuple[argparse.ArgumentParser, str]]:
@@ -108,6 +115,8 @@ def _values(action: argparse.Action) -> str:
         return ""
     if isinstance(action.metavar, str):
         value = action.metavar
+        if " " in value:  # it says itself what may be repeated
+            return value
     elif action.choices is not None:
         value = "{" + ",".join(map(str, action.choices)) + "}"
     else:

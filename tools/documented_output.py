@@ -2,8 +2,9 @@
 
 Usage: python tools/documented_output.py [--check]
 
-A section of these pages that can be tried has fenced blocks with titles (the files), one ``bash`` block (the command) and
-one ``text`` block, which this program fills with what the command writes to standard error in a folder of these files.
+A section of these pages that can be tried has fenced blocks with titles (the files), one ``bash`` block (the command)
+and one ``text`` block, which this program fills with what the command writes to standard error in a folder of these
+files.
 """
 
 from __future__ import annotations

@@ -13,12 +13,11 @@ SHARED_FOLDERS = ['launch', 'meshes', 'rviz', 'urdf']
 
 
 def shared_files():
-    """Yield (installed folder, its files) for each folder, as `data_files` wants them."""
+    """Yield (installed folder, [file]) for every file, as `data_files` wants them."""
     for top in SHARED_FOLDERS:
-        for folder in [Path(top), *sorted(path for path in Path(top).rglob('*') if path.is_dir())]:
-            files = sorted(str(path) for path in folder.iterdir() if path.is_file())
-            if files and folder.name != '__pycache__':
-                yield str(SHARE / folder), files
+        for path in sorted(Path(top).rglob('*')):
+            if path.is_file() and path.suffix != '.pyc':
+                yield str(SHARE / path.parent), [str(path)]
 
 
 setup(

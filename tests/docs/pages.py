@@ -33,12 +33,7 @@ def pages() -> list[Path]:
 
 def blocks(page: Path) -> list[Block]:
     """The page's code blocks in order."""
-    return parse_blocks(page.read_text(encoding="utf-8"))
-
-
-def parse_blocks(text: str) -> list[Block]:
-    """The code blocks of a piece of a page."""
-    found = _BLOCK.finditer(text)
+    found = _BLOCK.finditer(page.read_text(encoding="utf-8"))
     return [Block(match["language"], match["title"] or "", match["text"]) for match in found]
 
 

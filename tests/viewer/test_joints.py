@@ -1,47 +1,42 @@
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import asyncio
+import math
 
 import pytest
 
+from linkwright.graph import Graph
+from linkwright.nodes import JointStatePublisherGui, NodeOptions
 from linkwright.viewer.joints import JointBridge
 from linkwright.viewer.protocol import CenterJoints, JointPositions, Joints, RandomizeJoints, SetJoint
 
+GRIPPER = """\
+<robot name="gripper">
+  <link name="base"/><link name="arm"/><link name="left"/><link name="right"/>
+  <joint name="turn" type="continuous"><parent link="base"/><child link="arm"/></joint>
+  <joint name="open" type="prismatic">
+    <parent link="arm"/><child link="left"/><limit lower="0.01" upper="0.05" effort="1" velocity="1"/>
+  </joint>
+  <joint name="follow" type="prismatic">
+    <parent link="arm"/><child link="right"/><limit lower="-0.1" upper="0.1" effort="1" velocity="1"/>
+    <mimic joint="open" multiplier="-1"/>
+  </joint>
+</robot>
+"""
 
-@dataclass
-class Slider:
-    name: str
-    kind: str = "revolute"
-    lower: float = -1.0
-    upper: float = 1.0
-    zero: float = 0.0
-    mimic: str | None = None
+
+@pytest.fixture
+async def graph():
+    made = Graph(on_log=lambda _: None)
+    yield made
+    await made.close()
 
 
-@dataclass
-class Panel:
-    joints: list[Slider]
-    done: list = field(default_factory=list)
-    listeners: list = field(default_factory=list)
-
-    def sliders(self):
-        return self.joints
-
-    def positions(self):
-        return {joint.name: joint.zero for joint in self.joints}
-
-    def set_position(self, name, value):
-        self.done.append((name, value))
-
-    def randomize(self):
-        self.done.append("randomize")
-
-    def center(self):
-        self.done.append("center")
-
-    def subscribe(self, callback):
-        self.listeners.append(callback)
-        return lambda: self.listeners.remove(callback)
+@pytest.fixture
+async def panel(graph):
+    options = NodeOptions(parameters={"robot_description": GRIPPER}, arguments=[])
+    running = JointStatePublisherGui(graph, options)
+    return running.panel
 
 
 @pytest.fixture
@@ -54,9 +49,19 @@ def bridge(published):
     return JointBridge(published.append)
 
 
-@pytest.fixture
-def panel():
-    return Panel([Slider("a"), Slider("b", kind="prismatic", mimic="a")])
+async def told(graph):
+    """Wait until the bridge has told of a change."""
+    await graph.settle()
+    await asyncio.sleep(0.03)
+
+
+async def filled(graph, panel):
+    from linkwright.graph import DESCRIPTION_QOS
+    from linkwright.messages import String
+
+    graph.create_node("rsp").create_publisher(String, "robot_description", DESCRIPTION_QOS).publish(String(GRIPPER))
+    await graph.settle()
+    assert panel.sliders()
 
 
 def test_without_a_panel_there_are_no_joints(bridge):
@@ -64,38 +69,52 @@ def test_without_a_panel_there_are_no_joints(bridge):
     bridge.receive(RandomizeJoints())
 
 
-def test_a_panel_is_shown(bridge, panel, published):
+async def test_a_panel_is_shown(graph, bridge, panel, published):
+    await filled(graph, panel)
     bridge.attach(panel)
     controls, positions = published
-    assert [(control.name, control.kind, control.mimic) for control in controls.controls] == [
-        ("a", "revolute", None),
-        ("b", "prismatic", "a"),
-    ]
-    assert positions == JointPositions({"a": 0.0, "b": 0.0})
+    by_name = {control.name: control for control in controls.controls}
+    assert (by_name["turn"].kind, by_name["turn"].lower, by_name["turn"].upper) == ("continuous", -math.pi, math.pi)
+    assert (by_name["open"].lower, by_name["open"].upper) == (0.01, 0.05)
+    assert by_name["open"].zero == pytest.approx(0.03)
+    assert by_name["follow"].mimic == "open"
+    assert positions.positions == pytest.approx({"turn": 0.0, "open": 0.03, "follow": -0.03})
     assert bridge.messages() == published
 
 
-def test_pages_move_joints_that_are_free(bridge, panel):
+async def test_rows_follow_the_description(graph, bridge, panel, published):
     bridge.attach(panel)
-    for message in (SetJoint("a", 0.5), SetJoint("b", 0.5), SetJoint("c", 1.0), RandomizeJoints(), CenterJoints()):
-        bridge.receive(message)
-    assert panel.done == [("a", 0.5), "randomize", "center"]
+    assert published[0] == Joints([])
+    await filled(graph, panel)
+    await told(graph)
+    last = {type(message): message for message in published}
+    assert [control.name for control in last[Joints].controls] == ["turn", "open", "follow"]
+    assert set(last[JointPositions].positions) == {"turn", "open", "follow"}
 
 
-def test_what_the_panel_tells_is_passed_on(bridge, panel, published):
+async def test_pages_move_joints_that_are_free(graph, bridge, panel, published):
+    await filled(graph, panel)
     bridge.attach(panel)
-    published.clear()
-    panel.listeners[0]("positions")
-    assert [type(message) for message in published] == [JointPositions]
-    panel.joints.append(Slider("c"))
-    panel.listeners[0]("sliders")
-    assert [type(message) for message in published[1:]] == [Joints, JointPositions]
-    assert "c" in published[-1].positions
+    bridge.receive(SetJoint("turn", 0.5))
+    bridge.receive(SetJoint("open", 7.0))
+    bridge.receive(SetJoint("follow", 0.0))
+    bridge.receive(SetJoint("nobody", 0.0))
+    await told(graph)
+    assert published[-1].positions == pytest.approx({"turn": 0.5, "open": 0.05, "follow": -0.05})
+    bridge.receive(CenterJoints())
+    await told(graph)
+    assert published[-1].positions == pytest.approx({"turn": 0.0, "open": 0.03, "follow": -0.03})
+    bridge.receive(RandomizeJoints())
+    await told(graph)
+    assert published[-1].positions["turn"] != 0.0
 
 
-def test_another_panel_takes_its_place(bridge, panel, published):
+async def test_another_panel_takes_its_place(graph, bridge, panel, published):
+    await filled(graph, panel)
     bridge.attach(panel)
-    bridge.attach(Panel([]))
-    assert panel.listeners == []
     bridge.attach(None)
     assert published[-1] == Joints(None)
+    count = len(published)
+    panel.randomize()
+    await told(graph)
+    assert len(published) == count

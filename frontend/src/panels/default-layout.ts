@@ -50,7 +50,8 @@ export function addPanels(api: DockviewApi, ids: readonly PanelId[]): void {
     const options: AddPanelOptions = { id, component: id, tabComponent: id, title: strings.panels[id] };
     if (width !== undefined) options.initialWidth = width;
     if (height !== undefined) options.initialHeight = height;
-    if (inactive !== undefined) options.inactive = inactive;
+    // Alone in its group a panel must be active, or the group stays empty.
+    if (inactive !== undefined && found?.[1] === "within") options.inactive = inactive;
     const position = found && { referencePanel: found[0], direction: found[1] };
     api.addPanel(position ? { ...options, floating: false, position } : options);
   }

@@ -64,10 +64,12 @@ function card(item: DiagnosticItem): HTMLElement {
 /** The source line with the part in question marked. */
 function excerpt(item: DiagnosticItem): HTMLElement | null {
   if (item.excerpt === "") return null;
-  const text = item.excerpt;
-  const start = Math.min(Math.max(0, (item.column ?? 1) - 1), text.length);
+  const text = item.excerpt.trimStart();
+  const indent = item.excerpt.length - text.length;
+  const offset = (column: number): number => Math.min(Math.max(0, column - 1 - indent), text.length);
+  const start = offset(item.column ?? 1);
   const sameLine = item.end_line === null || item.end_line === item.line;
-  const end = sameLine && item.end_column !== null ? Math.min(item.end_column - 1, text.length) : text.length;
+  const end = sameLine && item.end_column !== null ? offset(item.end_column) : text.length;
   const code = h("code", {}, text.slice(0, start));
   code.append(h("mark", {}, text.slice(start, Math.max(end, start + 1))), text.slice(Math.max(end, start + 1)));
   return h("pre", { class: "excerpt" }, h("span", { class: "line-number" }, String(item.line ?? "")), code);

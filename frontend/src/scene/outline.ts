@@ -1,16 +1,13 @@
 import {
   Color,
   DoubleSide,
-  Mesh,
   MeshBasicMaterial,
-  OrthographicCamera,
-  PlaneGeometry,
-  Scene,
   ShaderMaterial,
   Vector2,
   WebGLRenderTarget,
   type Object3D,
 } from "three";
+import { SCREEN_VERTEX, ScreenQuad } from "./objects/screen-quad";
 import type { Viewport } from "./viewport";
 
 const OUTLINE_LAYER = 1;
@@ -29,35 +26,29 @@ const FRAGMENT = /* glsl */ `
     gl_FragColor = vec4(color, max((near - inside) * 0.95, inside * 0.16));
   }
 `;
-const VERTEX = /* glsl */ `
-  varying vec2 vUv;
-  void main() { vUv = uv; gl_Position = vec4(position.xy, 0.0, 1.0); }
-`;
-
 /** Draws a line around the selected objects, also where something hides them, and a tint over them. */
 export class Outline {
   private objects: readonly Object3D[] = [];
   private readonly mask = new WebGLRenderTarget(1, 1);
   private readonly white = new MeshBasicMaterial({ color: 0xffffff, side: DoubleSide });
-  private readonly screen = new Scene();
-  private readonly screenCamera = new OrthographicCamera();
   private readonly uniforms = {
     mask: { value: this.mask.texture },
     texel: { value: new Vector2() },
     color: { value: new Color(COLOR) },
   };
 
-  constructor(private readonly viewport: Viewport) {
-    const material = new ShaderMaterial({
-      vertexShader: VERTEX,
+  private readonly quad = new ScreenQuad(
+    new ShaderMaterial({
+      vertexShader: SCREEN_VERTEX,
       fragmentShader: FRAGMENT,
       uniforms: this.uniforms,
       transparent: true,
       depthTest: false,
       depthWrite: false,
-    });
-    this.screen.add(new Mesh(new PlaneGeometry(2, 2), material));
-  }
+    }),
+  );
+
+  constructor(private readonly viewport: Viewport) {}
 
   set(objects: readonly Object3D[]): void {
     for (const object of this.objects) object.layers.disable(OUTLINE_LAYER);
@@ -83,8 +74,6 @@ export class Outline {
     scene.overrideMaterial = null;
     renderer.setRenderTarget(null);
     renderer.setClearColor(background);
-    renderer.autoClear = false;
-    renderer.render(this.screen, this.screenCamera);
-    renderer.autoClear = true;
+    this.quad.render(renderer);
   }
 }

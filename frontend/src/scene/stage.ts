@@ -14,7 +14,7 @@ import { Viewport } from "./viewport";
 /** The 3-D view: one drawing for each display, drawn when something changed. */
 export class Stage {
   readonly viewport: Viewport;
-  readonly loop = new FrameLoop(() => this.draw());
+  readonly loop = new FrameLoop((fine) => this.draw(fine));
   private readonly meshes = new MeshLibrary();
   private readonly drawings = new Map<string, { display: DisplayState; drawing: Drawing }>();
   private readonly outline: Outline;
@@ -26,7 +26,7 @@ export class Stage {
     private readonly session: Session,
   ) {
     // A resized canvas is empty until it is drawn: at once, or it would flicker.
-    this.viewport = new Viewport(container, () => this.draw());
+    this.viewport = new Viewport(container, () => this.draw(false));
     this.outline = new Outline(this.viewport);
     this.viewport.scene.add(this.focalShape.root);
     this.listen();
@@ -143,7 +143,7 @@ export class Stage {
     this.loop.invalidate();
   }
 
-  private draw(): void {
+  private draw(fine: boolean): void {
     const { view, selection } = this.session;
     this.viewport.aim(view);
     this.focalShape.place(view);
@@ -158,7 +158,7 @@ export class Stage {
     const owner = selected && this.drawings.get(selected.display);
     const objects = selected && owner?.display.enabled ? owner.drawing.objectsOf?.(selected.link.name) : null;
     this.outline.set(objects ?? []);
-    this.viewport.render();
+    this.viewport.render(fine);
     this.outline.render();
     this.robotSettled ||= settled && this.visualsDrawn > 0;
   }

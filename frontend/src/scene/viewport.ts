@@ -11,11 +11,11 @@ import {
 } from "three";
 import { cameraAxes, FIELD_OF_VIEW } from "../state/orbit";
 import type { ViewState } from "../state/view";
+import { AMBIENT } from "./light";
+import { Smoothing } from "./smoothing";
 
 const LARGEST_PIXEL_RATIO = 2;
 const FAR_CLIP = 1000;
-/** Part of a surface's colour that is seen even where the light does not reach it. */
-const AMBIENT = 0.2;
 
 // RViz writes colours to the screen as they are in the URDF; a surface facing the camera shows exactly its colour.
 ColorManagement.enabled = false;
@@ -25,10 +25,11 @@ export class Viewport {
   readonly scene = new Scene();
   readonly camera = new PerspectiveCamera((FIELD_OF_VIEW * 180) / Math.PI, 1, 0.01, FAR_CLIP);
   readonly renderer: WebGLRenderer;
+  private readonly smoothing = new Smoothing();
   private readonly light = new DirectionalLight(0xffffff, (1 - AMBIENT) * Math.PI);
 
   constructor(readonly container: HTMLElement, resized: () => void) {
-    this.renderer = new WebGLRenderer({ antialias: true, powerPreference: "high-performance" });
+    this.renderer = new WebGLRenderer({ antialias: false, powerPreference: "high-performance" });
     this.renderer.outputColorSpace = LinearSRGBColorSpace;
     this.renderer.setClearColor(0x303030);
     this.camera.matrixAutoUpdate = false;
@@ -69,8 +70,11 @@ export class Viewport {
     this.light.position.set(...back);
   }
 
-  render(): void {
-    this.renderer.render(this.scene, this.camera);
+  /** Draws the scene; `fine` smooths its edges. */
+  render(fine: boolean): void {
+    const draw = (): void => this.renderer.render(this.scene, this.camera);
+    if (fine) this.smoothing.render(this.renderer, draw);
+    else draw();
   }
 
 

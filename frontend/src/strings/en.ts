@@ -10,7 +10,7 @@ export const en = {
   titlebar: {
     panels: "Panels",
     resetLayout: "Reset layout",
-    language: "中文",
+    language: "ZH",
     languageHint: "Show this page in Chinese",
   },
   tree: {

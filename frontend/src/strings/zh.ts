@@ -6,7 +6,7 @@ export const zh: Strings = {
   titlebar: {
     panels: "面板",
     resetLayout: "恢复默认布局",
-    language: "English",
+    language: "EN",
     languageHint: "用英文显示本页",
   },
   tree: {

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 
-from linkwright.cli.description import read_description
+from linkwright.cli.assignments import parse_assignments
 from linkwright.diagnostics import has_errors, print_diagnostics
 
 NAME = "check"
@@ -20,10 +20,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Print the tree as check_urdf does, and every finding; 1 when one of them is an error."""
-    from linkwright.urdf import tree_text
+    from linkwright.urdf import examine, tree_text
 
-    robot, diagnostics = read_description(arguments.file, arguments.values)
-    print_diagnostics(diagnostics, sys.stderr)
-    if robot is not None:
-        sys.stdout.write(tree_text(robot))
-    return 1 if has_errors(diagnostics) else 0
+    reading = examine(arguments.file, arguments=parse_assignments(arguments.values))
+    print_diagnostics(reading.diagnostics, sys.stderr)
+    if reading.robot is not None:
+        sys.stdout.write(tree_text(reading.robot))
+    return 1 if has_errors(reading.diagnostics) else 0

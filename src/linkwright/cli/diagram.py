@@ -6,7 +6,6 @@ import argparse
 import sys
 from pathlib import Path
 
-from linkwright.cli.description import read_description
 from linkwright.cli.output import write_output
 from linkwright.diagnostics import print_diagnostics
 
@@ -29,11 +28,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Write OUT.gv and the picture, and say so as urdf_to_graphviz does."""
-    from linkwright.urdf import to_gv
+    from linkwright.urdf import examine, to_gv
     from linkwright.urdf.diagram import render
 
-    robot, diagnostics = read_description(arguments.file, [])
-    print_diagnostics(diagnostics, sys.stderr)
+    reading = examine(arguments.file)
+    print_diagnostics(reading.diagnostics, sys.stderr)
+    robot = reading.robot
     if robot is None:
         return 1
     base = Path(arguments.output or robot.name or "robot")

@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterable
 from pathlib import Path
 from typing import IO, Any
-from unicodedata import east_asian_width
+from unicodedata import combining, east_asian_width
 
 from linkwright.diagnostics.diagnostic import Diagnostic, Note, Severity
 from linkwright.diagnostics.source import Span
@@ -117,9 +117,15 @@ def _excerpt(diagnostic: Diagnostic, paint: _Paint) -> list[str]:
 
 
 def _width(text: str) -> int:
-    return sum(
-        len(_TAB) if character == "\t" else 2 if east_asian_width(character) in "WF" else 1 for character in text
-    )
+    return sum(map(_columns, text))
+
+
+def _columns(character: str) -> int:
+    if character == "\t":
+        return len(_TAB)
+    if combining(character):
+        return 0
+    return 2 if east_asian_width(character) in "WF" else 1
 
 
 def _indented(text: str) -> str:

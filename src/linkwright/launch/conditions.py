@@ -64,18 +64,14 @@ class UnlessCondition(Condition):
 class LaunchConfigurationEquals(Condition):
     """The action runs if a launch configuration has a value; None asks whether it is unset."""
 
-    def __init__(
-        self, launch_configuration_name: str, expected_value: SomeSubstitutionsType | None
-    ) -> None:
+    def __init__(self, launch_configuration_name: str, expected_value: SomeSubstitutionsType | None) -> None:
         super().__init__(predicate=_equals(launch_configuration_name, expected_value))
 
 
 class LaunchConfigurationNotEquals(Condition):
     """The action runs if a launch configuration has another value; None asks whether it is set."""
 
-    def __init__(
-        self, launch_configuration_name: str, expected_value: SomeSubstitutionsType | None
-    ) -> None:
+    def __init__(self, launch_configuration_name: str, expected_value: SomeSubstitutionsType | None) -> None:
         equals = _equals(launch_configuration_name, expected_value)
         super().__init__(predicate=lambda context: not equals(context))
 

@@ -94,7 +94,7 @@ class LaunchContext:
         self.environment.update(environment)
 
     def snapshot(self) -> LaunchContext:
-        """A context with the configurations as they are now, for an action that has to be tried again later."""
+        """A context with the configurations as they are now, for an action that is to be tried again later."""
         copy = LaunchContext(argv=self.argv, noninteractive=self.noninteractive)
         copy.launch_configurations.update(self.launch_configurations)
         copy._globals = dict(self._globals)

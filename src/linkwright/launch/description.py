@@ -43,8 +43,8 @@ class LaunchDescription(LaunchDescriptionEntity):
     def get_launch_arguments(self, conditional_inclusion: bool = False) -> list[DeclareLaunchArgument]:
         """The arguments declared here and, as far as can be known before it runs, in what is included.
 
-        Of several declarations with one name the first is given. A declaration behind a condition is marked by
-        its ``conditionally_included``.
+        Of several declarations with one name the first is given. A declaration behind a condition is marked
+        by its ``conditionally_included``.
         """
         from linkwright.launch.declared import declared_arguments
 

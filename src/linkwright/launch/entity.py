@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Any, TypeVar, Union
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from linkwright.launch.places import Place
 
@@ -23,7 +23,7 @@ class LaunchDescriptionEntity:
 
     place: Place | None
 
-    def __new__(cls: type[E], *_: Any, **__: Any) -> E:
+    def __new__(cls: type[E], *_: Any, **__: Any) -> E:  # noqa: PYI019 - Self needs Python 3.11
         """Remember the place; done here because entities of users need not call our constructor."""
         made = super().__new__(cls)
         made.place = Place.of_caller()
@@ -38,7 +38,7 @@ class LaunchDescriptionEntity:
         return repr(self)
 
 
-SomeEntitiesType = Union[LaunchDescriptionEntity, Iterable[LaunchDescriptionEntity]]
+SomeEntitiesType = LaunchDescriptionEntity | Iterable[LaunchDescriptionEntity]
 """What may stand where entities are expected: one, or several."""
 
 
@@ -60,7 +60,7 @@ class Action(LaunchDescriptionEntity):
     def visit(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity] | None:
         """Execute, if the condition holds."""
         if self.condition is None or self.condition.evaluate(context):
-            return self.execute(context)
+            return as_entities(self.execute(context))
         return None
 
     def execute(self, context: LaunchContext) -> Any:  # noqa: ARG002 - the interface of actions

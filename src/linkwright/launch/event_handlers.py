@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any, Union
+from typing import Any
 
 from linkwright.launch import events
 from linkwright.launch.context import LaunchContext
 from linkwright.launch.entity import LaunchDescriptionEntity, SomeEntitiesType, as_entities
 
-EntitiesOrCallable = Union[SomeEntitiesType, Callable[..., Any], None]
+EntitiesOrCallable = SomeEntitiesType | Callable[..., Any] | None
 
 
 class EventHandler:
@@ -62,9 +62,7 @@ class _Reaction(EventHandler):
         handle_once: bool,
     ) -> None:
         function = callable(reaction) and not isinstance(reaction, LaunchDescriptionEntity)
-        super().__init__(
-            matcher=matcher, entities=None if function else as_entities(reaction), handle_once=handle_once
-        )
+        super().__init__(matcher=matcher, entities=None if function else as_entities(reaction), handle_once=handle_once)
         self._function: Callable[..., Any] | None = reaction if function else None  # type: ignore[assignment]
 
     def _react(self, event: events.Event, context: LaunchContext) -> list[LaunchDescriptionEntity]:
@@ -80,9 +78,7 @@ def _targets(target_action: Any, event_type: type[events.Event]) -> Callable[[ev
     if isinstance(target_action, LaunchDescriptionEntity):
         return lambda event: isinstance(event, event_type) and getattr(event, "action", None) is target_action
     if callable(target_action):
-        return lambda event: isinstance(event, event_type) and bool(
-            target_action(getattr(event, "action", None))
-        )
+        return lambda event: isinstance(event, event_type) and bool(target_action(getattr(event, "action", None)))
     raise TypeError(f"target_action must be an action or a function of an action, got {target_action!r}")
 
 
@@ -146,15 +142,14 @@ class OnProcessIO(EventHandler):
         self._functions = {1: on_stdout, 2: on_stderr}
         super().__init__(
             matcher=lambda event: (
-                isinstance(event, events.ProcessIO)
-                and self._functions.get(event.fd) is not None
-                and targeted(event)
+                isinstance(event, events.ProcessIO) and self._functions.get(event.fd) is not None and targeted(event)
             ),
             handle_once=handle_once,
         )
 
     def _react(self, event: events.Event, context: LaunchContext) -> list[LaunchDescriptionEntity]:  # noqa: ARG002
-        function = self._functions[event.fd]  # type: ignore[attr-defined]
+        assert isinstance(event, events.ProcessIO)
+        function = self._functions[event.fd]
         return as_entities(function(event) if function else None)
 
 

@@ -149,7 +149,7 @@ class ProcessIO(RunningProcessEvent):
     @property
     def from_stderr(self) -> bool:
         """Whether it was written to stderr."""
-        return self.fd == 2  # noqa: PLR2004 - the number of stderr
+        return self.fd == 2
 
 
 class ProcessStdout(ProcessIO):

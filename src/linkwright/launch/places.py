@@ -73,7 +73,7 @@ def read_source(filename: str) -> SourceText | None:
 
 
 def located(error: LinkwrightError, place: Place | None) -> LinkwrightError:
-    """The error with a place for those of its diagnostics that name none; errors with a place stay as they are."""
+    """The error with a place for its diagnostics; one that names a place already stays as it is."""
     if place is None or any(diagnostic.span for diagnostic in error.diagnostics):
         return error
     source = place.source()

@@ -17,7 +17,8 @@ def load_python_launch_file(path: Path) -> LaunchDescription:
     """Run a launch file and return the description that its ``generate_launch_description()`` makes.
 
     Raises:
-        LinkwrightError: LAUNCH101 no such file, LAUNCH102 unreadable, LAUNCH103 a syntax error, LAUNCH104 an exception
+        LinkwrightError: LAUNCH101 no such file, LAUNCH102 unreadable, LAUNCH103 a syntax error, LAUNCH104 an
+        exception
             inside it, LAUNCH105 no such function in it, LAUNCH106 no description returned, LAUNCH107 not a
             Python file.
     """

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar, Union
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.launch.places import Place, error_at, located
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 S = TypeVar("S", bound="Substitution")
 
 
-class SubstitutionFailure(RuntimeError):
+class SubstitutionFailure(RuntimeError):  # noqa: N818 - its name in ROS
     """What a substitution written by a user raises when it cannot give a text."""
 
 
@@ -28,7 +28,7 @@ class Substitution:
 
     place: Place | None
 
-    def __new__(cls: type[S], *_: Any, **__: Any) -> S:
+    def __new__(cls: type[S], *_: Any, **__: Any) -> S:  # noqa: PYI019 - Self needs Python 3.11
         """Remember the place; done here because substitutions of users need not call our constructor."""
         made = super().__new__(cls)
         made.place = Place.of_caller()
@@ -60,7 +60,7 @@ class TextSubstitution(Substitution):
         return self.text
 
 
-SomeSubstitutionsType = Union[str, Substitution, Iterable[Union[str, Substitution]]]
+SomeSubstitutionsType = str | Substitution | Iterable[str | Substitution]
 """What may stand where a text is expected: a text, a substitution, or several of them to be joined."""
 
 SomeSubstitutionsType_types_tuple = (str, Substitution, Iterable)
@@ -78,9 +78,7 @@ def normalize_to_list_of_substitutions(value: Any) -> list[Substitution]:
         return [TextSubstitution(text=str(value))]
     if isinstance(value, Iterable) and not isinstance(value, bytes):
         return [_single(each) for each in value]
-    raise TypeError(
-        f"expected a text, a substitution or a list of them, got {value!r} of type {type(value).__name__}"
-    )
+    raise TypeError(f"expected a text, a substitution or a list of them, got {value!r} of type {type(value).__name__}")
 
 
 def perform_substitutions(context: LaunchContext, substitutions: Iterable[Substitution]) -> str:

@@ -11,11 +11,13 @@ from traceback import walk_tb
 from types import FrameType, TracebackType
 from typing import Any
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, did_you_mean
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, SourceText, Span, did_you_mean
 from linkwright.launch.places import Place, is_ours, located, read_source
 
 _LIBRARY = tuple({sysconfig.get_path("stdlib"), sysconfig.get_path("purelib"), sysconfig.get_path("platlib")})
 _CANNOT_IMPORT = re.compile(r"cannot import name '([^']+)' from '([^']+)'")
+_PATH_OF_MODULE = re.compile(r" \((?:/|[A-Z]:|unknown location).*\)$")
+_MISSING_ARGUMENT = re.compile(r"\(\) missing \d+ required .*arguments?: (.*)$")
 _UNEXPECTED_ARGUMENT = re.compile(r"([\w.]+)\(\) got an unexpected keyword argument '([^']+)'")
 
 
@@ -37,13 +39,11 @@ def explain(error: Exception, where: str, fallback: Place | None = None) -> Link
     kind = type(error).__name__
     text = str(error.args[0]) if isinstance(error, KeyError) and error.args else str(error)
     message = f"{where} raised {kind}: {text}" if text else f"{where} raised {kind}"
-    message = message.splitlines()[0].rstrip(".")
+    message = _PATH_OF_MODULE.sub("", message.splitlines()[0]).rstrip(".")
     source = place.source() if place else None
     span = place.span(source) if place else None
     notes = tuple(Note("called from here", each.span(read_source(each.file))) for each in reversed(trail[:-1]))
-    return LinkwrightError(
-        Diagnostic("LAUNCH104", message, span, notes=notes, hint=_hint(error), source=source)
-    )
+    return LinkwrightError(Diagnostic("LAUNCH104", message, span, notes=notes, hint=_hint(error, source, span), source=source))
 
 
 def _user_places(traceback: TracebackType | None) -> Iterable[Place]:
@@ -63,7 +63,7 @@ def _is_users(filename: str) -> bool:
     return not filename.startswith(tuple(folder for folder in _LIBRARY if folder))
 
 
-def _hint(error: Exception) -> str | None:
+def _hint(error: Exception, source: SourceText | None, span: Span | None) -> str | None:
     """What the user may have meant."""
     if isinstance(error, ImportError):
         return _import_hint(error)
@@ -76,7 +76,7 @@ def _hint(error: Exception) -> str | None:
         name, owner = getattr(error, "name", None), getattr(error, "obj", None)
         return did_you_mean(name, (each for each in dir(owner) if not each.startswith("_"))) if name else None
     if isinstance(error, TypeError):
-        return _keyword_hint(error)
+        return _keyword_hint(error) or _missing_hint(error, source, span)
     return None
 
 
@@ -108,6 +108,20 @@ def _keyword_hint(error: TypeError) -> str | None:
     return did_you_mean(name, names)
 
 
+def _missing_hint(error: TypeError, source: SourceText | None, span: Span | None) -> str | None:
+    """The misspelt argument name, in the text of the call, that was to be a required one."""
+    found = _MISSING_ARGUMENT.search(str(error))
+    if not found or source is None or span is None:
+        return None
+    call = source.text[source.offset(span.line, span.column) : source.offset(span.end_line, span.end_column)]
+    written = re.findall(r"\b(\w+)\s*=(?!=)", call)
+    for missing in re.findall(r"'(\w+)'", found.group(1)):
+        near = did_you_mean(missing, (name for name in written if name != missing))
+        if near is not None:
+            return f"'{missing}' is missing; it says {near[len('did you mean ') : -1]}"
+    return None
+
+
 def _called_objects(frame: FrameType, class_name: str) -> list[Any]:
     """Classes that the frame knows and that are, or derive from, the one whose constructor complained."""
     known = [*frame.f_globals.values(), *frame.f_locals.values()]
@@ -120,7 +134,7 @@ def _called_objects(frame: FrameType, class_name: str) -> list[Any]:
 
 
 def _parameter_names(called: Any) -> Iterable[str]:
-    functions = [base.__init__ for base in called.__mro__] if inspect.isclass(called) else [called]
+    functions = [vars(base).get("__init__") for base in called.__mro__] if inspect.isclass(called) else [called]
     for function in functions:
         if inspect.isfunction(function):
             for parameter in inspect.signature(function).parameters.values():

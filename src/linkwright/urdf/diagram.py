@@ -30,6 +30,10 @@ def render(gv_text: str, path: str | Path) -> None:
         raise LinkwrightError(Diagnostic("URDF202", f"Graphviz is not available: {error}", hint=hint)) from error
     try:
         graph = AGraph(string=gv_text)
+        for node in graph.nodes_iter():
+            # The dot command shows a node without a label by its name; read through the library it would show nothing.
+            if not node.attr["label"]:
+                node.attr["label"] = r"\N"
         picture = graph.draw(format=ending[1:], prog="dot")
         path.write_bytes(picture)
     except OSError as error:

@@ -109,5 +109,9 @@ class Findings:
         if severity is Severity.ERROR:
             self.error_count += 1
         span = element.attribute_span(attribute) if attribute else element.span()
-        trail: tuple[Note, ...] = getattr(element.origin, "trail", ())
+        trail: tuple[Note, ...] = ()
+        if element.origin is not None:
+            from linkwright.xacro.origin import origin_of
+
+            trail = origin_of(element).trail
         self._found.append(Diagnostic(code, message, span, severity, (*notes, *trail), hint, element.source))

@@ -1,13 +1,14 @@
 """XML text as urdfdom's parser takes it, which is not quite as XML says.
 
 tinyxml2 keeps tabs and line breaks inside attribute values, where XML makes them spaces, and urdfdom does not take them
-between numbers. It also does not mind blanks before the XML declaration.
+between numbers. It also does not mind blanks before the XML declaration, or more elements after the root.
 """
 
 from __future__ import annotations
 
 import re
 
+from linkwright.diagnostics import LinkwrightError
 from linkwright.xmltree import Document, Element, parse
 from linkwright.xmltree.decoding import decode
 from linkwright.xmltree.positions import attribute_value_range
@@ -28,11 +29,32 @@ def parse_as_urdfdom(text: str | bytes, name: str) -> Document:
         text = decode(text, name)
     late = _LATE_DECLARATION.match(text)
     if late:
-        text = re.sub(r"\S", " ", late[0]) + text[late.end() :]
-    document = parse(text, name)
+        text = _blanked(late[0]) + text[late.end() :]
+    try:
+        document = parse(text, name)
+    except LinkwrightError as error:
+        end = _end_of_root(error)
+        if end is None:
+            raise
+        parse(f"<rest>{text[end:]}</rest>", name)  # tinyxml2 wants it well-formed all the same
+        text = text[:end] + _blanked(text[end:])
+        document = parse(text, name)
     if any(blank in text and inside.search(text) for blank, inside in _INSIDE_VALUE.items()):
         _restore_blanks(document.root, text)
     return document
+
+
+def _blanked(text: str) -> str:
+    """As many blanks, in as many lines, so that places stay right."""
+    return re.sub(r"\S", " ", text)
+
+
+def _end_of_root(error: LinkwrightError) -> int | None:
+    """Where the content after the root begins, if that is what the error is about."""
+    found = error.diagnostics[0]
+    if found.code != "XML207" or found.span is None or found.source is None:
+        return None
+    return found.source.offset(found.span.line, found.span.column)
 
 
 def _restore_blanks(root: Element, text: str) -> None:

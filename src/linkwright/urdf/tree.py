@@ -5,12 +5,15 @@ Children come in the order of their joints' names, as urdfdom's maps give them.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 
 from linkwright.diagnostics import Note, Span, did_you_mean
 from linkwright.urdf.findings import Findings
 from linkwright.urdf.model import Joint, Link, Robot
 from linkwright.xmltree import Element
+
+_MOST_VISITS = 64
 
 
 def children_of(robot: Robot) -> Mapping[str, tuple[Joint, ...]]:
@@ -27,13 +30,20 @@ def parent_joints(robot: Robot) -> Mapping[str, Joint]:
 
 
 def walk(robot: Robot) -> Iterator[tuple[Joint, int]]:
-    """The joints below the root, depth first, each with its depth from 1."""
+    """The joints below the root, depth first, each with its depth from 1.
+
+    Below a link with several parents they come once for each of them, as in urdfdom; but not for more than
+    `_MOST_VISITS` ways down to a link, whose number may double with every link.
+    """
     children = children_of(robot)
+    visits: Counter[str] = Counter()
     stack = [(joint, 1) for joint in reversed(children[robot.root])]
     while stack:
         joint, depth = stack.pop()
         yield joint, depth
-        stack.extend((below, depth + 1) for below in reversed(children[joint.child]))
+        visits[joint.child] += 1
+        if visits[joint.child] <= _MOST_VISITS:
+            stack.extend((below, depth + 1) for below in reversed(children[joint.child]))
 
 
 def find_root(links: Mapping[str, Link], joints: Sequence[Joint], findings: Findings) -> str:

@@ -181,6 +181,8 @@ class FrameStream:
         fade_time = self._settings.fade_time()
         if fade_time is None:
             return False
+        if ((ages < fade_time) != (self._ages < fade_time)).any():
+            return True
         looks = np.clip(ages, fade_time / 3, fade_time) - np.clip(self._ages, fade_time / 3, fade_time)
         return bool(np.abs(looks).max(initial=0.0) > _FADE_STEP * fade_time)
 

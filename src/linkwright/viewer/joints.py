@@ -1,9 +1,10 @@
-"""The Joints panel of the page, on the panel of a joint_state_publisher_gui."""
+"""The page's Joints panel: the picture of a joint_state_publisher_gui's `JointPanel`."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from typing import Literal, Protocol
+import asyncio
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, cast
 
 from linkwright.viewer.protocol import (
     CenterJoints,
@@ -15,44 +16,11 @@ from linkwright.viewer.protocol import (
     SetJoint,
 )
 
+if TYPE_CHECKING:
+    from linkwright.nodes import JointPanel
 
-class Slider(Protocol):
-    """What a panel says of one joint; rad or m."""
-
-    @property
-    def name(self) -> str: ...  # noqa: D102
-    @property
-    def kind(self) -> Literal["revolute", "continuous", "prismatic"]: ...  # noqa: D102
-    @property
-    def lower(self) -> float: ...  # noqa: D102
-    @property
-    def upper(self) -> float: ...  # noqa: D102
-    @property
-    def zero(self) -> float: ...  # noqa: D102
-    @property
-    def mimic(self) -> str | None: ...  # noqa: D102
-
-
-class Panel(Protocol):
-    """What the page's Joints panel needs; `linkwright.nodes.JointPanel` has it."""
-
-    def sliders(self) -> Sequence[Slider]:
-        """The joints, in the order to show them."""
-
-    def positions(self) -> dict[str, float]:
-        """Their positions, rad or m, mimicking joints included."""
-
-    def set_position(self, name: str, value: float) -> None:
-        """Move a joint, rad or m; clamped into its limits."""
-
-    def randomize(self) -> None:
-        """Move every joint to anywhere within its limits."""
-
-    def center(self) -> None:
-        """Move every joint to its zero."""
-
-    def subscribe(self, callback: Callable[[str], None]) -> Callable[[], None]:
-        """Have changes told, as ``sliders`` or ``positions``; calling the result ends it."""
+_LAG = 0.01
+"""Seconds by which positions follow a change, so that the transforms it causes go out first."""
 
 
 class JointBridge:
@@ -60,13 +28,17 @@ class JointBridge:
 
     def __init__(self, publish: Callable[[ServerMessage], None]) -> None:
         self._publish = publish
-        self._panel: Panel | None = None
+        self._panel: JointPanel | None = None
         self._unsubscribe: Callable[[], None] | None = None
+        self._soon: asyncio.TimerHandle | None = None
 
-    def attach(self, panel: Panel | None) -> None:
+    def attach(self, panel: JointPanel | None) -> None:
         """Show a panel in place of the one before; None closes it in the page."""
         if self._unsubscribe is not None:
             self._unsubscribe()
+        if self._soon is not None:
+            self._soon.cancel()
+            self._soon = None
         self._panel = panel
         self._unsubscribe = None if panel is None else panel.subscribe(self._told)
         for message in self.messages():
@@ -87,21 +59,32 @@ class JointBridge:
             panel.randomize()
         elif isinstance(message, CenterJoints):
             panel.center()
-        elif any(slider.name == message.name and slider.mimic is None for slider in panel.sliders()):
+        else:
             panel.set_position(message.name, message.position)
 
     def _told(self, kind: str) -> None:
-        if self._panel is None:
-            return
-        if kind == "sliders":
+        if self._panel is not None and kind == "sliders":
             self._publish(self._controls(self._panel))
-        self._publish(JointPositions(self._panel.positions()))
+        if self._soon is None:
+            self._soon = asyncio.get_running_loop().call_later(_LAG, self._send_positions)
+
+    def _send_positions(self) -> None:
+        self._soon = None
+        if self._panel is not None:
+            self._publish(JointPositions(self._panel.positions()))
 
     @staticmethod
-    def _controls(panel: Panel) -> Joints:
+    def _controls(panel: JointPanel) -> Joints:
         return Joints(
             [
-                JointControl(slider.name, slider.kind, slider.lower, slider.upper, slider.zero, slider.mimic)
+                JointControl(
+                    name=slider.name,
+                    kind=cast("Any", slider.kind),  # the joints that move are of these three kinds
+                    lower=slider.lower,
+                    upper=slider.upper,
+                    zero=slider.zero,
+                    mimic=slider.mimic,
+                )
                 for slider in panel.sliders()
             ]
         )

@@ -7,11 +7,11 @@ is one.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 from linkwright.diagnostics import Diagnostic, Severity
-from linkwright.viewer.property_store import PropertyStore
-from linkwright.viewer.protocol import OrbitView
+from linkwright.viewer.property_store import Path, PropertyStore
+from linkwright.viewer.protocol import OrbitView, PropertyValue
 from linkwright.viewer.schema import FIXED_FRAME, PropertySpec, vector
 from linkwright.viewer.yaml_tree import Section
 
@@ -102,21 +102,29 @@ def write_view(document: Section, view: OrbitView) -> None:
     """
     if view == read_view(document, lambda _: None):
         return
+    store = PropertyStore("view", document, lambda: _ORBIT, lambda _: None, base=_CURRENT)
+    values = dict(_values(view))
+    for path, value in values.items():
+        store.check(path, value)
     scalar = document.scalar(*_CURRENT, "Class")
     if scalar is None or scalar.text.rpartition("/")[2] != "Orbit":
         document.put((*_CURRENT, "Class"), ORBIT, string=True)
-    store = PropertyStore("view", document, lambda: _ORBIT, lambda _: None, base=_CURRENT)
-    store.set(("Name",), view.name)
-    store.set(("Near Clip Distance",), view.near_clip_distance)
-    store.set(("Invert Z Axis",), view.invert_z_axis)
-    store.set(("Target Frame",), view.target_frame)
-    store.set(("Distance",), view.distance)
-    store.set(("Yaw",), view.yaw)
-    store.set(("Pitch",), view.pitch)
+    for path, value in values.items():
+        store.set(path, value)
+
+
+def _values(view: OrbitView) -> Iterator[tuple[Path, PropertyValue]]:
+    yield ("Name",), view.name
+    yield ("Near Clip Distance",), view.near_clip_distance
+    yield ("Invert Z Axis",), view.invert_z_axis
+    yield ("Target Frame",), view.target_frame
+    yield ("Distance",), view.distance
+    yield ("Yaw",), view.yaw
+    yield ("Pitch",), view.pitch
     for axis, value in zip("XYZ", view.focal_point, strict=True):
-        store.set(("Focal Point", axis), value)
-    store.set(("Focal Shape Size",), view.focal_shape_size)
-    store.set(("Focal Shape Fixed Size",), view.focal_shape_fixed_size)
+        yield ("Focal Point", axis), value
+    yield ("Focal Shape Size",), view.focal_shape_size
+    yield ("Focal Shape Fixed Size",), view.focal_shape_fixed_size
 
 
 def _look_from(store: PropertyStore, view: OrbitView) -> None:

@@ -69,6 +69,10 @@ class PropertyStore:
         """The value of a ``string``, ``enum``, ``frame`` or ``color``."""
         return str(self.get(*path))
 
+    def check(self, path: Path, value: object) -> None:
+        """Raise what `set` would raise, and store nothing."""
+        accept(self._spec(path), value)
+
     def set(self, path: Path, value: object) -> PropertyValue:
         """Store a value and return it as stored.
 

@@ -124,6 +124,7 @@ class RvizConfig:
             self.warnings.append,
             base=(_MANAGER, "Global Options"),
         )
+        self.options.rows()  # so that all warnings are there from the start
         self.displays: list[DisplayConfig] = []
         manager = document.section(_MANAGER)
         if manager is not None:

@@ -15,7 +15,7 @@ from linkwright.viewer.diagnostic_items import item_of
 from linkwright.viewer.displays import RobotModelDisplay, Stage, TfDisplay, make_display, worst
 from linkwright.viewer.frame_stream import FrameStream, StreamSettings
 from linkwright.viewer.frame_view import FrameView
-from linkwright.viewer.joints import JointBridge, Panel
+from linkwright.viewer.joints import JointBridge
 from linkwright.viewer.listening import listen
 from linkwright.viewer.mesh_files import MeshFolders
 from linkwright.viewer.protocol import (
@@ -38,6 +38,7 @@ from linkwright.viewer.wire import encode
 from linkwright.workspace import PackageFinder
 
 if TYPE_CHECKING:
+    from linkwright.nodes import JointPanel
     from linkwright.viewer.server import WebServer
 
 _NAME = "rviz2"
@@ -157,7 +158,7 @@ class Viewer:
 
     # --- what the rest of the program shows --------------------------------------------------------------------
 
-    def attach_joint_panel(self, panel: Panel | None) -> None:
+    def attach_joint_panel(self, panel: JointPanel | None) -> None:
         """Show sliders for the joints of a panel; None takes them away."""
         self._joints.attach(panel)
 

@@ -1,6 +1,13 @@
 """Where ROS packages are: environment, colcon workspaces, source trees, and the ones shipped with us."""
 
 from linkwright.workspace.active import current_finder, use_finder
+from linkwright.workspace.ament import install_prefix, is_installed
+from linkwright.workspace.ament_functions import (
+    get_package_prefix,
+    get_package_share_directory,
+    get_package_share_path,
+    get_packages_with_prefixes,
+)
 from linkwright.workspace.errors import PackageNotFoundError
 from linkwright.workspace.finder import PackageFinder
 from linkwright.workspace.manifest import enclosing_package, package_name
@@ -10,6 +17,12 @@ __all__ = [
     "PackageNotFoundError",
     "current_finder",
     "enclosing_package",
+    "get_package_prefix",
+    "get_package_share_directory",
+    "get_package_share_path",
+    "get_packages_with_prefixes",
+    "install_prefix",
+    "is_installed",
     "package_name",
     "use_finder",
 ]

@@ -18,6 +18,16 @@ _MARKERS = Path("share", "ament_index", "resource_index", "packages")
 _COLCON_LAYOUT = ".colcon_install_layout"
 
 
+def install_prefix(share: Path) -> Path:
+    """The prefix of a package: the folder that its ``share/NAME`` lies in, or the source folder itself."""
+    return share.parents[1] if is_installed(share) else share
+
+
+def is_installed(share: Path) -> bool:
+    """Whether a share folder belongs to an installed package, not to a source tree."""
+    return share.parent.name == "share"
+
+
 def environment_prefixes(environment: Mapping[str, str]) -> list[Path]:
     """The prefixes that ``AMENT_PREFIX_PATH`` names, in its order."""
     return [Path(entry) for entry in environment.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if entry]

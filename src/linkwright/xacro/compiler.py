@@ -111,7 +111,7 @@ class Compiler:
         return self._source[start - self._shift : end - self._shift]
 
     def _failure(self, error: Exception, start: int, end: int) -> Fault:
-        segment = self._segment(start, end)
+        segment = " ".join(self._segment(start, end).split())
         if len(segment) > 60:
             segment = f"{segment[:57]}..."
         if isinstance(error, RefusalError):

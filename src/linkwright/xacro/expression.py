@@ -110,4 +110,5 @@ def _syntax_fault(source: str, stripped: str, error: SyntaxError) -> Fault:
 
 
 def _shortened(text: str) -> str:
+    text = " ".join(text.split())
     return text if len(text) <= 60 else f"{text[:57]}..."

@@ -6,7 +6,7 @@ import os
 import re
 from glob import glob
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean
+from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, display_path
 from linkwright.xacro import sources
 from linkwright.xacro.expander import Expander, Site
 from linkwright.xacro.literals import truth
@@ -140,4 +140,4 @@ def _nearest_file(path: str) -> str | None:
     try:
         return did_you_mean(name, os.listdir(folder or "."))  # noqa: PTH208 - names are wanted, not paths
     except (OSError, ValueError):
-        return f"there is no folder '{folder}'"
+        return f"there is no folder '{display_path(folder)}'"

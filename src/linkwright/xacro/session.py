@@ -105,8 +105,8 @@ class Session:
 
     def undefined(self, name: str, environment: Environment, start: int, end: int) -> Fault:
         """The fault for a name that no scope has."""
-        names = [known for known in environment.names() if known != name]
-        python = self.globals.values["python"].values
+        provided = self.globals.values
+        python = provided["python"].values
         if name in ("true", "false"):
             hint: str | None = f"write {name.capitalize()}"
         elif name in python:
@@ -114,7 +114,9 @@ class Session:
         elif name in self.arguments:
             hint = f"'{name}' is an argument: write $(arg {name})"
         else:
-            hint = did_you_mean(name, names)
+            hint = did_you_mean(name, [known for known in environment.names() if known not in provided])
+            if hint is None and len(name) > len("pi"):
+                hint = did_you_mean(name, provided)
         return Fault("XAC201", f"the property '{name}' is not defined", start, end, hint)
 
     def nearest_attribute(self, owner: Any, name: str) -> str | None:

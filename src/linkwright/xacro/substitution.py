@@ -50,7 +50,10 @@ def _check_characters(body: str) -> None:
 
 
 def _found_again(whole: str, body: str, session: Session) -> str:
-    return _command(body, session, only_find=True) if body.split(" ", 1)[0] == "find" else whole
+    words = body.split()
+    if words and words[0] in _COMMANDS and words[0] != "find":
+        return whole
+    return _command(body, session, only_find=True)
 
 
 def _command(body: str, session: Session, *, only_find: bool) -> str:

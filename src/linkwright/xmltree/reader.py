@@ -68,6 +68,7 @@ class _Reader:
         self._data = source.text.encode("utf-8", "surrogatepass")
         self._parser = parser = ParserCreate("utf-8")
         parser.buffer_text = True
+        parser.specified_attributes = True  # the defaults of a DTD are not written, so they are not there
         parser.buffer_size = max(1024, min(len(self._data), 1 << 20))
         parser.StartElementHandler = self._start
         parser.EndElementHandler = self._end

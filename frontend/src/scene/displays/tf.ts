@@ -1,8 +1,7 @@
 import { Group, Matrix4, Quaternion, Vector3 } from "three";
 import { FrameFilter } from "./frame-filter";
 import { arrowHeadGeometry, arrowShaftGeometry, axesGeometry } from "../objects/geometries";
-import { fadingMaterial } from "../objects/fading-material";
-import { InstanceBatch } from "../objects/instance-batch";
+import { CopyBatch } from "../objects/copy-batch";
 import { LabelBatch } from "../objects/label-batch";
 import { framePose } from "../pose";
 import type { Drawing, DrawingContext } from "./drawing";
@@ -23,13 +22,9 @@ const ALONG_Z = new Vector3(0, 0, 1);
 /** rviz_default_plugins/TF: axes, arrows to the parents and names of all frames, each kind in one draw call. */
 export class TfDrawing implements Drawing {
   readonly root = new Group();
-  private readonly axes = new InstanceBatch(
-    this.root,
-    axesGeometry(AXIS_LENGTH, AXIS_RADIUS),
-    fadingMaterial({ vertexColors: true }),
-  );
-  private readonly shafts = new InstanceBatch(this.root, arrowShaftGeometry(), fadingMaterial({ color: 0xcccc4d }));
-  private readonly heads = new InstanceBatch(this.root, arrowHeadGeometry(), fadingMaterial({ color: 0xff1a99 }));
+  private readonly axes = new CopyBatch(this.root, axesGeometry(AXIS_LENGTH, AXIS_RADIUS));
+  private readonly shafts = new CopyBatch(this.root, arrowShaftGeometry());
+  private readonly heads = new CopyBatch(this.root, arrowHeadGeometry());
   private readonly names = new LabelBatch();
   private readonly forget: (() => void)[];
   private filter = new FrameFilter("", "");

@@ -1,6 +1,7 @@
 import {
   BoxGeometry,
   CapsuleGeometry,
+  CircleGeometry,
   ConeGeometry,
   CylinderGeometry,
   Float32BufferAttribute,
@@ -28,22 +29,31 @@ export function capsule(length: number): BufferGeometry {
 
 /** Three cylinders along x, y and z in red, green and blue, as RViz's Axes. Metres. */
 export function axesGeometry(length: number, radius: number, segments = 8): BufferGeometry {
-  const along = (): CylinderGeometry => new CylinderGeometry(radius, radius, length, segments);
+  const arm = (): BufferGeometry => mergeGeometries([tube(radius, length, segments), disc(radius, length, segments)]);
   return mergeGeometries([
-    paint(along().rotateZ(-Math.PI / 2).translate(length / 2, 0, 0), 1, 0, 0),
-    paint(along().translate(0, length / 2, 0), 0, 1, 0),
-    paint(along().rotateX(Math.PI / 2).translate(0, 0, length / 2), 0, 0, 1),
+    paint(arm().rotateY(Math.PI / 2), 1, 0, 0),
+    paint(arm().rotateX(-Math.PI / 2), 0, 1, 0),
+    paint(arm(), 0, 0, 1),
   ]);
 }
 
-/** From the origin one metre along z, radius one. */
+/** RViz's arrow from a frame to its parent: from the origin one metre along z, radius one; its ends are never seen. */
 export function arrowShaftGeometry(): BufferGeometry {
-  return new CylinderGeometry(1, 1, 1, 8).rotateX(Math.PI / 2).translate(0, 0, 0.5);
+  return paint(tube(1, 1, 6), 0.8, 0.8, 0.3);
 }
 
 /** Base at the origin, tip one metre along z, radius one. */
 export function arrowHeadGeometry(): BufferGeometry {
-  return new ConeGeometry(1, 1, 10).rotateX(Math.PI / 2).translate(0, 0, 0.5);
+  return paint(new ConeGeometry(1, 1, 10).rotateX(Math.PI / 2).translate(0, 0, 0.5), 1, 0.1, 0.6);
+}
+
+function tube(radius: number, length: number, segments: number): BufferGeometry {
+  const open = true;
+  return new CylinderGeometry(radius, radius, length, segments, 1, open).rotateX(Math.PI / 2).translate(0, 0, length / 2);
+}
+
+function disc(radius: number, z: number, segments: number): BufferGeometry {
+  return new CircleGeometry(radius, segments).translate(0, 0, z);
 }
 
 function paint(geometry: BufferGeometry, r: number, g: number, b: number): BufferGeometry {

@@ -1,8 +1,8 @@
 import {
+  BufferAttribute,
+  BufferGeometry,
   DynamicDrawUsage,
-  Float32BufferAttribute,
-  InstancedBufferGeometry,
-  InstancedInterleavedBuffer,
+  InterleavedBuffer,
   InterleavedBufferAttribute,
   Mesh,
   ShaderMaterial,
@@ -11,17 +11,15 @@ import {
 import { GlyphAtlas } from "./glyph-atlas";
 
 const VERTEX = /* glsl */ `
-  attribute vec3 anchor;
-  attribute vec4 box;
-  attribute vec4 uvBox;
+  attribute vec2 corner;
   attribute vec2 fade;
   varying vec2 vUv;
   varying vec2 vFade;
   void main() {
-    vUv = uvBox.xy + position.xy * uvBox.zw;
+    vUv = uv;
     vFade = fade;
-    vec4 at = modelViewMatrix * vec4(anchor, 1.0);
-    at.xy += box.xy + position.xy * box.zw;
+    vec4 at = modelViewMatrix * vec4(position, 1.0);
+    at.xy += corner;
     gl_Position = projectionMatrix * at;
   }
 `;
@@ -34,15 +32,25 @@ const FRAGMENT = /* glsl */ `
     gl_FragColor = vec4(ink.rgb * mix(1.0, 0.7, vFade.x), ink.a) * vFade.y;
   }
 `;
-/** anchor 3, box 4, uv 4, fade 2 */
-const STRIDE = 13;
+/** Floats of a vertex: anchor 3, corner 2, uv 2, fade 2. */
+const STRIDE = 9;
+const FLOATS_PER_GLYPH = STRIDE * 4;
+/** Corners of a glyph as parts of its width and height. */
+const CORNERS = [
+  [0, 0],
+  [1, 0],
+  [1, 1],
+  [0, 1],
+] as const;
 
 /** Any number of short texts facing the camera, sized in metres, in one draw call and drawn over everything. */
 export class LabelBatch {
-  readonly root: Mesh<InstancedBufferGeometry, ShaderMaterial>;
+  readonly root: Mesh<BufferGeometry, ShaderMaterial>;
   private readonly atlas = new GlyphAtlas();
+  /** Per text, x from the middle, width and u v width height of each glyph, for a line height of 1. */
+  private readonly layouts = new Map<string, Float32Array>();
   private data = new Float32Array(0);
-  private buffer: InstancedInterleavedBuffer | null = null;
+  private buffer: InterleavedBuffer | null = null;
   private glyphs = 0;
 
   constructor() {
@@ -55,7 +63,7 @@ export class LabelBatch {
       depthTest: false,
       depthWrite: false,
     });
-    this.root = new Mesh(new InstancedBufferGeometry(), material);
+    this.root = new Mesh(new BufferGeometry(), material);
     this.root.visible = false;
     this.root.frustumCulled = false;
     this.root.renderOrder = 10;
@@ -64,27 +72,39 @@ export class LabelBatch {
   /** Starts over; texts of `characters` in all will follow. */
   begin(characters: number): void {
     this.glyphs = 0;
-    if (this.data.length < characters * STRIDE) this.allocate(Math.max(64, characters * 2));
+    if (this.data.length < characters * FLOATS_PER_GLYPH) this.allocate(Math.max(64, Math.ceil(characters * 1.5)));
   }
 
   /** Adds a text centred below `anchor`; `height` is that of a line, m. */
   add(text: string, anchor: Vector3, height: number, grey: number, alpha: number): void {
-    const glyphs = [...text].map((character) => this.atlas.glyph(character));
-    const width = glyphs.reduce((sum, glyph) => sum + glyph.advance, 0);
-    let pen = -width / 2;
-    for (const glyph of glyphs) {
-      const x = pen - (glyph.width - glyph.advance) / 2;
-      const row = [anchor.x, anchor.y, anchor.z, x * height, -height, glyph.width * height, height];
-      this.data.set([...row, ...glyph.uv, grey, alpha], this.glyphs * STRIDE);
+    const { data } = this;
+    const layout = this.layout(text);
+    let at = this.glyphs * FLOATS_PER_GLYPH;
+    for (let i = 0; i < layout.length; i += 6) {
+      const [x = 0, width = 0, u = 0, v = 0, uWidth = 0, vHeight = 0] = layout.subarray(i, i + 6);
+      for (const [right, top] of CORNERS) {
+        data[at] = anchor.x;
+        data[at + 1] = anchor.y;
+        data[at + 2] = anchor.z;
+        data[at + 3] = (x + right * width) * height;
+        data[at + 4] = (top - 1) * height;
+        data[at + 5] = u + right * uWidth;
+        data[at + 6] = v + top * vHeight;
+        data[at + 7] = grey;
+        data[at + 8] = alpha;
+        at += STRIDE;
+      }
       this.glyphs += 1;
-      pen += glyph.advance;
     }
   }
 
   end(): void {
-    this.root.geometry.instanceCount = this.glyphs;
+    this.root.geometry.setDrawRange(0, this.glyphs * 6);
     this.root.visible = this.glyphs > 0;
-    if (this.buffer) this.buffer.needsUpdate = true;
+    if (!this.buffer) return;
+    this.buffer.clearUpdateRanges();
+    this.buffer.addUpdateRange(0, this.glyphs * FLOATS_PER_GLYPH);
+    this.buffer.needsUpdate = true;
   }
 
   dispose(): void {
@@ -94,17 +114,33 @@ export class LabelBatch {
     this.atlas.texture.dispose();
   }
 
-  private allocate(capacity: number): void {
-    this.data = new Float32Array(capacity * STRIDE);
-    const buffer = new InstancedInterleavedBuffer(this.data, STRIDE).setUsage(DynamicDrawUsage);
-    const geometry = new InstancedBufferGeometry();
-    geometry.setAttribute("position", new Float32BufferAttribute([0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0], 3));
-    geometry.setIndex([0, 1, 2, 0, 2, 3]);
-    geometry.setAttribute("anchor", new InterleavedBufferAttribute(buffer, 3, 0));
-    geometry.setAttribute("box", new InterleavedBufferAttribute(buffer, 4, 3));
-    geometry.setAttribute("uvBox", new InterleavedBufferAttribute(buffer, 4, 7));
-    geometry.setAttribute("fade", new InterleavedBufferAttribute(buffer, 2, 11));
-    // A geometry remembers the first number of instances it was drawn with: more of them need a new one.
+  private layout(text: string): Float32Array {
+    let layout = this.layouts.get(text);
+    if (!layout) {
+      const glyphs = [...text].map((character) => this.atlas.glyph(character));
+      let pen = -glyphs.reduce((sum, glyph) => sum + glyph.advance, 0) / 2;
+      layout = new Float32Array(
+        glyphs.flatMap((glyph) => {
+          const x = pen - (glyph.width - glyph.advance) / 2;
+          pen += glyph.advance;
+          return [x, glyph.width, ...glyph.uv];
+        }),
+      );
+      this.layouts.set(text, layout);
+    }
+    return layout;
+  }
+
+  private allocate(glyphs: number): void {
+    this.data = new Float32Array(glyphs * FLOATS_PER_GLYPH);
+    const buffer = new InterleavedBuffer(this.data, STRIDE).setUsage(DynamicDrawUsage);
+    const indices = new Uint32Array(glyphs * 6);
+    for (let i = 0; i < glyphs; i++) indices.set([0, 1, 2, 0, 2, 3].map((corner) => i * 4 + corner), i * 6);
+    const geometry = new BufferGeometry().setIndex(new BufferAttribute(indices, 1));
+    geometry.setAttribute("position", new InterleavedBufferAttribute(buffer, 3, 0));
+    geometry.setAttribute("corner", new InterleavedBufferAttribute(buffer, 2, 3));
+    geometry.setAttribute("uv", new InterleavedBufferAttribute(buffer, 2, 5));
+    geometry.setAttribute("fade", new InterleavedBufferAttribute(buffer, 2, 7));
     this.root.geometry.dispose();
     this.root.geometry = geometry;
     this.buffer = buffer;

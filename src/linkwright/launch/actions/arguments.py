@@ -96,5 +96,5 @@ class DeclareLaunchArgument(Action):
     def _hint(self, value: str) -> str:
         choices = self._choices or []
         listed = "choose from " + ", ".join(f"'{choice}'" for choice in choices)
-        near = did_you_mean(value, choices) if len(choices) > 2 else None  # noqa: PLR2004 - both are listed anyway
+        near = did_you_mean(value, choices) if len(choices) > 2 else None
         return f"{near} ({listed})" if near else listed

@@ -76,7 +76,8 @@ class ResetLaunchConfigurations(Action):
     """Forgets all launch configurations but those given.
 
     Args:
-        launch_configurations: name -> value of what is set afterwards, worked out before the others are forgotten.
+        launch_configurations: name -> value of what is set afterwards, worked out before the others are
+        forgotten.
     """
 
     def __init__(
@@ -93,8 +94,7 @@ class ResetLaunchConfigurations(Action):
     def execute(self, context: LaunchContext) -> None:
         """Forget the others."""
         kept = {
-            perform_substitutions(context, name): perform_substitutions(context, value)
-            for name, value in self._kept
+            perform_substitutions(context, name): perform_substitutions(context, value) for name, value in self._kept
         }
         context.launch_configurations.clear()
         context.launch_configurations.update(kept)

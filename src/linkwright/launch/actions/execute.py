@@ -6,7 +6,7 @@ import shlex
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any, Union
+from typing import Any
 
 from linkwright.diagnostics import did_you_mean
 from linkwright.launch import events
@@ -23,7 +23,7 @@ from linkwright.launch.substitution import (
     perform_substitutions,
 )
 
-OnExit = Union[SomeEntitiesType, Callable[..., Any], None]
+OnExit = SomeEntitiesType | Callable[..., Any] | None
 
 
 class ExecuteProcess(Action):
@@ -38,7 +38,8 @@ class ExecuteProcess(Action):
         prefix: a command to put before it, such as ``gdb -ex run --args``; the launch configuration
             ``launch-prefix`` by default.
         shell: whether a shell runs it.
-        output: where what it writes goes: ``screen``, ``log``, ``both``, ``own_log``, ``full``, or a mapping of
+        output: where what it writes goes: ``screen``, ``log``, ``both``, ``own_log``, ``full``, or a mapping
+        of
             ``stdout``, ``stderr`` and ``both`` to sets of ``screen``, ``log`` and ``own_log``.
         output_format: how a line is shown; ``{line}`` and ``{this}`` (the action) can be used.
         log_cmd: whether the command is shown before it runs.
@@ -87,7 +88,9 @@ class ExecuteProcess(Action):
         self._output = dict(output) if isinstance(output, Mapping) else normalize_to_list_of_substitutions(output)
         self._output_format = output_format
         self._log_cmd = log_cmd
-        self._on_exit = on_exit if _is_function(on_exit) else as_entities(on_exit)
+        is_function = callable(on_exit) and not isinstance(on_exit, LaunchDescriptionEntity)
+        self._after_exit: Callable[..., Any] | None = on_exit if is_function else None  # type: ignore[assignment]
+        self._on_exit = [] if is_function else as_entities(on_exit)
         self._respawn = normalize_to_list_of_substitutions(_truth_text(respawn))
         self._respawn_delay = respawn_delay
         self._respawn_max_retries = respawn_max_retries
@@ -136,7 +139,7 @@ class ExecuteProcess(Action):
 
     def get_sub_entities(self) -> Sequence[LaunchDescriptionEntity]:
         """What is visited when it has ended."""
-        return self._on_exit if isinstance(self._on_exit, list) else ()
+        return self._on_exit
 
     # --- the run --------------------------------------------------------------------------------------------
 
@@ -153,9 +156,9 @@ class ExecuteProcess(Action):
     def exited(self, event: events.ProcessExited, context: LaunchContext) -> list[LaunchDescriptionEntity]:
         """What is to be visited now that the process has ended."""
         self.return_code = event.returncode
-        if isinstance(self._on_exit, list):
+        if self._after_exit is None:
             return self._on_exit
-        return as_entities(self._on_exit(event, context))
+        return as_entities(self._after_exit(event, context))
 
     def wrote(self, stream: int, text: bytes) -> None:
         """Take note of what the process wrote to stdout (1) or stderr (2)."""
@@ -199,8 +202,7 @@ class ExecuteProcess(Action):
         self, context: LaunchContext, variables: list[tuple[list[Substitution], list[Substitution]]]
     ) -> dict[str, str]:
         return {
-            perform_substitutions(context, name): perform_substitutions(context, value)
-            for name, value in variables
+            perform_substitutions(context, name): perform_substitutions(context, value) for name, value in variables
         }
 
     def _destinations(self, context: LaunchContext) -> dict[int, frozenset[str]]:
@@ -243,10 +245,6 @@ def _variables(env: Mapping[Any, Any] | None) -> list[tuple[list[Substitution], 
         (normalize_to_list_of_substitutions(name), normalize_to_list_of_substitutions(value))
         for name, value in env.items()
     ]
-
-
-def _is_function(value: Any) -> bool:
-    return callable(value) and not isinstance(value, LaunchDescriptionEntity)
 
 
 def _truth_text(value: Any) -> Any:

@@ -58,4 +58,4 @@ class LogInfo(Action):
 
     def execute(self, context: LaunchContext) -> None:
         """Write it."""
-        context.session.log.info("launch.user", perform_substitutions(context, self._msg))
+        context.session.log.say("launch.user", perform_substitutions(context, self._msg))

@@ -27,8 +27,8 @@ _FOLDER = "current_launch_file_directory"
 class IncludeLaunchDescription(Action):
     """Visits the description of another launch file.
 
-    As in ROS, launch configurations are shared with the including file, in both directions; a GroupAction around
-    it keeps them apart.
+    As in ROS, launch configurations are shared with the including file, in both directions; a GroupAction
+    around it keeps them apart.
 
     Args:
         launch_description_source: where the description comes from; a path will do.
@@ -100,8 +100,10 @@ class IncludeLaunchDescription(Action):
                 continue
             unknown = [name for name in given if name not in names]
             near = did_you_mean(argument.name, unknown)
-            hint = f"it is given {near[len('did you mean ') : -1]}: is that the one?" if near else (
-                f"add ('{argument.name}', VALUE) to launch_arguments"
+            hint = (
+                f"it is given {near[len('did you mean ') : -1]}: is that the one?"
+                if near
+                else (f"add ('{argument.name}', VALUE) to launch_arguments")
             )
             message = f"the included launch file requires argument '{argument.name}', which is not given"
             raise error_at(self.place, "LAUNCH114", message, hint)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -44,8 +45,8 @@ class DescriptionError(LinkwrightError):
 
     @property
     def missing(self) -> bool:
-        """Whether the model file itself does not exist, so that nobody can be about to repair it."""
-        return not self.call.path.is_file()
+        """Whether the model file itself cannot be read, so that nobody is about to repair it by an edit."""
+        return not self.call.path.is_file() or not os.access(self.call.path, os.R_OK)
 
 
 class Descriptions:
@@ -149,9 +150,7 @@ def parse_xacro_words(words: Sequence[str], text: str, folder: Path) -> tuple[Xa
                 "put quotes around a path with blanks: Command(['xacro \"', path, '\"'])",
             )
         files = [whole.strip()]
-        remark = (
-            f"the path '{files[0]}' has blanks and no quotes around it: real xacro would take it for several files"
-        )
+        remark = f"the path '{files[0]}' has blanks and no quotes around it: real xacro would take it for several files"
     if not files:
         raise _misuse("xacro is given no model file", "write Command(['xacro ', path])")
     return XacroCall(folder / files[0], tuple(arguments.items())), remark

@@ -3,21 +3,21 @@
 from __future__ import annotations
 
 import asyncio
-import os
 import threading
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
 _STEP_MS = 20
-"""How often the watcher looks whether the notices of the system have come to rest: the latency is once this."""
+"""How often the watcher looks whether the notices of the system have come to rest: the latency is once
+this."""
 _DEBOUNCE_MS = 100
 
 
 class FileWatch:
     """Calls back on the event loop when files of some folders change.
 
-    Folders are watched rather than files, because editors save by writing a new file and renaming it. Files behind
-    links (``colcon build --symlink-install``) are watched where they really are too.
+    Folders are watched rather than files, because editors save by writing a new file and renaming it. Files
+    behind links (``colcon build --symlink-install``) are watched where they really are too.
 
     Args:
         on_change: called with the paths that changed.
@@ -83,6 +83,6 @@ class FileWatch:
 def real(path: Path) -> Path:
     """The path with links followed; the path itself where that goes in circles."""
     try:
-        return Path(os.path.realpath(path))  # noqa: PTH118 - realpath of a missing file is wanted too
+        return path.resolve()
     except OSError:
         return path

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from linkwright.launch.engine.descriptions import XacroCall
     from linkwright.launch.engine.session import LaunchSession
     from linkwright.nodes import RunningNode
-    from linkwright.viewer import Viewer
+    from linkwright.viewer import RvizConfig, Viewer
 
 VIEWER = ("rviz2", "rviz2")
 _DESCRIPTION = "robot_description"
@@ -40,6 +40,7 @@ class HostedPlan:
         parameters: values by name.
         remappings: rules ``(from, to)``.
         arguments: its command line.
+        viewer_config: makes the viewer's configuration; by default the command line says which.
     """
 
     action: ExecuteProcess
@@ -51,6 +52,7 @@ class HostedPlan:
     parameters: dict[str, Any] = field(default_factory=dict)
     remappings: list[tuple[str, str]] = field(default_factory=list)
     arguments: list[str] = field(default_factory=list)
+    viewer_config: Callable[[], RvizConfig] | None = None
 
     @property
     def is_viewer(self) -> bool:
@@ -83,8 +85,8 @@ def hosted_executables() -> list[tuple[str, str]]:
 class NodeHost:
     """Starts, holds and ends the nodes of this process.
 
-    The viewer is started before the nodes that were asked for together with it, so that its page answers as early
-    as can be.
+    The viewer is started before the nodes that were asked for together with it, so that its page answers as
+    early as can be.
     """
 
     def __init__(self, session: LaunchSession) -> None:
@@ -112,6 +114,10 @@ class NodeHost:
     def plan(self, plan: HostedPlan) -> None:
         """Have a node started as soon as the launcher comes to it."""
         self._planned.append(plan)
+
+    def forget_planned(self) -> None:
+        """Start nothing of what was planned."""
+        self._planned.clear()
 
     async def start_planned(self) -> None:
         """Start what was planned, viewers first."""
@@ -143,7 +149,7 @@ class NodeHost:
     def close_nodes(self) -> None:
         """End all nodes, and begin to end the viewers."""
         self._closing = True
-        self._planned.clear()
+        self.forget_planned()
         self.stop_matching(lambda _: True)
 
     async def close(self) -> None:
@@ -161,7 +167,7 @@ class NodeHost:
 
         session = self._session
         self._speaking = plan.process_name
-        session.log.info(plan.process_name, "started in the launcher's process")
+        session.log.say(plan.process_name, "started in the launcher's process")
         try:
             running = EXECUTABLES[(plan.package, plan.executable)](
                 self._the_graph(),
@@ -193,7 +199,7 @@ class NodeHost:
         if found is None or session.ending:
             session.fail(plan)
             session.log.diagnostics(error.diagnostics)
-            session.log.error(plan.process_name, "node has not started")
+            session.log.complain(plan.process_name, "node has not started")
             session.emit(events.ProcessExited(action=plan.action, returncode=1, **plan.details))
             return
         name, call = found
@@ -252,7 +258,10 @@ class NodeHost:
         session = self._session
         self._speaking = plan.process_name
         try:
-            config, findings = read_viewer_config(plan.arguments)
+            if plan.viewer_config is not None:
+                config, findings = plan.viewer_config(), list[Diagnostic]()
+            else:
+                config, findings = read_viewer_config(plan.arguments)
             session.log.diagnostics(findings)
             viewer = Viewer(
                 self._the_graph(),
@@ -262,6 +271,9 @@ class NodeHost:
                 host=session.options.host,
                 port=session.options.port,
                 title=session.options.title,
+                name=plan.node_name or plan.executable,
+                namespace=plan.namespace,
+                remappings=plan.remappings,
             )
             await viewer.start()
         except LinkwrightError as error:
@@ -276,7 +288,9 @@ class NodeHost:
         session.log.announce(f"Viewer: {viewer.url}")
         if session.options.open_browser:
             _open_in_browser(viewer.url)
-        session.log.info(plan.process_name, "started in the launcher's process: the viewer in the browser stands in for RViz")
+        session.log.say(
+            plan.process_name, "started in the launcher's process: the viewer in the browser stands in for RViz"
+        )
         viewer.show_diagnostics([*self._findings, *findings])
         for _, running in self._running.values():
             _attach_panel(viewer, running)
@@ -287,7 +301,7 @@ class NodeHost:
         try:
             await asyncio.wait_for(viewer.close(), _CLOSE_SECONDS)
         except asyncio.TimeoutError:
-            self._session.log.warning(plan.process_name, "a browser did not let go of its connection in time")
+            self._session.log.caution(plan.process_name, "a browser did not let go of its connection in time")
         self._ended(plan)
 
     # --- both -----------------------------------------------------------------------------------------------
@@ -297,7 +311,7 @@ class NodeHost:
         self._session.emit(events.ProcessStarted(action=plan.action, **plan.details))
 
     def _ended(self, plan: HostedPlan) -> None:
-        self._session.log.info(plan.process_name, "has finished cleanly")
+        self._session.log.say(plan.process_name, "has finished cleanly")
         self._session.emit(events.ProcessExited(action=plan.action, returncode=0, **plan.details))
 
     def _the_graph(self) -> Graph:
@@ -323,5 +337,3 @@ def _open_in_browser(url: str) -> None:
     import webbrowser
 
     threading.Thread(target=webbrowser.open, args=(url,), name="linkwright-browser", daemon=True).start()
-
-

@@ -55,9 +55,9 @@ def output_destinations(mode: str | Mapping[str, Iterable[str] | str]) -> dict[i
 class LaunchLog:
     """The log of one launch.
 
-    Launcher and node lines go to stderr, what processes write to the stream they write it to. Files are only made
-    when a process's output is to go to one; they lie where ROS puts them: in ``ROS_LOG_DIR``, else ``ROS_HOME/log``,
-    else ``~/.ros/log``.
+    Launcher and node lines go to stderr, what processes write to the stream they write it to. Files are only
+    made when a process's output is to go to one; they lie where ROS puts them: in ``ROS_LOG_DIR``, else
+    ``ROS_HOME/log``, else ``~/.ros/log``.
 
     Args:
         stdout: where the output of processes goes.
@@ -80,15 +80,15 @@ class LaunchLog:
             self._folder = Path(base or Path(home, "log")) / f"{stamp}-{socket.gethostname()}-{os.getpid()}"
         return self._folder
 
-    def info(self, name: str, text: str) -> None:
+    def say(self, name: str, text: str) -> None:
         """A line that says what goes on."""
         self._own_line("INFO", name, text)
 
-    def warning(self, name: str, text: str) -> None:
+    def caution(self, name: str, text: str) -> None:
         """A line that says what may be wrong."""
         self._own_line("WARNING", name, text)
 
-    def error(self, name: str, text: str) -> None:
+    def complain(self, name: str, text: str) -> None:
         """A line that says what is wrong."""
         self._own_line("ERROR", name, text)
 
@@ -156,5 +156,5 @@ class LaunchLog:
             self.diagnostics([Diagnostic("LAUNCH145", problem, severity=Severity.WARNING)])
             return None
         if first:
-            self.info("launch", f"Output that does not go to the screen can be found below {self.folder}")
+            self.say("launch", f"Output that does not go to the screen can be found below {self.folder}")
         return file

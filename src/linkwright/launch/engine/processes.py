@@ -76,10 +76,10 @@ class RunningProcess:
         return self._stopping
 
     async def run(self) -> int | None:
-        """Start the process and wait for its end; returns its exit status, None if it could not be started."""
+        """Follow the process from start to end; returns its exit status, None if it could not be started."""
         plan = self.plan
         if plan.log_command:
-            self._log.info(self.name, f"process details: cmd='{' '.join(plan.command)}', cwd='{plan.folder}'")
+            self._log.say(self.name, f"process details: cmd='{' '.join(plan.command)}', cwd='{plan.folder}'")
         reader_ends: list[int] = []
         try:
             process = await self._start(reader_ends)
@@ -92,7 +92,7 @@ class RunningProcess:
         self._process = process
         details = self._details()
         plan.action.process_details = details
-        self._log.info(self.name, f"process started with pid [{process.pid}]")
+        self._log.say(self.name, f"process started with pid [{process.pid}]")
         self._emit(events.ProcessStarted(action=plan.action, **details))
         try:
             await self._follow(process, reader_ends)
@@ -114,7 +114,7 @@ class RunningProcess:
             return
         self._stopping = True
         if interrupt:
-            self._log.info(self.name, f"sending signal 'SIGINT' to process[{self.name}]")
+            self._log.say(self.name, f"sending signal 'SIGINT' to process[{self.name}]")
             self.signal_group(signal.SIGINT)
         for seconds, sent, following in (
             (seconds_to_sigterm, "SIGINT", "SIGTERM"),
@@ -124,7 +124,7 @@ class RunningProcess:
                 await asyncio.wait_for(self._ended.wait(), seconds)
             if self._ended.is_set():
                 return
-            self._log.error(
+            self._log.complain(
                 self.name,
                 f"process[{self.name}] failed to terminate '{seconds:g}' seconds after receiving '{sent}', "
                 f"escalating to '{following}'",
@@ -133,7 +133,7 @@ class RunningProcess:
 
     def signal(self, number: signal.Signals) -> None:
         """Send a signal, as a launch file asked."""
-        self._log.info(self.name, f"sending signal '{number.name}' to process[{self.name}]")
+        self._log.say(self.name, f"sending signal '{number.name}' to process[{self.name}]")
         self.signal_group(number)
 
     def signal_group(self, number: int) -> None:
@@ -203,7 +203,7 @@ class RunningProcess:
     # --- output ---------------------------------------------------------------------------------------------
 
     async def _follow(self, process: asyncio.subprocess.Process, reader_ends: Sequence[int]) -> None:
-        """Read until both streams end, which they do when the last writer is gone, or the process has ended."""
+        """Read both streams until the last writer is gone or the process has ended."""
         if reader_ends:
             streams = [await _pty_reader(descriptor) for descriptor in reader_ends]
         else:
@@ -254,10 +254,10 @@ class RunningProcess:
     def _report_end(self, returncode: int) -> None:
         assert self._process is not None
         if returncode == 0 or (self._stopping and returncode in (-signal.SIGINT, 128 + signal.SIGINT)):
-            self._log.info(self.name, f"process has finished cleanly [pid {self._process.pid}]")
+            self._log.say(self.name, f"process has finished cleanly [pid {self._process.pid}]")
             return
         command = " ".join(self.plan.command)
-        self._log.error(
+        self._log.complain(
             self.name,
             f"process has died [pid {self._process.pid}, exit code {returncode}, cmd '{command}'].",
         )
@@ -269,5 +269,3 @@ async def _pty_reader(descriptor: int) -> asyncio.StreamReader:
     pipe = os.fdopen(descriptor, "rb", 0)
     await loop.connect_read_pipe(lambda: asyncio.StreamReaderProtocol(reader), pipe)
     return reader
-
-

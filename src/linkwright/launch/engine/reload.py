@@ -1,7 +1,7 @@
 """Live reload: a saved model file is expanded anew and given to the nodes that show it.
 
-The nodes stay, and with them joint positions and the camera. A model that cannot be read leaves the last good one
-standing and shows what is wrong until it is repaired.
+The nodes stay, and with them joint positions and the camera. A model that cannot be read leaves the last good
+one standing and shows what is wrong until it is repaired.
 """
 
 from __future__ import annotations
@@ -20,7 +20,8 @@ _SETTLE_SECONDS = 0.06
 _MISSING_ATTEMPTS = 8
 """How many such waits a missing file is given: some editors delete it before they write it."""
 _CATCH_UP_SECONDS = 0.4
-"""When the files are compared once with their state at the first expansion, for changes before the watch began."""
+"""When the files are compared once with their state at the first expansion, for changes before the watch
+began."""
 
 Apply = Callable[[str], None]
 """Takes the new text of a description."""
@@ -35,9 +36,7 @@ class LiveReload:
         log: where findings are printed.
     """
 
-    def __init__(
-        self, descriptions: Descriptions, show: Callable[[list[Diagnostic]], None], log: LaunchLog
-    ) -> None:
+    def __init__(self, descriptions: Descriptions, show: Callable[[list[Diagnostic]], None], log: LaunchLog) -> None:
         self._descriptions = descriptions
         self._show = show
         self._log = log
@@ -60,7 +59,7 @@ class LiveReload:
         self._targets[call].remove(apply)
 
     def report(self, about: object, diagnostics: Iterable[Diagnostic]) -> None:
-        """Print what is wrong with a description, if it is news, and show it; nothing wrong clears what was."""
+        """Print what is wrong with a description, if it is news, and show it; nothing wrong clears it."""
         findings = tuple(diagnostics)
         if findings == self._findings.get(about, ()):
             return
@@ -106,7 +105,7 @@ class LiveReload:
             self._watch.watch({file for call in self._targets for file in self._files_of_interest(call)})
 
     def _on_watch_failure(self, reason: str) -> None:
-        self._log.warning("launch", f"model files are not watched for changes: {reason}")
+        self._log.caution("launch", f"model files are not watched for changes: {reason}")
 
     def _catch_up(self) -> None:
         changed = {path for path, stamp in self._stamps.items() if _stamp(path) != stamp}
@@ -175,7 +174,7 @@ class LiveReload:
                 apply(text)
         except LinkwrightError as error:
             findings = (*findings, *error.diagnostics)
-        self._log.info("launch", f"{'repaired' if was_broken else 'reloaded'} {display_path(call.path)}")
+        self._log.say("launch", f"{'repaired' if was_broken else 'reloaded'} {display_path(call.path)}")
         self.report(call, findings)
         self._watch_files()
 

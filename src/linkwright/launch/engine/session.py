@@ -26,7 +26,7 @@ from linkwright.launch.user_errors import explain
 from linkwright.workspace import PackageFinder
 
 _INTERRUPT_GRACE = (1.0, 0.5)
-"""Seconds to SIGTERM and from there to SIGKILL when the user interrupts: all has to end within two seconds."""
+"""Seconds to SIGTERM and from there to SIGKILL on the user's interrupt: all has to end within two seconds."""
 
 
 @dataclass(frozen=True)
@@ -108,7 +108,7 @@ class LaunchSession:
 
     @property
     def scratch_folder(self) -> Path:
-        """A folder for files that the processes of this launch read; it is removed when the launch is over."""
+        """A folder for files that the processes of this launch read; it goes when the launch is over."""
         if self._scratch is None:
             self._scratch = tempfile.TemporaryDirectory(prefix="linkwright_launch_")
         return Path(self._scratch.name)
@@ -128,6 +128,7 @@ class LaunchSession:
         except LinkwrightError as error:
             self.log.diagnostics(error.diagnostics)
             self.fail(entity)
+            self.host.forget_planned()
             self.emit(events.Shutdown(reason="a launch action failed"))
         except KeyboardInterrupt:
             self.interrupt("user interrupted with ctrl-c (SIGINT)")
@@ -177,7 +178,7 @@ class LaunchSession:
 
     def interrupt(self, reason: str) -> None:
         """End the launch because the user said so (SIGINT or SIGTERM)."""
-        self.log.warning("launch", reason)
+        self.log.caution("launch", reason)
         self.emit(events.Shutdown(reason=reason, due_to_sigint=True))
 
     def kill_processes(self) -> None:
@@ -197,7 +198,7 @@ class LaunchSession:
                 raise
             self._await_repair(entity, context.snapshot(), error)
             return
-        except Exception as error:  # noqa: BLE001 - a launch file can raise anything
+        except Exception as error:
             name = type(entity).__name__
             raise explain(error, f"launch action {name}", entity.place) from error
         for each in following or ():
@@ -206,9 +207,7 @@ class LaunchSession:
     def _can_be_repaired(self, entity: LaunchDescriptionEntity) -> bool:
         return getattr(entity, "hosted", False) and not self.ending
 
-    def _await_repair(
-        self, entity: LaunchDescriptionEntity, context: LaunchContext, error: DescriptionError
-    ) -> None:
+    def _await_repair(self, entity: LaunchDescriptionEntity, context: LaunchContext, error: DescriptionError) -> None:
         """Visit an entity again as soon as the model file that it needs can be expanded."""
         self.fail(error.call)
 
@@ -316,11 +315,15 @@ class LaunchSession:
                 self.fail(process)
                 return
             starts += 1
-            if not plan.respawn or self.ending or 0 <= plan.respawn_limit < starts:
+            if not self._respawns(plan, starts):
                 return
             await asyncio.sleep(plan.respawn_delay)
-            if self.ending:
+            if not self._respawns(plan, starts):
                 return
+
+    def _respawns(self, plan: ProcessPlan, starts: int) -> bool:
+        exhausted = 0 <= plan.respawn_limit < starts
+        return plan.respawn and not self.ending and not exhausted
 
     def spawn(self, work: Coroutine[Any, Any, None]) -> None:
         """Have something done beside; the launch does not end before it is."""

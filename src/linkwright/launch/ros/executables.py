@@ -7,7 +7,7 @@ from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, did_you_mean, display_path
 from linkwright.launch.engine.hosting import hosted_executables
-from linkwright.workspace import PackageFinder, PackageNotFoundError
+from linkwright.workspace import PackageFinder, PackageNotFoundError, install_prefix, is_installed
 
 
 def find_executable(finder: PackageFinder, package: str, executable: str) -> Path:
@@ -16,13 +16,18 @@ def find_executable(finder: PackageFinder, package: str, executable: str) -> Pat
     Raises:
         LinkwrightError: LAUNCH131, with what was looked for and the nearest names.
     """
-    ours = hosted_executables()
+    ours: dict[str, list[str]] = {}
+    for owner, name in hosted_executables():
+        ours.setdefault(owner, []).append(name)
     try:
         share = finder.share(package)
     except PackageNotFoundError as error:
-        of_ours = [name for name, _ in ours]
         notes = error.diagnostics[0].notes
-        hint = did_you_mean(package, (*of_ours, *finder.packages())) or error.diagnostics[0].hint
+        if package in ours:
+            message = f"package '{package}' has no executable '{executable}' that runs without ROS"
+            hint = did_you_mean(executable, ours[package]) or "there is " + ", ".join(ours[package])
+            raise LinkwrightError(Diagnostic("LAUNCH131", message, notes=notes, hint=hint)) from error
+        hint = did_you_mean(package, (*ours, *finder.packages())) or error.diagnostics[0].hint
         message = f"package '{package}' of node executable '{executable}' not found"
         raise LinkwrightError(Diagnostic("LAUNCH131", message, notes=notes, hint=hint)) from error
     folder = install_prefix(share) / "lib" / package
@@ -32,23 +37,13 @@ def find_executable(finder: PackageFinder, package: str, executable: str) -> Pat
     message = f"package '{package}' has no executable '{executable}'"
     notes = (Note(f"looked for {display_path(path)}"),)
     present = [each.name for each in folder.iterdir() if os.access(each, os.X_OK)] if folder.is_dir() else []
-    near = did_you_mean(executable, present) or did_you_mean(
-        executable, [name for owner, name in ours if owner == package]
-    )
+    near = did_you_mean(executable, (*present, *ours.get(package, ())))
     if near is None and not is_installed(share):
         near = "the package is found in its sources only: build it with 'colcon build' and source install/setup.bash"
     elif near is None and present:
         near = "it has: " + ", ".join(sorted(present))
     elif near is None:
-        near = "it installs no executables: check entry_points in its setup.py, or install(TARGETS ...) in CMakeLists.txt"
+        near = (
+            "it installs no executables: check entry_points in its setup.py, or install(TARGETS ...) in CMakeLists.txt"
+        )
     raise LinkwrightError(Diagnostic("LAUNCH131", message, notes=notes, hint=near))
-
-
-def install_prefix(share: Path) -> Path:
-    """The prefix of a package: the folder that its ``share/NAME`` lies in, or the source folder itself."""
-    return share.parents[1] if is_installed(share) else share
-
-
-def is_installed(share: Path) -> bool:
-    """Whether a share folder belongs to an installed package, not to a source tree."""
-    return share.parent.name == "share"

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.launch.actions.execute import ExecuteProcess
@@ -23,6 +23,9 @@ from linkwright.launch.substitution import (
     perform_substitutions,
 )
 
+if TYPE_CHECKING:
+    from linkwright.viewer import RvizConfig
+
 
 class Node(ExecuteProcess):
     """Starts a node: one of ours in the launcher's process, any other as a process of its own.
@@ -33,11 +36,9 @@ class Node(ExecuteProcess):
         name: the name it is given.
         namespace: where it lives, inside the namespaces of `PushRosNamespace` unless it starts with a slash.
         exec_name: its name in the log.
-        parameters: dictionaries, paths of YAML files, `ParameterFile` and `Parameter` objects; later ones win.
-        remappings: pairs of names.
-        ros_arguments: further arguments after ``--ros-args``.
-        arguments: its command line.
-        kwargs: see `ExecuteProcess`.
+        parameters: dictionaries, paths of YAML files, `ParameterFile` and `Parameter` objects; later ones
+        win. remappings: pairs of names. ros_arguments: further arguments after ``--ros-args``. arguments: its
+        command line. kwargs: see `ExecuteProcess`.
     """
 
     def __init__(
@@ -133,12 +134,17 @@ class Node(ExecuteProcess):
                     parameters.values,
                     remappings,
                     arguments,
+                    self.viewer_config(context),
                 )
             )
             return
         command = [self._program(context, package, executable), *arguments]
         command += _ros_arguments(name, namespace, parameters, remappings, ros_arguments, session.scratch_folder)
         session.start_process(self._plan(context, command), context)
+
+    def viewer_config(self, context: LaunchContext) -> Callable[[], RvizConfig] | None:  # noqa: ARG002
+        """What makes the configuration of a viewer; None has its command line say which."""
+        return None
 
     def _program(self, context: LaunchContext, package: str | None, executable: str) -> str:
         if package is None:

@@ -63,7 +63,8 @@ def parameters_for(content: Mapping[str, Any], node: str) -> dict[str, Any]:
     """The parameters that a file has for a node, nested mappings as they stand.
 
     Args:
-        content: what is in the file: names of nodes, or parts of such names one in another, with ``*`` for any one
+        content: what is in the file: names of nodes, or parts of such names one in another, with ``*`` for
+        any one
             part and ``**`` for any number of them.
         node: the node's full name, such as ``/robot/talker``.
     """

@@ -1,7 +1,7 @@
 """Values of node parameters, which may be known only when the launch runs.
 
-A substitution is text; which type the parameter gets is decided by ``value_type``, or by YAML's rules where that is
-not given, as in launch_ros.
+A substitution is text; which type the parameter gets is decided by ``value_type``, or by YAML's rules where
+that is not given, as in launch_ros.
 """
 
 from __future__ import annotations
@@ -27,7 +27,8 @@ class ParameterValue:
 
     Args:
         value: the value, or substitutions that give it as text.
-        value_type: bool, int, float, str, or a list of one of these such as ``List[int]``; None for YAML's rules.
+        value_type: bool, int, float, str, or a list of one of these such as ``List[int]``; None for YAML's
+        rules.
     """
 
     def __init__(self, value: Any, *, value_type: Any = None) -> None:
@@ -106,8 +107,9 @@ def typed_value(text: str, value_type: Any, name: str, place: Place | None) -> A
         (item_type,) = typing.get_args(value_type) or (str,)
         if isinstance(value, list):
             return [
-                float(item) if item_type is float and type(item) is int else
-                checked_value(str(item) if item_type is str else item, item_type, place)
+                float(item)
+                if item_type is float and type(item) is int
+                else checked_value(str(item) if item_type is str else item, item_type, place)
                 for item in value
             ]
     return checked_value(value, value_type, place)
@@ -119,7 +121,7 @@ def checked_value(value: Any, value_type: Any, place: Place | None) -> Any:
     Raises:
         LinkwrightError: LAUNCH132, if it has another type than is asked for.
     """
-    if value_type is None or typing.get_origin(value_type) is not None and isinstance(value, (list, tuple)):
+    if value_type is None or (typing.get_origin(value_type) is not None and isinstance(value, (list, tuple))):
         return list(value) if isinstance(value, tuple) else value
     if type(value) is value_type:
         return value
@@ -145,7 +147,8 @@ def yaml_value(text: str, name: str, place: Place | None) -> Any:
         message = f"parameter '{name}' is read as YAML, because its type is not said, and is none: {problem}{at}"
         raise error_at(place, "LAUNCH132", message, fix) from error
     if isinstance(value, str):
-        # YAML folds the lines of a text. XML means the same either way, and positions in it stay right like this.
+        # YAML folds the lines of a text. XML means the same either way, and positions in it stay right like
+        # this.
         return text if text.lstrip().startswith("<") else value
     if isinstance(value, SCALARS) or (isinstance(value, list) and _is_uniform(value)):
         return value
@@ -162,7 +165,7 @@ def uniform_list(values: Iterable[Any]) -> list[Any]:
     """A list as launch_ros makes its items alike: floats where numbers are mixed, else texts."""
     items = list(values)
     kinds = {type(item) for item in items}
-    if kinds <= {int, float} and len(kinds) == 2:  # noqa: PLR2004 - ints and floats
+    if kinds <= {int, float} and len(kinds) == 2:
         return [float(item) for item in items]
     if len(kinds) <= 1:
         return items

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from linkwright.launch.context import LaunchContext
-from linkwright.launch.ros.executables import find_executable, install_prefix
+from linkwright.launch.ros.executables import find_executable
 from linkwright.launch.substitution import (
     SomeSubstitutionsType,
     Substitution,
@@ -12,7 +12,7 @@ from linkwright.launch.substitution import (
     perform_substitutions,
 )
 from linkwright.launch.substitutions import PathJoinSubstitution
-from linkwright.workspace import current_finder
+from linkwright.workspace import current_finder, install_prefix
 
 
 class FindPackagePrefix(Substitution):

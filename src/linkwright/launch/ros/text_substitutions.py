@@ -19,7 +19,8 @@ def substitute_text(text: str, context: LaunchContext, source: SourceText) -> st
     """The text with its substitutions made, those inside others first.
 
     Raises:
-        LinkwrightError: LAUNCH133 for one that is unknown, or that has no value; with its place in the source.
+        LinkwrightError: LAUNCH133 for one that is unknown, or that has no value; with its place in the
+        source.
     """
 
     def replaced(match: re.Match[str]) -> str:

@@ -31,7 +31,8 @@ class Command(Substitution):
 
     Args:
         command: program and arguments, as in a shell.
-        on_stderr: what it means that the command writes to stderr: ``fail`` (the default), ``warn``, ``ignore``
+        on_stderr: what it means that the command writes to stderr: ``fail`` (the default), ``warn``,
+        ``ignore``
             or ``capture`` (the text is given after that of stdout).
     """
 

@@ -24,7 +24,8 @@ class PythonExpression(Substitution):
 
     Args:
         expression: the expression.
-        python_modules: modules whose names the expression may use, ``math`` by default (its members also bare).
+        python_modules: modules whose names the expression may use, ``math`` by default (its members also
+        bare).
     """
 
     def __init__(
@@ -70,7 +71,7 @@ class PythonExpression(Substitution):
             return str(eval(expression, {}, names))  # noqa: S307 - launch files are programs by design
         except LinkwrightError:
             raise
-        except Exception as error:  # noqa: BLE001 - whatever the user's expression raises
+        except Exception as error:
             problem = f"{type(error).__name__}: {error}"
             message = f"Python expression '{expression}' cannot be evaluated ({problem})"
             hint = None

@@ -53,8 +53,8 @@ class PathJoinSubstitution(Substitution):
 class FindExecutable(Substitution):
     """The path of a program on ``PATH``.
 
-    A program that `Command` runs inside this process is found even where it is not installed: then its bare name
-    is given.
+    A program that `Command` runs inside this process is found even where it is not installed: then its bare
+    name is given.
     """
 
     def __init__(self, *, name: SomeSubstitutionsType) -> None:

@@ -1,0 +1,2 @@
+/** Part of a surface's colour that is seen even where the light at the camera does not reach it. */
+export const AMBIENT = 0.2;

@@ -1,0 +1,26 @@
+import { Mesh, OrthographicCamera, PlaneGeometry, Scene, type ShaderMaterial, type WebGLRenderer } from "three";
+
+/** Vertex shader of materials that cover the whole picture; gives `vUv`. */
+export const SCREEN_VERTEX = /* glsl */ `
+  varying vec2 vUv;
+  void main() { vUv = uv; gl_Position = vec4(position.xy, 0.0, 1.0); }
+`;
+
+/** Draws a material over the whole picture. */
+export class ScreenQuad {
+  private readonly scene = new Scene();
+  private readonly camera = new OrthographicCamera();
+
+  constructor(material: ShaderMaterial) {
+    const quad = new Mesh(new PlaneGeometry(2, 2), material);
+    quad.frustumCulled = false;
+    this.scene.add(quad);
+  }
+
+  /** Over what is there already. */
+  render(renderer: WebGLRenderer): void {
+    renderer.autoClear = false;
+    renderer.render(this.scene, this.camera);
+    renderer.autoClear = true;
+  }
+}

@@ -1,0 +1,36 @@
+import { ShaderMaterial, Vector2, WebGLRenderTarget, type WebGLRenderer } from "three";
+import { SCREEN_VERTEX, ScreenQuad } from "./objects/screen-quad";
+
+const SAMPLES = 4;
+const FRAGMENT = /* glsl */ `
+  uniform sampler2D picture;
+  varying vec2 vUv;
+  void main() { gl_FragColor = vec4(texture2D(picture, vUv).rgb, 1.0); }
+`;
+
+/** Antialiasing that can be left out frame by frame, which the browser's own cannot. */
+export class Smoothing {
+  private readonly target = new WebGLRenderTarget(1, 1, { samples: SAMPLES });
+  private readonly quad = new ScreenQuad(
+    new ShaderMaterial({
+      vertexShader: SCREEN_VERTEX,
+      fragmentShader: FRAGMENT,
+      uniforms: { picture: { value: this.target.texture } },
+      depthTest: false,
+      depthWrite: false,
+    }),
+  );
+  private readonly size = new Vector2();
+
+  /** Runs `draw` with smooth edges. */
+  render(renderer: WebGLRenderer, draw: () => void): void {
+    renderer.getDrawingBufferSize(this.size);
+    if (this.target.width !== this.size.x || this.target.height !== this.size.y) {
+      this.target.setSize(this.size.x, this.size.y);
+    }
+    renderer.setRenderTarget(this.target);
+    draw();
+    renderer.setRenderTarget(null);
+    this.quad.render(renderer);
+  }
+}

@@ -1,0 +1,52 @@
+"""``linkwright launch``: run a ROS 2 launch file; its rviz2 is a page in the browser."""
+
+from __future__ import annotations
+
+import argparse
+
+NAME = "launch"
+HELP = "run a ROS 2 launch file, with its rviz2 as a page in the browser"
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    parser.usage = "linkwright launch [options] (PACKAGE FILE | PATH) [NAME:=VALUE ...]"
+    parser.add_argument(
+        "words",
+        metavar="PACKAGE FILE | PATH [NAME:=VALUE ...]",
+        nargs="*",
+        help="a package and a launch file in it, or the path of a launch file; then values for its arguments",
+    )
+    parser.add_argument("-s", "--show-args", action="store_true", help="list the launch file's arguments and end")
+    add_viewer_options(parser)
+
+
+def add_viewer_options(parser: argparse.ArgumentParser) -> None:
+    """The options about the page, which `view` has too."""
+    parser.add_argument("--no-open", action="store_true", help="do not open the page in the browser")
+    parser.add_argument("--host", default="127.0.0.1", help="address to serve the page at (default: %(default)s)")
+    parser.add_argument("--port", type=port, help="port to serve the page at (default: 7447, or the next free one)")
+
+
+def port(text: str) -> int:
+    """A TCP port as a number.
+
+    Raises:
+        argparse.ArgumentTypeError: when it is none.
+    """
+    if text.isascii() and text.isdigit() and 0 < int(text) < 65536:
+        return int(text)
+    raise argparse.ArgumentTypeError(f"'{text}' is not a port; give a number from 1 to 65535")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the launch file until it ends."""
+    from linkwright import standins
+    from linkwright.launch import LaunchOptions, parse_launch_words, run_launch, show_arguments
+
+    target, values = parse_launch_words(arguments.words)
+    standins.activate()
+    if arguments.show_args:
+        print(show_arguments(target))
+        return 0
+    return run_launch(target, values, LaunchOptions(arguments.host, arguments.port, not arguments.no_open))

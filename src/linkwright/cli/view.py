@@ -1,0 +1,26 @@
+"""``linkwright view``: show one model in the browser, with sliders for its joints."""
+
+from __future__ import annotations
+
+import argparse
+
+from linkwright.cli.assignments import parse_assignments
+from linkwright.cli.launch import add_viewer_options
+
+NAME = "view"
+HELP = "show a URDF or xacro file in the browser, with sliders for its joints"
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    parser.add_argument("file", metavar="FILE", help="the URDF or xacro file")
+    parser.add_argument("values", metavar="NAME:=VALUE", nargs="*", help="values for the file's <xacro:arg>")
+    add_viewer_options(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Show the model until the user ends it."""
+    from linkwright.launch import LaunchOptions, run_view
+
+    values = parse_assignments(arguments.values)
+    return run_view(arguments.file, values, LaunchOptions(arguments.host, arguments.port, not arguments.no_open))

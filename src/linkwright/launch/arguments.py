@@ -1,0 +1,96 @@
+"""Launch arguments as a user writes them: ``name:=value``."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, did_you_mean
+from linkwright.launch.actions import DeclareLaunchArgument
+from linkwright.launch.declared import declared_arguments
+from linkwright.launch.description import LaunchDescription
+from linkwright.launch.substitution import describe
+
+_SINGLE_SIGN = re.compile(r"^([A-Za-z_][\w-]*)(=|:)(?![=])(.*)$", re.DOTALL)
+
+UNDECLARED = frozenset({"launch-prefix", "sigterm_timeout", "sigkill_timeout", "emulate_tty", "ros_namespace"})
+"""Launch configurations that mean something without being declared."""
+
+
+def parse_arguments(words: Iterable[str]) -> dict[str, str]:
+    """Names and values of arguments; of several with one name the last counts.
+
+    Raises:
+        LinkwrightError: LAUNCH111, with all words that are not of the form ``name:=value``.
+    """
+    arguments: dict[str, str] = {}
+    errors: list[Diagnostic] = []
+    for word in words:
+        name, separator, value = word.partition(":=")
+        if separator and name:
+            arguments[name] = value
+            continue
+        found = _SINGLE_SIGN.match(word)
+        hint = f"write {found[1]}:={found[3]}" if found else "arguments are written name:=value"
+        errors.append(Diagnostic("LAUNCH111", f"malformed launch argument '{word}'", hint=hint))
+    if errors:
+        raise LinkwrightError(*errors)
+    return arguments
+
+
+def check_arguments(description: LaunchDescription, given: Mapping[str, str]) -> list[Diagnostic]:
+    """Compare the arguments given with those that the launch file declares, before anything starts.
+
+    Returns:
+        Warnings (LAUNCH113) about arguments that it does not declare: as in ROS they are set all the same.
+
+    Raises:
+        LinkwrightError: LAUNCH112 and LAUNCH114, all wrong values and missing arguments together.
+    """
+    declared = declared_arguments(description)
+    errors: list[Diagnostic] = []
+    for argument in declared:
+        value = given.get(argument.name)
+        missing = value is None and argument.default_value is None and not argument.conditionally_included
+        if missing or (value is not None and argument.choices is not None):
+            errors += _error_of(argument, given)
+    if errors:
+        raise LinkwrightError(*errors)
+    names = [argument.name for argument in declared]
+    return [_undeclared(name, names) for name in given if name not in names and name not in UNDECLARED]
+
+
+def _error_of(argument: DeclareLaunchArgument, given: Mapping[str, str]) -> Sequence[Diagnostic]:
+    from linkwright.launch.context import LaunchContext
+
+    context = LaunchContext()
+    context.launch_configurations.update(given)
+    try:
+        argument.execute(context)
+    except LinkwrightError as error:
+        return error.diagnostics
+    return ()
+
+
+def _undeclared(name: str, declared: Sequence[str]) -> Diagnostic:
+    hint = did_you_mean(name, declared)
+    if hint is None:
+        hint = "it declares " + ", ".join(f"'{each}'" for each in declared) if declared else "it declares none"
+    message = f"argument '{name}' is not declared by the launch file"
+    return Diagnostic("LAUNCH113", message, severity=Severity.WARNING, hint=hint)
+
+
+def argument_listing(description: LaunchDescription) -> str:
+    """What ``ros2 launch --show-args`` prints: names, descriptions and defaults of the declared arguments."""
+    lines = ["Arguments (pass arguments as '<name>:=<value>'):"]
+    declared = declared_arguments(description)
+    for argument in declared:
+        lines += ["", f"    '{argument.name}':{'*' if argument.conditionally_included else ''}"]
+        lines.append(f"        {argument.description}")
+        if argument.default_value is not None:
+            lines.append(f"        (default: {describe(argument.default_value)})")
+    if not declared:
+        lines += ["", "  No arguments."]
+    if any(argument.conditionally_included for argument in declared):
+        lines += ["", "* argument(s) which are only used if specific conditions occur"]
+    return "\n".join(lines)

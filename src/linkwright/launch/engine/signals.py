@@ -1,0 +1,87 @@
+"""What Ctrl-C and its kin do to a launch: an orderly end at the first, an end at once at the second."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import threading
+import time
+from types import FrameType, TracebackType
+from typing import Any
+
+from linkwright.launch.engine.session import LaunchSession
+
+_DEADLINE_SECONDS = 1.9
+"""However badly something hangs: this long after the first signal the program is over."""
+_SAME_KEYPRESS_SECONDS = 0.3
+"""Signals this close are one wish: a wrapper may pass a terminal's Ctrl-C on."""
+
+_SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
+
+
+class SignalWatch:
+    """Handles signals inside a ``with`` block; only the main thread can, elsewhere it does nothing.
+
+    Attributes:
+        session: the launch to be ended; None before there is one, when a KeyboardInterrupt is raised instead.
+        received: the first signal that came, or None.
+    """
+
+    def __init__(self) -> None:
+        self.session: LaunchSession | None = None
+        self.received: int | None = None
+        self._received_at = 0.0
+        self._before: dict[int, Any] = {}
+        self._deadline: threading.Timer | None = None
+
+    @property
+    def exit_status(self) -> int | None:
+        """The exit status that the signal asks for, as shells count: 128 and its number."""
+        return None if self.received is None else 128 + self.received
+
+    def __enter__(self) -> SignalWatch:  # noqa: PYI034 - typing.Self needs Python 3.11
+        if threading.current_thread() is threading.main_thread():
+            for number in _SIGNALS:
+                self._before[number] = signal.signal(number, self._handle)
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        if self._deadline is not None:
+            self._deadline.cancel()
+        for number, handler in self._before.items():
+            signal.signal(number, handler)
+
+    def _handle(self, number: int, _: FrameType | None) -> None:
+        now = time.monotonic()
+        if self.received is not None:
+            if now - self._received_at > _SAME_KEYPRESS_SECONDS:
+                self._end_at_once()
+            return
+        self.received, self._received_at = number, now
+        self._deadline = threading.Timer(_DEADLINE_SECONDS, self._end_at_once)
+        self._deadline.daemon = True
+        self._deadline.start()
+        session = self.session
+        if session is None or session.loop is None or session.visiting:
+            raise KeyboardInterrupt
+        session.loop.call_soon_threadsafe(session.interrupt, interruption_text(number))
+
+    def _end_at_once(self) -> None:
+        if self.session is not None:
+            self.session.kill_processes()
+        for stream in (sys.stdout, sys.stderr):
+            stream.flush()
+        os._exit(self.exit_status or 1)
+
+
+def interruption_text(number: int) -> str:
+    """What the log says of a signal."""
+    if number == signal.SIGINT:
+        return "user interrupted with ctrl-c (SIGINT)"
+    return f"received signal {signal.Signals(number).name}"

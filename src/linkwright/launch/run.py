@@ -1,0 +1,136 @@
+"""Running a launch from the command line to its end."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from linkwright.launch.arguments import argument_listing, check_arguments
+from linkwright.launch.description import LaunchDescription
+from linkwright.launch.engine.log import LaunchLog
+from linkwright.launch.engine.session import LaunchSession, SessionOptions
+from linkwright.launch.engine.signals import SignalWatch, interruption_text
+from linkwright.launch.python_file import load_python_launch_file
+from linkwright.launch.target import LaunchTarget
+from linkwright.workspace import PackageFinder, use_finder
+
+
+@dataclass(frozen=True)
+class LaunchOptions:
+    """How a launch is run.
+
+    Attributes:
+        host: the address that the viewer's server binds to.
+        port: its port; None for the default one, or the next that is free.
+        open_browser: whether the page is opened in the user's browser.
+    """
+
+    host: str = "127.0.0.1"
+    port: int | None = None
+    open_browser: bool = True
+
+
+def run_launch(
+    target: LaunchTarget, arguments: Mapping[str, str] | None = None, options: LaunchOptions | None = None
+) -> int:
+    """Run a launch file until everything in it has ended or the user ends it.
+
+    The modules that launch files import must be there: see `linkwright.standins.activate`.
+
+    Args:
+        target: the launch file.
+        arguments: name -> value of the launch arguments.
+        options: how it is run.
+
+    Returns:
+        The exit status: 0, 1 if something in the launch failed, 128 and the signal's number after a signal.
+
+    Raises:
+        LinkwrightError: what is wrong with the target, the launch file or the arguments.
+    """
+    given = dict(arguments or {})
+    finder = target.finder()
+
+    def load(log: LaunchLog) -> tuple[LaunchDescription, dict[str, Any]]:
+        path = target.resolve(finder)
+        description = load_python_launch_file(path)
+        log.diagnostics(check_arguments(description, given))
+        return description, {
+            "current_launch_file_path": str(path),
+            "current_launch_file_directory": str(path.parent),
+        }
+
+    title = f"{target.package} {target.file}" if target.package else Path(target.file).name
+    return run_description(load, given, finder, options or LaunchOptions(), title)
+
+
+def show_arguments(target: LaunchTarget) -> str:
+    """What ``--show-args`` prints about a launch file.
+
+    Raises:
+        LinkwrightError: what is wrong with the target or the launch file.
+    """
+    finder = target.finder()
+    with use_finder(finder):
+        return argument_listing(load_python_launch_file(target.resolve(finder)))
+
+
+def run_description(
+    load: Callable[[LaunchLog], tuple[LaunchDescription, dict[str, Any]]],
+    configurations: Mapping[str, str],
+    finder: PackageFinder,
+    options: LaunchOptions,
+    title: str,
+) -> int:
+    """Run a description that `load` gives, together with the values of the moment to begin with.
+
+    Returns:
+        The exit status, see `run_launch`.
+
+    Raises:
+        LinkwrightError: what `load` raises.
+    """
+    environment = dict(os.environ)
+    log = LaunchLog()
+    with SignalWatch() as signals, use_finder(finder):
+        try:
+            description, values = load(log)
+            session_options = SessionOptions(options.host, options.port, options.open_browser, title)
+            succeeded = asyncio.run(_run(description, values, configurations, finder, session_options, log, signals))
+        except KeyboardInterrupt:
+            if signals.received is None:  # not in the main thread, or raised by the user's own code
+                raise
+            log.caution("launch", interruption_text(signals.received))
+            succeeded = False
+        finally:
+            _restore(environment)
+        if signals.exit_status is not None:
+            return signals.exit_status
+        return 0 if succeeded else 1
+
+
+async def _run(
+    description: LaunchDescription,
+    values: dict[str, Any],
+    configurations: Mapping[str, str],
+    finder: PackageFinder,
+    options: SessionOptions,
+    log: LaunchLog,
+    signals: SignalWatch,
+) -> bool:
+    session = LaunchSession(finder, options, log)
+    session.context.argv = [f"{name}:={value}" for name, value in configurations.items()]
+    session.context.launch_configurations.update(configurations)
+    signals.session = session
+    return await session.run(description, values)
+
+
+def _restore(environment: dict[str, str]) -> None:
+    """Undo what the launch did to the environment of this process."""
+    for name in [name for name in os.environ if name not in environment]:
+        del os.environ[name]
+    os.environ.update(environment)

@@ -1,0 +1,118 @@
+"""Which launch file is meant: a path, or a package and the name of a file in it."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, display_path
+from linkwright.launch.arguments import parse_arguments
+from linkwright.launch.python_file import is_launch_file_name
+from linkwright.workspace import PackageFinder
+
+_DEPTH = 4
+
+
+@dataclass(frozen=True)
+class LaunchTarget:
+    """A launch file as the user names it.
+
+    Attributes:
+        file: the path, or with a package the name of the file or its path below the package's share folder.
+        package: the package, or None.
+    """
+
+    file: str
+    package: str | None = None
+
+    def finder(self) -> PackageFinder:
+        """What finds packages for this launch: from the file's folder and then from the current one."""
+        if self.package is None:
+            return PackageFinder(start=[Path(self.file).absolute().parent, Path.cwd()])
+        return PackageFinder()
+
+    def resolve(self, finder: PackageFinder) -> Path:
+        """The path of the launch file, absolute.
+
+        Raises:
+            LinkwrightError: PKG101, an unknown package; LAUNCH101, the package has no such file, or several.
+        """
+        if self.package is None:
+            return Path(self.file).absolute()
+        share = finder.share(self.package)
+        for path in (share / self.file, share / "launch" / self.file):
+            if path.is_file():
+                return path
+        return self._search(share)
+
+    def _search(self, share: Path) -> Path:
+        present = sorted(_launch_files(share, _DEPTH))
+        found = [path for path in present if path.name == self.file]
+        if len(found) == 1:
+            return found[0]
+        if found:
+            message = f"package '{self.package}' has several launch files '{self.file}'"
+            listed = ", ".join(str(path.relative_to(share)) for path in found)
+            raise LinkwrightError(Diagnostic("LAUNCH101", message, hint=f"name one by its path: {listed}"))
+        names = [path.name for path in present]
+        message = f"package '{self.package}' has no launch file '{self.file}' (in {display_path(share)})"
+        hint = did_you_mean(self.file, names)
+        if hint is None:
+            hint = "it has " + ", ".join(names) if names else "it has no launch files; is its setup.py installing them?"
+        raise LinkwrightError(Diagnostic("LAUNCH101", message, hint=hint))
+
+
+def parse_launch_words(words: Sequence[str]) -> tuple[LaunchTarget, dict[str, str]]:
+    """The words of ``launch PACKAGE FILE [name:=value ...]`` or ``launch PATH [name:=value ...]``.
+
+    Raises:
+        LinkwrightError: LAUNCH110, no launch file is named; LAUNCH111, malformed arguments.
+    """
+    split = next((index for index, word in enumerate(words) if ":=" in word), len(words))
+    split = min(split, 2)
+    if split == 2 and _is_file(words[0]):  # a path, and after it a word that should be an argument
+        split = 1
+    named, rest = words[:split], words[split:]
+    arguments = parse_arguments(rest)
+    if not named:
+        raise _incomplete("no launch file is named", "name a PACKAGE and a FILE in it, or the PATH of a launch file")
+    if len(named) == 1:
+        if not _is_file(named[0]) and not _is_path(named[0]):
+            files = [path.name for path in _files_of_package(named[0])]
+            if files:
+                hint = "it has " + ", ".join(files)
+                raise _incomplete(f"'{named[0]}' is a package: name a launch file in it too", hint)
+        return LaunchTarget(named[0]), arguments
+    return LaunchTarget(named[1], named[0]), arguments
+
+
+def _is_file(word: str) -> bool:
+    return Path(word).is_file()
+
+
+def _is_path(word: str) -> bool:
+    return os.sep in word or is_launch_file_name(word) or word.endswith((".py", ".xml", ".yaml"))
+
+
+def _files_of_package(name: str) -> list[Path]:
+    share = PackageFinder().find(name)
+    return [] if share is None else sorted(_launch_files(share, _DEPTH))
+
+
+def _launch_files(folder: Path, depth: int) -> Iterator[Path]:
+    try:
+        entries = sorted(folder.iterdir())
+    except OSError:
+        return
+    for entry in entries:
+        if entry.is_dir():
+            if depth and not entry.name.startswith(".") and entry.name not in ("build", "install", "log"):
+                yield from _launch_files(entry, depth - 1)
+        elif is_launch_file_name(entry.name):
+            yield entry
+
+
+def _incomplete(message: str, hint: str) -> LinkwrightError:
+    return LinkwrightError(Diagnostic("LAUNCH110", message, hint=hint))

@@ -1,0 +1,123 @@
+"""Showing one model file, without a launch file."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.launch.context import LaunchContext
+from linkwright.launch.description import LaunchDescription
+from linkwright.launch.engine.descriptions import XacroCall
+from linkwright.launch.engine.log import LaunchLog
+from linkwright.launch.ros import Node, ParameterValue
+from linkwright.launch.run import LaunchOptions, run_description
+from linkwright.launch.substitution import Substitution
+from linkwright.workspace import PackageFinder
+
+if TYPE_CHECKING:
+    from linkwright.viewer import RvizConfig
+
+_FIRST_LINK = re.compile(r"""<link\s[^>]*?\bname\s*=\s*["']([^"'$]+)["']""")
+
+
+class ModelText(Substitution):
+    """The description that a model file expands to.
+
+    Args:
+        call: the file and its xacro arguments.
+    """
+
+    def __init__(self, call: XacroCall) -> None:
+        self.call = call
+
+    def perform(self, context: LaunchContext) -> str:
+        """The text.
+
+        Raises:
+            DescriptionError: what is wrong with the model.
+        """
+        descriptions = context.session.descriptions
+        text = descriptions.expand(self.call)
+        for warning in descriptions.warnings:
+            context.warn(warning)
+        return text
+
+
+class ModelViewer(Node):
+    """The viewer with Grid, RobotModel and TF about one model.
+
+    Args:
+        call: the model.
+    """
+
+    def __init__(self, call: XacroCall) -> None:
+        super().__init__(package="rviz2", executable="rviz2", exec_name="viewer", name="viewer")
+        self._call = call
+
+    def viewer_config(self, context: LaunchContext) -> Callable[[], RvizConfig]:
+        """What makes the configuration, with the model's root link as the fixed frame."""
+
+        def make() -> RvizConfig:
+            from linkwright.viewer import RvizConfig
+
+            return RvizConfig.for_model(_root_link(self._call, context))
+
+        return make
+
+
+def run_view(
+    model_path: str | Path, arguments: Mapping[str, str] | None = None, options: LaunchOptions | None = None
+) -> int:
+    """Show a URDF or xacro file, with sliders for its joints, until the user ends it.
+
+    Args:
+        model_path: the file.
+        arguments: name -> value of the xacro arguments.
+        options: how it is run.
+
+    Returns:
+        The exit status, see `linkwright.launch.run_launch`.
+    """
+    path = Path(model_path).absolute()
+    call = XacroCall(path, tuple((arguments or {}).items()))
+
+    def load(_: LaunchLog) -> tuple[LaunchDescription, dict[str, Any]]:
+        return describe_view(call), {}
+
+    finder = PackageFinder(start=[path.parent, Path.cwd()])
+    return run_description(load, {}, finder, options or LaunchOptions(), path.name)
+
+
+def describe_view(call: XacroCall) -> LaunchDescription:
+    """The nodes that show a model."""
+    description = ParameterValue(ModelText(call), value_type=str)
+    return LaunchDescription(
+        [
+            Node(
+                package="robot_state_publisher",
+                executable="robot_state_publisher",
+                parameters=[{"robot_description": description}],
+            ),
+            Node(package="joint_state_publisher_gui", executable="joint_state_publisher_gui"),
+            ModelViewer(call),
+        ]
+    )
+
+
+def _root_link(call: XacroCall, context: LaunchContext) -> str:
+    """The root link of the model; of one that is broken, the first link that its text names."""
+    descriptions = context.session.descriptions
+    try:
+        robot = descriptions.library.read(descriptions.expand(call)).robot
+    except LinkwrightError:
+        robot = None
+    if robot is not None:
+        return robot.root
+    try:
+        found = _FIRST_LINK.search(call.path.read_text(encoding="utf-8", errors="replace"))
+    except OSError:
+        found = None
+    return found.group(1) if found else "base_link"

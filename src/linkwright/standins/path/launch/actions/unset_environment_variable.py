@@ -1,0 +1,5 @@
+"""Stands in for ``launch.actions.unset_environment_variable``."""
+
+from linkwright.launch.actions import UnsetEnvironmentVariable
+
+__all__ = ["UnsetEnvironmentVariable"]

@@ -1,0 +1,5 @@
+"""Stands in for ``launch.condition``."""
+
+from linkwright.launch.conditions import Condition
+
+__all__ = ["Condition"]

@@ -1,0 +1,5 @@
+"""Stands in for ``launch.conditions.if_condition``."""
+
+from linkwright.launch.conditions import IfCondition
+
+__all__ = ["IfCondition"]

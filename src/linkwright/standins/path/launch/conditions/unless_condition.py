@@ -1,0 +1,5 @@
+"""Stands in for ``launch.conditions.unless_condition``."""
+
+from linkwright.launch.conditions import UnlessCondition
+
+__all__ = ["UnlessCondition"]

@@ -1,0 +1,29 @@
+"""Stands in for ``launch.events.process``."""
+
+from linkwright.launch.events import (
+    ProcessExited,
+    ProcessIO,
+    ProcessStarted,
+    ProcessStderr,
+    ProcessStdout,
+    RunningProcessEvent,
+    ShutdownProcess,
+    SignalProcess,
+    matches_executable,
+    matches_name,
+    matches_pid,
+)
+
+__all__ = [
+    "ProcessExited",
+    "ProcessIO",
+    "ProcessStarted",
+    "ProcessStderr",
+    "ProcessStdout",
+    "RunningProcessEvent",
+    "ShutdownProcess",
+    "SignalProcess",
+    "matches_executable",
+    "matches_name",
+    "matches_pid",
+]

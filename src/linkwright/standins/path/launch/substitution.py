@@ -1,0 +1,5 @@
+"""Stands in for ``launch.substitution``."""
+
+from linkwright.launch.substitution import Substitution
+
+__all__ = ["Substitution"]

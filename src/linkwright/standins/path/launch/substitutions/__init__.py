@@ -1,0 +1,48 @@
+"""Stands in for ``launch.substitutions``."""
+
+from linkwright.launch.substitution import SubstitutionFailure, TextSubstitution
+from linkwright.launch.substitutions import (
+    AllSubstitution,
+    AndSubstitution,
+    AnySubstitution,
+    Command,
+    EnvironmentVariable,
+    EqualsSubstitution,
+    FileContent,
+    FindExecutable,
+    IfElseSubstitution,
+    LaunchConfiguration,
+    LaunchLogDir,
+    LocalSubstitution,
+    NotEqualsSubstitution,
+    NotSubstitution,
+    OrSubstitution,
+    PathJoinSubstitution,
+    PythonExpression,
+    ThisLaunchFile,
+    ThisLaunchFileDir,
+)
+
+__all__ = [
+    "AllSubstitution",
+    "AndSubstitution",
+    "AnySubstitution",
+    "Command",
+    "EnvironmentVariable",
+    "EqualsSubstitution",
+    "FileContent",
+    "FindExecutable",
+    "IfElseSubstitution",
+    "LaunchConfiguration",
+    "LaunchLogDir",
+    "LocalSubstitution",
+    "NotEqualsSubstitution",
+    "NotSubstitution",
+    "OrSubstitution",
+    "PathJoinSubstitution",
+    "PythonExpression",
+    "SubstitutionFailure",
+    "TextSubstitution",
+    "ThisLaunchFile",
+    "ThisLaunchFileDir",
+]

@@ -1,0 +1,5 @@
+"""Stands in for ``launch.substitutions.command``."""
+
+from linkwright.launch.substitutions import Command
+
+__all__ = ["Command"]

@@ -1,0 +1,5 @@
+"""Stands in for ``launch.substitutions.path_join_substitution``."""
+
+from linkwright.launch.substitutions import PathJoinSubstitution
+
+__all__ = ["PathJoinSubstitution"]

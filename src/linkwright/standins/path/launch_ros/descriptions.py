@@ -1,0 +1,5 @@
+"""Stands in for ``launch_ros.descriptions``."""
+
+from linkwright.launch.ros import Parameter, ParameterFile, ParameterValue
+
+__all__ = ["Parameter", "ParameterFile", "ParameterValue"]

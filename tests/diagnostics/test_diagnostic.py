@@ -1,0 +1,56 @@
+"""The diagnostic itself, the error that carries some, and their data form."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Severity, Span, has_errors, to_data
+
+SPAN = Span("robot.urdf", 3, 5, 3, 9)
+
+
+def test_data():
+    diagnostic = Diagnostic("URDF121", "message", SPAN, Severity.WARNING, (Note("n", SPAN), Note("m")), "hint")
+    data = to_data(diagnostic)
+    assert data == {
+        "code": "URDF121",
+        "severity": "warning",
+        "message": "message",
+        "file": "robot.urdf",
+        "line": 3,
+        "column": 5,
+        "end_line": 3,
+        "end_column": 9,
+        "notes": [
+            {"message": "n", "file": "robot.urdf", "line": 3, "column": 5},
+            {"message": "m", "file": None, "line": None, "column": None},
+        ],
+        "hints": ["hint"],
+    }
+    assert json.loads(json.dumps(data)) == data
+
+
+def test_data_without_a_place():
+    data = to_data(Diagnostic("XML101", "no such file"))
+    assert data["file"] is data["line"] is data["column"] is data["end_line"] is data["end_column"] is None
+    assert data["notes"] == data["hints"] == []
+
+
+def test_an_error_says_all_that_it_carries():
+    error = LinkwrightError(Diagnostic("A1", "first", SPAN), Diagnostic("A2", "second"))
+    assert str(error) == "robot.urdf:3:5: first\nsecond"
+    assert [diagnostic.code for diagnostic in error.diagnostics] == ["A1", "A2"]
+
+
+def test_an_error_without_a_diagnostic_is_a_bug():
+    with pytest.raises(ValueError, match="needs a diagnostic"):
+        LinkwrightError()
+
+
+def test_only_errors_are_errors():
+    warning, info = (Diagnostic("A1", "m", severity=severity) for severity in (Severity.WARNING, Severity.INFO))
+    assert not has_errors([])
+    assert not has_errors([warning, info])
+    assert has_errors([warning, Diagnostic("A2", "m")])

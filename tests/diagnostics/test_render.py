@@ -1,0 +1,143 @@
+"""Diagnostics as a terminal shows them."""
+
+from __future__ import annotations
+
+import io
+
+import pytest
+
+from linkwright.diagnostics import (
+    Diagnostic,
+    Note,
+    Severity,
+    SourceText,
+    display_path,
+    print_diagnostics,
+    render,
+    wants_colour,
+)
+
+
+def shown(text: str, marked: str, **more) -> list[str]:
+    source = SourceText("<test>", text)
+    start = text.index(marked)
+    diagnostic = Diagnostic("URDF121", "message", source.span(start, start + len(marked)), source=source, **more)
+    return render(diagnostic).splitlines()
+
+
+def test_the_whole_form():
+    assert shown('<a>\n  <mass value="1,5"/>\n</a>', "1,5", notes=(Note("a note"),), hint="a hint") == [
+        "error[URDF121]: message",
+        "  --> <test>:2:16",
+        "  |",
+        '2 |   <mass value="1,5"/>',
+        "  |                ^^^",
+        "   = note: a note",
+        "   = hint: a hint",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("line", "marked", "carets"),
+    [
+        ("\t<a b='x'/>", "x", "          ^"),
+        ("\ta\tb", "b", "         ^"),
+        ("a\tb", "\t", " ^^^^"),
+        ("底盘 x", "x", "     ^"),
+        ("x 底盘 y", "底盘", "  ^^^^"),
+    ],
+)
+def test_carets_stand_under_what_they_mark(line, marked, carets):
+    assert shown(line, marked)[-1] == f"  | {carets}"
+
+
+def test_tabs_are_shown_as_wide_as_they_are_counted():
+    assert shown("\t<a/>", "<a/>")[3] == "1 |     <a/>"
+
+
+def test_a_span_over_several_lines_is_marked_to_the_end_of_the_first():
+    assert shown("<a\n  b='c'\n/>", "<a\n  b")[-2:] == ["1 | <a", "  | ^^"]
+
+
+def test_an_empty_span_still_has_a_caret():
+    source = SourceText("<test>", 'value=""')
+    assert render(Diagnostic("X1", "m", source.span(7, 7), source=source)).splitlines()[-1] == "  |        ^"
+
+
+def test_the_gutter_is_as_wide_as_the_line_number():
+    lines = shown("\n" * 99 + "x", "x")
+    assert lines[2:] == ["    |", "100 | x", "    | ^"]
+
+
+def test_no_excerpt_without_the_text_or_of_another_file_or_of_a_blank_line():
+    source = SourceText("<a>", "   \nx")
+    for diagnostic in (
+        Diagnostic("X1", "m", source.span(4, 5)),
+        Diagnostic("X1", "m", source.span(4, 5), source=SourceText("<b>", "x\nx")),
+        Diagnostic("X1", "m", source.span(1, 2), source=source),
+    ):
+        assert len(render(diagnostic).splitlines()) == 2
+
+
+def test_no_place():
+    assert render(Diagnostic("X1", "no such file", hint="look elsewhere")) == (
+        "error[X1]: no such file\n   = hint: look elsewhere"
+    )
+
+
+@pytest.mark.parametrize("severity", list(Severity))
+def test_the_severity_is_named(severity):
+    assert render(Diagnostic("X1", "m", severity=severity)) == f"{severity.value}[X1]: m"
+
+
+def test_a_note_has_its_place_and_keeps_its_lines_together():
+    source = SourceText("<test>", "a\nb")
+    note = Note("called here\nand so on", source.span(2, 3))
+    assert render(Diagnostic("X1", "m", notes=(note,))) == (
+        "error[X1]: m\n   = note: called here\n     and so on (<test>:2:1)"
+    )
+
+
+def test_colour_changes_nothing_else():
+    source = SourceText("<test>", "<a/>")
+    diagnostic = Diagnostic("X1", "m", source.span(1, 2), notes=(Note("n"),), hint="h", source=source)
+    coloured = render(diagnostic, colour=True)
+    assert coloured != render(diagnostic)
+    for code in ("31;1", "31", "34", "32", "1", "0"):
+        coloured = coloured.replace(f"\x1b[{code}m", "")
+    assert coloured == render(diagnostic)
+
+
+class Terminal(io.StringIO):
+    def isatty(self):
+        return True
+
+
+def test_colour_is_for_terminals_that_want_it(monkeypatch):
+    monkeypatch.setenv("TERM", "xterm")
+    assert wants_colour(Terminal())
+    assert not wants_colour(io.StringIO())
+    monkeypatch.setenv("NO_COLOR", "1")
+    assert not wants_colour(Terminal())
+    monkeypatch.delenv("NO_COLOR")
+    monkeypatch.setenv("TERM", "dumb")
+    assert not wants_colour(Terminal())
+
+
+def test_printing_several(monkeypatch):
+    monkeypatch.setenv("TERM", "xterm")
+    stream = io.StringIO()
+    print_diagnostics([Diagnostic("X1", "first"), Diagnostic("X2", "second")], stream)
+    assert stream.getvalue() == "error[X1]: first\nerror[X2]: second\n"
+    terminal = Terminal()
+    print_diagnostics([Diagnostic("X1", "first")], terminal)
+    assert "\x1b[" in terminal.getvalue()
+
+
+def test_paths_below_the_current_folder_are_shown_short(tmp_path, monkeypatch):
+    (tmp_path / "here").mkdir()
+    monkeypatch.chdir(tmp_path / "here")
+    assert display_path(tmp_path / "here" / "urdf" / "a.urdf") == "urdf/a.urdf"
+    assert display_path(tmp_path / "other" / "a.urdf") == str(tmp_path / "other" / "a.urdf")
+    source = SourceText(str(tmp_path / "here" / "a.urdf"), "x")
+    assert "--> a.urdf:1:1" in render(Diagnostic("X1", "m", source.span(0), source=source))

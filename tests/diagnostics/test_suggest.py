@@ -1,0 +1,42 @@
+"""Did you mean."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.diagnostics import did_you_mean, nearest
+
+LINKS = ["base_link", "base_footprint", "left_wheel", "right_wheel"]
+
+
+def test_the_nearest_comes_first():
+    assert nearest("left_whel", LINKS)[0] == "left_wheel"
+    assert nearest("base_lnk", LINKS) == ["base_link"]
+
+
+def test_upper_and_lower_case_count_as_alike():
+    assert nearest("BASE_LINK", LINKS)[0] == "base_link"
+    assert nearest("revolute", ["Revolute"]) == ["Revolute"]
+
+
+def test_no_more_than_asked_for():
+    assert len(nearest("wheel", [f"wheel{n}" for n in range(9)])) == 3
+    assert nearest("wheel1", ["wheel2", "wheel11", "wheel1"], limit=1) == ["wheel1"]
+
+
+def test_nothing_near():
+    assert nearest("camera", LINKS) == []
+    assert nearest("camera", []) == []
+
+
+@pytest.mark.parametrize(
+    ("candidates", "hint"),
+    [
+        (["effort"], "did you mean 'effort'?"),
+        (["effort", "effort2"], "did you mean 'effort' or 'effort2'?"),
+        (["effort", "effort2", "effort34"], "did you mean 'effort', 'effort2' or 'effort34'?"),
+        (["velocity"], None),
+    ],
+)
+def test_hints(candidates, hint):
+    assert did_you_mean("efort", candidates) == hint

@@ -1,0 +1,102 @@
+import pytest
+
+from linkwright.graph import InvalidNameError
+from linkwright.messages import String
+
+
+@pytest.mark.parametrize(
+    ("namespace", "topic", "resolved"),
+    [
+        ("/", "chatter", "/chatter"),
+        ("/", "/chatter", "/chatter"),
+        ("/", "~/chatter", "/node/chatter"),
+        ("/", "~", "/node"),
+        ("/robot", "chatter", "/robot/chatter"),
+        ("robot", "a/b", "/robot/a/b"),
+        ("/robot", "/tf", "/tf"),
+        ("/robot", "~/state", "/robot/node/state"),
+        ("/robot", "{node}/x", "/robot/node/x"),
+        ("/robot", "{ns}/x", "/robot/x"),
+    ],
+)
+async def test_topic_names_are_expanded(graph, namespace, topic, resolved):
+    node = graph.create_node("node", namespace=namespace)
+    assert node.resolve_topic_name(topic) == resolved
+    assert node.create_publisher(String, topic, 1).topic_name == resolved
+
+
+@pytest.mark.parametrize(
+    ("topic", "reason"),
+    [
+        ("", "topic name must not be empty string"),
+        ("a/", "topic name must not end with a forward slash"),
+        ("my topic", "topic name must not contain characters other than alphanumerics, '_', '~', '{', or '}'"),
+        ("a//b", "topic name must not contain repeated '/'"),
+        ("3d", "topic name token must not start with a number"),
+        ("a/3d", "topic name token must not start with a number"),
+        ("a~", "topic name must not have tilde '~' unless it is the first character"),
+        ("~a", "topic name must not have a tilde '~' that is not followed by a forward slash '/'"),
+        ("{node", "topic name must not have unmatched (unbalanced) curly braces '{}'"),
+        ("{robot}/x", "unknown substitution '{robot}'"),
+    ],
+)
+async def test_invalid_topic_names_say_why(graph, topic, reason):
+    with pytest.raises(InvalidNameError) as caught:
+        graph.create_node("node").create_subscription(String, topic, print, 1)
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.code == "GRAPH101"
+    assert diagnostic.message == f"'{topic}' is not a valid topic name: {reason}"
+
+
+@pytest.mark.parametrize(
+    ("name", "reason"),
+    [
+        ("", "must not be empty"),
+        ("my node", "must not contain characters other than alphanumerics or '_'"),
+        ("a/b", "must not contain characters"),
+        ("2nd", "must not start with a number"),
+        ("x" * 256, "length should not exceed '255'"),
+    ],
+)
+async def test_invalid_node_names_say_why(graph, name, reason):
+    with pytest.raises(InvalidNameError, match="is not a valid node name: node name") as caught:
+        graph.create_node(name)
+    assert reason in str(caught.value)
+
+
+@pytest.mark.parametrize("namespace", ["/a/", "a b", "/a//b", "/1st"])
+async def test_invalid_namespaces_are_refused(graph, namespace):
+    with pytest.raises(InvalidNameError, match="is not a valid namespace"):
+        graph.create_node("node", namespace=namespace)
+
+
+@pytest.mark.parametrize(
+    ("rules", "topic", "resolved"),
+    [
+        ([("chatter", "talk")], "chatter", "/robot/talk"),
+        ([("chatter", "/talk")], "/robot/chatter", "/talk"),
+        ([("/chatter", "/talk")], "chatter", "/robot/chatter"),
+        ([("~/state", "~/status")], "~/state", "/robot/node/status"),
+        ([("/tf", "tf"), ("/tf_static", "tf_static")], "/tf", "/robot/tf"),
+        ([("chatter", "first"), ("chatter", "second")], "chatter", "/robot/first"),
+        ([("first", "second"), ("chatter", "first")], "chatter", "/robot/first"),
+    ],
+)
+async def test_remappings(graph, rules, topic, resolved):
+    node = graph.create_node("node", namespace="/robot", remappings=rules)
+    assert node.resolve_topic_name(topic) == resolved
+
+
+async def test_a_node_is_renamed_by_remapping(graph):
+    rules = [("__node", "other"), ("__ns", "/there"), ("~/x", "~/y")]
+    node = graph.create_node("node", namespace="/here", remappings=rules)
+    assert node.get_fully_qualified_name() == "/there/other"
+    assert (node.get_namespace(), node.get_name()) == ("/there", "other")
+    assert node.get_logger().name == "there.other"
+    assert node.resolve_topic_name("~/x") == "/there/other/y"
+
+
+async def test_an_invalid_side_of_a_rule_is_refused(graph):
+    node = graph.create_node("node", remappings=[("chatter", "two words")])
+    with pytest.raises(InvalidNameError, match="'two words' is not a valid topic name"):
+        node.create_publisher(String, "chatter", 1)

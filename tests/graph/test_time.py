@@ -1,0 +1,159 @@
+import asyncio
+
+import pytest
+
+from linkwright.graph import Graph, JumpClock, SystemClock, TimePoint
+from linkwright.messages import String, Time
+
+
+async def test_timers_keep_to_their_period(graph, clock):
+    start = clock.now_ns()
+    calls = []
+    graph.create_node("node").create_timer(0.1, lambda: calls.append((clock.now_ns() - start) / 1e9))
+    await clock.advance(0.35)
+    assert calls == pytest.approx([0.1, 0.2, 0.3])
+    await clock.advance(0.05)
+    assert calls[-1] == pytest.approx(0.4)
+
+
+async def test_timers_of_equal_time_keep_their_order(graph, clock):
+    node = graph.create_node("node")
+    calls = []
+    for name in "abc":
+        node.create_timer(0.1, lambda name=name: calls.append(name))
+    await clock.advance(0.2)
+    assert calls == list("abcabc")
+
+
+async def test_what_a_timer_causes_comes_before_the_next_timer(graph, clock):
+    node = graph.create_node("node")
+    order = []
+    publisher = node.create_publisher(String, "topic", 10)
+    node.create_subscription(String, "topic", lambda _message: order.append("message"), 10)
+    node.create_timer(0.1, lambda: (order.append("timer"), publisher.publish(String())))
+    node.create_timer(0.11, lambda: order.append("later"))
+    await clock.advance(0.12)
+    assert order == ["timer", "message", "later"]
+
+
+async def test_a_cancelled_timer_is_silent_until_it_is_reset(graph, clock):
+    calls = []
+    timer = graph.create_node("node").create_timer(0.1, lambda: calls.append(clock.steady_ns()))
+    timer.cancel()
+    assert timer.is_canceled()
+    await clock.advance(1.0)
+    assert calls == []
+    timer.reset()
+    await clock.advance(0.1)
+    assert calls == [1_100_000_000]
+
+
+async def test_reset_counts_the_period_from_now(graph, clock):
+    calls = []
+    timer = graph.create_node("node").create_timer(0.1, lambda: calls.append(clock.steady_ns()))
+    await clock.advance(0.06)
+    timer.reset()
+    await clock.advance(0.11)
+    assert calls == [160_000_000]
+    timer.timer_period_ns = 20_000_000
+    timer.reset()
+    await clock.advance(0.041)
+    assert calls[1:] == [190_000_000, 210_000_000]
+
+
+async def test_a_timer_may_cancel_itself_and_fail(graph, clock, log):
+    node = graph.create_node("node")
+    calls = []
+
+    def once():
+        calls.append(1)
+        node.destroy_timer(timer)
+        raise RuntimeError("broken")
+
+    timer = node.create_timer(0.1, once)
+    node.create_timer(0.1, lambda: calls.append(2))
+    await clock.advance(0.2)
+    assert calls == [1, 2, 2]
+    assert log[0].text.startswith("timer callback failed:\nTraceback")
+
+
+async def test_missed_calls_are_left_out():
+    """A loop that was busy for several periods gets one call, and the beat stays where it was."""
+    clock = JumpClock()
+    graph = Graph(clock=clock, on_log=print)
+    calls = []
+    graph.create_node("node").create_timer(0.1, lambda: calls.append(clock.steady_ns()))
+    blocker = graph.create_node("blocker")
+    blocked = blocker.create_timer(0.1, lambda: None)
+    blocked.cancel()
+    clock._steady_ns += 350_000_000
+    await clock.advance(0.0)
+    await clock.advance(0.1)
+    assert calls == [350_000_000, 400_000_000]
+    await graph.close()
+
+
+@pytest.mark.parametrize("period", [0.0, -1.0])
+async def test_a_period_must_be_positive(graph, period):
+    node = graph.create_node("node")
+    with pytest.raises(ValueError, match="must be positive"):
+        node.create_timer(period, print)
+    timer = node.create_timer(1.0, print)
+    with pytest.raises(ValueError, match="must be positive"):
+        timer.timer_period_ns = int(period)
+
+
+async def test_guard_conditions_run_once_for_many_triggers(graph):
+    node = graph.create_node("node")
+    calls = []
+    guard = node.create_guard_condition(lambda: calls.append(1))
+    for _ in range(5):
+        guard.trigger()
+    assert calls == []
+    await graph.settle()
+    assert calls == [1]
+    guard.trigger()
+    await graph.settle()
+    assert calls == [1, 1]
+    guard.trigger()
+    node.destroy_node()
+    await graph.settle()
+    guard.trigger()
+    await graph.settle()
+    assert calls == [1, 1]
+
+
+async def test_a_jump_moves_stamps_and_no_timers(graph, clock):
+    node = graph.create_node("node")
+    calls = []
+    node.create_timer(0.1, lambda: calls.append(1))
+    before = node.get_clock().now()
+    clock.jump(-5.0)
+    assert node.get_clock().now() < before
+    assert node.get_clock().now().nanoseconds == before.nanoseconds - 5_000_000_000
+    await graph.settle()
+    assert calls == []
+
+
+def test_points_in_time_become_messages():
+    assert TimePoint(1_700_000_000_123_456_789).to_msg() == Time(1_700_000_000, 123_456_789)
+
+
+async def test_system_timers_neither_drift_nor_run_early():
+    graph = Graph(clock=SystemClock(), on_log=print)
+    loop = asyncio.get_running_loop()
+    start = loop.time()
+    done = asyncio.Event()
+    calls = []
+
+    def tick():
+        calls.append(loop.time() - start)
+        if len(calls) == 20:
+            done.set()
+
+    graph.create_node("node").create_timer(0.005, tick)
+    await asyncio.wait_for(done.wait(), 5.0)
+    await graph.close()
+    due = [round(call / 0.005) for call in calls]
+    assert due == sorted(set(due))
+    assert all(call >= number * 0.005 - 1e-4 for number, call in enumerate(calls, 1))

@@ -1,0 +1,243 @@
+import asyncio
+
+import pytest
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.graph import DurabilityPolicy, Graph, HistoryPolicy, LogLevel, QoSProfile, ReliabilityPolicy
+from linkwright.messages import Header, String
+
+LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+BEST_EFFORT = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
+
+
+def texts(received):
+    return [message.data for message in received]
+
+
+async def test_messages_arrive_in_order_and_never_inside_publish(graph):
+    received = []
+    talker, listener = graph.create_node("talker"), graph.create_node("listener")
+    listener.create_subscription(String, "chatter", received.append, 10)
+    publisher = talker.create_publisher(String, "chatter", 10)
+    for number in range(3):
+        publisher.publish(String(str(number)))
+    assert received == []
+    await graph.settle()
+    assert texts(received) == ["0", "1", "2"]
+    assert publisher.get_subscription_count() == 1
+
+
+async def test_callbacks_are_not_reentrant(graph):
+    node = graph.create_node("echo")
+    depth, deepest, seen = 0, 0, []
+
+    def on_message(message):
+        nonlocal depth, deepest
+        depth += 1
+        deepest = max(deepest, depth)
+        seen.append(message.data)
+        if len(message.data) < 5:
+            publisher.publish(String(message.data + "x"))
+        depth -= 1
+
+    node.create_subscription(String, "loop", on_message, 10)
+    publisher = node.create_publisher(String, "loop", 10)
+    publisher.publish(String(""))
+    await graph.settle()
+    assert seen == ["", "x", "xx", "xxx", "xxxx", "xxxxx"]
+    assert deepest == 1
+
+
+async def test_order_holds_across_topics_and_subscriptions(graph):
+    node = graph.create_node("node")
+    order = []
+    publishers = {}
+    for topic in "ab":
+        publishers[topic] = node.create_publisher(String, topic, 10)
+        for subscriber in (1, 2):
+            node.create_subscription(String, topic, lambda message, s=subscriber: order.append((message.data, s)), 10)
+    publishers["b"].publish(String("b"))
+    publishers["a"].publish(String("a"))
+    await graph.settle()
+    assert order == [("b", 1), ("b", 2), ("a", 1), ("a", 2)]
+
+
+async def test_a_turn_of_work_lets_the_loop_run_in_between(graph):
+    """A node that answers its own messages for ever starves nobody."""
+    node = graph.create_node("node")
+    publisher = node.create_publisher(String, "loop", 1)
+    node.create_subscription(String, "loop", publisher.publish, 1)
+    publisher.publish(String())
+    for _ in range(20):
+        await asyncio.sleep(0)
+
+
+async def test_a_failing_callback_is_logged_and_stops_nobody(graph, log):
+    node = graph.create_node("node", namespace="/robot")
+    received = []
+
+    def fail(message):
+        raise ZeroDivisionError(message.data)
+
+    def complain(_message):
+        raise LinkwrightError(Diagnostic("GRAPH999", "the robot has no arm"))
+
+    for callback in (fail, complain, received.append):
+        node.create_subscription(String, "topic", callback, 10)
+    node.create_publisher(String, "topic", 10).publish(String("boom"))
+    await graph.settle()
+    assert texts(received) == ["boom"]
+    bug, user_error = log
+    assert (bug.level, bug.node) == (LogLevel.ERROR, "robot.node")
+    assert bug.text.startswith("callback of topic '/robot/topic' failed:\nTraceback")
+    assert bug.text.endswith("ZeroDivisionError: boom")
+    assert user_error.text == "callback of topic '/robot/topic' failed: the robot has no arm"
+
+
+async def test_only_the_last_messages_wait(graph):
+    node = graph.create_node("node")
+    last, everything = [], []
+    node.create_subscription(String, "topic", last.append, 2)
+    node.create_subscription(String, "topic", everything.append, QoSProfile(depth=1, history=HistoryPolicy.KEEP_ALL))
+    publisher = node.create_publisher(String, "topic", 1)
+    for number in range(5):
+        publisher.publish(String(str(number)))
+    await graph.settle()
+    assert texts(last) == ["3", "4"]
+    assert texts(everything) == ["0", "1", "2", "3", "4"]
+
+
+async def test_late_comers_get_what_a_transient_local_publisher_keeps(graph):
+    node = graph.create_node("node")
+    publisher = node.create_publisher(String, "topic", QoSProfile(depth=2, durability=DurabilityPolicy.TRANSIENT_LOCAL))
+    for text in "abc":
+        publisher.publish(String(text))
+    latched, volatile = [], []
+    node.create_subscription(String, "topic", latched.append, QoSProfile(5, durability=LATCHED.durability))
+    node.create_subscription(String, "topic", volatile.append, 5)
+    publisher.publish(String("d"))
+    await graph.settle()
+    assert texts(latched) == ["b", "c", "d"]
+    assert texts(volatile) == ["d"]
+
+
+async def test_a_volatile_publisher_keeps_nothing(graph):
+    node = graph.create_node("node")
+    received = []
+    node.create_publisher(String, "topic", 10).publish(String("gone"))
+    node.create_subscription(String, "topic", received.append, 10)
+    await graph.settle()
+    assert received == []
+
+
+@pytest.mark.parametrize(
+    ("offered", "requested", "policy", "sides"),
+    [
+        (BEST_EFFORT, QoSProfile(5), "RELIABILITY_QOS_POLICY", ("best effort", "reliable")),
+        (QoSProfile(5), LATCHED, "DURABILITY_QOS_POLICY", ("volatile", "transient local")),
+        (
+            BEST_EFFORT,
+            LATCHED,
+            "DURABILITY_QOS_POLICY",
+            ("best effort, volatile", "reliable, transient local"),
+        ),
+    ],
+)
+@pytest.mark.parametrize("publisher_first", [True, False])
+async def test_incompatible_qos_is_told_to_both_sides(graph, log, offered, requested, policy, sides, publisher_first):
+    talker, listener = graph.create_node("talker"), graph.create_node("listener")
+    received = []
+    if publisher_first:
+        publisher = talker.create_publisher(String, "topic", offered)
+    listener.create_subscription(String, "topic", received.append, requested)
+    if not publisher_first:
+        publisher = talker.create_publisher(String, "topic", offered)
+    publisher.publish(String())
+    await graph.settle()
+    assert received == []
+    assert publisher.get_subscription_count() == 0
+    last = f"Last incompatible policy: {policy} ('/talker' offers {sides[0]}, '/listener' requests {sides[1]})"
+    none = "No messages will be"
+    assert [(record.node, record.level, record.text) for record in log] == [
+        (
+            "listener",
+            LogLevel.WARN,
+            f"New publisher discovered on topic '/topic', offering incompatible QoS. {none} received from it. {last}",
+        ),
+        (
+            "talker",
+            LogLevel.WARN,
+            f"New subscription discovered on topic '/topic', requesting incompatible QoS. {none} sent to it. {last}",
+        ),
+    ]
+
+
+@pytest.mark.parametrize("requested", [BEST_EFFORT, QoSProfile(5)])
+async def test_more_may_be_offered_than_is_requested(graph, log, requested):
+    node = graph.create_node("node")
+    received = []
+    node.create_subscription(String, "topic", received.append, requested)
+    node.create_publisher(String, "topic", LATCHED).publish(String("x"))
+    await graph.settle()
+    assert texts(received) == ["x"]
+    assert log == []
+
+
+async def test_different_types_on_a_topic_are_told(graph, log):
+    node = graph.create_node("node")
+    node.create_publisher(String, "topic", 1)
+    node.create_subscription(Header, "topic", print, 1)
+    assert "publishes std_msgs/msg/String, '/node' subscribes to std_msgs/msg/Header" in log[0].text
+    assert graph.topics() == {"/topic": ["std_msgs/msg/Header", "std_msgs/msg/String"]}
+
+
+async def test_a_message_of_another_type_is_refused(graph):
+    publisher = graph.create_node("node").create_publisher(String, "topic", 1)
+    with pytest.raises(TypeError, match="topic '/topic' carries std_msgs/msg/String, not Header"):
+        publisher.publish(Header())
+
+
+async def test_what_is_destroyed_is_silent(graph):
+    talker, listener = graph.create_node("talker"), graph.create_node("listener")
+    kept, dropped = [], []
+    publisher = talker.create_publisher(String, "topic", 10)
+    listener.create_subscription(String, "topic", kept.append, 10)
+    subscription = listener.create_subscription(String, "topic", dropped.append, 10)
+    publisher.publish(String("sent"))
+    listener.destroy_subscription(subscription)
+    talker.destroy_node()
+    talker.destroy_node()
+    publisher.publish(String("too late"))
+    await graph.settle()
+    assert texts(kept) == ["sent"]
+    assert dropped == []
+    assert graph.node_names() == ["/listener"]
+    assert graph.count_publishers("/topic") == 0
+    assert graph.count_subscribers("/topic") == 1
+
+
+async def test_close_forgets_what_was_not_delivered():
+    graph = Graph(on_log=lambda _record: None)
+    node = graph.create_node("node")
+    received = []
+    node.create_subscription(String, "topic", received.append, 10)
+    node.create_publisher(String, "topic", 10).publish(String())
+    node.create_timer(0.001, lambda: received.append("timer"))
+    await graph.close()
+    await asyncio.sleep(0.005)
+    assert received == []
+
+
+async def test_equal_node_names_are_told(graph, log):
+    graph.create_node("twin", namespace="home")
+    graph.create_node("twin")
+    assert log == []
+    graph.create_node("twin", namespace="/home")
+    assert "share the exact name '/home/twin'" in log[0].text
+    assert graph.unique_node_name("twin") == "twin_2"
+    assert graph.unique_node_name("single") == "single"
+
+
+def test_a_depth_of_nothing_is_refused():
+    with pytest.raises(ValueError, match="depth of at least 1"):
+        QoSProfile(depth=0)

@@ -1,0 +1,221 @@
+"""Forward kinematics against the definition, joint by joint."""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.kinematics import (
+    KinematicTree,
+    UnknownNameError,
+    matrix_from_pose,
+    quaternion_from_axis_angle,
+    quaternion_from_rpy,
+)
+from linkwright.urdf import Robot, load, parent_joints
+from tests.urdf.robots import chain, robot_text, robots
+
+
+def frame_of(robot: Robot, link: str, values: dict[str, float]) -> np.ndarray:
+    """The frame of a link in the root, by composing up to the root; the definition, written as plainly as can be."""
+    if link == robot.root:
+        return np.eye(4)
+    joint = parent_joints(robot)[link]
+    origin = matrix_from_pose([*joint.origin.xyz, *quaternion_from_rpy(joint.origin.rpy)])
+    motion = np.eye(4)
+    length = np.linalg.norm(joint.axis)
+    if joint.type in ("revolute", "continuous"):
+        turn = quaternion_from_axis_angle(joint.axis, value_of(robot, joint.name, values))
+        motion = matrix_from_pose([0, 0, 0, *turn])
+    elif joint.type == "prismatic" and length > 0:
+        motion[:3, 3] = np.array(joint.axis) / length * value_of(robot, joint.name, values)
+    return frame_of(robot, joint.parent, values) @ origin @ motion
+
+
+def value_of(robot: Robot, joint: str, values: dict[str, float]) -> float:
+    mimic = robot.joints[joint].mimic
+    if mimic is None:
+        return values.get(joint, 0.0)
+    return mimic.multiplier * value_of(robot, mimic.joint, values) + mimic.offset
+
+
+def assert_frames(found, robot, tree, values):
+    expected = np.array([frame_of(robot, link, values) for link in tree.link_names])
+    # Mimic chains multiply up to 1e6 each, so angles and lengths may be huge: compare in the size of the numbers.
+    size = 1 + np.abs(expected).max() + max([abs(value_of(robot, name, values)) for name in robot.joints], default=0)
+    np.testing.assert_allclose(found, expected, atol=1e-9 * size)
+
+
+def small(robot: Robot) -> bool:
+    mimics = [joint.mimic for joint in robot.joints.values() if joint.mimic]
+    return all(abs(mimic.multiplier) < 100 and abs(mimic.offset) < 100 for mimic in mimics)
+
+
+@settings(max_examples=60)
+@given(robots().filter(small), st.integers(0, 2**31))
+def test_frames_are_the_product_of_the_joints_above(robot, seed):
+    tree = KinematicTree(robot)
+    assert set(tree.link_names) == set(robot.links)
+    positions = np.random.default_rng(seed).uniform(-2, 2, (3, len(tree.joint_names)))
+    many = tree.forward(positions)
+    assert many.shape == (3, len(robot.links), 4, 4)
+    for row, frames in zip(positions, many, strict=True):
+        values = dict(zip(tree.joint_names, row, strict=True))
+        assert_frames(frames, robot, tree, values)
+        assert_frames(tree.forward(row), robot, tree, values)
+
+
+ARM = load(
+    robot_text(
+        chain(
+            'revolute:<origin xyz="0 0 1"/><axis xyz="0 0 1"/>',
+            'prismatic:<origin xyz="1 0 0"/><axis xyz="0 2 0"/>',
+            'fixed:<origin xyz="0 0 0.5" rpy="0 0 1"/>',
+            'continuous:<axis xyz="1 1 1"/>',
+        )
+    )
+)
+
+
+class TestArm:
+    tree = KinematicTree(ARM)
+
+    def test_names(self):
+        assert self.tree.joint_names == ("j0", "j1", "j3")
+        assert self.tree.link_names == ("a", "b", "c", "d", "e")
+
+    def test_a_turned_and_slid_link(self):
+        frames = self.tree.forward([pi / 2, 0.25, 0])
+        # The slide goes along y of a frame that is turned by 90 degrees, so along -x; its axis counts as unit length.
+        np.testing.assert_allclose(frames[self.tree.link_index("c")][:3, 3], [-0.25, 1, 1], atol=1e-12)
+
+    def test_a_diagonal_axis_turns_the_coordinate_axes_into_each_other(self):
+        frames = self.tree.forward([0, 0, 2 * pi / 3])
+        turn = frames[self.tree.link_index("d")][:3, :3].T @ frames[self.tree.link_index("e")][:3, :3]
+        np.testing.assert_allclose(turn, [[0, 0, 1], [1, 0, 0], [0, 1, 0]], atol=1e-12)
+
+    def test_positions_by_name(self):
+        by_name = self.tree.forward({"j1": 0.5})
+        np.testing.assert_array_equal(by_name, self.tree.forward([0, 0.5, 0]))
+        np.testing.assert_array_equal(self.tree.positions({"j3": 1}, default=0.5), [0.5, 0.5, 1])
+
+    def test_any_leading_axes(self):
+        assert self.tree.forward(np.zeros((2, 5, 3))).shape == (2, 5, 5, 4, 4)
+        assert self.tree.forward(np.zeros((0, 3))).shape == (0, 5, 4, 4)
+
+    def test_more_configurations_than_a_block_holds(self):
+        positions = np.random.default_rng(0).uniform(-1, 1, (1000, 3))
+        many = self.tree.forward(positions)
+        for place in (0, 383, 384, 999):
+            np.testing.assert_allclose(many[place], self.tree.forward(positions[place]), atol=1e-12)
+
+    @pytest.mark.parametrize("shape", [(2,), (4,), (5, 2), (), (3, 0)])
+    def test_wrong_shapes_are_printed(self, shape):
+        with pytest.raises(ValueError) as caught:
+            self.tree.forward(np.zeros(shape))
+        assert str(caught.value) == f"positions of shape {shape}; (3,) or (configurations, 3) is expected"
+
+    def test_unknown_joint(self):
+        with pytest.raises(UnknownNameError) as caught:
+            self.tree.forward({"j_3": 1})
+        assert caught.value.name == "j_3"
+        assert isinstance(caught.value, LinkwrightError)
+        found = caught.value.diagnostics[0]
+        assert (found.code, found.message) == ("KIN101", "the robot has no joint 'j_3'")
+        assert "'j3'" in found.hint
+
+    def test_a_joint_that_does_not_move(self):
+        with pytest.raises(UnknownNameError) as caught:
+            self.tree.positions({"j2": 1})
+        assert caught.value.diagnostics[0].hint == "it is fixed and does not move"
+
+    def test_unknown_link(self):
+        with pytest.raises(UnknownNameError, match="the robot has no link 'z'"):
+            self.tree.link_index("z")
+
+
+class TestMimic:
+    CHAIN = robot_text(
+        chain(
+            "continuous",
+            'continuous:<mimic joint="j0" multiplier="2" offset="0.5"/>',
+            'prismatic:<mimic joint="j1" multiplier="-1" offset="0.1"/>',
+        )
+    )
+
+    def test_chains_are_followed_to_their_end(self):
+        robot = load(self.CHAIN)
+        tree = KinematicTree(robot)
+        assert tree.joint_names == ("j0",)
+        assert_frames(tree.forward([0.3]), robot, tree, {"j0": 0.3})
+        assert_frames(tree.forward([[0.3]])[0], robot, tree, {"j0": 0.3})
+
+    def test_a_follower_has_no_position(self):
+        with pytest.raises(UnknownNameError) as caught:
+            KinematicTree(load(self.CHAIN)).forward({"j2": 1})
+        assert caught.value.diagnostics[0].code == "KIN102"
+        assert caught.value.diagnostics[0].hint == "it mimics 'j0': give the position of that joint"
+
+    @pytest.mark.parametrize("joint", ["j0", "nowhere"])
+    def test_a_joint_that_follows_nothing_moves_by_itself(self, joint):
+        robot = load(robot_text(chain(f'continuous:<mimic joint="{joint}"/>')))
+        assert KinematicTree(robot).joint_names == ("j0",)
+
+    def test_a_circle(self):
+        robot = load(robot_text(chain('continuous:<mimic joint="j1"/>', 'continuous:<mimic joint="j0"/>')))
+        assert KinematicTree(robot).joint_names == ("j0", "j1")
+
+    @pytest.mark.parametrize("others", [(), ("continuous",)])
+    def test_a_follower_of_a_joint_that_stands_still(self, others):
+        follower = 'continuous:<axis xyz="0 0 1"/><mimic joint="j0" multiplier="3" offset="0.5"/>'
+        robot = load(robot_text(chain("fixed", follower, *others)))
+        tree = KinematicTree(robot)
+        assert len(tree.joint_names) == len(others)
+        for frames in (tree.forward([7.0] * len(others)), tree.forward(np.full((2, len(others)), 7.0))[1]):
+            np.testing.assert_allclose(np.arccos(frames[2, 0, 0]), 0.5)
+
+
+class TestStill:
+    """Joints that do not move."""
+
+    @pytest.mark.parametrize("kind", ["fixed", "floating", "planar"])
+    def test_kinds(self, kind):
+        tree = KinematicTree(load(robot_text(chain(f'{kind}:<origin xyz="1 2 3"/>'))))
+        assert tree.joint_names == ()
+        np.testing.assert_array_equal(tree.forward([])[1][:3, 3], [1, 2, 3])
+        assert tree.forward(np.empty((4, 0))).shape == (4, 2, 4, 4)
+
+    def test_a_zero_axis(self):
+        tree = KinematicTree(load(robot_text(chain("continuous:<axis/>"))))
+        assert tree.joint_names == ()
+
+    def test_one_link(self):
+        tree = KinematicTree(load(robot_text('<link name="only"/>')))
+        np.testing.assert_array_equal(tree.forward([]), [np.eye(4)])
+        np.testing.assert_array_equal(tree.forward(np.empty((2, 0))), [[np.eye(4)]] * 2)
+
+
+def test_links_that_do_not_hang_from_the_root_are_left_out():
+    joint = '<joint name="{0}{1}" type="fixed"><parent link="{0}"/><child link="{1}"/></joint>'
+    links = '<link name="r"/><link name="a"/><link name="b"/>'
+    assert KinematicTree(load(robot_text(links, joint.format("a", "b"), joint.format("b", "a")))).link_names == ("r",)
+
+
+def test_a_deep_chain():
+    count = 400
+    links = "".join(f'<link name="l{n}"/>' for n in range(count + 1))
+    joints = "".join(
+        f'<joint name="j{n}" type="continuous"><origin xyz="1 0 0"/><axis xyz="0 0 1"/>'
+        f'<parent link="l{n}"/><child link="l{n + 1}"/></joint>'
+        for n in range(count)
+    )
+    tree = KinematicTree(load(robot_text(links, joints)))
+    circle = np.full(count, 2 * pi / count)
+    tips = [tree.forward(circle)[-1], tree.forward(circle[None])[0, -1]]
+    for tip in tips:
+        np.testing.assert_allclose(tip, np.eye(4), atol=1e-9)

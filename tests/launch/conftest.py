@@ -1,0 +1,77 @@
+from __future__ import annotations
+
+import io
+import os
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from linkwright.launch.description import LaunchDescription
+from linkwright.launch.engine.log import LaunchLog
+from linkwright.launch.engine.session import LaunchSession, SessionOptions
+from linkwright.launch.entity import LaunchDescriptionEntity
+from linkwright.standins import activate
+from linkwright.workspace import PackageFinder, use_finder
+
+activate()
+
+
+@dataclass
+class Launched:
+    """What came of a launch that ran to its end."""
+
+    out: str
+    err: str
+    succeeded: bool
+    session: LaunchSession
+
+    @property
+    def messages(self) -> list[str]:
+        """What LogInfo actions said."""
+        start = "[INFO] [launch.user]: "
+        return [line[len(start) :] for line in self.err.splitlines() if line.startswith(start)]
+
+
+@pytest.fixture(autouse=True)
+def _surroundings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """Log files stay in the test's folder, and what a launch does to the environment is undone."""
+    monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "ros_log"))
+    monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
+    monkeypatch.delenv("OVERRIDE_LAUNCH_PROCESS_OUTPUT", raising=False)
+    before = dict(os.environ)
+    yield
+    os.environ.clear()
+    os.environ.update(before)
+
+
+@pytest.fixture
+def launch(tmp_path: Path) -> Callable[..., object]:
+    """Runs entities as a launch does, to the end, and gives what was printed."""
+
+    async def run(
+        *entities: LaunchDescriptionEntity, finder: PackageFinder | None = None, **configurations: str
+    ) -> Launched:
+        out, err = io.StringIO(), io.StringIO()
+        finder = finder or PackageFinder(start=tmp_path, environment={})
+        with use_finder(finder):
+            session = LaunchSession(finder, SessionOptions(port=0, open_browser=False), LaunchLog(out, err))
+            session.context.launch_configurations.update(configurations)
+            succeeded = await session.run(LaunchDescription(entities))
+        return Launched(out.getvalue(), err.getvalue(), succeeded, session)
+
+    return run
+
+
+@pytest.fixture
+def write(tmp_path: Path) -> Callable[[str, str], Path]:
+    """Writes a file below the test's folder."""
+
+    def written(name: str, text: str) -> Path:
+        path = tmp_path / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+        return path
+
+    return written

@@ -1,0 +1,313 @@
+from __future__ import annotations
+
+import asyncio
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from launch import Action, LaunchContext, LaunchDescription
+from launch.actions import (
+    AppendEnvironmentVariable,
+    DeclareLaunchArgument,
+    EmitEvent,
+    GroupAction,
+    IncludeLaunchDescription,
+    LogInfo,
+    OpaqueFunction,
+    PopLaunchConfigurations,
+    PushLaunchConfigurations,
+    RegisterEventHandler,
+    ResetLaunchConfigurations,
+    SetEnvironmentVariable,
+    SetLaunchConfiguration,
+    Shutdown,
+    TimerAction,
+    UnregisterEventHandler,
+    UnsetEnvironmentVariable,
+    UnsetLaunchConfiguration,
+)
+from launch.conditions import IfCondition, UnlessCondition
+from launch.event_handlers import OnShutdown
+from launch.events import Shutdown as ShutdownEvent
+from launch.launch_description_sources import AnyLaunchDescriptionSource, PythonLaunchDescriptionSource
+from launch.substitutions import EnvironmentVariable, LaunchConfiguration, LocalSubstitution, ThisLaunchFileDir
+
+Launch = Callable[..., object]
+Write = Callable[[str, str], Path]
+
+
+def say(*parts: object) -> LogInfo:
+    return LogInfo(msg=list(parts))
+
+
+async def test_conditions_decide(launch) -> None:
+    done = await launch(
+        LogInfo(msg="a", condition=IfCondition("true")),
+        LogInfo(msg="b", condition=UnlessCondition("true")),
+    )
+    assert done.messages == ["a"]
+    assert done.succeeded
+
+
+class TestDeclareLaunchArgument:
+    async def test_default_and_given_value(self, launch) -> None:
+        entities = (DeclareLaunchArgument("x", default_value=["d", "1"]), say(LaunchConfiguration("x")))
+        assert (await launch(*entities)).messages == ["d1"]
+        assert (await launch(*entities, x="mine")).messages == ["mine"]
+
+    async def test_required(self, launch) -> None:
+        done = await launch(DeclareLaunchArgument("x", description="the x"), say("after"))
+        assert "error[LAUNCH114]: argument 'x' (the x) is required and was not given" in done.err
+        assert "test_actions.py" in done.err
+        assert done.messages == []
+        assert not done.succeeded
+
+    async def test_choices(self, launch) -> None:
+        done = await launch(DeclareLaunchArgument("x", default_value="a", choices=["a", "b"]), x="c")
+        assert "error[LAUNCH112]: argument 'x' has the value 'c', which is none of its choices" in done.err
+        assert "hint: choose from 'a', 'b'" in done.err
+
+    def test_descriptions(self) -> None:
+        assert DeclareLaunchArgument("x").description == "no description given"
+        assert DeclareLaunchArgument("x", choices=["a"]).description == "One of: ['a']"
+        argument = DeclareLaunchArgument("x", description="What.", choices=["a"])
+        assert argument.description == "What. Valid choices are: ['a']"
+
+
+async def test_set_and_unset_configurations(launch) -> None:
+    done = await launch(
+        SetLaunchConfiguration("x", ["1", "2"]),
+        say(LaunchConfiguration("x")),
+        UnsetLaunchConfiguration("x"),
+        UnsetLaunchConfiguration("never"),
+        say(LaunchConfiguration("x", default="none")),
+        SetLaunchConfiguration("x", "3"),
+        PushLaunchConfigurations(),
+        ResetLaunchConfigurations({"y": [LaunchConfiguration("x"), "y"]}),
+        say(LaunchConfiguration("x", default="none"), LaunchConfiguration("y")),
+        PopLaunchConfigurations(),
+        say(LaunchConfiguration("x")),
+    )
+    assert done.messages == ["12", "none", "none3y", "3"]
+
+
+async def test_environment(launch, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("LW_A", "a")
+    done = await launch(
+        SetEnvironmentVariable("LW_B", "b"),
+        AppendEnvironmentVariable("LW_A", "c"),
+        AppendEnvironmentVariable("LW_A", "0", prepend=True, separator=","),
+        AppendEnvironmentVariable("LW_C", "new"),
+        say(EnvironmentVariable("LW_A"), EnvironmentVariable("LW_B"), EnvironmentVariable("LW_C")),
+        OpaqueFunction(function=lambda context: say(os.environ["LW_B"])),
+        UnsetEnvironmentVariable("LW_B"),
+        say(EnvironmentVariable("LW_B", default_value="gone")),
+    )
+    assert done.messages == [f"0,a{os.pathsep}cbnew", "b", "gone"]
+
+
+class TestGroupAction:
+    async def test_scope(self, launch) -> None:
+        done = await launch(
+            SetLaunchConfiguration("x", "outer"),
+            GroupAction(
+                [SetLaunchConfiguration("x", "inner"), SetEnvironmentVariable("LW_G", "1"), say(LaunchConfiguration("x"))],
+                launch_configurations={"y": "given"},
+            ),
+            say(LaunchConfiguration("x"), LaunchConfiguration("y", default="-"), EnvironmentVariable("LW_G", default_value="-")),
+        )
+        assert done.messages == ["inner", "outer--"]
+
+    async def test_without_scope(self, launch) -> None:
+        done = await launch(
+            GroupAction([SetLaunchConfiguration("x", "inner")], scoped=False), say(LaunchConfiguration("x"))
+        )
+        assert done.messages == ["inner"]
+
+    async def test_without_forwarding(self, launch) -> None:
+        done = await launch(
+            SetLaunchConfiguration("x", "outer"),
+            GroupAction(
+                [say(LaunchConfiguration("x", default="none"), LaunchConfiguration("y"))],
+                forwarding=False,
+                launch_configurations={"y": LaunchConfiguration("x")},
+            ),
+            say(LaunchConfiguration("x")),
+        )
+        assert done.messages == ["noneouter", "outer"]
+
+
+class TestOpaqueFunction:
+    async def test_arguments_and_what_it_returns(self, launch) -> None:
+        def function(context: LaunchContext, first: str, *, second: str) -> list[Action]:
+            return [say(first, second, context.launch_configurations["x"])]
+
+        done = await launch(OpaqueFunction(function=function, args=["1"], kwargs={"second": "2"}), x="3")
+        assert done.messages == ["123"]
+
+    async def test_an_exception_names_the_users_line(self, launch) -> None:
+        def function(context: LaunchContext) -> None:
+            raise ValueError("no such robot")  # the line
+
+        done = await launch(OpaqueFunction(function=function))
+        assert "error[LAUNCH104]: launch action OpaqueFunction raised ValueError: no such robot" in done.err
+        assert 'raise ValueError("no such robot")  # the line' in done.err
+        assert "Traceback" not in done.err
+        assert not done.succeeded
+
+    async def test_what_is_no_action(self, launch) -> None:
+        done = await launch(OpaqueFunction(function=lambda _: [3]))
+        assert "expected launch actions, got 3 of type int" in done.err
+
+
+async def test_a_users_own_action(launch) -> None:
+    class Twice(Action):
+        def execute(self, context: LaunchContext) -> list[Action]:
+            return [say("again"), say("again")]
+
+    assert (await launch(Twice())).messages == ["again", "again"]
+
+
+class TestTimerAction:
+    async def test_order(self, launch) -> None:
+        done = await launch(
+            TimerAction(period=0.02, actions=[say("later")]),
+            TimerAction(period=["0", ".01"], actions=[say("sooner")]),
+            say("now"),
+        )
+        assert done.messages == ["now", "sooner", "later"]
+
+    async def test_cancel(self, launch) -> None:
+        timer = TimerAction(period=10.0, actions=[say("never")])
+        done = await launch(timer, TimerAction(period=0.01, actions=[OpaqueFunction(function=lambda _: timer.cancel())]))
+        assert done.messages == []
+
+    async def test_a_wrong_period(self, launch) -> None:
+        done = await launch(TimerAction(period="soon", actions=[]))
+        assert "the period 'soon' of a timer is no number" in done.err
+
+
+class TestEvents:
+    async def test_shutdown_handlers_and_reasons(self, launch) -> None:
+        done = await launch(
+            RegisterEventHandler(OnShutdown(on_shutdown=[say(LocalSubstitution("event.reason"))])),
+            Shutdown(reason=["enough ", "of it"]),
+            TimerAction(period=30.0, actions=[say("never")]),
+        )
+        assert done.messages == ["enough of it"]
+        assert done.succeeded
+
+    async def test_emit_event(self, launch) -> None:
+        handler = OnShutdown(on_shutdown=lambda event, context: say("function ", event.reason))
+        done = await launch(
+            RegisterEventHandler(handler), EmitEvent(event=ShutdownEvent(reason="r")), TimerAction(period=9.0, actions=[])
+        )
+        assert done.messages == ["function r"]
+
+    async def test_unregister(self, launch) -> None:
+        handler = OnShutdown(on_shutdown=say("never"))
+        done = await launch(RegisterEventHandler(handler), UnregisterEventHandler(handler))
+        assert done.messages == []
+
+    async def test_an_exception_in_a_handler(self, launch) -> None:
+        def fail(event: object, context: LaunchContext) -> None:
+            raise KeyError("oh")
+
+        done = await launch(RegisterEventHandler(OnShutdown(on_shutdown=fail)))
+        assert "an event handler raised KeyError: oh" in done.err
+        assert "Traceback" not in done.err
+        assert not done.succeeded
+
+    async def test_a_launch_with_nothing_in_it_ends(self, launch) -> None:
+        await asyncio.wait_for(launch(), 1.0)
+
+
+INNER = """
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument, LogInfo, SetLaunchConfiguration
+from launch.substitutions import LaunchConfiguration, ThisLaunchFileDir
+
+def generate_launch_description():
+    return LaunchDescription([
+        DeclareLaunchArgument('speed'{default}),
+        LogInfo(msg=['inner ', LaunchConfiguration('speed'), ' ', ThisLaunchFileDir()]),
+        SetLaunchConfiguration('leaks', 'yes'),
+    ])
+"""
+
+
+class TestIncludeLaunchDescription:
+    async def test_arguments_configurations_and_folders(self, launch, write: Write) -> None:
+        inner = write("sub/inner.launch.py", INNER.replace("{default}", ""))
+        done = await launch(
+            SetLaunchConfiguration("fast", "9"),
+            IncludeLaunchDescription(
+                PythonLaunchDescriptionSource([str(inner.parent), "/inner.launch.py"]),
+                launch_arguments={"speed": LaunchConfiguration("fast")}.items(),
+            ),
+            say(LaunchConfiguration("leaks"), LaunchConfiguration("speed")),
+        )
+        assert done.messages == [f"inner 9 {inner.parent}", "yes9"]
+
+    @pytest.mark.parametrize("source", [AnyLaunchDescriptionSource, str])
+    async def test_other_sources(self, launch, write: Write, source: Callable[[str], object]) -> None:
+        inner = write("inner.launch.py", INNER.replace("{default}", ", default_value='1'"))
+        assert (await launch(IncludeLaunchDescription(source(str(inner))))).messages[0].startswith("inner 1")
+
+    async def test_a_missing_argument_is_told_before_anything_runs(self, launch, write: Write) -> None:
+        inner = write("inner.launch.py", INNER.replace("{default}", ""))
+        done = await launch(IncludeLaunchDescription(str(inner), launch_arguments=[("sped", "1")]))
+        assert "error[LAUNCH114]: the included launch file requires argument 'speed', which is not given" in done.err
+        assert "it is given 'sped': is that the one?" in done.err
+        assert done.messages == []
+
+    async def test_an_error_inside_names_the_inner_file(self, launch, write: Write) -> None:
+        inner = write("inner.launch.py", "def generate_launch_description():\n    return nothing\n")
+        done = await launch(IncludeLaunchDescription(str(inner)))
+        assert "raised NameError: name 'nothing' is not defined" in done.err
+        assert f"{inner.name}:2:12" in done.err
+
+    async def test_a_missing_file_names_the_including_line(self, launch, tmp_path: Path) -> None:
+        done = await launch(IncludeLaunchDescription(str(tmp_path / "none.launch.py")))
+        assert "error[LAUNCH101]" in done.err
+        assert "test_actions.py" in done.err
+
+    async def test_the_folder_is_that_of_the_outer_file_again(self, launch, write: Write) -> None:
+        write("sub/inner.launch.py", INNER.replace("{default}", ", default_value='1'"))
+        outer = write(
+            "outer.launch.py",
+            """
+from launch import LaunchDescription
+from launch.actions import IncludeLaunchDescription, LogInfo
+from launch.substitutions import ThisLaunchFileDir
+
+def generate_launch_description():
+    return LaunchDescription([
+        IncludeLaunchDescription([ThisLaunchFileDir(), '/sub/inner.launch.py']),
+        LogInfo(msg=ThisLaunchFileDir()),
+    ])
+""",
+        )
+        done = await launch(IncludeLaunchDescription(str(outer)))
+        assert done.messages == [f"inner 1 {outer.parent / 'sub'}", str(outer.parent)]
+
+
+def test_arguments_of_a_description(write: Write) -> None:
+    inner = write("inner.launch.py", INNER.replace("{default}", ""))
+    description = LaunchDescription(
+        [
+            DeclareLaunchArgument("a", default_value="1"),
+            GroupAction([DeclareLaunchArgument("b")], condition=IfCondition("true")),
+            IncludeLaunchDescription(str(inner)),
+            IncludeLaunchDescription([ThisLaunchFileDir(), "/unknown.launch.py"]),
+        ]
+    )
+    found = {argument.name: argument.conditionally_included for argument in description.get_launch_arguments()}
+    assert found == {"a": False, "b": True, "speed": False}
+
+
+def test_an_argument_that_the_including_file_gives_is_not_asked_of_the_user(write: Write) -> None:
+    inner = write("inner.launch.py", INNER.replace("{default}", ""))
+    description = LaunchDescription([IncludeLaunchDescription(str(inner), launch_arguments={"speed": "1"}.items())])
+    assert description.get_launch_arguments() == []

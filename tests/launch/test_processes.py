@@ -1,0 +1,239 @@
+from __future__ import annotations
+
+import os
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from launch import LaunchDescription
+from launch.actions import EmitEvent, ExecuteProcess, LogInfo, RegisterEventHandler, SetLaunchConfiguration, Shutdown, TimerAction
+from launch.event_handlers import OnExecutionComplete, OnProcessExit, OnProcessIO, OnProcessStart, OnShutdown
+from launch.events import matches_action
+from launch.events.process import ShutdownProcess, SignalProcess, matches_name
+from launch.substitutions import LaunchConfiguration
+
+STUBBORN = """
+import signal, sys, time
+signal.signal(signal.SIGINT, lambda *_: print('int', flush=True))
+signal.signal(signal.SIGTERM, lambda *_: print('term', flush=True))
+print('ready', flush=True)
+time.sleep(60)
+time.sleep(60)
+time.sleep(60)
+"""
+
+
+def python(program: str, **options: object) -> ExecuteProcess:
+    options.setdefault("output", "screen")
+    options.setdefault("name", "py")
+    return ExecuteProcess(cmd=[sys.executable, "-c", program], **options)
+
+
+def is_gone(pid: int) -> bool:
+    deadline = time.monotonic() + 2.0
+    while time.monotonic() < deadline:
+        try:
+            os.kill(pid, 0)
+        except ProcessLookupError:
+            return True
+        if "Z" in Path(f"/proc/{pid}/stat").read_text().split(")")[-1].split()[0]:
+            return True
+        time.sleep(0.01)
+    return False
+
+
+async def test_a_process_from_start_to_end(launch) -> None:
+    done = await launch(python("import sys; print('out'); print('err', file=sys.stderr); sys.stdout.write('rest')"))
+    assert done.out.splitlines() == ["[py-1] out", "[py-1] rest"]
+    assert "[INFO] [py-1]: process started with pid [" in done.err
+    assert "[py-1] err" in done.err
+    assert "[INFO] [py-1]: process has finished cleanly [pid " in done.err
+    assert done.succeeded
+
+
+async def test_names_are_numbered_in_order(launch) -> None:
+    done = await launch(
+        ExecuteProcess(cmd=["sh", "-c", "echo a"], output="screen"),
+        ExecuteProcess(cmd=["sh", "-c", "sleep 0.1; echo b"], output="screen"),
+    )
+    assert done.out.splitlines() == ["[sh-1] a", "[sh-2] b"]
+
+
+async def test_folder_environment_and_substitutions(launch, tmp_path: Path) -> None:
+    done = await launch(
+        SetLaunchConfiguration("w", "x y"),
+        ExecuteProcess(
+            cmd=["sh", "-c", ["echo $PWD $A $B '", LaunchConfiguration("w"), "'"]],
+            cwd=str(tmp_path),
+            env={"A": "1"},
+            additional_env={"B": LaunchConfiguration("w")},
+            output="screen",
+        ),
+    )
+    assert done.out == f"[sh-1] {tmp_path} 1 x y x y\n"
+
+
+async def test_a_shell(launch) -> None:
+    done = await launch(ExecuteProcess(cmd=[["echo ", "a", " && echo b"]], shell=True, output="screen"))
+    assert done.out.splitlines() == ["[echo-1] a", "[echo-1] b"]
+
+
+async def test_prefix_and_log_cmd(launch) -> None:
+    done = await launch(ExecuteProcess(cmd=["x"], prefix="echo 'a b'", output="screen", name="n", log_cmd=True))
+    assert done.out == "[n-1] a b x\n"
+    assert "process details: cmd='echo a b x'" in done.err
+
+
+async def test_a_pseudo_terminal(launch) -> None:
+    program = "import sys; print(sys.stdout.isatty(), sys.stderr.isatty())"
+    assert (await launch(python(program, emulate_tty=True))).out == "[py-1] True True\n"
+    assert (await launch(python(program))).out == "[py-1] False False\n"
+
+
+class TestOutput:
+    PROGRAM = "import sys; print('out'); print('err', file=sys.stderr)"
+
+    @pytest.mark.parametrize(
+        ("mode", "out", "err", "files"),
+        [
+            ("screen", True, True, {}),
+            ("log", False, True, {"launch.log": ["[py-1] err", "[py-1] out"]}),
+            ("both", True, True, {"launch.log": ["[py-1] err", "[py-1] out"]}),
+            ("own_log", False, False, {"py-1-stderr.log": ["[py-1] err"], "py-1-stdout.log": ["[py-1] out"]}),
+            ({"stdout": "screen", "stderr": {"log"}}, True, False, {"launch.log": ["[py-1] err"]}),
+            ({"both": {"screen"}}, True, True, {}),
+        ],
+    )
+    async def test_modes(self, launch, tmp_path: Path, mode: object, out: bool, err: bool, files: dict) -> None:
+        done = await launch(python(self.PROGRAM, output=mode))
+        assert ("[py-1] out" in done.out) is out
+        assert ("[py-1] err" in done.err) is err
+        written = {path.name: sorted(path.read_text().splitlines()) for path in tmp_path.glob("ros_log/*/*")}
+        assert written == files
+        assert ("can be found below" in done.err) is bool(files)
+
+    async def test_an_unknown_mode(self, launch) -> None:
+        done = await launch(python("0", output="scren"))
+        assert "error[LAUNCH141]: there is no output 'scren'" in done.err
+        assert "did you mean 'screen'?" in done.err
+
+    async def test_format_and_cache(self, launch) -> None:
+        action = python(self.PROGRAM, output_format="<{this.process_description.final_name}> {line}", cached_output=True)
+        assert (await launch(action)).out == "<py-1> out\n"
+        assert action.get_stdout() == "out\n"
+        assert action.get_stderr() == "err\n"
+        assert action.return_code == 0
+
+
+class TestFailures:
+    async def test_an_exit_status(self, launch) -> None:
+        done = await launch(python("raise SystemExit(3)"))
+        assert "[ERROR] [py-1]: process has died [pid " in done.err
+        assert "exit code 3, cmd '" in done.err
+        assert done.succeeded  # as with ros2 launch
+
+    async def test_a_program_that_does_not_exist(self, launch) -> None:
+        done = await launch(ExecuteProcess(cmd=["no-such-program --flag"]), LogInfo(msg="others go on"))
+        assert "error[LAUNCH142]: process 'no-such-program --flag-1' cannot be started" in done.err
+        assert "test_processes.py" in done.err
+        assert "separate items of cmd" in done.err
+        assert done.messages == ["others go on"]
+        assert not done.succeeded
+
+    async def test_a_folder_that_does_not_exist(self, launch) -> None:
+        done = await launch(python("0", cwd="/no/such/folder"))
+        assert "folder '/no/such/folder' does not exist" in done.err
+
+    async def test_an_empty_command(self, launch) -> None:
+        assert "the command of the process is empty" in (await launch(ExecuteProcess(cmd=[""]))).err
+
+
+class TestHandlers:
+    async def test_start_io_and_exit(self, launch) -> None:
+        first, second = python("print('hello')", output="log"), python("0")
+        done = await launch(
+            first,
+            RegisterEventHandler(OnProcessStart(target_action=first, on_start=[LogInfo(msg="started")])),
+            RegisterEventHandler(
+                OnProcessIO(target_action=first, on_stdout=lambda event: LogInfo(msg=event.text.decode().strip()))
+            ),
+            RegisterEventHandler(OnProcessExit(target_action=first, on_exit=[LogInfo(msg="exited"), second])),
+            RegisterEventHandler(
+                OnProcessExit(target_action=second, on_exit=lambda event, _: LogInfo(msg=f"{event.process_name} {event.returncode}"))
+            ),
+        )
+        assert done.messages == ["started", "hello", "exited", "py-2 0"]
+
+    async def test_handle_once(self, launch) -> None:
+        done = await launch(
+            RegisterEventHandler(OnProcessExit(on_exit=LogInfo(msg="one"), handle_once=True)), python("0"), python("0")
+        )
+        assert done.messages == ["one"]
+
+    async def test_on_exit_shutdown_ends_the_others(self, launch) -> None:
+        began = time.monotonic()
+        done = await launch(
+            python("import time; time.sleep(60)", name="other"),
+            TimerAction(period=0.3, actions=[python("0", on_exit=Shutdown(reason="over"))]),
+            RegisterEventHandler(OnShutdown(on_shutdown=lambda event, _: LogInfo(msg=event.reason))),
+        )
+        assert done.messages == ["py-2: over"]
+        assert "sending signal 'SIGINT' to process[other-1]" in done.err
+        assert time.monotonic() - began < 3.0
+
+    async def test_on_exit_function(self, launch) -> None:
+        done = await launch(python("raise SystemExit(4)", on_exit=lambda event, _: LogInfo(msg=f"rc {event.returncode}")))
+        assert done.messages == ["rc 4"]
+
+    async def test_a_target_must_be_an_action(self) -> None:
+        with pytest.raises(TypeError, match="target_action must be an action"):
+            OnProcessExit(target_action="talker", on_exit=[])
+
+    async def test_completion_needs_an_event(self, launch) -> None:
+        done = await launch(RegisterEventHandler(OnExecutionComplete(on_completion=[LogInfo(msg="x")])))
+        assert done.messages == []
+
+
+class TestEnds:
+    async def test_respawn(self, launch) -> None:
+        done = await launch(python("print('up')", respawn=True, respawn_delay=0.01, respawn_max_retries=2))
+        assert done.out == "[py-1] up\n" * 3
+
+    async def test_escalation(self, launch) -> None:
+        action = python(STUBBORN, sigterm_timeout=0.15, sigkill_timeout="0.15")
+        done = await launch(
+            action,
+            RegisterEventHandler(OnProcessIO(on_stdout=lambda event: EmitEvent(event=ShutdownProcess(process_matcher=matches_action(action))) if b"ready" in event.text else None)),
+        )
+        assert done.out.splitlines() == ["[py-1] ready", "[py-1] int", "[py-1] term"]
+        assert "escalating to 'SIGTERM'" in done.err
+        assert "escalating to 'SIGKILL'" in done.err
+        assert action.return_code == -9
+
+    async def test_signal_process(self, launch) -> None:
+        action = python("import time; print('ready', flush=True); time.sleep(60)")
+        done = await launch(
+            action,
+            RegisterEventHandler(
+                OnProcessIO(on_stdout=lambda _: EmitEvent(event=SignalProcess(signal_number="SIGTERM", process_matcher=matches_name("py-1"))))
+            ),
+        )
+        assert action.return_code == -15
+        assert "sending signal 'SIGTERM' to process[py-1]" in done.err
+
+    async def test_grandchildren_do_not_outlive_the_launch(self, launch, tmp_path: Path) -> None:
+        pid_file = tmp_path / "pid"
+        program = f"sleep 60 & echo $! > {pid_file}; exit 0"
+        began = time.monotonic()
+        done = await launch(ExecuteProcess(cmd=["sh", "-c", program], output="screen"))
+        assert done.succeeded
+        assert time.monotonic() - began < 2.0
+        assert is_gone(int(pid_file.read_text()))
+
+
+def test_a_launch_description_can_be_added_to() -> None:
+    description = LaunchDescription()
+    description.add_action(LogInfo(msg="a"))
+    description.add_entity(LogInfo(msg="b"))
+    assert len(description.entities) == 2

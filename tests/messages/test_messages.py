@@ -1,0 +1,108 @@
+import dataclasses
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from linkwright import messages
+from linkwright.messages import (
+    Duration,
+    Header,
+    JointState,
+    Quaternion,
+    String,
+    TFMessage,
+    Time,
+    Transform,
+    TransformBatch,
+    TransformStamped,
+    Vector3,
+)
+
+TYPES = [getattr(messages, name) for name in messages.__all__ if hasattr(getattr(messages, name), "TYPE_NAME")]
+
+
+@pytest.mark.parametrize("message_type", TYPES, ids=lambda each: each.__name__)
+def test_type_names_end_with_the_name_of_the_class(message_type):
+    package, kind, name = message_type.TYPE_NAME.split("/")
+    assert package
+    assert kind == "msg"
+    assert name == message_type.__name__
+
+
+@pytest.mark.parametrize("message_type", TYPES, ids=lambda each: each.__name__)
+def test_messages_have_no_other_fields(message_type):
+    with pytest.raises(AttributeError):
+        message_type().no_such_field = 1
+
+
+def test_defaults_are_those_of_the_msg_files():
+    assert Quaternion() == Quaternion(0.0, 0.0, 0.0, 1.0)
+    assert String().data == ""
+    assert JointState().name == []
+    assert JointState().header is not JointState().header
+    assert [field.name for field in dataclasses.fields(JointState)] == [
+        "header",
+        "name",
+        "position",
+        "velocity",
+        "effort",
+    ]
+
+
+@given(st.integers(-(2**31) * 10**9, 2**31 * 10**9))
+@pytest.mark.parametrize("kind", [Time, Duration])
+def test_times_keep_their_nanoseconds(kind, nanoseconds):
+    message = kind.from_nanoseconds(nanoseconds)
+    assert message.nanoseconds == nanoseconds
+    assert 0 <= message.nanosec < 10**9
+
+
+def test_joint_states_compare_lists_and_arrays_by_value():
+    with_list = JointState(name=["a", "b"], position=[1.0, 2.0])
+    with_array = JointState(name=["a", "b"], position=np.array([1.0, 2.0]))
+    assert with_list == with_array
+    assert with_list != JointState(name=["a", "b"], position=[1.0, 3.0])
+    assert with_list != "a"
+
+
+def stamped(parent: str, child: str, x: float, stamp: Time) -> TransformStamped:
+    return TransformStamped(Header(stamp, parent), child, Transform(Vector3(x, 0.0, 0.0)))
+
+
+def test_a_message_made_of_a_batch_gives_objects():
+    batch = TransformBatch(("world",), ("base",), 1_500_000_000, np.array([[1.0, 0, 0, 0, 0, 0, 1.0]]))
+    message = TFMessage(batch=batch)
+    assert message.transforms == [stamped("world", "base", 1.0, Time(1, 500_000_000))]
+    assert message.batch is batch
+    assert message.transforms is message.transforms
+
+
+def test_a_message_made_of_objects_gives_a_batch_of_what_it_holds_now():
+    message = TFMessage()
+    assert len(message.batch) == 0
+    assert message.batch.poses.shape == (0, 7)
+    message.transforms.append(stamped("world", "base", 1.0, Time(3)))
+    message.transforms.append(stamped("base", "arm", 2.0, Time(4)))
+    assert message.batch.parents == ("world", "base")
+    assert message.batch.children == ("base", "arm")
+    assert message.batch.stamp_ns == 4_000_000_000
+    np.testing.assert_array_equal(message.batch.poses[:, [0, 6]], [[1.0, 1.0], [2.0, 1.0]])
+
+
+def test_new_transforms_take_the_place_of_a_batch():
+    message = TFMessage(batch=TransformBatch(("a",), ("b",), 0, np.zeros((1, 7))))
+    message.transforms = [stamped("world", "base", 1.0, Time())]
+    assert message.batch.children == ("base",)
+    assert message == TFMessage([stamped("world", "base", 1.0, Time())])
+
+
+def test_a_batch_whose_parts_do_not_agree_is_refused():
+    with pytest.raises(ValueError, match=r"1 parents, 1 children and poses of shape \(2, 7\) do not agree"):
+        TransformBatch(("a",), ("b",), 0, np.zeros((2, 7)))
+
+
+def test_a_message_takes_one_form_only():
+    with pytest.raises(ValueError, match="not both"):
+        TFMessage([], batch=TransformBatch((), (), 0, np.zeros((0, 7))))

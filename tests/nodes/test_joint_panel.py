@@ -1,0 +1,185 @@
+from math import inf, nan, pi
+from random import Random
+
+import pytest
+
+from linkwright.messages import JointState
+from linkwright.nodes import JointSlider, JointStatePublisherGui, NodeOptions
+from linkwright.nodes.joint_panel import JointPanel
+from tests.nodes.stage import joint, mimic, robot
+
+ROBOT = robot(
+    joint("lift", "prismatic", limit="lower='0.5' upper='1.5'"),
+    joint("stuck", limit="lower='1' upper='1'"),
+    joint("claw", more=mimic("grip", "multiplier='-1' offset='0.1'")),
+    joint("grip"),
+    joint("follows_stuck", more=mimic("stuck")),
+    joint("spin", "continuous"),
+)
+
+
+@pytest.fixture
+async def gui(stage):
+    gui = stage.gui()
+    await stage.describe(ROBOT)
+    return gui
+
+
+@pytest.fixture
+def told(gui):
+    told = []
+    gui.panel.subscribe(told.append)
+    return told
+
+
+def test_rows(gui):
+    assert gui.panel.sliders() == [
+        JointSlider("lift", "prismatic", 0.5, 1.5, 1.0),
+        JointSlider("claw", "revolute", -1.0, 2.0, 0.1, "grip"),
+        JointSlider("grip", "revolute", -1.0, 2.0, 0.0),
+        JointSlider("spin", "continuous", -pi, pi, 0.0),
+    ]
+    assert gui.panel.positions() == {"lift": 1.0, "claw": 0.1, "grip": 0.0, "spin": 0.0}
+    assert gui.node.get_fully_qualified_name() == "/joint_state_publisher"
+
+
+async def test_there_are_no_rows_before_a_description(stage):
+    panel = stage.gui().panel
+    assert panel.sliders() == []
+    assert panel.positions() == {}
+    panel.randomize()
+    panel.center()
+    assert not panel.set_position("a", 1.0)
+
+
+async def test_a_move_is_published_at_once_and_many_as_one(stage, gui, told):
+    before = len(stage.joint_states)
+    for position in (0.1, 0.2, 0.3):
+        assert gui.panel.set_position("grip", position)
+    assert gui.panel.positions()["grip"] == 0.3
+    await stage.graph.settle()
+    assert len(stage.joint_states) == before + 1
+    assert stage.positions()["grip"] == 0.3
+    assert stage.positions()["claw"] == pytest.approx(-0.2)
+    assert told == ["positions"]
+
+
+async def test_a_move_reaches_the_transforms_without_a_tick(stage, gui, clock):
+    stage.robot_state_publisher(ROBOT)
+    await clock.advance(0.512)
+    gui.panel.set_position("lift", 1.25)
+    await stage.graph.settle()
+    assert stage.positions()["lift"] == 1.25
+    turned = stage.buffer.lookup("base", "lift_link")
+    assert turned[2] == 1.25
+
+
+async def test_the_last_move_of_a_drag_is_never_lost(stage, gui, clock):
+    stage.robot_state_publisher(ROBOT)
+    await clock.advance(0.512)
+    for step in range(1, 11):
+        gui.panel.set_position("lift", 0.5 + 0.05 * step)
+        await clock.advance(0.016)
+    await clock.advance(0.05)
+    assert stage.buffer.lookup("base", "lift_link")[2] == pytest.approx(1.0)
+
+
+async def test_the_beat_starts_anew_after_a_move(stage, gui, clock):
+    await clock.advance(0.06)
+    gui.panel.set_position("grip", 1.0)
+    await stage.graph.settle()
+    stage.joint_states.clear()
+    await clock.advance(0.09)
+    assert stage.joint_states == []
+    await clock.advance(0.02)
+    assert len(stage.joint_states) == 1
+
+
+@pytest.mark.parametrize(("value", "position"), [(9.0, 2.0), (-9.0, -1.0), (0.5, 0.5)])
+async def test_moves_stay_within_limits(gui, value, position):
+    assert gui.panel.set_position("grip", value)
+    assert gui.panel.positions()["grip"] == position
+
+
+@pytest.mark.parametrize(
+    ("name", "value"), [("gone", 1.0), ("claw", 1.0), ("stuck", 1.0), ("grip", nan), ("grip", inf)]
+)
+async def test_what_cannot_be_moved_is_left_alone(stage, gui, told, name, value):
+    before = gui.panel.positions()
+    assert not gui.panel.set_position(name, value)
+    await stage.graph.settle()
+    assert gui.panel.positions() == before
+    assert told == []
+
+
+async def test_randomize_goes_anywhere_within_limits(stage, gui, told, said):
+    panel = JointPanel(gui.node, gui.joints, gui.publish_soon, Random(1))
+    panel.rebuild()
+    seen = {name: [] for name in panel.positions()}
+    for _ in range(200):
+        panel.randomize()
+        for name, position in panel.positions().items():
+            seen[name].append(position)
+    for slider in panel.sliders():
+        if slider.mimic is None:
+            width = slider.upper - slider.lower
+            assert slider.lower <= min(seen[slider.name]) < slider.lower + 0.1 * width
+            assert slider.upper - 0.1 * width < max(seen[slider.name]) <= slider.upper
+    assert seen["claw"] == pytest.approx([0.1 - position for position in seen["grip"]])
+    assert said("INFO")[-1] == "Randomizing"
+
+
+async def test_center_goes_to_the_zeros(stage):
+    gui = stage.gui(zeros={"grip": 0.75, "spin": 99.0})
+    await stage.describe(ROBOT)
+    gui.panel.randomize()
+    gui.panel.center()
+    assert gui.panel.positions() == {"lift": 1.0, "claw": pytest.approx(-0.65), "grip": 0.75, "spin": pi}
+
+
+async def test_a_new_description_tells_and_keeps_positions(stage, gui, told):
+    gui.panel.set_position("grip", 1.25)
+    await stage.describe(robot(joint("grip"), joint("added")))
+    assert set(told) == {"positions", "sliders"}
+    assert [slider.name for slider in gui.panel.sliders()] == ["grip", "added"]
+    assert gui.panel.positions() == {"grip": 1.25, "added": 0.0}
+
+
+async def test_sources_and_the_sweep_move_the_sliders(stage, clock):
+    gui = stage.gui(source_list=["source"], delta=0.125)
+    await stage.describe(robot(joint("a")))
+    told = []
+    gui.panel.subscribe(told.append)
+    stage.node.create_publisher(JointState, "source", 10).publish(JointState(name=["a"], position=[1.0]))
+    await stage.graph.settle()
+    assert gui.panel.positions() == {"a": 1.0}
+    assert told == ["positions"]
+    await clock.advance(0.1)
+    assert gui.panel.positions() == {"a": 1.125}
+    assert told == ["positions", "positions"]
+
+
+async def test_subscribers_come_and_go_and_may_fail(stage, gui, told, said):
+    def fail(_change):
+        raise RuntimeError("page is gone")
+
+    late = []
+    gui.panel.subscribe(fail)
+    end = gui.panel.subscribe(late.append)
+    gui.panel.set_position("grip", 1.0)
+    await stage.graph.settle()
+    end()
+    end()
+    gui.panel.set_position("grip", 0.0)
+    await stage.graph.settle()
+    assert told == ["positions", "positions"]
+    assert late == ["positions"]
+    assert said("ERROR")[0].startswith("joint panel callback failed:\nTraceback")
+
+
+async def test_a_file_given_at_the_start_has_its_rows(stage, tmp_path):
+    path = tmp_path / "robot.urdf"
+    path.write_text(ROBOT, encoding="utf-8")
+    gui = JointStatePublisherGui(stage.graph, NodeOptions(arguments=[str(path)]))
+    assert len(gui.panel.sliders()) == 4
+    gui.close()

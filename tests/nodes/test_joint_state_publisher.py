@@ -1,0 +1,335 @@
+from math import inf, pi
+
+import numpy as np
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.messages import Header, JointState
+from linkwright.nodes import JointStatePublisher, NodeOptions
+from linkwright.nodes.joint_layout import layout_of
+from linkwright.nodes.joint_settings import JointSettings
+from linkwright.urdf import Joint, Limit, Link, Robot
+from tests.nodes.stage import joint, mimic, robot
+
+SAFETY = "<safety_controller k_velocity='1' soft_lower_limit='-0.5' soft_upper_limit='0.5'/>"
+CHAIN = robot(
+    joint("c", more=mimic("b", "multiplier='3' offset='0.1'")),
+    joint("b", more=mimic("a", "multiplier='2' offset='0.5'")),
+    joint("a"),
+)
+
+
+async def test_it_waits_for_a_description_and_publishes_at_once_and_then_at_its_rate(stage, clock, said):
+    stage.joint_state_publisher()
+    await clock.advance(1.0)
+    assert stage.joint_states == []
+    assert said("INFO") == ["Waiting for robot_description to be published on the robot_description topic..."]
+    await stage.describe(robot(joint("a")))
+    assert len(stage.joint_states) == 1
+    assert stage.joint_states[0].header.stamp.nanoseconds == clock.now_ns()
+    await clock.advance(1.0)
+    assert len(stage.joint_states) == 11
+    assert stage.joint_states[-1].name == ["a"]
+    assert list(stage.joint_states[-1].position) == [0.0]
+    assert list(stage.joint_states[-1].velocity) == list(stage.joint_states[-1].effort) == []
+
+
+async def test_the_rate_and_the_other_quantities(stage, clock):
+    stage.joint_state_publisher(
+        rate=2.5,
+        publish_default_positions=False,
+        publish_default_velocities=True,
+        publish_default_efforts=True,
+    )
+    await stage.describe(robot(joint("a")))
+    await clock.advance(2.0)
+    assert len(stage.joint_states) == 1 + 5
+    message = stage.joint_states[-1]
+    assert (list(message.position), list(message.velocity), list(message.effort)) == ([], [0.0], [0.0])
+
+
+async def test_order_of_the_file_and_joints_that_do_not_count(stage):
+    stage.joint_state_publisher()
+    await stage.describe(
+        robot(
+            joint("z", "continuous"),
+            joint("f", "fixed"),
+            joint("m", more=mimic("a")),
+            joint("p", "planar"),
+            joint("l", "floating"),
+            joint("a", "prismatic"),
+        )
+    )
+    assert stage.joint_states[-1].name == ["z", "m", "a"]
+
+
+async def test_nothing_is_published_for_a_robot_without_joints(stage, clock):
+    stage.joint_state_publisher()
+    await stage.describe(robot(joint("f", "fixed")))
+    await clock.advance(1.0)
+    assert stage.joint_states == []
+
+
+@pytest.mark.parametrize(
+    ("text", "parameters", "expected"),
+    [
+        (joint("j", limit="lower='-1' upper='3'"), {}, 0.0),
+        (joint("j", limit="lower='1' upper='3'"), {}, 2.0),
+        (joint("j", limit="lower='-3' upper='-1'"), {}, -2.0),
+        (joint("j", limit="lower='0' upper='3'"), {}, 0.0),
+        (joint("j", "continuous"), {}, 0.0),
+        (joint("j"), {"zeros": {"j": 1.5}}, 1.5),
+        (joint("j"), {"zeros": {"j": 1}}, 1.0),
+        (joint("j"), {"zeros.j": 9.0}, 9.0),
+        (joint("j", more=SAFETY, limit="lower='0.25' upper='3'"), {}, 0.375),
+        (
+            joint("j", more=SAFETY, limit="lower='0.25' upper='3'"),
+            {"use_smallest_joint_limits": False},
+            1.625,
+        ),
+    ],
+)
+async def test_where_joints_start(stage, text, parameters, expected):
+    stage.joint_state_publisher(**parameters)
+    await stage.describe(robot(text))
+    assert stage.positions() == {"j": pytest.approx(expected)}
+
+
+class TestLimits:
+    def ranges(self, publisher):
+        return {name: (each.lower, each.upper) for name, each in publisher.joints.layout.ranges.items()}
+
+    async def test_of_each_kind(self, stage):
+        publisher = stage.joint_state_publisher()
+        await stage.describe(
+            robot(
+                joint("revolute"),
+                joint("continuous", "continuous", more="<limit lower='-9' upper='9' effort='1' velocity='1'/>"),
+                joint("soft", more=SAFETY),
+                joint("half", more="<safety_controller k_velocity='1' soft_upper_limit='0.5'/>"),
+            )
+        )
+        assert self.ranges(publisher) == {
+            "revolute": (-1.0, 2.0),
+            "continuous": (-pi, pi),
+            "soft": (-0.5, 0.5),
+            "half": (-1.0, 0.5),
+        }
+
+    def test_that_are_infinite(self):
+        limits = {"wide": (-inf, inf), "up": (1.0, inf), "down": (-inf, 1.0)}
+        joints = {
+            name: Joint(name, "revolute" if name == "wide" else "prismatic", "base", name, limit=Limit(*pair))
+            for name, pair in limits.items()
+        }
+        links = {name: Link(name) for name in ("base", *joints)}
+        layout = layout_of(Robot("robot", "base", links, joints, {}), JointSettings())
+        found = {name: (each.lower, each.upper) for name, each in layout.ranges.items()}
+        assert found == {"wide": (-pi, pi), "up": (1.0, 3.0), "down": (-1.0, 1.0)}
+        assert [joint.zero for joint in layout.free] == [0.0, 2.0, 0.0]
+
+    async def test_that_are_missing(self, stage, said):
+        stage.joint_state_publisher()
+        await stage.describe(robot(joint("j", limit="upper='1'"), joint("k", limit="lower='1'"), joint("a")))
+        assert stage.joint_states[-1].name == ["a"]
+        assert said("WARN") == [
+            '"lower" limit must be specified for joint "j" of type "revolute"',
+            '"upper" limit must be specified for joint "k" of type "revolute"',
+        ]
+
+
+class TestDependentJoints:
+    async def test_chains_of_mimic_joints_are_followed(self, stage):
+        stage.joint_state_publisher(zeros={"a": 1.0})
+        await stage.describe(CHAIN)
+        positions = stage.positions()
+        assert list(positions) == ["c", "b", "a"]
+        assert positions["a"] == 1.0
+        assert positions["b"] == pytest.approx(2 * 1.0 + 0.5)
+        assert positions["c"] == pytest.approx(3 * positions["b"] + 0.1)
+
+    async def test_velocity_is_scaled_and_effort_copied(self, stage, clock):
+        stage.joint_state_publisher(source_list=["measured"])
+        await stage.describe(CHAIN)
+        source = stage.node.create_publisher(JointState, "measured", 10)
+        source.publish(JointState(name=["a", "b"], position=[1.0, 9.0], velocity=[0.5, 9.0], effort=[4.0, 9.0]))
+        await clock.advance(0.1)
+        message = stage.joint_states[-1]
+        assert list(message.velocity) == pytest.approx([3.0, 1.0, 0.5])
+        assert list(message.effort) == [4.0, 4.0, 4.0]
+        assert stage.positions()["b"] == pytest.approx(2.5)
+
+    async def test_mimic_tags_can_be_left_aside(self, stage):
+        stage.joint_state_publisher(use_mimic_tags=False)
+        await stage.describe(CHAIN)
+        assert stage.positions() == {"c": 0.0, "b": 0.0, "a": 0.0}
+
+    async def test_parameters_come_before_mimic_tags_and_stay(self, stage):
+        """In joint_state_publisher 2.4 the tag of the description overwrites the parameter."""
+        dependent = {"b": {"parent": "a", "factor": 5.0}, "dotted.name": {"parent": "a", "offset": 1}}
+        stage.joint_state_publisher(zeros={"a": 1.0}, dependent_joints=dependent)
+        for _ in range(2):
+            await stage.describe(CHAIN.replace("</robot>", joint("dotted.name", child="d") + "</robot>"))
+            positions = stage.positions()
+            assert positions["b"] == pytest.approx(5.0)
+            assert positions["c"] == pytest.approx(15.1)
+            assert positions["dotted.name"] == pytest.approx(2.0)
+
+    async def test_a_circle_is_told_and_the_last_robot_stays(self, stage, said):
+        publisher = stage.joint_state_publisher()
+        await stage.describe(robot(joint("a")))
+        await stage.describe(robot(joint("a", more=mimic("b")), joint("b", more=mimic("a"))))
+        assert said("ERROR") == ["Found an infinite recursive mimic chain: ['a', 'b', 'a']"]
+        assert list(publisher.joints.layout.ranges) == ["a"]
+
+    async def test_a_master_that_does_not_move(self, stage, said):
+        stage.joint_state_publisher()
+        await stage.describe(robot(joint("f", "fixed"), joint("a", more=mimic("f", "offset='0.25'")), joint("b")))
+        assert said("WARN") == ["joint 'a' follows joint 'f', which does not move"]
+        assert stage.positions() == {"a": 0.25, "b": 0.0}
+
+
+class TestSources:
+    async def test_positions_are_taken_unclamped_and_published_with_the_next_message(self, stage, clock):
+        stage.joint_state_publisher(source_list=["left", "right"])
+        await stage.describe(robot(joint("a"), joint("b")))
+        for topic, name, position in (("left", "a", 99.0), ("right", "b", 1.0), ("right", "unknown", 1.0)):
+            source = stage.node.create_publisher(JointState, topic, 10)
+            source.publish(JointState(Header(), [name], [position]))
+        await stage.graph.settle()
+        assert len(stage.joint_states) == 1
+        await clock.advance(0.1)
+        assert stage.positions() == {"a": 99.0, "b": 1.0}
+
+    async def test_a_joint_nothing_was_heard_of_has_zero_among_others(self, stage, clock):
+        stage.joint_state_publisher(source_list=["source"], publish_default_positions=False)
+        await stage.describe(robot(joint("a"), joint("b")))
+        assert list(stage.joint_states[-1].position) == []
+        source = stage.node.create_publisher(JointState, "source", 10)
+        source.publish(JointState(Header(), ["b"], np.array([1.0])))
+        await clock.advance(0.1)
+        assert stage.positions() == {"a": 0.0, "b": 1.0}
+
+
+async def test_the_sweep_turns_round_at_limits_and_continuous_joints_start_over(stage, clock):
+    stage.joint_state_publisher(delta=1.0, rate=1)
+    await stage.describe(robot(joint("r", limit="lower='-0.5' upper='1.5'"), joint("c", "continuous")))
+    seen = []
+    for _ in range(8):
+        await clock.advance(1.0)
+        seen.append(tuple(stage.positions().values()))
+    revolute, continuous = zip(*seen, strict=True)
+    assert revolute == (1.0, 1.5, 0.5, -0.5, -0.5, 0.5, 1.5, 1.5)
+    assert continuous == pytest.approx((1.0, 2.0, 3.0, -pi, 1 - pi, 2 - pi, 3 - pi, 4 - pi))
+
+
+class TestNewDescription:
+    async def test_joints_that_are_still_there_keep_their_places(self, stage, clock):
+        publisher = stage.joint_state_publisher(source_list=["source"])
+        await stage.describe(robot(joint("a"), joint("b"), joint("gone")))
+        publisher.joints.set("a", 1.5)
+        publisher.joints.set("b", 0.5)
+        await stage.describe(robot(joint("new"), joint("b"), joint("a", limit="lower='-1' upper='1'")))
+        assert stage.positions() == {"new": 0.0, "b": 0.5, "a": 1.0}
+
+    async def test_a_joint_that_never_moved_goes_to_its_new_zero(self, stage):
+        stage.joint_state_publisher()
+        await stage.describe(robot(joint("a")))
+        await stage.describe(robot(joint("a", limit="lower='1' upper='3'")))
+        assert stage.positions() == {"a": 2.0}
+
+    async def test_one_that_cannot_be_read_is_ignored(self, stage, clock, said):
+        stage.joint_state_publisher()
+        await stage.describe(robot(joint("a")))
+        await stage.describe("<robot")
+        assert said("WARN") == ["Invalid robot_description given, ignoring"]
+        await clock.advance(0.1)
+        assert list(stage.positions()) == ["a"]
+
+    async def test_it_is_shown_without_delay(self, stage, clock):
+        """Description, joint states and transforms of a saved file arrive without a tick of the clock."""
+        publisher = stage.robot_state_publisher(robot(joint("a")))
+        stage.joint_state_publisher()
+        await stage.graph.settle()
+        await stage.set(publisher, robot_description=robot(joint("a", xyz="0 0 5"), joint("b")))
+        assert stage.buffer.lookup("base", "a_link")[2] == 5.0
+        assert stage.moved_frames()[-1] == ["a_link", "b_link"]
+
+
+class TestFile:
+    async def test_a_file_is_read_instead_of_the_topic(self, stage, tmp_path):
+        path = tmp_path / "robot.urdf"
+        path.write_text(robot(joint("from_file")), encoding="utf-8")
+        JointStatePublisher(stage.graph, NodeOptions(arguments=[str(path)]))
+        await stage.describe(robot(joint("from_topic")))
+        assert list(stage.positions()) == ["from_file"]
+
+    async def test_bad_files_and_arguments(self, stage, tmp_path, said):
+        bad = tmp_path / "bad.urdf"
+        bad.write_text("<robot", encoding="utf-8")
+        for arguments, message in (
+            (["nowhere.urdf"], "URDF file 'nowhere.urdf' cannot be read: No such file or directory"),
+            ([str(bad)], ""),
+            (["a.urdf", "b.urdf"], "unrecognized arguments: b.urdf"),
+        ):
+            with pytest.raises(LinkwrightError) as caught:
+                JointStatePublisher(stage.graph, NodeOptions(arguments=arguments))
+            assert message in str(caught.value)
+        assert len(said("FATAL")) == 3
+        assert stage.graph.node_names() == ["/audience"]
+
+
+class TestParameters:
+    @pytest.mark.parametrize(
+        ("parameters", "messages"),
+        [
+            ({"rate": 0}, ["parameter 'rate' must be a positive number, and it is 0"]),
+            ({"rate": "fast"}, ["parameter 'rate' must be a positive number, and it is 'fast'"]),
+            ({"delta": True}, ["parameter 'delta' must be a number, and it is True"]),
+            (
+                {"use_mimic_tags": "yes", "source_list": [1]},
+                [
+                    "parameter 'use_mimic_tags' must be true or false, and it is 'yes'",
+                    "parameter 'source_list' must be a list of topic names, and it is [1]",
+                ],
+            ),
+            ({"zeros": {"a": "up"}}, ["parameter 'zeros.a' must be a number, and it is 'up'"]),
+            (
+                {"dependent_joints": {"a": {"factor": 2.0}}},
+                ["parameter 'dependent_joints.a.parent' must be the name of a joint, and it is not given"],
+            ),
+            (
+                {"dependent_joints": {"a": {"parent": "b", "faktor": 2.0}}},
+                ["invalid dependent_joint name 'a.faktor': allowed are JOINT.parent, JOINT.factor and JOINT.offset"],
+            ),
+        ],
+    )
+    async def test_that_mean_nothing_are_all_told(self, stage, parameters, messages):
+        with pytest.raises(LinkwrightError) as caught:
+            stage.joint_state_publisher(**parameters)
+        assert [each.message for each in caught.value.diagnostics] == messages
+        assert {each.code for each in caught.value.diagnostics} == {"NODE201"}
+
+    async def test_changes_take_effect(self, stage, clock):
+        publisher = stage.joint_state_publisher(zeros={"b": 0.5})
+        await stage.describe(CHAIN)
+        assert await stage.set(publisher, rate=100) == [(True, "")]
+        stage.joint_states.clear()
+        await clock.advance(0.1)
+        assert len(stage.joint_states) == 10
+        assert await stage.set(publisher, use_mimic_tags=False) == [(True, "")]
+        assert stage.positions() == {"c": 0.0, "b": 0.5, "a": 0.0}
+        await stage.set(publisher, source_list=["source"])
+        assert stage.graph.count_subscribers("/source") == 1
+        await stage.set(publisher, source_list=["other"])
+        assert stage.graph.count_subscribers("/source") == 0
+
+    async def test_changes_may_be_refused(self, stage):
+        publisher = stage.joint_state_publisher(dependent_joints={"b": {"parent": "c"}}, use_mimic_tags=False)
+        await stage.describe(CHAIN)
+        ((successful, reason),) = await stage.set(publisher, use_mimic_tags=True)
+        assert not successful
+        assert reason == "Found an infinite recursive mimic chain: ['c', 'b', 'c']"
+        assert await stage.set(publisher, rate=-1) == [
+            (False, "parameter 'rate' must be a positive number, and it is -1")
+        ]

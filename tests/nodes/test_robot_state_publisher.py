@@ -1,0 +1,456 @@
+from math import cos, pi, sin
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph import DESCRIPTION_QOS, QoSProfile, ReliabilityPolicy
+from linkwright.kinematics import KinematicTree, compose, quaternion_from_axis_angle, quaternion_from_rpy
+from linkwright.messages import Header, JointState, String, TFMessage, Time
+from linkwright.nodes import NodeOptions, RobotStatePublisher
+from linkwright.nodes.joint_motion import JointMotion
+from linkwright.urdf import DescriptionLibrary, Joint, Limit, Pose
+from tests.nodes.stage import joint, mimic, robot
+from tests.places import TUTORIAL
+
+TWO = robot(joint("a"), joint("b", xyz="1 0 0", parent="a_link"))
+MIMICS = robot(
+    joint("master"),
+    joint("follower", more=mimic("master", "multiplier='-2' offset='0.5'")),
+    joint("second", more=mimic("follower")),
+)
+
+angles = st.floats(-10, 10)
+vectors = st.tuples(*[st.floats(-2, 2)] * 3)
+
+
+@given(
+    st.lists(
+        st.tuples(
+            st.sampled_from(["revolute", "continuous", "prismatic", "fixed", "planar"]),
+            vectors,
+            st.tuples(angles, angles, angles),
+            vectors.filter(lambda axis: sum(c * c for c in axis) > 1e-6),
+            angles,
+        ),
+        max_size=8,
+    )
+)
+def test_joints_move_their_links(cases):
+    joints = [
+        Joint(str(number), kind, "p", "c", Pose(xyz, rpy), axis, Limit())
+        for number, (kind, xyz, rpy, axis, _) in enumerate(cases)
+    ]
+    positions = np.array([position for *_, position in cases])
+    poses = JointMotion(joints).poses(positions)
+    assert poses.shape == (len(cases), 7)
+    for row, (kind, xyz, rpy, axis, position) in zip(poses, cases, strict=True):
+        origin = np.array([*xyz, *quaternion_from_rpy(rpy)])
+        motion = np.array([0, 0, 0, 0, 0, 0, 1.0])
+        if kind in ("revolute", "continuous"):
+            motion[3:] = quaternion_from_axis_angle(axis, position)
+        elif kind == "prismatic":
+            motion[:3] = np.array(axis) / np.linalg.norm(axis) * position
+        np.testing.assert_allclose(row, compose(origin, motion), atol=1e-9)
+
+
+def test_a_joint_without_an_axis_stands_still():
+    joints = [Joint("j", kind, "p", "c", axis=(0.0, 0.0, 0.0)) for kind in ("revolute", "prismatic")]
+    np.testing.assert_array_equal(JointMotion(joints).poses(np.ones(2)), [[0, 0, 0, 0, 0, 0, 1]] * 2)
+
+
+async def test_description_fixed_and_moving_transforms(stage, clock, said):
+    text = robot(joint("wheel", axis="0 1 0", xyz="0 0.19 -0.05"), joint("camera", "fixed", xyz="0.2 0 0"))
+    start = clock.now_ns()
+    stage.robot_state_publisher(text)
+    await stage.graph.settle()
+    assert stage.descriptions == [text]
+    (static,) = stage.tf_static
+    (transform,) = static.transforms
+    assert (transform.header.frame_id, transform.child_frame_id) == ("base", "camera_link")
+    assert transform.header.stamp.nanoseconds == start
+    assert transform.transform.translation.x == 0.2
+    assert stage.tf == []
+    await clock.advance(1.0)
+    await stage.move({"wheel": pi / 2})
+    (message,) = stage.tf
+    (transform,) = message.transforms
+    assert transform.header.stamp.nanoseconds == start + 1_000_000_000
+    assert transform.transform.translation.y == 0.19
+    assert transform.transform.rotation.y == pytest.approx(sin(pi / 4))
+    assert transform.transform.rotation.w == pytest.approx(cos(pi / 4))
+    await clock.advance(10.0)
+    assert len(stage.tf_static) == 1
+    assert said("INFO") == ["Robot initialized"]
+
+
+async def test_topics_and_their_quality_of_service(stage, log):
+    stage.robot_state_publisher(TWO)
+    listener = stage.graph.create_node("listener")
+    listener.create_subscription(JointState, "/joint_states", print, 1)
+    late = []
+    listener.create_subscription(String, "/robot_description", late.append, DESCRIPTION_QOS)
+    sensor = listener.create_publisher(
+        JointState, "/joint_states", QoSProfile(5, reliability=ReliabilityPolicy.BEST_EFFORT)
+    )
+    await stage.graph.settle()
+    assert [message.data for message in late] == [TWO]
+    # The audience and the listener ask for reliable joint states; robot_state_publisher takes what there is.
+    assert sensor.get_subscription_count() == 1
+    assert stage.graph.topics() == {
+        "/joint_states": ["sensor_msgs/msg/JointState"],
+        "/robot_description": ["std_msgs/msg/String"],
+        "/tf": ["tf2_msgs/msg/TFMessage"],
+        "/tf_static": ["tf2_msgs/msg/TFMessage"],
+    }
+    assert stage.graph.count_publishers("/tf") == 1
+
+
+async def test_only_joints_in_the_message_that_move_are_published(stage):
+    stage.robot_state_publisher(robot(joint("a"), joint("b"), joint("f", "fixed")))
+    await stage.move({"b": 0.5, "f": 1.0, "unknown": 2.0})
+    assert stage.moved_frames() == [["b_link"]]
+    await stage.move({"unknown": 1.0})
+    assert len(stage.tf) == 1
+
+
+async def test_floating_joints_are_skipped_and_planar_ones_fixed(stage, said):
+    text = robot(joint("float", "floating"), joint("plane", "planar", xyz="1 2 3"), joint("fix", "fixed"))
+    stage.robot_state_publisher(text)
+    await stage.graph.settle()
+    batch = stage.tf_static[0].batch
+    assert batch.children == ("plane_link", "fix_link")
+    assert batch.poses[0, :3].tolist() == [1, 2, 3]
+    assert said("WARN") == [
+        "Converting unknown joint type of joint 'float' into a fixed joint",
+        "Converting unknown joint type of joint 'plane' into a fixed joint",
+    ]
+    assert stage.log[0].node == "kdl_parser"
+
+
+async def test_inertia_of_the_root_link_is_told_as_kdl_parser_does(stage, said):
+    inertia = "<inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/>"
+    stage.robot_state_publisher(
+        f"<robot name='r'><link name='base'><inertial><mass value='1'/>{inertia}</inertial></link></robot>"
+    )
+    assert said("WARN")[0].startswith("The root link base has an inertia specified in the URDF, but KDL does not")
+
+
+async def test_the_prefix_is_put_before_every_frame_as_it_is(stage):
+    publisher = stage.robot_state_publisher(robot(joint("a"), joint("f", "fixed")), frame_prefix="left_")
+    await stage.move({"a": 0.0})
+    assert stage.tf_static[0].batch.parents == ("left_base",)
+    assert stage.tf[0].batch.children == ("left_a_link",)
+    assert await stage.set(publisher, frame_prefix="right/") == [(True, "")]
+    assert stage.tf_static[1].batch.children == ("right/f_link",)
+    await stage.clock.advance(0.1)
+    await stage.move({"a": 0.5})
+    assert stage.tf[1].batch.children == ("right/a_link",)
+
+
+class TestMimic:
+    async def test_it_follows_a_master_in_the_message(self, stage):
+        stage.robot_state_publisher(MIMICS)
+        await stage.move({"master": 0.25})
+        # `second` mimics a joint that is not in the message itself: chains are not followed.
+        assert stage.moved_frames() == [["follower_link", "master_link"]]
+        turned = 2 * np.arcsin(stage.buffer.lookup("base", "follower_link")[5])
+        assert turned == pytest.approx(-2 * 0.25 + 0.5)
+
+    async def test_its_own_position_comes_first(self, stage):
+        stage.robot_state_publisher(MIMICS)
+        await stage.move({"follower": 1.0, "master": 0.25})
+        assert stage.moved_frames() == [["follower_link", "master_link", "second_link"]]
+        for frame in ("follower_link", "second_link"):
+            assert 2 * np.arcsin(stage.buffer.lookup("base", frame)[5]) == pytest.approx(1.0)
+
+    async def test_without_its_master_it_stays(self, stage):
+        stage.robot_state_publisher(MIMICS)
+        await stage.move({"other": 1.0})
+        assert stage.tf == []
+
+
+class TestBadMessages:
+    async def test_no_positions(self, stage, said):
+        stage.robot_state_publisher(TWO)
+        await stage.send(JointState(name=["a", "b"]))
+        about = 'about joint(s) "a"(,...) whose position member was empty.'
+        assert said("WARN") == [f"Robot state publisher ignored a JointState message {about}"]
+        assert stage.tf == []
+
+    async def test_more_positions_than_names(self, stage, said):
+        stage.robot_state_publisher(TWO)
+        await stage.send(JointState(name=["a"], position=[1.0, 2.0]))
+        assert said("ERROR") == ["Robot state publisher ignored an invalid JointState message"]
+
+    async def test_nothing_at_all(self, stage, said):
+        stage.robot_state_publisher(TWO)
+        await stage.send(JointState())
+        assert said("WARN") == said("ERROR") == []
+
+    async def test_no_stamp(self, stage, said):
+        stage.robot_state_publisher(TWO)
+        for _ in range(3):
+            await stage.move({"a": 0.5}, stamp_ns=0)
+        assert stage.tf == []
+        assert said("WARN") == [
+            "Ignoring JointState messages without a time stamp: set header.stamp, or the parameter ignore_timestamp"
+        ]
+
+    async def test_names_twice_take_the_first(self, stage, clock):
+        stage.robot_state_publisher(TWO)
+        stamp = Time.from_nanoseconds(clock.now_ns())
+        await stage.send(JointState(Header(stamp), ["a", "a"], [0.0, 1.0]))
+        assert stage.buffer.lookup("base", "a_link")[6] == 1.0
+
+
+class TestThrottle:
+    async def moves(self, stage, times):
+        """Move joint a at these milliseconds; the x of a prismatic joint tells which move was published when."""
+        now = 0
+        for number, at in enumerate(times, 1):
+            await stage.clock.advance((at - now) / 1000)
+            now = at
+            await stage.move({"a": float(number)})
+        await stage.clock.advance(0.2)
+        return [int(message.batch.poses[0, 0]) for message in stage.tf]
+
+    @pytest.fixture
+    def slide(self, stage):
+        text = robot(joint("a", "prismatic", axis="1 0 0"), joint("b", "prismatic", axis="1 0 0"))
+        return lambda **parameters: stage.robot_state_publisher(text, **parameters)
+
+    async def test_moves_an_interval_apart_pass(self, stage, slide):
+        slide()
+        assert await self.moves(stage, [0, 50, 100, 151]) == [1, 2, 3, 4]
+
+    async def test_of_moves_within_an_interval_the_last_comes_at_its_end(self, stage, slide, clock):
+        slide()
+        start = clock.now_ns()
+        arrivals = []
+        stage.node.create_subscription(
+            TFMessage,
+            "/tf",
+            lambda message: arrivals.append(((clock.now_ns() - start) / 1e6, message.batch.stamp_ns - start)),
+            10,
+        )
+        assert await self.moves(stage, [0, 10, 20, 30]) == [1, 4]
+        assert arrivals == [(0.0, 0), (50.0, 30_000_000)]
+
+    async def test_a_source_that_is_a_little_too_fast_is_held_to_the_limit(self, stage, slide):
+        slide()
+        published = await self.moves(stage, range(0, 1000, 40))
+        assert 19 <= len(published) <= 22
+        assert published[-1] == 25
+
+    async def test_a_beat_does_not_hold_up_the_move_after_it(self, stage, slide):
+        slide()
+        await stage.move({"a": 1.0})
+        for _ in range(3):
+            await stage.clock.advance(0.1)
+            await stage.move({"a": 1.0})
+        assert len(stage.tf) == 4
+        await stage.clock.advance(0.01)
+        await stage.move({"a": 2.0})
+        assert len(stage.tf) == 5
+
+    async def test_a_fast_beat_is_throttled_and_not_made_up_for(self, stage, slide):
+        slide()
+        for _ in range(10):
+            await stage.move({"a": 1.0})
+            await stage.clock.advance(0.01)
+        await stage.clock.advance(1.0)
+        assert len(stage.tf) == 2
+
+    async def test_going_back_while_a_move_is_held(self, stage, slide):
+        slide()
+        for position in (1.0, 2.0, 1.0):
+            await stage.move({"a": position})
+            await stage.clock.advance(0.01)
+        await stage.clock.advance(0.1)
+        assert [message.batch.poses[0, 0] for message in stage.tf] == [1.0, 1.0]
+
+    async def test_the_frequency_counts(self, stage, slide):
+        publisher = slide(publish_frequency=100.0)
+        assert await self.moves(stage, [0, 10, 20]) == [1, 2, 3]
+        stage.tf.clear()
+        assert await stage.set(publisher, publish_frequency=4.0) == [(True, "")]
+        assert await self.moves(stage, [0, 100, 249]) == [1, 3]
+
+    async def test_a_joint_that_waited_longest_decides(self, stage, slide):
+        slide()
+        await stage.move({"a": 1.0})
+        await stage.clock.advance(0.01)
+        await stage.move({"a": 2.0, "b": 2.0})
+        assert stage.moved_frames() == [["a_link"], ["a_link", "b_link"]]
+
+    async def test_ignoring_stamps_publishes_all(self, stage, slide):
+        slide(ignore_timestamp=True)
+        for number in range(3):
+            await stage.move({"a": float(number)}, stamp_ns=0)
+        assert len(stage.tf) == 3
+
+    async def test_older_data_are_dropped(self, stage, slide, clock):
+        slide()
+        await stage.move({"a": 1.0})
+        await stage.move({"a": 2.0}, stamp_ns=clock.now_ns() - 10_000_000)
+        await clock.advance(1.0)
+        assert len(stage.tf) == 1
+
+    async def test_a_held_message_gives_way_to_newer_data_of_its_joints(self, stage, slide, clock):
+        slide()
+        await stage.move({"a": 1.0})
+        await clock.advance(0.01)
+        await stage.move({"a": 2.0})
+        await clock.advance(0.01)
+        await stage.move({"a": 3.0, "b": 3.0})
+        await clock.advance(1.0)
+        assert [message.batch.poses[0, 0] for message in stage.tf] == [1.0, 3.0]
+
+    async def test_time_going_backwards_opens_the_throttle(self, stage, slide, clock, said):
+        slide()
+        await stage.move({"a": 1.0})
+        await clock.advance(0.01)
+        await stage.move({"a": 2.0})
+        clock.jump(-100.0)
+        await stage.move({"a": 3.0})
+        assert said("WARN") == ["Moved backwards in time, re-publishing joint transforms!"]
+        await clock.advance(1.0)
+        assert [message.batch.poses[0, 0] for message in stage.tf] == [1.0, 3.0]
+
+    async def test_closing_drops_what_is_held(self, stage, slide, clock):
+        publisher = slide()
+        await stage.move({"a": 1.0})
+        await stage.move({"a": 2.0})
+        publisher.close()
+        await clock.advance(1.0)
+        assert len(stage.tf) == 1
+
+
+class TestStart:
+    @pytest.mark.parametrize("parameters", [{}, {"robot_description": ""}])
+    async def test_without_a_description(self, stage, said, parameters):
+        with pytest.raises(LinkwrightError) as caught:
+            RobotStatePublisher(stage.graph, NodeOptions(parameters=parameters))
+        assert caught.value.diagnostics[0].code == "NODE101"
+        assert said("FATAL") == ["robot_description parameter must not be empty"]
+        assert stage.graph.node_names() == ["/audience"]
+
+    async def test_with_a_description_that_cannot_be_read(self, stage, said):
+        with pytest.raises(LinkwrightError) as caught:
+            stage.robot_state_publisher(robot(joint("a", parent="nowhere")))
+        first, *rest = caught.value.diagnostics
+        assert (first.code, first.message) == (
+            "NODE102",
+            "Unable to initialize urdf::model from robot description",
+        )
+        assert rest[0].code.startswith("URDF")
+        assert rest[0].span is not None
+
+    async def test_with_a_file_name_for_a_description(self, stage):
+        with pytest.raises(LinkwrightError) as caught:
+            stage.robot_state_publisher("/robots/mbot.urdf")
+        assert "'/robots/mbot.urdf' is not URDF" in caught.value.diagnostics[0].hint
+
+    @pytest.mark.parametrize("frequency", [-1.0, 0.0, 1000.5, float("nan")])
+    async def test_with_a_frequency_out_of_range(self, stage, frequency):
+        with pytest.raises(LinkwrightError, match="publish_frequency must be between 0 and 1000"):
+            stage.robot_state_publisher(TWO, publish_frequency=frequency)
+
+    async def test_with_a_parameter_of_another_type(self, stage):
+        with pytest.raises(LinkwrightError) as caught:
+            stage.robot_state_publisher(TWO, publish_frequency=30)
+        assert caught.value.diagnostics[0].hint == "write 30.0"
+
+    async def test_with_a_file_on_the_command_line(self, stage, said, tmp_path):
+        path = tmp_path / "robot.urdf"
+        path.write_text(TWO, encoding="utf-8")
+        RobotStatePublisher(stage.graph, NodeOptions(arguments=[str(path)]))
+        await stage.graph.settle()
+        assert stage.descriptions == [TWO]
+        assert said("WARN")[0].startswith("No robot_description parameter, but command-line argument available.")
+        with pytest.raises(LinkwrightError, match=r"URDF file 'missing.urdf' cannot be read: No such file"):
+            RobotStatePublisher(stage.graph, NodeOptions(arguments=["missing.urdf"]))
+
+    async def test_with_ros_arguments(self, stage):
+        arguments = ["--ros-args", "-r", "__node:=left", "-r", "/tf:=tf", "-p", "frame_prefix:=l_"]
+        publisher = RobotStatePublisher(
+            stage.graph,
+            NodeOptions(namespace="/arm", parameters={"robot_description": TWO}, arguments=arguments),
+        )
+        assert publisher.node.get_fully_qualified_name() == "/arm/left"
+        assert publisher.node.get_parameter("frame_prefix").value == "l_"
+        assert stage.graph.count_publishers("/arm/tf") == 1
+        assert stage.graph.count_publishers("/arm/robot_description") == 1
+
+
+class TestUpdate:
+    async def test_a_new_description_takes_over(self, stage, clock):
+        publisher = stage.robot_state_publisher(robot(joint("a"), joint("f", "fixed")))
+        await stage.move({"a": 1.0})
+        text = robot(joint("a", xyz="0 0 7"), joint("g", "fixed"))
+        assert await stage.set(publisher, robot_description=text) == [(True, "")]
+        assert stage.descriptions[-1] == text
+        assert stage.tf_static[-1].batch.children == ("g_link",)
+        # The new joint is shown with the very next message, throttle or not.
+        await stage.move({"a": 1.0})
+        assert stage.buffer.lookup("base", "a_link")[2] == 7.0
+
+    async def test_without_fixed_joints_the_old_ones_are_not_replayed(self, stage):
+        publisher = stage.robot_state_publisher(robot(joint("f", "fixed")))
+        await stage.set(publisher, robot_description=robot(joint("a")))
+        assert len(stage.tf_static[-1].batch) == 0
+
+    @pytest.mark.parametrize(
+        ("text", "reason"),
+        [
+            ("", "Empty URDF is not allowed"),
+            ("not XML", "Unable to initialize urdf::model from robot description"),
+            ("<robot name='r'/>", "Unable to initialize urdf::model from robot description"),
+        ],
+    )
+    async def test_a_bad_description_is_refused_and_the_last_stands(self, stage, text, reason):
+        publisher = stage.robot_state_publisher(TWO)
+        assert await stage.set(publisher, robot_description=text) == [(False, reason)]
+        assert publisher.node.get_parameter("robot_description").value == TWO
+        assert stage.descriptions == [TWO]
+        await stage.move({"a": 0.0})
+        assert stage.moved_frames() == [["a_link"]]
+
+    async def test_a_bad_frequency_is_refused(self, stage):
+        publisher = stage.robot_state_publisher(TWO)
+        reason = "publish_frequency must be between 0 and 1000"
+        assert await stage.set(publisher, publish_frequency=2000.0) == [(False, reason)]
+        assert await stage.set(publisher, publish_frequency=0.0) == [(False, reason)]
+
+    async def test_a_description_of_another_type_is_refused(self, stage):
+        publisher = stage.robot_state_publisher(TWO)
+        ((successful, reason),) = await stage.set(publisher, robot_description=3)
+        assert not successful
+        assert "is of type {string}, setting it to {integer} is not allowed." in reason
+
+    async def test_stamps_can_be_ignored_from_now_on(self, stage):
+        publisher = stage.robot_state_publisher(TWO)
+        await stage.set(publisher, ignore_timestamp=True)
+        await stage.move({"a": 0.0}, stamp_ns=0)
+        assert len(stage.tf) == 1
+
+
+@pytest.mark.skipif(not TUTORIAL.exists(), reason="the tutorial's files are not here")
+async def test_the_tutorials_robot_stands_where_forward_kinematics_says(stage):
+    text = (TUTORIAL / "my_robot_description" / "urdf" / "mbot_base.urdf").read_text(encoding="utf-8")
+    stage.robot_state_publisher(text)
+    model = DescriptionLibrary().read(text).robot
+    tree = KinematicTree(model)
+    turned = {name: 0.3 * number for number, name in enumerate(tree.joint_names, 1)}
+    await stage.move(turned)
+    poses = tree.forward(np.array(list(turned.values())))
+    snapshot = stage.buffer.snapshot(model.root, 0)
+    assert set(snapshot.names) == set(model.links)
+    for name, pose in zip(tree.link_names, poses, strict=True):
+        np.testing.assert_allclose(
+            snapshot.poses[snapshot.names.index(name), :3], pose[:3, 3], atol=1e-12, err_msg=name
+        )
+    np.testing.assert_allclose(stage.buffer.lookup("base_link", "left_wheel_link")[:3], [0, 0.19, -0.05])

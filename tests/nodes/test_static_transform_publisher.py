@@ -1,0 +1,86 @@
+from math import pi, sqrt
+
+import numpy as np
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph import Graph
+from linkwright.nodes import NodeOptions, StaticTransformPublisher
+from linkwright.nodes.static_transform_publisher import parse_arguments
+
+HALF = sqrt(0.5)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "translation", "rotation", "old_style"),
+    [
+        ("--frame-id map --child-frame-id odom", (0, 0, 0), (0, 0, 0, 1), False),
+        (f"--x 1 --y -2 --yaw {pi / 2} --frame-id map --child-frame-id odom", (1, -2, 0), (0, 0, HALF, HALF), False),
+        (f"--roll {pi} --frame-id map --child-frame-id odom", (0, 0, 0), (1, 0, 0, 0), False),
+        ("--qx 1 --qw 1 --frame-id map --child-frame-id odom", (0, 0, 0), (HALF, 0, 0, HALF), False),
+        (f"1 2 3 {pi / 2} 0 0 map odom", (1, 2, 3), (0, 0, HALF, HALF), True),
+        (f"1 2 3 0 {pi / 2} 0 map odom", (1, 2, 3), (0, HALF, 0, HALF), True),
+        ("1 2 3 0 0 1 0 map odom", (1, 2, 3), (0, 0, 1, 0), True),
+    ],
+)  # fmt: skip
+def test_arguments(arguments, translation, rotation, old_style):
+    parsed = parse_arguments(arguments.split())
+    assert parsed.translation == translation
+    assert parsed.rotation == pytest.approx(rotation)
+    assert (parsed.frame_id, parsed.child_frame_id, parsed.old_style) == ("map", "odom", old_style)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "reason"),
+    [
+        ("", "Frame id must not be empty"),
+        ("--frame-id map", "Child frame id must not be empty"),
+        ("--frame-id", "Not enough arguments for --frame-id"),
+        ("--x one --frame-id a --child-frame-id b", "Failed to parse --x argument as float"),
+        ("1 2 3", "Extra unparsed arguments on command-line"),
+        ("--frame a", "Extra unparsed arguments on command-line"),
+        (
+            "--x 1 1 2 3 0 0 0 a b",
+            "Cannot specify both new-style (flags) and old-style (arguments)",
+        ),
+        (
+            "--yaw 1 --qw 1 --frame-id a --child-frame-id b",
+            "Cannot specify both quaternion and Euler rotations",
+        ),
+        ("--qw 0 --frame-id a --child-frame-id b", "The quaternion must not be zero"),
+    ],
+)
+def test_wrong_arguments(arguments, reason):
+    with pytest.raises(LinkwrightError) as caught:
+        parse_arguments(arguments.split())
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.code == "NODE301"
+    assert diagnostic.message == f"error parsing command line arguments: {reason}"
+    assert diagnostic.hint.startswith("usage: static_transform_publisher [--x X]")
+
+
+async def test_the_transform_is_published_for_good(stage, said):
+    options = NodeOptions(arguments=["1", "2", "3", "0", "0", "0", "map", "base"])
+    first = StaticTransformPublisher(stage.graph, options)
+    second = StaticTransformPublisher(
+        stage.graph, NodeOptions(arguments=["--frame-id", "base", "--child-frame-id", "camera", "--z", "4"])
+    )
+    await stage.graph.settle()
+    np.testing.assert_allclose(stage.buffer.lookup("map", "camera"), [1, 2, 7, 0, 0, 0, 1])
+    assert first.node.get_name() == "static_transform_publisher"
+    assert second.node.get_name() == "static_transform_publisher_2"
+    assert said("WARN") == ["Old-style arguments are deprecated; see --help for new-style arguments"]
+    assert said("INFO")[0] == (
+        "Spinning until stopped - publishing transform\ntranslation: ('1.000000', '2.000000', '3.000000')\n"
+        "rotation: ('0.000000', '0.000000', '0.000000', '1.000000')\nfrom 'map' to 'base'"
+    )
+    assert stage.tf_static[0].batch.stamp_ns == stage.clock.now_ns()
+    first.close()
+    assert stage.graph.count_publishers("/tf_static") == 1
+
+
+async def test_wrong_arguments_end_the_node(stage: object, graph: Graph, said):
+    with pytest.raises(LinkwrightError):
+        StaticTransformPublisher(graph, NodeOptions(name="camera_tf", arguments=["1"]))
+    assert said("FATAL") == ["error parsing command line arguments: Extra unparsed arguments on command-line"]
+    assert graph.node_names() == ["/audience"]

@@ -1,0 +1,127 @@
+"""Any tree of elements is read without a crash, and nothing is lost without a word."""
+
+from __future__ import annotations
+
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from linkwright.diagnostics import has_errors, render, to_data
+from linkwright.kinematics import KinematicTree
+from linkwright.urdf import read, save, to_gv, tree_text
+from linkwright.urdf.schema import JOINT_TYPES, ROBOT, ElementRule, Kind
+from linkwright.xmltree import Document, Element, parse, write
+
+BAD = [
+    "",
+    " ",
+    "x",
+    "1 ",
+    "1,5",
+    "inf",
+    "1e999",
+    "${x}",
+    "-pi",
+    "5cm",
+    "0 0",
+    "0 0 0 0",
+    "255 0 0 1",
+    "2.0",
+    "é",
+    "a b",
+]
+GOOD = {
+    Kind.TEXT: ["a", "b", "c", ""],
+    Kind.NUMBER: ["0", "1", "-90", " 2.5"],
+    Kind.VECTOR3: ["0 0 0", "1 -2 .5", "0 0 90", " 1  2 3 "],
+    Kind.QUATERNION: ["0 0 0 1", "0 0 0 0", "1 2 3 4"],
+    Kind.RGBA: ["1 1 1 1", "0 .5 0 1"],
+    Kind.JOINT_TYPE: [*JOINT_TYPES],
+    Kind.VERSION: ["1.0", "1.1", "1.2"],
+}
+OTHERS = [ElementRule(tag, "") for tag in ("gazebo", "xacro:if", "limits", "geomtry", "cube")]
+
+
+@st.composite
+def elements(draw, rule: ElementRule, sloppy: bool) -> Element:
+    element = Element(rule.tag)
+    for attribute in rule.attributes:
+        if not sloppy or draw(st.integers(0, 9)):
+            good = GOOD[attribute.kind]
+            values = st.sampled_from(BAD + good if sloppy and not draw(st.integers(0, 9)) else good)
+            element.attributes[attribute.name] = draw(values)
+    children = list(rule.children)
+    if rule.tag == "geometry":
+        children = [draw(st.sampled_from(children))]
+    for child in children:
+        count = draw(st.integers(0, 3)) if child.many else draw(st.integers(0, 1 if sloppy else 9)) > 0
+        element.children += [draw(elements(child, sloppy)) for _ in range(count)]
+    if sloppy and not draw(st.integers(0, 9)):
+        element.children.append(draw(elements(draw(st.sampled_from(OTHERS)), sloppy)))
+    return element
+
+
+@st.composite
+def robots(draw, sloppy: bool) -> Element:
+    """A robot whose joints make a tree of its links, or nearly."""
+    root = draw(elements(ROBOT, sloppy))
+
+    def sound() -> bool:
+        return not sloppy or draw(st.integers(0, 19)) > 0
+
+    links = list(root.elements("link")) or [Element("link")]
+    joints = list(root.elements("joint"))[: len(links) - 1]
+    for place, link in enumerate(links):
+        if sound():
+            link.attributes["name"] = f"link{place}"
+    while len(joints) < len(links) - 1:
+        joints.append(Element("joint", {"type": "fixed"}))
+    for place, joint in enumerate(joints, start=1):
+        ends = {"parent": draw(st.integers(0, place - 1)), "child": place}
+        joint.children = [child for child in joint.children if not (isinstance(child, Element) and child.tag in ends)]
+        if sound():
+            joint.attributes["name"] = f"joint{place}"
+            joint.children += [Element(tag, {"link": f"link{end}"}) for tag, end in ends.items()]
+    others = [child for child in root.elements() if child.tag not in ("link", "joint")]
+    root.children = [*draw(st.permutations(others[:3])), *links, *joints]
+    root.attributes = {"name": "r", "xmlns:xacro": "http://www.ros.org/wiki/xacro", **root.attributes}
+    return root
+
+
+def check(root: Element) -> None:
+    reading = read(Document(root))
+    if reading.robot is None:
+        assert has_errors(reading.diagnostics)
+        return
+    robot = reading.robot
+    elements_of_links = [element for element in root.elements("link") if "name" in element.attributes]
+    written = sum(1 for link in elements_of_links for tag in ("visual", "collision") for _ in link.elements(tag))
+    kept = sum(len(link.visuals) + len(link.collisions) for link in robot.links.values())
+    assert written == kept or has_errors(reading.diagnostics)
+    assert robot.root in robot.links
+    to_gv(robot)
+    tree_text(robot)
+    tree = KinematicTree(robot)
+    assert tree.forward([0.0] * len(tree.joint_names)).shape == (len(tree.link_names), 4, 4)
+    again = read(parse(save(robot), "saved.urdf"))
+    assert again.robot == robot
+
+
+@settings(max_examples=150, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
+@given(robots(sloppy=False))
+def test_elements_with_good_values(root):
+    check(root)
+
+
+@settings(max_examples=150, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
+@given(robots(sloppy=True))
+def test_elements_with_anything(root):
+    check(root)
+
+
+@settings(max_examples=100, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
+@given(robots(sloppy=True))
+def test_every_finding_can_be_printed(root):
+    for diagnostic in read(parse(write(Document(root)), "robot.urdf")).diagnostics:
+        assert diagnostic.span is not None
+        assert diagnostic.code in render(diagnostic)
+        assert to_data(diagnostic)["line"] >= 1

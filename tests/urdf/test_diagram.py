@@ -1,0 +1,64 @@
+"""Pictures by Graphviz."""
+
+from __future__ import annotations
+
+import sys
+
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.urdf import load, to_gv
+from linkwright.urdf.diagram import render
+from tests.urdf.robots import chain, robot_text
+
+GV = to_gv(load(robot_text(chain("fixed", "continuous"))))
+
+
+FORMATS = [("pdf", b"%PDF-"), ("svg", b"<?xml"), ("png", b"\x89PNG"), ("SVG", b"<?xml")]
+
+
+@pytest.mark.parametrize(("ending", "start"), FORMATS)
+def test_the_ending_picks_the_format(tmp_path, ending, start):
+    picture = tmp_path / f"robot.{ending}"
+    render(GV, picture)
+    assert picture.read_bytes().startswith(start)
+
+
+def test_links_are_boxes_and_joints_ellipses(tmp_path):
+    picture = tmp_path / "robot.svg"
+    render(GV, picture)
+    text = picture.read_text()
+    assert text.count('stroke="black" points') == 3 + 4  # three boxes and four arrow heads
+    assert text.count("<ellipse") == 2
+    assert [label for label in ("a", "b", "c", "j0", "j1") if f">{label}</text>" not in text] == []
+
+
+def test_names_that_are_not_ascii(tmp_path):
+    picture = tmp_path / "robot.svg"
+    render(to_gv(load(robot_text('<link name="底盘"/>'))), picture)
+    assert "底盘" in picture.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(("name", "hint"), [("robot.pfd", ".pdf"), ("robot", "it is one of")])
+def test_another_ending(tmp_path, name, hint):
+    with pytest.raises(LinkwrightError) as caught:
+        render(GV, tmp_path / name)
+    assert caught.value.diagnostics[0].code == "URDF201"
+    assert hint in caught.value.diagnostics[0].hint
+
+
+def test_no_pygraphviz(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pygraphviz", None)
+    with pytest.raises(LinkwrightError) as caught:
+        render(GV, tmp_path / "robot.pdf")
+    assert caught.value.diagnostics[0].code == "URDF202"
+
+
+def test_a_folder_that_is_not_there(tmp_path):
+    with pytest.raises(LinkwrightError, match="cannot be written"):
+        render(GV, tmp_path / "missing" / "robot.pdf")
+
+
+def test_a_text_that_graphviz_cannot_read(tmp_path):
+    with pytest.raises(LinkwrightError, match="could not lay out"):
+        render("digraph {", tmp_path / "robot.svg")

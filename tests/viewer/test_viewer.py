@@ -1,0 +1,298 @@
+"""A whole viewer, from topics to a page and back."""
+
+from __future__ import annotations
+
+import asyncio
+import math
+import time
+from urllib.parse import urlsplit
+
+import aiohttp
+import pytest
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, SourceText
+from linkwright.graph import Graph
+from linkwright.nodes import JointStatePublisherGui, NodeOptions, RobotStatePublisher
+from linkwright.urdf import DescriptionLibrary
+from linkwright.viewer import RvizConfig, Viewer, server
+from linkwright.viewer.protocol import PROTOCOL_VERSION
+from linkwright.workspace import PackageFinder
+from tests.places import TUTORIAL
+from tests.viewer.scene import ARM, page, world
+
+
+async def test_a_page_that_opens_gets_everything_in_order():
+    async with world(title="arm") as made:
+        made.describe(ARM)
+        made.move_arm(1.0)
+        await made.settle()
+        async with page(made.viewer) as client:
+            transforms = await client.transforms()
+            kinds = [message["type"] for message in client.messages[:-1]]
+            first, table = client.messages[0], client.messages[-2]
+    assert kinds == ["hello", "tree", "robot_scene", "view_state", "joints", "diagnostics", "frame_table"]
+    assert (first["protocol"], first["title"]) == (PROTOCOL_VERSION, "arm")
+    assert transforms.revision == table["revision"]
+    assert transforms.poses[table["names"].index("tip")].tolist() == [1, 0, 0, 0, 0, 0, 1]
+
+
+async def test_transforms_are_in_the_fixed_frame_and_follow_it():
+    async with world() as made, page(made.viewer) as client:
+        await client.opened()
+        made.move_arm(1.0)
+        names = (await client.until("frame_table"))["names"]
+        made.move_arm(2.0)
+        while (await client.transforms()).poses[names.index("tip")][0] != 2.0:
+            pass
+        await client.set("global/Fixed Frame", "/tip")
+        assert (await client.until("property_changed", id="global/Fixed Frame"))["value"] == "tip"
+        assert (await client.transforms()).poses[names.index("base")][0] == -2.0
+
+
+async def test_the_fixed_frame_has_rviz_status():
+    async with world(RvizConfig.for_model("map")) as made, page(made.viewer) as client:
+        opening = await client.opened()
+        assert opening["tree"]["global_status"] == [
+            {
+                "name": "Fixed Frame",
+                "level": "warn",
+                "text": "No tf data.  Actual error: Frame [map] does not exist",
+            }
+        ]
+        made.move_arm()
+        status = await client.until("display_status", display="global")
+        assert (status["level"], status["status"][0]["text"]) == ("error", "Frame [map] does not exist")
+        await client.set("global/Fixed Frame", "base")
+        status = await client.until("display_status", display="global")
+        assert (status["level"], status["status"][0]["text"]) == ("ok", "OK")
+
+
+async def test_known_frames_are_offered_where_frames_are_asked_for():
+    async with world() as made, page(made.viewer) as client:
+        await client.opened()
+        made.move_arm()
+        offered = await client.until("property_changed", id="global/Fixed Frame")
+        assert offered["options"] == ["base", "mark", "tip"]
+        offered = await client.until("property_changed", id="display-1/Reference Frame")
+        assert offered["options"] == ["<Fixed Frame>", "base", "mark", "tip"]
+    options = made.viewer.config.options.rows()[0].options
+    assert options == ["base", "mark", "tip"]
+
+
+async def test_what_one_page_sets_all_pages_hear():
+    async with world() as made, page(made.viewer) as one, page(made.viewer) as other:
+        await one.opened()
+        await other.opened()
+        await one.set("display-2/Alpha", 0.5)
+        await one.set("global/Background Color", "#FFFFFF")
+        for client in (one, other):
+            assert (await client.until("property_changed", id="display-2/Alpha"))["value"] == 0.5
+            assert (await client.until("property_changed", id="global/Background Color"))["value"] == "#ffffff"
+        assert "Background Color: 255; 255; 255" in made.viewer.config.text()
+
+
+async def test_a_refused_value_is_answered_with_the_one_that_stands():
+    async with world() as made, page(made.viewer) as client:
+        await client.opened()
+        for identity, value, standing in (
+            ("display-2/Alpha", "much", 1.0),
+            ("global/Background Color", "red", "#303030"),
+            ("display-1/Enabled", 3, True),
+            ("global/Fixed Frame", "", "base"),
+        ):
+            await client.set(identity, value)
+            assert (await client.until("property_changed", id=identity))["value"] == standing
+        await client.set("display-9/Alpha", 1)
+        await client.set("display-2/Nothing", 1)
+        await client.set("nothing", 1)
+        assert await client.drain() == []
+
+
+async def test_every_page_begins_with_the_view_of_the_file():
+    config = RvizConfig.for_model("base", distance=1.5)
+    async with world(config) as made:
+        async with page(made.viewer) as client:
+            view = (await client.opened())["view_state"]["view"]
+            assert view["distance"] == 1.5
+            await client.send("view_changed", view=view | {"distance": 7.0})
+            await client.send("view_changed", view=view | {"focal_point": [1.0]})
+            await client.set("display-1/Alpha", 1.0)
+            await client.until("property_changed")
+        async with page(made.viewer) as client:
+            assert (await client.opened())["view_state"]["view"]["distance"] == 1.5
+    assert RvizConfig.parse(config.text()).view.distance == 7.0
+    assert "a view that is none" in made.logged()
+
+
+async def test_diagnostics_are_shown_with_their_line_and_cleared():
+    source = SourceText("/some/r.xacro", "<robot>\n  <xacro:whel/>\n</robot>\n")
+    span = source.span(10, 21)
+    diagnostic = Diagnostic("XAC101", "unknown macro", span, notes=(Note("called", span),), hint="did", source=source)
+    async with world() as made, page(made.viewer) as client:
+        await client.opened()
+        made.viewer.show_diagnostics([diagnostic, Diagnostic("X1", "no place")])
+        items = (await client.until("diagnostics"))["items"]
+        assert items[0] == {
+            "code": "XAC101",
+            "severity": "error",
+            "message": "unknown macro",
+            "file": "/some/r.xacro",
+            "line": 2,
+            "column": 3,
+            "end_line": 2,
+            "end_column": 14,
+            "excerpt": "  <xacro:whel/>",
+            "notes": [{"message": "called", "file": "/some/r.xacro", "line": 2, "column": 3}],
+            "hints": ["did"],
+        }
+        assert items[1]["file"] is None
+        async with page(made.viewer) as late:
+            assert len((await late.opened())["diagnostics"]["items"]) == 2
+        made.viewer.show_diagnostics([])
+        assert (await client.until("diagnostics"))["items"] == []
+
+
+async def test_what_the_file_says_wrong_is_in_the_terminal():
+    text = "Visualization Manager:\n  Global Options: {Frame Rate: often}\n  Displays:\n    - {Name: x}\n"
+    async with world(RvizConfig.parse(text, "a.rviz")) as made:
+        made.viewer.config.options.rows()
+    assert "a.rviz:2:32: 'Frame Rate': a whole number is expected, not 'often'; 30 is used" in made.logged()
+    assert "a.rviz:4:7: a display without a 'Class' is left out" in made.logged()
+
+
+async def test_a_slider_in_the_page_turns_the_joint_in_the_page():
+    graph = Graph(on_log=lambda _: None)
+    library = DescriptionLibrary()
+    viewer = Viewer(graph, library=library, finder=PackageFinder(), config=RvizConfig.for_model("base"), port=0)
+    await viewer.start()
+    panel = JointStatePublisherGui(graph, NodeOptions(library=library)).panel
+    viewer.attach_joint_panel(panel)
+    RobotStatePublisher(graph, NodeOptions(parameters={"robot_description": ARM}, library=library))
+    async with page(viewer) as client:
+        while not (controls := (await client.until("joints"))["controls"]):
+            pass
+        assert [(control["name"], control["kind"]) for control in controls] == [("turn", "continuous")]
+        while "tip" not in (names := (await client.until("frame_table"))["names"]):
+            pass
+        await client.drain(0.3)
+        delays = []
+        for angle in (0.5, 1.0, 1.5, 2.0, 2.5):
+            await asyncio.sleep(0.1)
+            start = time.perf_counter()
+            await client.send("set_joint", name="turn", position=angle)
+            transforms = await client.transforms()
+            delays.append(time.perf_counter() - start)
+            assert transforms.poses[names.index("tip")][5] == pytest.approx(math.sin(angle / 2))
+        assert sorted(delays)[2] < 0.02
+        assert await client.until("joint_positions", positions={"turn": 2.5})
+        await client.send("center_joints")
+        while (await client.until("joint_positions"))["positions"]["turn"] != 0.0:
+            pass
+    await viewer.close()
+    await graph.close()
+
+
+async def test_closing_says_goodbye_and_leaves_the_graph():
+    async with world() as made:
+        async with page(made.viewer) as client:
+            await client.opened()
+            start = time.monotonic()
+            closing = asyncio.ensure_future(made.viewer.close())
+            with pytest.raises(ConnectionError):
+                await client.until("nothing")
+            await closing
+            assert client.socket.close_code == 1001
+            assert time.monotonic() - start < 1.0
+        assert made.graph.node_names() == ["/publishers"]
+        with pytest.raises(aiohttp.ClientError):
+            async with aiohttp.ClientSession() as session:
+                await session.get(made.viewer.url)
+
+
+async def test_a_page_that_answers_nothing_does_not_hold_up_the_end():
+    async with world() as made:
+        address = urlsplit(made.viewer.url)
+        reader, writer = await asyncio.open_connection(address.hostname, address.port)
+        head = (
+            f"GET /ws?{address.query} HTTP/1.1",
+            f"Host: {address.netloc}",
+            "Connection: Upgrade",
+            "Upgrade: websocket",
+            "Sec-WebSocket-Version: 13",
+            "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==",
+        )
+        writer.write(("\r\n".join(head) + "\r\n\r\n").encode())
+        await reader.readuntil(b"\r\n\r\n")
+        start = time.monotonic()
+        await made.viewer.close()
+        assert time.monotonic() - start < 1.5
+        writer.close()
+
+
+async def test_a_taken_port_leaves_no_node_behind():
+    async with world() as made:
+        port = urlsplit(made.viewer.url).port
+        second = Viewer(
+            made.graph,
+            library=made.library,
+            finder=PackageFinder(),
+            config=RvizConfig.default(),
+            port=port,
+            name="second",
+        )
+        with pytest.raises(LinkwrightError) as caught:
+            await second.start()
+        assert caught.value.diagnostics[0].code == "VIEW101"
+        assert "/second" not in made.graph.node_names()
+
+
+async def test_without_a_built_page_the_answer_says_how_to_build_it(tmp_path, monkeypatch):
+    monkeypatch.setattr(server.WebServer.__init__, "__defaults__", (tmp_path,))
+    async with world() as made, aiohttp.ClientSession() as session, session.get(made.viewer.url) as answer:
+        assert answer.status == 503
+        assert "make page" in await answer.text()
+
+
+async def test_the_page_and_its_hashed_files_are_served(tmp_path, monkeypatch):
+    (tmp_path / "assets").mkdir()
+    (tmp_path / "index.html").write_text("<!doctype html><title>x</title>", encoding="utf-8")
+    (tmp_path / "assets" / "index-abc.js").write_text("export {}", encoding="utf-8")
+    monkeypatch.setattr(server.WebServer.__init__, "__defaults__", (tmp_path,))
+    async with world() as made, aiohttp.ClientSession(cookie_jar=aiohttp.CookieJar(unsafe=True)) as session:
+        base = made.viewer.url.partition("?")[0]
+        async with session.get(made.viewer.url) as answer:
+            assert answer.status == 200
+            assert answer.headers["Cache-Control"] == "no-cache"
+            (cookie,) = answer.cookies.values()
+            assert cookie["httponly"]
+            assert cookie["samesite"] == "Strict"
+        async with session.get(f"{base}assets/index-abc.js") as answer:
+            assert answer.status == 200
+            assert answer.content_type == "text/javascript"
+            assert "immutable" in answer.headers["Cache-Control"]
+        async with session.get(f"{base}assets/gone.js") as answer:
+            assert answer.status == 404
+        async with session.ws_connect(f"{base}ws") as socket:
+            assert (await socket.receive_json())["type"] == "hello"
+
+
+@pytest.mark.skipif(not TUTORIAL.is_dir(), reason="the tutorial is not here")
+@pytest.mark.parametrize(
+    ("model", "links"),
+    [("mbot_base", 5), ("mbot_with_camera", 6), ("mbot_with_kinect", 6), ("mbot_with_laser", 6)],
+)
+async def test_the_models_of_the_tutorial_are_shown(model, links):
+    share = TUTORIAL / "my_robot_description"
+    config = RvizConfig.load(share / "rviz" / "urdf.rviz")
+    async with world(config, packages={"my_robot_description": share}) as made:
+        made.describe((share / "urdf" / f"{model}.urdf").read_text(encoding="utf-8"))
+        await made.settle()
+        async with page(made.viewer) as client:
+            opening = await client.opened()
+    assert len(opening["robot_scene"]["links"]) == links
+    view = opening["view_state"]["view"]
+    assert (view["distance"], view["pitch"], view["yaw"]) == (1.7, 0.33, 5.5)
+    alpha = next(row for row in opening["tree"]["displays"][1]["properties"] if row["name"] == "Alpha")
+    assert alpha["value"] == 0.8
+    if model == "mbot_with_kinect":
+        assert str(share / "meshes" / "kinect.dae") in made.status("RobotModel")["kinect_link"][1]
