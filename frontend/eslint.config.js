@@ -14,5 +14,7 @@ export default tseslint.config(
       eqeqeq: "error",
     },
   },
+  // A test that finds nothing where something must be should throw.
+  { files: ["test/**"], rules: { "@typescript-eslint/no-non-null-assertion": "off" } },
   { files: ["**/*.js"], ...tseslint.configs.disableTypeChecked },
 );

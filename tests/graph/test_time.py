@@ -1,4 +1,5 @@
 import asyncio
+from math import floor
 
 import pytest
 
@@ -83,9 +84,6 @@ async def test_missed_calls_are_left_out():
     graph = Graph(clock=clock, on_log=print)
     calls = []
     graph.create_node("node").create_timer(0.1, lambda: calls.append(clock.steady_ns()))
-    blocker = graph.create_node("blocker")
-    blocked = blocker.create_timer(0.1, lambda: None)
-    blocked.cancel()
     clock._steady_ns += 350_000_000
     await clock.advance(0.0)
     await clock.advance(0.1)
@@ -154,6 +152,7 @@ async def test_system_timers_neither_drift_nor_run_early():
     graph.create_node("node").create_timer(0.005, tick)
     await asyncio.wait_for(done.wait(), 5.0)
     await graph.close()
-    due = [round(call / 0.005) for call in calls]
-    assert due == sorted(set(due))
-    assert all(call >= number * 0.005 - 1e-4 for number, call in enumerate(calls, 1))
+    # However late a busy machine makes a call, it belongs to the beat before it, and no beat has two.
+    beats = [floor(call / 0.005 + 1e-3) for call in calls]
+    assert beats[0] >= 1
+    assert beats == sorted(set(beats))

@@ -96,6 +96,6 @@ def test_no_header_is_too_strange(host, origin):
 
 def test_scripts_come_from_files_of_the_server_only():
     policy = dict(part.split(" ", 1) for part in security_headers("127.0.0.1:1")["Content-Security-Policy"].split("; "))
-    assert policy["script-src"] == "'self'"
+    assert policy["script-src"] == "'self' 'unsafe-eval'"
     assert policy["default-src"] == "'none'"
     assert "ws://127.0.0.1:1" in policy["connect-src"]

@@ -111,6 +111,13 @@ def test_why_there_is_no_mesh(index, uri, problem):
     assert index.folders == {}
 
 
+def test_a_package_that_is_not_there_is_looked_for_once(index, monkeypatch):
+    searched = []
+    monkeypatch.setattr(index.finder, "packages", lambda: searched.append("packages") or {})
+    problems = {index.locate(f"package://nobody/{number}.dae", None, MESH_TYPES).problem for number in range(5)}
+    assert (len(problems), searched) == (1, ["packages"])
+
+
 def test_the_missing_file_is_named_with_its_whole_path(index, robot):
     located = index.locate("package://robot/meshes/gone.dae", None, MESH_TYPES)
     assert str(robot / "meshes" / "gone.dae") in located.problem

@@ -209,6 +209,13 @@ async def test_closing_says_goodbye_and_leaves_the_graph():
                 await session.get(made.viewer.url)
 
 
+async def test_it_may_be_closed_when_the_graph_is_gone_and_more_than_once():
+    async with world() as made:
+        await made.graph.close()
+        await made.viewer.close()
+        await made.viewer.close()
+
+
 async def test_a_page_that_answers_nothing_does_not_hold_up_the_end():
     async with world() as made:
         address = urlsplit(made.viewer.url)
@@ -227,6 +234,14 @@ async def test_a_page_that_answers_nothing_does_not_hold_up_the_end():
         await made.viewer.close()
         assert time.monotonic() - start < 1.5
         writer.close()
+
+
+async def test_listening_to_other_machines_is_pointed_out():
+    async with world(host="0.0.0.0") as made:
+        assert "whoever reaches it" in made.logged()
+        assert made.viewer.url.startswith("http://127.0.0.1:")
+    async with world() as made:
+        assert made.logged() == ""
 
 
 async def test_a_taken_port_leaves_no_node_behind():

@@ -96,7 +96,7 @@ function statusItem(
     strong,
     expanded: level === "error",
     children: () =>
-      rows.map((row) => ({
+      worstFirst(rows).map((row) => ({
         key: `${key}/${row.name}`,
         name: row.name,
         kind: "group",
@@ -106,6 +106,12 @@ function statusItem(
         showLevelIcon: true,
       })),
   };
+}
+
+/** Among hundreds of links the one that fails must be seen. */
+function worstFirst(rows: readonly StatusRow[]): StatusRow[] {
+  const order: Readonly<Record<StatusLevel, number>> = { error: 0, warn: 1, ok: 2 };
+  return [...rows].sort((a, b) => order[a.level] - order[b.level]);
 }
 
 function propertyItem(node: PropertyNode, set: (id: string, value: PropertyValue) => void): TreeItem {

@@ -109,7 +109,7 @@ export class JointRow {
     this.slider.style.setProperty("--part", String(clamp(part, 0, 1)));
     const zero = upper > lower ? (this.joint.zero - lower) / (upper - lower) : 0;
     this.slider.style.setProperty("--zero", String(clamp(zero, 0, 1)));
-    this.slider.setAttribute("aria-valuetext", `${this.format(this.position)} ${this.unit.textContent ?? ""}`);
+    this.slider.setAttribute("aria-valuetext", `${this.format(this.position)} ${this.unit.textContent}`);
     if (force || document.activeElement !== this.field) this.field.value = this.format(this.position);
   }
 

@@ -31,6 +31,8 @@ const ZOOM_PER_WHEEL_UNIT = 0.001;
 
 export function wrapYaw(yaw: number): number {
   const turn = 2 * Math.PI;
+  // What is in range stays as the user wrote it, to the last digit.
+  if (yaw >= 0 && yaw < turn) return yaw;
   return ((yaw % turn) + turn) % turn;
 }
 

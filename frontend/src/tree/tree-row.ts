@@ -44,6 +44,12 @@ export class TreeRow {
     this.editor.show(item);
   }
 
+  /** Whether this row can show `item`: another kind needs another editor. */
+  fits(item: TreeItem, depth: number): boolean {
+    const editable = (each: TreeItem): boolean => each.set !== undefined;
+    return this.item.kind === item.kind && this.depth === depth && editable(this.item) === editable(item);
+  }
+
   set selected(selected: boolean) {
     this.element.classList.toggle("selected", selected);
     this.element.setAttribute("aria-selected", String(selected));

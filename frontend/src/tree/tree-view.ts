@@ -52,8 +52,7 @@ export class TreeView {
     const elements: HTMLElement[] = [];
     for (const { item, depth, expanded } of this.lines) {
       let row = this.rows.get(item.key);
-      // A row of another kind needs another editor.
-      if (row?.item.kind !== item.kind || row.depth !== depth || !row.item.set !== !item.set) {
+      if (!row?.fits(item, depth)) {
         row = new TreeRow(item, depth, this.frames);
         this.rows.set(item.key, row);
       }
@@ -66,15 +65,22 @@ export class TreeView {
     arrange(this.element, elements);
     const [first] = elements;
     if (first && (this.selectedKey === null || !keep.has(this.selectedKey))) first.tabIndex = 0;
-    if (this.scrollTo !== null) this.rows.get(this.scrollTo)?.element.scrollIntoView({ block: "nearest" });
+    this.finishReveal();
+  }
+
+  private finishReveal(): void {
+    if (this.scrollTo === null) return;
+    const row = this.rows.get(this.scrollTo);
     this.scrollTo = null;
+    row?.element.scrollIntoView({ block: "nearest" });
+    if (row) this.selected.emit(row.item);
   }
 
   private flatten(items: readonly TreeItem[], depth: number): void {
     for (const item of items) {
       const expanded = item.children !== undefined && this.isExpanded(item);
       this.lines.push({ item, depth, expanded });
-      if (expanded && item.children) this.flatten(item.children(), depth + 1);
+      if (expanded) this.flatten(item.children(), depth + 1);
     }
   }
 

@@ -6,6 +6,7 @@ import argparse
 import sys
 from pathlib import Path
 
+from linkwright.cli.assignments import parse_assignments
 from linkwright.cli.output import write_output
 from linkwright.diagnostics import print_diagnostics
 
@@ -17,12 +18,14 @@ _PICTURES = (".pdf", ".svg", ".png")
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
+    parser.usage = "linkwright diagram [-h] FILE [OUT] [NAME:=VALUE ...]"
     parser.add_argument("file", metavar="FILE", help="the URDF or xacro file")
     parser.add_argument(
-        "output",
+        "words",
         metavar="OUT",
-        nargs="?",
-        help="base name of the two files, default the robot's name; an ending .pdf, .svg or .png picks the picture",
+        nargs="*",
+        help="base name of the two files, default the robot's name; an ending .pdf, .svg or .png picks the picture. "
+        "Words of the form NAME:=VALUE are values for the file's <xacro:arg>",
     )
 
 
@@ -31,12 +34,17 @@ def run(arguments: argparse.Namespace) -> int:
     from linkwright.urdf import examine, to_gv
     from linkwright.urdf.diagram import render
 
-    reading = examine(arguments.file)
+    names = [word for word in arguments.words if ":=" not in word]
+    values = [word for word in arguments.words if ":=" in word]
+    if len(names) > 1:
+        print(f"linkwright diagram: one OUT is enough, there are {', '.join(names)}", file=sys.stderr)
+        return 2
+    reading = examine(arguments.file, arguments=parse_assignments(values))
     print_diagnostics(reading.diagnostics, sys.stderr)
     robot = reading.robot
     if robot is None:
         return 1
-    base = Path(arguments.output or robot.name or "robot")
+    base = Path(*names or [robot.name or "robot"])
     ending = ".pdf"
     if base.suffix.lower() in (*_PICTURES, ".gv"):
         ending = base.suffix.lower() if base.suffix.lower() in _PICTURES else ending

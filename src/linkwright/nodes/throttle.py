@@ -17,8 +17,8 @@ class JointGroup:
 
     def __init__(self, rows: NDArray[np.intp]) -> None:
         self.rows = rows
-        self.positions: FloatSequence | None = None
-        """Those published last."""
+        self.positions: NDArray[np.float64] | None = None
+        """A copy of those published last: a publisher may use its message again."""
 
 
 class Throttle:
@@ -74,7 +74,7 @@ class Throttle:
             self._moved_ns[group.rows] = at_ns
         self._sent_ns[group.rows] = at_ns
         self._stamp_ns[group.rows] = stamp_ns
-        group.positions = positions
+        group.positions = np.array(positions, dtype=np.float64)
 
     def clear(self) -> None:
         """Forget what was published."""

@@ -78,12 +78,14 @@ def _same(origin: str, host: str) -> bool:
 def security_headers(host: str) -> dict[str, str]:
     """Headers for every answer.
 
-    Scripts come from files of ours only. Styles may stand inline, which the dock and the property grid need; images
-    and workers may also be made by the page itself.
+    Scripts come from files of ours only. They may evaluate text: ours never do, but browser automation waits for a
+    condition on ``window.linkwright`` that way, and without inline scripts there is no text of a stranger's to
+    evaluate. Styles may stand inline, which the dock and the property grid need; images and workers may also be made
+    by the page itself.
     """
     policy = {
         "default-src": "'none'",
-        "script-src": "'self'",
+        "script-src": "'self' 'unsafe-eval'",
         "style-src": "'self' 'unsafe-inline'",
         "img-src": "'self' data: blob:",
         "font-src": "'self' data:",

@@ -14,7 +14,7 @@ from pathlib import Path, PurePosixPath
 from urllib.parse import quote
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.workspace import PackageFinder, enclosing_package
+from linkwright.workspace import PackageFinder, PackageNotFoundError, enclosing_package
 
 MESH_TYPES = {
     ".stl": "model/stl",
@@ -84,6 +84,7 @@ class MeshIndex:
 
     finder: PackageFinder
     folders: dict[str, ServedFolder] = field(default_factory=dict)
+    _unknown: dict[str, Located] = field(default_factory=dict)
 
     def locate(self, uri: str, base: Path | None, types: dict[str, str]) -> Located:
         """The address of a file.
@@ -93,8 +94,13 @@ class MeshIndex:
             base: the folder that a relative path starts from, that of the file the URI is written in.
             types: the endings that are understood.
         """
+        package = _PACKAGE_URI.match(uri)
+        if package and package[1] in self._unknown:
+            return self._unknown[package[1]]  # a robot names a package it lacks many times, and each search is long
         try:
             path = Path(os.path.normpath(self.finder.resolve(uri, base)))
+        except PackageNotFoundError as error:
+            return self._unknown.setdefault(error.name, Located(None, error.diagnostics[0].message))
         except LinkwrightError as error:
             return Located(None, error.diagnostics[0].message)
         except ValueError:

@@ -16,7 +16,7 @@ from linkwright.viewer.displays import RobotModelDisplay, Stage, TfDisplay, make
 from linkwright.viewer.frame_stream import FrameStream, StreamSettings
 from linkwright.viewer.frame_view import FrameView
 from linkwright.viewer.joints import JointBridge
-from linkwright.viewer.listening import listen
+from linkwright.viewer.listening import is_open_to_others, listen
 from linkwright.viewer.mesh_files import MeshFolders
 from linkwright.viewer.protocol import (
     PROTOCOL_VERSION,
@@ -133,6 +133,10 @@ class Viewer:
         gate = Gate(self._host, listener.getsockname()[1])
         self._server = WebServer(gate, self._audience, self._meshes)
         self._url = await self._server.start(listener)
+        if is_open_to_others(listener):
+            self._node.get_logger().warning(
+                f"Listening on '{self._host}': whoever reaches it and knows the token can see and move the robot"
+            )
         for warning in self.config.warnings:
             self._report(warning)
         self._stream.start()

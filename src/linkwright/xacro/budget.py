@@ -7,28 +7,41 @@ from linkwright.xacro.limits import Limits
 
 _CALL_DEPTH = 50
 
+LONG = 1_000
+"""From how many characters on a text is paid for."""
+
 
 class Budget:
-    """What is left to one expansion."""
+    """What is left to one expansion.
 
-    __slots__ = ("_call_depth", "_elements", "_limits", "_steps")
+    Attributes:
+        elements: how many elements may still be produced and macros called; who does counts it down, and calls
+            `too_many_elements` below zero.
+    """
+
+    __slots__ = ("_call_depth", "_characters", "_limits", "_steps", "elements")
 
     def __init__(self, limits: Limits) -> None:
         self._limits = limits
-        self._elements = limits.elements
+        self.elements = limits.elements
         self._steps = limits.steps
+        self._characters = limits.characters
         self._call_depth = 0
 
-    def element(self) -> None:
-        """Pay for one more element produced or macro called.
+    def too_many_elements(self) -> Fault:
+        """What is wrong when no elements are left: XAC602."""
+        message = f"the expansion makes more than {self._limits.elements:,} elements and macro calls"
+        return Fault("XAC602", message, hint="look for macros that call each other without end")
+
+    def text(self, length: int) -> None:
+        """Pay for a long text that comes out.
 
         Raises:
-            Fault: XAC602 when there were too many.
+            Fault: XAC605 when they are too long together.
         """
-        self._elements -= 1
-        if self._elements < 0:
-            message = f"the expansion makes more than {self._limits.elements:,} elements and macro calls"
-            raise Fault("XAC602", message, hint="look for macros that call each other without end")
+        self._characters -= length
+        if self._characters < 0:
+            raise Fault("XAC605", f"the expansion has more than {self._limits.characters:,} characters")
 
     def step(self) -> None:
         """Pay for one more turn of a comprehension or call of a lambda.

@@ -30,6 +30,9 @@ _CHANGING = frozenset(
     }
 )
 
+_DEEPEST = 500
+"""How deep the nodes of an expression may nest; a sum nests as deep as it has terms."""
+
 _FAILURES = (
     ArithmeticError,
     LookupError,
@@ -77,6 +80,7 @@ class Compiler:
     def __init__(self, source: str, shift: int) -> None:
         self._source = source
         self._shift = shift
+        self._depth = 0
         self.changes = False
 
     def compile(self, node: ast.AST) -> Closure:
@@ -90,7 +94,11 @@ class Compiler:
         if method is None:
             start, end = self._place(node)
             raise Fault("XAC204", f"'{self._segment(start, end)}' may not be used in an expression", start, end)
+        self._depth += 1
+        if self._depth > _DEEPEST:
+            raise Fault("XAC102", "the expression is nested too deeply")
         closure: Closure = method(node)
+        self._depth -= 1
         return closure
 
     # places and failures

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 from linkwright.diagnostics import did_you_mean
 from linkwright.xacro.calls import call_dynamically, define_macro
-from linkwright.xacro.expander import Expander, Site
+from linkwright.xacro.expander import Directive, Expander, Site
 from linkwright.xacro.includes import include
 from linkwright.xacro.literals import truth
 from linkwright.xacro.properties import define_property
@@ -99,7 +99,7 @@ def set_attribute(expander: Expander, site: Site) -> None:
     site.parent.attributes[name] = expander.text_value(node, "value", site.scope)
 
 
-DIRECTIVES: Mapping[str, Callable[[Expander, Site], None]] = {
+DIRECTIVES: Mapping[str, Directive] = {
     "xacro:arg": declare_argument,
     "xacro:attribute": set_attribute,
     "xacro:call": call_dynamically,

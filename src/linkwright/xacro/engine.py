@@ -8,6 +8,8 @@ from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError
 from linkwright.xacro import sources
+from linkwright.xacro.calls import call_macro
+from linkwright.xacro.directives import DIRECTIVES
 from linkwright.xacro.expander import Expander
 from linkwright.xacro.includes import xml_hint
 from linkwright.xacro.limits import Limits, room_for
@@ -77,7 +79,7 @@ def expand(
     document = _read(name, text)
     session = Session(name, arguments or {}, packages, limits)
     with room_for(limits):
-        expanded = Expander(session).document(document)
+        expanded = Expander(session, DIRECTIVES, call_macro).document(document)
     expanded.prolog[:0] = _banner(name)
     expanded.doctype_index += len(_BANNER)
     dependencies = tuple(Path(file) for file in session.dependencies)

@@ -1,15 +1,17 @@
 """The expansion proper: one walk over the tree, in reading order, that writes a new tree.
 
-Trees that were read are never changed, so each file is parsed once. Every element that comes out keeps the place where
-it was written and knows the macro calls and includes that brought it there.
+Trees that were read are never changed, so each file is parsed once; texts and comments without expressions are shared
+with them. Every element that comes out keeps the place where it was written and knows the macro calls and includes that
+brought it there.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple, NoReturn
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Span
+from linkwright.xacro.budget import LONG
 from linkwright.xacro.comments import CommentSweeper
 from linkwright.xacro.faults import Fault
 from linkwright.xacro.macros import MacroTable
@@ -43,16 +45,27 @@ class Site(NamedTuple):
     followed: bool
 
 
+Directive = Callable[["Expander", Site], None]
+"""Expands a tag of the language."""
+
+
 class Expander:
     """Expands one document.
+
+    Args:
+        session: what the expansion knows.
+        directives: tag -> what expands it.
+        call: what expands any other tag with the prefix of the language, which is a macro call.
 
     Attributes:
         session: what the expansion knows.
         sweeper: takes away comments above tags of the language.
     """
 
-    def __init__(self, session: Session) -> None:
+    def __init__(self, session: Session, directives: Mapping[str, Directive], call: Directive) -> None:
         self.session = session
+        self._directives = directives
+        self._call = call
         self.sweeper = CommentSweeper()
         self._errors: list[Diagnostic] = []
         self._nesting = 0
@@ -73,6 +86,8 @@ class Expander:
             self.element(root, container.children, scope, MacroTable())
         except LinkwrightError as error:
             self._errors += error.diagnostics
+        except RecursionError:
+            self._errors.append(self._out_of_stack())
         if self._errors:
             raise LinkwrightError(*_without_repeats(self._errors))
         expanded = container.children[0]
@@ -97,16 +112,17 @@ class Expander:
         if self._nesting > self.session.limits.nesting:
             self._too_deep(nodes)
         for index, node in enumerate(nodes):
-            if isinstance(node, Element):
+            if isinstance(node, Text):
+                text = self._text(node, scope) if "$" in node.data or len(node.data) > LONG else node
+                output.append(text)
+                if evaluate_comments and text.data and not text.cdata and not text.data.isspace():
+                    evaluate_comments = False
+            elif isinstance(node, Element):
                 evaluate_comments = False
                 if node.tag.startswith(PREFIX):
                     self.directive(Site(node, parent, scope, macros, index < last))
                 else:
                     self.element(node, output, scope, macros)
-            elif isinstance(node, Text):
-                output.append(text := self._text(node, scope))
-                if not text.data.isspace() and text.data and not node.cdata:
-                    evaluate_comments = False
             elif isinstance(node, Comment):
                 if _EVALUATE_COMMENTS in node.data:
                     evaluate_comments = _EVALUATE_COMMENTS_OFF not in node.data
@@ -138,20 +154,21 @@ class Expander:
                 except Fault as fault:
                     fault.place_in_attribute(node, name)
                     self.note(fault)
+            if len(value) > LONG:
+                self._pay_text(node, value)
             result[name] = value
         return result
 
     def directive(self, site: Site) -> None:
         """Expand a tag of the language or a macro call."""
-        from linkwright.xacro.calls import call_macro
-        from linkwright.xacro.directives import DIRECTIVES
-
         self.session.place = site.node
-        DIRECTIVES.get(site.node.tag, call_macro)(self, site)
+        self._directives.get(site.node.tag, self._call)(self, site)
 
     def _text(self, node: Text, scope: Scope) -> Text:
+        if len(node.data) > LONG:
+            self._pay_text(node, node.data)
         if node.cdata or "$" not in node.data:
-            return Text(node.data, node.source, node.offset, node.cdata)
+            return node
         self.session.place = node
         try:
             data = self.session.evaluate_text(node.data, scope)
@@ -159,6 +176,8 @@ class Expander:
             fault.place_in_text(node)
             self.note(fault)
             data = ""
+        if len(data) > LONG:
+            self._pay_text(node, data)
         return Text(data, node.source, node.offset)
 
     def _comment(self, node: Comment, scope: Scope) -> Comment:
@@ -244,10 +263,21 @@ class Expander:
         Raises:
             LinkwrightError: XAC602 when there are too many.
         """
-        try:
-            self.session.budget.element()
-        except Fault as fault:
+        budget = self.session.budget
+        budget.elements -= 1
+        if budget.elements < 0:
+            fault = budget.too_many_elements()
             fault.place_at(node)
+            self.fail(fault)
+
+    def _pay_text(self, node: Element | Text, text: str) -> None:
+        try:
+            self.session.budget.text(len(text))
+        except Fault as fault:
+            if isinstance(node, Element):
+                fault.place_at(node)
+            else:
+                fault.place_in_text(node)
             self.fail(fault)
 
     def _too_deep(self, nodes: Sequence[Node]) -> NoReturn:
@@ -260,6 +290,14 @@ class Expander:
         self.fail(fault)
 
     # mistakes
+
+    def _out_of_stack(self) -> Diagnostic:
+        place = self.session.place
+        span = place.span() if isinstance(place, Element) else None
+        message = "the description is nested too deeply"
+        return Diagnostic(
+            "XAC601", message, span, notes=trail(self.session.frame), source=place.source if place else None
+        )
 
     def note(self, fault: Fault) -> None:
         """Keep a mistake after which the walk can go on, unless it is one too many."""

@@ -90,7 +90,9 @@ def _parse(source: str, stripped: str) -> ast.Expression:
     except SyntaxError as error:
         raise _syntax_fault(source, stripped, error) from None
     except (ValueError, MemoryError, RecursionError) as error:
-        raise Fault("XAC102", f"'{_shortened(stripped)}' is not an expression: {error or 'too deep'}") from None
+        raise Fault(
+            "XAC102", f"'{_shortened(stripped)}' is not an expression: {str(error) or 'it is nested too deeply'}"
+        ) from None
 
 
 def _syntax_fault(source: str, stripped: str, error: SyntaxError) -> Fault:

@@ -21,12 +21,14 @@ class Limits:
         nesting: how deep elements may nest, counting those of the macro calls around them.
         elements: how many elements may be produced and macros called, together.
         steps: how often the comprehensions and lambdas of all expressions may run, together.
+        characters: how many characters all long texts and attributes that come out may have, together.
     """
 
     depth: int = 200
     nesting: int = 1000
     elements: int = 500_000
     steps: int = 1_000_000
+    characters: int = 50_000_000
 
 
 _FRAMES_PER_LEVEL = 6

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import groupby
 
 from linkwright.diagnostics import Note, Span
 from linkwright.xmltree import Element
@@ -59,11 +60,15 @@ def frames(innermost: Frame | None) -> Iterator[Frame]:
 def trail(innermost: Frame | None) -> tuple[Note, ...]:
     """The notes of all frames, innermost first; of very many, the outermost are counted only."""
     notes: list[Note] = []
-    for frame in frames(innermost):
-        if len(notes) == _SHOWN and frame.depth > 1:
-            notes.append(Note(f"and {frame.depth} more calls and includes around it"))
+    for site, group in groupby(frames(innermost), key=lambda frame: frame.site):
+        repeated = list(group)
+        if len(notes) == _SHOWN and repeated[0].depth > 1:
+            notes.append(Note(f"and {repeated[0].depth} more calls and includes around it"))
             break
-        notes.append(frame.note())
+        note = repeated[0].note()
+        if len(repeated) > 1:
+            note = Note(f"{note.message}, {len(repeated)} times", site.span())
+        notes.append(note)
     return tuple(notes)
 
 

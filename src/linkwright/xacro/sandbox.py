@@ -154,6 +154,16 @@ def check_size(value: Any) -> Any:
     return value
 
 
+def joined(parts: list[str]) -> str:
+    """The parts as one string.
+
+    Raises:
+        RefusalError: it would be too long.
+    """
+    _check_length(sum(map(len, parts)))
+    return "".join(parts)
+
+
 def as_text(value: Any) -> str:
     """``str(value)``, which is what the expansion writes.
 
@@ -240,9 +250,9 @@ def modulo(left: Any, right: Any) -> Any:
     """``left % right``, which for a string is formatting."""
     if isinstance(left, (str, bytes)):
         pattern = left if isinstance(left, str) else left.decode("latin-1")
-        for width, precision in _FORMAT.findall(pattern):
-            if any(digits == "*" or len(digits) > 4 or int(digits or 0) > MAX_DIGITS for digits in (width, precision)):
-                raise RefusalError(f"'%{width}.{precision}' is wider than {MAX_DIGITS}")
+        for digits in (part for found in _FORMAT.findall(pattern) for part in found):
+            if digits == "*" or len(digits) > len(str(MAX_DIGITS)) or int(digits or 0) > MAX_DIGITS:
+                raise RefusalError(f"a width or precision of '{digits}' may be more than {MAX_DIGITS:,}")
         check_size(right)
     return left % right
 

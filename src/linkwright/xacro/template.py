@@ -45,7 +45,11 @@ class Template:
         """
         if len(self._parts) == 1:
             return self._parts[0](scope)
-        return "".join([_as_text(part(scope)) for part in self._parts])
+        parts = [_as_text(part(scope)) for part in self._parts]
+        try:
+            return sandbox.joined(parts)
+        except RefusalError as error:
+            raise Fault("XAC202", f"cannot write the value: {error}") from None
 
     def _part(self, token: Token) -> _Part:
         kind, text, start, end = token

@@ -59,6 +59,21 @@ def load(text: str, evaluate: Callable[[str], Any]) -> Any:
     Raises:
         YamlError: the text is not YAML, or has a tag that is not known.
     """
+    if "!" in text:
+        return dotted(_load(text, evaluate))
+    if text not in _loaded:
+        if len(_loaded) >= _KEPT:
+            _loaded.clear()
+        _loaded[text] = _load(text, evaluate)
+    return dotted(_loaded[text])
+
+
+_KEPT = 200
+_loaded: dict[str, Any] = {}
+"""Text -> its value, for texts without tags, whose values never differ; who asks gets a copy."""
+
+
+def _load(text: str, evaluate: Callable[[str], Any]) -> Any:
     import yaml
 
     class UnitLoader(_fast_loader()):  # type: ignore[misc]
@@ -70,7 +85,7 @@ def load(text: str, evaluate: Callable[[str], Any]) -> Any:
     UnitLoader.add_multi_constructor("!", _only_units(with_unit))
     loader = UnitLoader(text)
     try:
-        return dotted(loader.get_single_data())
+        return loader.get_single_data()
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark
         words = error.problem or error.context or "not valid YAML"

@@ -38,9 +38,9 @@ export function flatten(root: Object3D, isOwn: (material: Material) => boolean):
   const parts: MeshPart[] = [];
   root.traverse((object) => {
     if (!(object instanceof Mesh)) return;
-    const mesh = object as Mesh<BufferGeometry, Material | Material[]>;
+    const mesh = object as Mesh;
     const geometry = mesh.geometry.clone().applyMatrix4(mesh.matrixWorld);
-    if (!geometry.getAttribute("normal")) geometry.computeVertexNormals();
+    if (!geometry.hasAttribute("normal")) geometry.computeVertexNormals();
     const materials = Array.isArray(mesh.material) ? mesh.material : [mesh.material];
     parts.push({ geometry, materials: materials.map((material) => (isOwn(material) ? own(material) : null)) });
   });

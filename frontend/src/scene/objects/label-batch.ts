@@ -117,7 +117,7 @@ export class LabelBatch {
   private layout(text: string): Float32Array {
     let layout = this.layouts.get(text);
     if (!layout) {
-      const glyphs = [...text].map((character) => this.atlas.glyph(character));
+      const glyphs = Array.from(text, (character) => this.atlas.glyph(character));
       let pen = -glyphs.reduce((sum, glyph) => sum + glyph.advance, 0) / 2;
       layout = new Float32Array(
         glyphs.flatMap((glyph) => {

@@ -7,7 +7,7 @@ import { capsule, unitBox, unitCylinder, unitSphere } from "../objects/geometrie
 
 /** A part of a shape: what is drawn, and with which materials of the file's own. */
 interface Part {
-  mesh: Mesh<BufferGeometry, Material | Material[]>;
+  mesh: Mesh;
   own: readonly (OwnMaterial | null)[];
 }
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -111,7 +112,8 @@ class DescriptionSource:
     def close(self) -> None:
         """Leave the source."""
         for subscription in self._subscriptions:
-            self._node.destroy_subscription(subscription)
+            with suppress(ValueError):  # the node may have been destroyed before
+                self._node.destroy_subscription(subscription)
         self._subscriptions.clear()
         if self._reading is not None:
             self._reading.cancel()

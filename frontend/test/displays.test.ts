@@ -1,0 +1,59 @@
+import { describe, expect, it } from "vitest";
+import { fadeForAge } from "../src/scene/displays/fade";
+import { FrameFilter } from "../src/scene/displays/frame-filter";
+import { gridLines, type GridShape } from "../src/scene/displays/grid-lines";
+
+const GRID: GridShape = { cells: 10, normalCells: 0, cellSize: 1, plane: "XY" };
+
+function bounds(points: Float32Array): number[][] {
+  return [0, 1, 2].map((axis) => {
+    const values = [...points].filter((_, i) => i % 3 === axis);
+    return [Math.min(...values), Math.max(...values)];
+  });
+}
+
+describe("Grid", () => {
+  it("has cells + 1 lines each way around the origin", () => {
+    const lines = gridLines(GRID);
+    expect(lines.length / 6).toBe(22);
+    expect(bounds(lines)).toEqual([
+      [-5, 5],
+      [-5, 5],
+      [0, 0],
+    ]);
+  });
+
+  it("lies in the plane asked for", () => {
+    expect(bounds(gridLines({ ...GRID, plane: "XZ" }))[1]).toEqual([0, 0]);
+    expect(bounds(gridLines({ ...GRID, plane: "YZ" }))[0]).toEqual([0, 0]);
+  });
+
+  it("joins its layers along the normal", () => {
+    const lines = gridLines({ ...GRID, cells: 2, normalCells: 3, cellSize: 0.5 });
+    expect(lines.length / 6).toBe(4 * 6 + 9);
+    expect(bounds(lines)[2]).toEqual([-0.75, 0.75]);
+  });
+});
+
+describe("the age of a frame", () => {
+  it("shows in thirds of the timeout: as ever, turning grey, fading away", () => {
+    expect(fadeForAge(0, 15)).toEqual({ grey: 0, alpha: 1 });
+    expect(fadeForAge(5, 15)).toEqual({ grey: 0, alpha: 1 });
+    expect(fadeForAge(7.5, 15)).toEqual({ grey: 0.5, alpha: 1 });
+    expect(fadeForAge(12.5, 15)).toEqual({ grey: 1, alpha: 0.5 });
+    expect(fadeForAge(20, 15)).toEqual({ grey: 1, alpha: 0 });
+    expect(fadeForAge(NaN, 15)).toEqual({ grey: 0, alpha: 1 });
+  });
+});
+
+describe("TF's filters", () => {
+  it("want the first and not the second", () => {
+    const filter = new FrameFilter("wheel", "left");
+    expect(["left_wheel", "right_wheel", "base"].filter((name) => filter.accepts(name))).toEqual(["right_wheel"]);
+  });
+
+  it("do nothing when empty or half typed", () => {
+    expect(new FrameFilter("", "").accepts("base")).toBe(true);
+    expect(new FrameFilter("(wheel", "[").accepts("base")).toBe(true);
+  });
+});

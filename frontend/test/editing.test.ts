@@ -1,0 +1,68 @@
+import { describe, expect, it } from "vitest";
+import { placeText, shortPath } from "../src/panels/place";
+import { materialFiles } from "../src/scene/meshes/obj";
+import { en } from "../src/strings/en";
+import { zh } from "../src/strings/zh";
+import { formatColor, parseColor } from "../src/tree/colors";
+import { clamp, formatNumber, parseNumber, stepFor } from "../src/tree/numbers";
+
+describe("numbers in rows", () => {
+  it("show six significant digits", () => {
+    expect([0.785398163, 1e-7, 10, -0, 1234567].map(formatNumber)).toEqual([
+      "0.785398",
+      "1e-7",
+      "10",
+      "0",
+      "1234570",
+    ]);
+  });
+
+  it("are read with point or comma; anything else is refused", () => {
+    expect(["1.5", " -2 ", "0,25", "1e-3"].map(parseNumber)).toEqual([1.5, -2, 0.25, 0.001]);
+    expect(["", "abc", "1 2", "Infinity"].map(parseNumber)).toEqual([null, null, null, null]);
+  });
+
+  it("keep to their limits", () => {
+    expect([clamp(5, 0, 1), clamp(-5, 0, 1), clamp(5, null, null)]).toEqual([1, 0, 5]);
+  });
+
+  it("step by a tenth of their size", () => {
+    expect([stepFor(0, false), stepFor(0.5, false), stepFor(45, false), stepFor(45, true)]).toEqual([0.01, 0.01, 1, 1]);
+  });
+});
+
+describe("colours in rows", () => {
+  it("look as RViz writes them and are read in either form", () => {
+    expect(formatColor("#303030")).toBe("48; 48; 48");
+    expect(["48; 48; 48", "48 48 48", "48,48,48", "#303030"].map(parseColor)).toEqual(Array(4).fill("#303030"));
+    expect(["48; 48", "256; 0; 0", "red", "1.5; 0; 0"].map(parseColor)).toEqual(Array(4).fill(null));
+  });
+});
+
+describe("places", () => {
+  it("show the end of a long path", () => {
+    expect(shortPath("/home/me/ws/src/mbot/urdf/mbot.xacro")).toBe("…/mbot/urdf/mbot.xacro");
+    expect(shortPath("mbot.xacro")).toBe("mbot.xacro");
+    expect(placeText("mbot.xacro", 3, null)).toBe("mbot.xacro:3");
+  });
+});
+
+describe("OBJ files", () => {
+  it("name their materials one file a line, blanks included", () => {
+    expect(materialFiles("mtllib a.mtl\r\n# mtllib no.mtl\nv 0 0 0\n  mtllib my robot.mtl\n")).toEqual([
+      "a.mtl",
+      "my robot.mtl",
+    ]);
+  });
+});
+
+describe("the page's words", () => {
+  it("are all there in Chinese", () => {
+    const texts = (words: object): string[] =>
+      Object.values(words).flatMap((word: unknown) =>
+        typeof word === "object" && word !== null ? texts(word) : typeof word === "string" ? [word] : [],
+      );
+    expect(texts(zh)).toHaveLength(texts(en).length);
+    expect(texts(zh).every((text) => text !== "")).toBe(true);
+  });
+});

@@ -1,0 +1,116 @@
+import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
+import { Connection } from "../src/connection/connection";
+import type { PageMessage, ServerMessage } from "../src/protocol.gen";
+import { Session } from "../src/state/session";
+import { display, property, robot, tree } from "./messages";
+
+let sent: PageMessage[];
+let session: Session;
+
+function receive(...messages: ServerMessage[]): void {
+  for (const message of messages) session.connection.message.emit(message);
+}
+
+beforeEach(() => {
+  sent = [];
+  vi.useFakeTimers();
+  vi.stubGlobal("window", { setTimeout });
+  const connection = new Connection("ws://localhost/ws");
+  vi.spyOn(connection, "send").mockImplementation((message) => void sent.push(message));
+  session = new Session(connection);
+});
+
+afterEach(() => {
+  vi.useRealTimers();
+  vi.unstubAllGlobals();
+});
+
+describe("properties", () => {
+  it("are found by their names and changed by their ids", () => {
+    const style = property({
+      id: "d0/Line Style",
+      name: "Line Style",
+      kind: "enum",
+      value: "Lines",
+      children: [property({ id: "d0/Line Style/Line Width", name: "Line Width", value: 0.03 })],
+    });
+    receive(tree(display({ id: "d0", properties: [style] })));
+    const { rows } = session.displays.displays[0]!;
+    expect(rows.text("", "Line Style")).toBe("Lines");
+    receive({ type: "property_changed", id: "d0/Line Style/Line Width", value: 0.1, options: null });
+    expect(rows.number(0, "Line Style", "Line Width")).toBe(0.1);
+    expect(rows.number(42, "No", "Such", "Row")).toBe(42);
+  });
+
+  it("set by the user are shown at once and told to the server", () => {
+    receive(tree(display({ id: "d0", properties: [property({ id: "d0/Alpha", name: "Alpha", value: 0.5 })] })));
+    session.setProperty("d0/Alpha", 0.9);
+    expect(session.displays.displays[0]!.rows.number(0, "Alpha")).toBe(0.9);
+    expect(sent).toEqual([{ type: "set_property", id: "d0/Alpha", value: 0.9 }]);
+  });
+
+  it("Enabled is the display's box, not a row", () => {
+    const enabled = property({ id: "d0/Enabled", name: "Enabled", kind: "bool", value: true });
+    receive(tree(display({ id: "d0", properties: [enabled] })));
+    const [grid] = session.displays.displays;
+    expect(grid!.rows.nodes).toHaveLength(0);
+    receive({ type: "property_changed", id: "d0/Enabled", value: false, options: null });
+    expect(grid!.enabled).toBe(false);
+  });
+
+  it("survive a new tree in the same display object, so that its drawing goes on", () => {
+    receive(tree(display({ id: "d0" }), display({ id: "d1" })));
+    const [first] = session.displays.displays;
+    receive(tree(display({ id: "d0", name: "Floor" })));
+    expect(session.displays.displays).toEqual([first]);
+    expect(first!.name).toBe("Floor");
+  });
+});
+
+describe("the selection", () => {
+  const model = display({ id: "d1", cls: "rviz_default_plugins/RobotModel" });
+
+  it("outlives a reload of the robot and ends with its link", () => {
+    receive(tree(model), robot("d1", "base_link", "wheel"));
+    const link = session.robots.get("d1")!.links[1]!;
+    session.selection.select({ display: "d1", link });
+    receive(robot("d1", "base_link", "wheel"));
+    expect(session.selection.selected?.link.name).toBe("wheel");
+    expect(session.selection.selected?.link).not.toBe(link);
+    receive(robot("d1", "base_link"));
+    expect(session.selection.selected).toBeNull();
+  });
+});
+
+describe("the view", () => {
+  const view = (yaw: number): ServerMessage => ({
+    type: "view_state",
+    view: { ...session.view.current, yaw, distance: 1.7 },
+  });
+
+  it("is taken from the server once; a reconnect does not move the user's camera", () => {
+    receive(view(1));
+    expect(session.view.orbit).toMatchObject({ yaw: 1, distance: 1.7 });
+    session.view.update({ yaw: 2 });
+    receive(view(1));
+    expect(session.view.orbit.yaw).toBe(2);
+    session.view.reset();
+    expect(session.view.orbit.yaw).toBe(1);
+  });
+
+  it("is told to the server when the user moves it, a few times a second", () => {
+    receive(view(1));
+    for (let i = 0; i < 20; i++) session.view.update({ yaw: 2 + i / 100 });
+    vi.advanceTimersByTime(1000);
+    expect(sent).toHaveLength(1);
+    expect(sent[0]).toMatchObject({ type: "view_changed", view: { yaw: 2.19 } });
+  });
+
+  it("does not jump when another frame becomes its target", () => {
+    receive({ type: "frame_table", revision: 1, names: ["base", "arm"], parents: [-1, 0] });
+    session.frames.poses.set([5, 6, 7, 0, 0, 0, 1], 7);
+    session.view.setTargetFrame("arm");
+    expect(session.view.current.focal_point).toEqual([-5, -6, -7]);
+    expect(session.view.targetPosition()).toEqual([5, 6, 7]);
+  });
+});

@@ -1,0 +1,30 @@
+"""What is reported for mistakes: code, words, exact place, the calls on the way, and the hint."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.xacro import expand
+
+from .cases import Case, described, read_cases
+
+CASES = {
+    f"{path.stem}: {case.title}": case
+    for path in sorted((Path(__file__).parent / "errors").glob("*.md"))
+    for case in read_cases(path)
+}
+
+
+@pytest.mark.parametrize("case", CASES.values(), ids=CASES.keys())
+def test_error(case: Case, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    case.write(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("LINKWRIGHT_UNSET", raising=False)
+    try:
+        diagnostics = expand("main.xacro", case.arguments, packages={"pkg_a": "/share/pkg_a"}).diagnostics
+    except LinkwrightError as error:
+        diagnostics = error.diagnostics
+    assert "\n".join(described(diagnostic, tmp_path) for diagnostic in diagnostics) == case.expected
