@@ -43,6 +43,8 @@ function start(app: HTMLElement): void {
     else if (!dock.isOpen("joints")) dock.open("joints");
   });
 
+  session.diagnosticsChanged.on(() => dock.setCount("diagnostics", session.diagnostics.length));
+
   const stage = makeStage(scene.container, session);
   if (stage) new Controls(stage, session.view);
   app.prepend(new TitleBar(session, dock).element);

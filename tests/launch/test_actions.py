@@ -6,7 +6,6 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from launch import Action, LaunchContext, LaunchDescription
 from launch.actions import (
     AppendEnvironmentVariable,
     DeclareLaunchArgument,
@@ -32,6 +31,8 @@ from launch.event_handlers import OnShutdown
 from launch.events import Shutdown as ShutdownEvent
 from launch.launch_description_sources import AnyLaunchDescriptionSource, PythonLaunchDescriptionSource
 from launch.substitutions import EnvironmentVariable, LaunchConfiguration, LocalSubstitution, ThisLaunchFileDir
+
+from launch import Action, LaunchContext, LaunchDescription
 
 Launch = Callable[..., object]
 Write = Callable[[str, str], Path]
@@ -112,10 +113,18 @@ class TestGroupAction:
         done = await launch(
             SetLaunchConfiguration("x", "outer"),
             GroupAction(
-                [SetLaunchConfiguration("x", "inner"), SetEnvironmentVariable("LW_G", "1"), say(LaunchConfiguration("x"))],
+                [
+                    SetLaunchConfiguration("x", "inner"),
+                    SetEnvironmentVariable("LW_G", "1"),
+                    say(LaunchConfiguration("x")),
+                ],
                 launch_configurations={"y": "given"},
             ),
-            say(LaunchConfiguration("x"), LaunchConfiguration("y", default="-"), EnvironmentVariable("LW_G", default_value="-")),
+            say(
+                LaunchConfiguration("x"),
+                LaunchConfiguration("y", default="-"),
+                EnvironmentVariable("LW_G", default_value="-"),
+            ),
         )
         assert done.messages == ["inner", "outer--"]
 
@@ -180,7 +189,9 @@ class TestTimerAction:
 
     async def test_cancel(self, launch) -> None:
         timer = TimerAction(period=10.0, actions=[say("never")])
-        done = await launch(timer, TimerAction(period=0.01, actions=[OpaqueFunction(function=lambda _: timer.cancel())]))
+        done = await launch(
+            timer, TimerAction(period=0.01, actions=[OpaqueFunction(function=lambda _: timer.cancel())])
+        )
         assert done.messages == []
 
     async def test_a_wrong_period(self, launch) -> None:
@@ -201,7 +212,9 @@ class TestEvents:
     async def test_emit_event(self, launch) -> None:
         handler = OnShutdown(on_shutdown=lambda event, context: say("function ", event.reason))
         done = await launch(
-            RegisterEventHandler(handler), EmitEvent(event=ShutdownEvent(reason="r")), TimerAction(period=9.0, actions=[])
+            RegisterEventHandler(handler),
+            EmitEvent(event=ShutdownEvent(reason="r")),
+            TimerAction(period=9.0, actions=[]),
         )
         assert done.messages == ["function r"]
 

@@ -1,7 +1,6 @@
 from __future__ import annotations
 
 import pytest
-from launch import Condition, LaunchContext
 from launch.conditions import (
     IfCondition,
     LaunchConfigurationEquals,
@@ -10,6 +9,7 @@ from launch.conditions import (
 )
 from launch.substitutions import LaunchConfiguration
 
+from launch import Condition, LaunchContext
 from linkwright.diagnostics import LinkwrightError
 
 
@@ -20,7 +20,9 @@ def context() -> LaunchContext:
     return made
 
 
-@pytest.mark.parametrize(("value", "truth"), [("true", True), ("TRUE", True), ("1", True), (" false ", False), ("0", False)])
+@pytest.mark.parametrize(
+    ("value", "truth"), [("true", True), ("TRUE", True), ("1", True), (" false ", False), ("0", False)]
+)
 def test_if_and_unless(context: LaunchContext, value: str, truth: bool) -> None:
     assert IfCondition(value).evaluate(context) is truth
     assert UnlessCondition(value).evaluate(context) is not truth

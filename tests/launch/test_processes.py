@@ -6,12 +6,21 @@ import time
 from pathlib import Path
 
 import pytest
-from launch import LaunchDescription
-from launch.actions import EmitEvent, ExecuteProcess, LogInfo, RegisterEventHandler, SetLaunchConfiguration, Shutdown, TimerAction
+from launch.actions import (
+    EmitEvent,
+    ExecuteProcess,
+    LogInfo,
+    RegisterEventHandler,
+    SetLaunchConfiguration,
+    Shutdown,
+    TimerAction,
+)
 from launch.event_handlers import OnExecutionComplete, OnProcessExit, OnProcessIO, OnProcessStart, OnShutdown
 from launch.events import matches_action
 from launch.events.process import ShutdownProcess, SignalProcess, matches_name
 from launch.substitutions import LaunchConfiguration
+
+from launch import LaunchDescription
 
 STUBBORN = """
 import signal, sys, time
@@ -119,7 +128,9 @@ class TestOutput:
         assert "did you mean 'screen'?" in done.err
 
     async def test_format_and_cache(self, launch) -> None:
-        action = python(self.PROGRAM, output_format="<{this.process_description.final_name}> {line}", cached_output=True)
+        action = python(
+            self.PROGRAM, output_format="<{this.process_description.final_name}> {line}", cached_output=True
+        )
         assert (await launch(action)).out == "<py-1> out\n"
         assert action.get_stdout() == "out\n"
         assert action.get_stderr() == "err\n"
@@ -160,7 +171,10 @@ class TestHandlers:
             ),
             RegisterEventHandler(OnProcessExit(target_action=first, on_exit=[LogInfo(msg="exited"), second])),
             RegisterEventHandler(
-                OnProcessExit(target_action=second, on_exit=lambda event, _: LogInfo(msg=f"{event.process_name} {event.returncode}"))
+                OnProcessExit(
+                    target_action=second,
+                    on_exit=lambda event, _: LogInfo(msg=f"{event.process_name} {event.returncode}"),
+                )
             ),
         )
         assert done.messages == ["started", "hello", "exited", "py-2 0"]
@@ -183,7 +197,9 @@ class TestHandlers:
         assert time.monotonic() - began < 3.0
 
     async def test_on_exit_function(self, launch) -> None:
-        done = await launch(python("raise SystemExit(4)", on_exit=lambda event, _: LogInfo(msg=f"rc {event.returncode}")))
+        done = await launch(
+            python("raise SystemExit(4)", on_exit=lambda event, _: LogInfo(msg=f"rc {event.returncode}"))
+        )
         assert done.messages == ["rc 4"]
 
     async def test_a_target_must_be_an_action(self) -> None:
@@ -204,7 +220,15 @@ class TestEnds:
         action = python(STUBBORN, sigterm_timeout=0.15, sigkill_timeout="0.15")
         done = await launch(
             action,
-            RegisterEventHandler(OnProcessIO(on_stdout=lambda event: EmitEvent(event=ShutdownProcess(process_matcher=matches_action(action))) if b"ready" in event.text else None)),
+            RegisterEventHandler(
+                OnProcessIO(
+                    on_stdout=lambda event: (
+                        EmitEvent(event=ShutdownProcess(process_matcher=matches_action(action)))
+                        if b"ready" in event.text
+                        else None
+                    )
+                )
+            ),
         )
         assert done.out.splitlines() == ["[py-1] ready", "[py-1] int", "[py-1] term"]
         assert "escalating to 'SIGTERM'" in done.err
@@ -216,7 +240,11 @@ class TestEnds:
         done = await launch(
             action,
             RegisterEventHandler(
-                OnProcessIO(on_stdout=lambda _: EmitEvent(event=SignalProcess(signal_number="SIGTERM", process_matcher=matches_name("py-1"))))
+                OnProcessIO(
+                    on_stdout=lambda _: EmitEvent(
+                        event=SignalProcess(signal_number="SIGTERM", process_matcher=matches_name("py-1"))
+                    )
+                )
             ),
         )
         assert action.return_code == -15

@@ -5,7 +5,6 @@ import sys
 from pathlib import Path
 
 import pytest
-from launch import LaunchContext
 from launch.substitution import Substitution
 from launch.substitutions import (
     AllSubstitution,
@@ -32,6 +31,7 @@ from launch.substitutions import (
 from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
 from launch_ros.substitutions import ExecutableInPackage, FindPackagePrefix, FindPackageShare
 
+from launch import LaunchContext
 from linkwright.diagnostics import LinkwrightError
 from linkwright.workspace import PackageFinder, use_finder
 
@@ -115,9 +115,7 @@ def test_find_executable(context: LaunchContext) -> None:
         text(FindExecutable(name="no-such-program"), context)
 
 
-def test_xacro_is_found_though_it_is_not_installed(
-    context: LaunchContext, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_xacro_is_found_though_it_is_not_installed(context: LaunchContext, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PATH", "/nowhere")
     assert text(FindExecutable(name="xacro"), context) == "xacro"
 
@@ -240,7 +238,7 @@ def test_a_users_own_substitution(context: LaunchContext) -> None:
 
 class TestCommand:
     def python(self, program: str) -> list[str]:
-        return [sys.executable, " -c \"", program, '"']
+        return [sys.executable, ' -c "', program, '"']
 
     def test_output(self, context: LaunchContext) -> None:
         assert text(Command(["echo ", LaunchConfiguration("model")]), context) == "arm\n"

@@ -1,8 +1,8 @@
 """Test cases written in Markdown: a heading is a case, its fenced blocks are files, arguments and what must come out.
 
 Fences: ``xacro`` is what stands inside the root element of ``main.xacro``; ``document`` is the whole of it;
-``file NAME`` is a file beside it; ``arguments`` holds ``name:=value`` lines; ``urdf`` is the expansion without its banner,
-``diagnostics`` what is reported.
+``file NAME`` is a file beside it; ``arguments`` holds ``name:=value`` lines; ``urdf`` is the expansion without its
+banner, ``diagnostics`` what is reported.
 """
 
 from __future__ import annotations

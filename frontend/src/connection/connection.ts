@@ -2,7 +2,7 @@ import { PROTOCOL_VERSION, type PageMessage, type ServerMessage } from "../proto
 import { Signal } from "../state/signal";
 import { unpackTransforms, type Transforms } from "./transforms";
 
-/** `ended`: the program said goodbye; the page still looks for a new one. `outdated`: a reload did not help. */
+/** `ended`: the program said goodbye; one with the same token may still come back. `outdated`: a reload did not help. */
 export type ConnectionState = "connecting" | "connected" | "reconnecting" | "ended" | "outdated";
 
 const FIRST_RETRY_MS = 250;

@@ -43,6 +43,11 @@ export class Dock {
     if (panel) this.api.removePanel(panel);
   }
 
+  /** A number behind a panel's title; 0 takes it away. */
+  setCount(id: PanelId, count: number): void {
+    this.api.getPanel(id)?.api.setTitle(count > 0 ? `${title(id)} (${count})` : title(id));
+  }
+
   /** The arrangement of the first visit. */
   reset(): void {
     const joints = this.api.getPanel("joints") !== undefined;

@@ -1,6 +1,7 @@
 import { h } from "../dom";
 import type { Session } from "../state/session";
 import { strings } from "../strings";
+import { ConnectionNotice } from "./connection-notice";
 import { DiagnosticsBanner } from "./diagnostics-banner";
 import { OrientationSign } from "./orientation-sign";
 import type { Panel } from "./panel";
@@ -17,13 +18,14 @@ export class ScenePanel implements Panel {
 
   constructor(session: Session, showDiagnostics: () => void) {
     const banner = new DiagnosticsBanner(session, showDiagnostics);
+    const notice = new ConnectionNotice(session.connection);
     const card = new SelectionCard(session);
     const sign = new OrientationSign(session.view);
     this.element = h(
       "div",
       { class: "scene-panel" },
       this.container,
-      h("div", { class: "overlay" }, banner.element, this.waiting, card.element, sign.element),
+      h("div", { class: "overlay" }, h("div", { class: "notices" }, notice.element, banner.element), this.waiting, card.element, sign.element),
     );
     const update = (): void => {
       this.waiting.hidden = session.robot !== null;

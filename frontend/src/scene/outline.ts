@@ -29,7 +29,7 @@ const FRAGMENT = /* glsl */ `
 /** Draws a line around the selected objects, also where something hides them, and a tint over them. */
 export class Outline {
   private objects: readonly Object3D[] = [];
-  private readonly mask = new WebGLRenderTarget(1, 1);
+  private readonly mask = new WebGLRenderTarget(1, 1, { samples: 4 });
   private readonly white = new MeshBasicMaterial({ color: 0xffffff, side: DoubleSide });
   private readonly uniforms = {
     mask: { value: this.mask.texture },

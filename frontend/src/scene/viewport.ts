@@ -30,6 +30,8 @@ export class Viewport {
 
   constructor(readonly container: HTMLElement, resized: () => void) {
     this.renderer = new WebGLRenderer({ antialias: false, powerPreference: "high-performance" });
+    // Asking whether the shaders compiled waits for them; only we could do something about it.
+    this.renderer.debug.checkShaderErrors = import.meta.env.DEV;
     this.renderer.outputColorSpace = LinearSRGBColorSpace;
     this.renderer.setClearColor(0x303030);
     this.camera.matrixAutoUpdate = false;

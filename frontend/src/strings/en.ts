@@ -22,10 +22,8 @@ export const en = {
     notDrawnHelp: "Linkwright keeps this display in the file but does not draw it.",
     enabledHelp: "Switches this display on and off.",
     helpHint: "Select a row to read what it means.",
-    fixedFrame: "<Fixed Frame>",
     pickColor: "Pick a colour",
     frames: "Known frames",
-    noDisplays: "No displays",
   },
   views: {
     current: "Current View",
@@ -71,14 +69,9 @@ export const en = {
     follows: (joint: string): string => `follows ${joint}`,
     position: (joint: string): string => `Position of ${joint}`,
     none: "No joints to move.",
-    noMatch: "No joint of that name.",
   },
   diagnostics: {
     none: "No problems found.",
-    summary: (errors: number, warnings: number): string =>
-      [errors > 0 ? plural(errors, "error") : "", warnings > 0 ? plural(warnings, "warning") : ""]
-        .filter((part) => part !== "")
-        .join(", "),
     hint: "Hint",
     note: "Note",
     lastGood: "The last good robot stays until this is mended.",
@@ -106,7 +99,7 @@ export const en = {
     connected: "Connected",
     reconnecting: "Connection lost, trying again",
     ended: "The program has ended",
-    endedHint: "Start linkwright again and this page goes on by itself.",
+    endedHint: "Start it again and open the address that it prints.",
     outdated: "This page is of another version than the program. Close it and open the program's address anew.",
   },
   status: {

@@ -18,10 +18,8 @@ export const zh: Strings = {
     notDrawnHelp: "Linkwright 会在文件中保留此显示项，但不绘制它。",
     enabledHelp: "打开或关闭此显示项。",
     helpHint: "选中一行即可查看它的含义。",
-    fixedFrame: "<Fixed Frame>",
     pickColor: "选择颜色",
     frames: "已知坐标系",
-    noDisplays: "没有显示项",
   },
   views: {
     current: "当前视角",
@@ -67,14 +65,9 @@ export const zh: Strings = {
     follows: (joint) => `跟随 ${joint}`,
     position: (joint) => `${joint} 的位置`,
     none: "没有可移动的关节。",
-    noMatch: "没有这个名字的关节。",
   },
   diagnostics: {
     none: "没有发现问题。",
-    summary: (errors, warnings) =>
-      [errors > 0 ? `${errors} 个错误` : "", warnings > 0 ? `${warnings} 个警告` : ""]
-        .filter((part) => part !== "")
-        .join("，"),
     hint: "提示",
     note: "说明",
     lastGood: "修复之前，保留上一个正确的机器人。",
@@ -102,7 +95,7 @@ export const zh: Strings = {
     connected: "已连接",
     reconnecting: "连接中断，正在重试",
     ended: "程序已结束",
-    endedHint: "再次启动 linkwright，本页会自动继续。",
+    endedHint: "请再次启动程序，并打开它给出的地址。",
     outdated: "本页与程序的版本不同。请关闭本页，重新打开程序给出的地址。",
   },
   status: {

@@ -1,5 +1,6 @@
 import { coalesced, h } from "../dom";
 import { Signal } from "../state/signal";
+import { ColumnSplitter } from "./column-splitter";
 import type { TreeItem } from "./tree-item";
 import { TreeRow } from "./tree-row";
 
@@ -12,6 +13,7 @@ interface Line {
 /** A property tree: names left, values right, everything reachable by keyboard. */
 export class TreeView {
   readonly element: HTMLElement;
+  private readonly list: HTMLElement;
   readonly selected = new Signal<TreeItem>();
   /** Redraws before the next painting, reading all items anew. */
   readonly refresh = coalesced(() => this.render());
@@ -26,11 +28,12 @@ export class TreeView {
     private readonly items: () => readonly TreeItem[],
     private readonly frames: () => readonly string[],
   ) {
-    this.element = h("div", { class: "tree", role: "tree", aria: { label } });
-    this.element.addEventListener("click", (event) => this.clicked(event));
-    this.element.addEventListener("dblclick", (event) => this.doubleClicked(event));
-    this.element.addEventListener("keydown", (event) => this.keyed(event));
-    this.element.addEventListener("focusin", (event) => {
+    this.list = h("div", { class: "tree", role: "tree", aria: { label } });
+    this.element = h("div", { class: "tree-box" }, this.list, new ColumnSplitter().element);
+    this.list.addEventListener("click", (event) => this.clicked(event));
+    this.list.addEventListener("dblclick", (event) => this.doubleClicked(event));
+    this.list.addEventListener("keydown", (event) => this.keyed(event));
+    this.list.addEventListener("focusin", (event) => {
       const key = keyOf(event.target);
       if (key !== null) this.select(key);
     });
@@ -62,7 +65,7 @@ export class TreeView {
       elements.push(row.element);
     }
     for (const key of this.rows.keys()) if (!keep.has(key)) this.rows.delete(key);
-    arrange(this.element, elements);
+    arrange(this.list, elements);
     const [first] = elements;
     if (first && (this.selectedKey === null || !keep.has(this.selectedKey))) first.tabIndex = 0;
     this.finishReveal();

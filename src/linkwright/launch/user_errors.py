@@ -43,7 +43,9 @@ def explain(error: Exception, where: str, fallback: Place | None = None) -> Link
     source = place.source() if place else None
     span = place.span(source) if place else None
     notes = tuple(Note("called from here", each.span(read_source(each.file))) for each in reversed(trail[:-1]))
-    return LinkwrightError(Diagnostic("LAUNCH104", message, span, notes=notes, hint=_hint(error, source, span), source=source))
+    return LinkwrightError(
+        Diagnostic("LAUNCH104", message, span, notes=notes, hint=_hint(error, source, span), source=source)
+    )
 
 
 def _user_places(traceback: TracebackType | None) -> Iterable[Place]:

@@ -6,7 +6,7 @@ from typing import Any, NoReturn
 
 from linkwright.diagnostics import Note, did_you_mean
 from linkwright.xacro.expander import PREFIX, Expander, Site
-from linkwright.xacro.faults import Fault, attribute_name
+from linkwright.xacro.faults import Fault, attribute_name, definition_elsewhere
 from linkwright.xacro.macros import Macro, MacroTable, Parameter, parse_parameters
 from linkwright.xacro.origin import Frame
 from linkwright.xacro.scope import Scope
@@ -34,6 +34,11 @@ def define_macro(expander: Expander, site: Site) -> None:
     except Fault as fault:
         fault.place_in_attribute(node, "params")
         expander.fail(fault)
+    names = [parameter.name for parameter in parameters]
+    twice = next((given for given in names if names.count(given) > 1), None)
+    if twice is not None:
+        message = f"the macro '{name}' declares its parameter '{twice}' twice"
+        expander.session.warn("XAC413", message, node.attribute_span("params"))
     site.macros.define(name, Macro(name, parameters, node))
 
 
@@ -119,7 +124,10 @@ class _Call:
         elif hint is None:
             hint = "no macro is defined before this; is an include missing?"
         span = node.span() if self._written_in is None else node.attribute_span(self._written_in)
-        self._expander.fail_at("XAC401", f"there is no macro '{name}'", node, span, hint)
+        notes = definition_elsewhere(node.source, "macro", name) if node.source else []
+        if notes and not known:
+            hint = "move its definition above this call"
+        self._expander.fail_at("XAC401", f"there is no macro '{name}'", node, span, hint, *notes)
 
     # binding the parameters
 

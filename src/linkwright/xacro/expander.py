@@ -25,6 +25,10 @@ _DECLARATION = "xmlns:xacro"
 _EVALUATE_COMMENTS = "xacro:eval-comments"
 _EVALUATE_COMMENTS_OFF = "xacro:eval-comments:off"
 _MOST_ERRORS = 20
+_ROOT_HINT = (
+    "the attributes of the root come before what it holds; "
+    'write <xacro:attribute name="{name}" value="{value}"/> inside it instead'
+)
 
 
 class Site(NamedTuple):
@@ -69,6 +73,7 @@ class Expander:
         self.sweeper = CommentSweeper()
         self._errors: list[Diagnostic] = []
         self._nesting = 0
+        self._root: Element | None = None
 
     def document(self, document: Document) -> Document:
         """The expansion of a document.
@@ -81,6 +86,7 @@ class Expander:
         target = root.attributes.get("xacro:targetNamespace")
         if target:
             root = _with_attribute(root, "xmlns", target)
+        self._root = root
         try:
             scope = Scope(self.session.globals, self.session)
             self.element(root, container.children, scope, MacroTable())
@@ -153,6 +159,8 @@ class Expander:
                     value = self.session.evaluate_text(value, scope)
                 except Fault as fault:
                     fault.place_in_attribute(node, name)
+                    if fault.code == "XAC211" and node is self._root:
+                        fault.hint = _ROOT_HINT.format(name=name, value=node.attributes[name])
                     self.note(fault)
             if len(value) > LONG:
                 self._pay_text(node, value)
@@ -188,6 +196,8 @@ class Expander:
             _check_comment(data)
         except Fault as fault:
             inside = Text(node.data, node.source, node.offset + len("<!--"))
+            if fault.start is None:
+                fault.start, fault.end = 0, len(node.data)
             fault.place_in_text(inside)
             self.note(fault)
             data = ""
@@ -320,7 +330,7 @@ class Expander:
         raise LinkwrightError(Diagnostic(code, message, span, notes=notes, hint=hint, source=node.source))
 
     def _diagnostic(self, fault: Fault) -> Diagnostic:
-        notes = (*fault.notes, *trail(self.session.frame))
+        notes = (*fault.notes, *fault.elsewhere(), *trail(self.session.frame))
         return Diagnostic(fault.code, fault.message, fault.span, notes=notes, hint=fault.hint, source=fault.source)
 
 

@@ -6,6 +6,8 @@ starts with offsets, is placed by whoever evaluates an element's text, and grows
 
 from __future__ import annotations
 
+import re
+
 from linkwright.diagnostics import Note, SourceText, Span
 from linkwright.xmltree import Element, Text
 from linkwright.xmltree.positions import attribute_name_range, attribute_value_range, raw_offset
@@ -24,6 +26,7 @@ class Fault(Exception):  # noqa: N818 - it is on its way to a diagnostic, and no
         source: the text that the span is in.
         notes: how the evaluation came to that place, innermost first.
         passing: what the next place on the way out is to be noted as, such as "property 'a' is used here".
+        missing: the name of the property that is missing, if that is the mistake.
     """
 
     def __init__(
@@ -39,6 +42,7 @@ class Fault(Exception):  # noqa: N818 - it is on its way to a diagnostic, and no
         self.source: SourceText | None = None
         self.notes: list[Note] = []
         self.passing = "from here"
+        self.missing: str | None = None
 
     def within(self, start: int, end: int, shift: int | None = None) -> None:
         """Seen from the text around: the mistake is inside its `start` to `end`, or at `shift` plus its offsets."""
@@ -61,12 +65,28 @@ class Fault(Exception):  # noqa: N818 - it is on its way to a diagnostic, and no
         """The text is none that was written; the element stands for it."""
         self._place(element.source, element.span())
 
+    def elsewhere(self) -> list[Note]:
+        """Where the missing property is defined in the same file, in vain for this place."""
+        if self.missing is None or self.source is None:
+            return []
+        return definition_elsewhere(self.source, "property", self.missing)
+
     def _place(self, source: SourceText | None, span: Span | None) -> None:
         if self.span is None:
             self.source, self.span = source, span
         elif span is not None:
             self.notes.append(Note(self.passing, span))
         self.start = self.end = None
+
+
+def definition_elsewhere(source: SourceText, tag: str, name: str) -> list[Note]:
+    """A note on where a file defines a name, when that is not in effect where it is wanted."""
+    pattern = rf"""<xacro:{tag}\s(?:[^>"']|"[^"]*"|'[^']*')*?\bname\s*=\s*["']{re.escape(name)}["']"""
+    match = re.search(pattern, source.text)
+    if match is None:
+        return []
+    span = source.span(match.start(), match.start() + len(f"<xacro:{tag}"))
+    return [Note(f"a {tag} '{name}' is defined here, which is too late or not in scope there", span)]
 
 
 def attribute_part(element: Element, name: str, start: int | None, end: int | None) -> Span | None:

@@ -54,14 +54,15 @@ def parse_parameters(text: str) -> tuple[Parameter, ...]:
         Fault: XAC412 for a default whose quotes do not match.
     """
     parameters: list[Parameter] = []
+    with_sign: dict[str, Parameter] = {}
     at = 0
     while at < len(text):
         match = _PARAMETER.match(text, at)
         if match is not None:
-            default = match["default"] or None
-            parameters.append(
-                Parameter(match["name"], default, bool(match["forward"]), match.start("name"), match.start("default"))
-            )
+            name, default = match["name"], match["default"] or None
+            parameter = Parameter(name, default, bool(match["forward"]), match.start("name"), match.start("default"))
+            parameters.append(parameter)
+            with_sign[name] = parameter
         elif _SIGN.match(text, at):
             end = len(text.rstrip())
             raise Fault("XAC412", "this parameter's default has a quote that is never closed", at, end)
@@ -71,7 +72,8 @@ def parse_parameters(text: str) -> tuple[Parameter, ...]:
                 break  # only blanks are left
             parameters.append(Parameter(match["name"], None, False, match.start("name"), match.end("name")))
         at = match.end()
-    return tuple(parameters)
+    # Of parameters declared twice the default that is written last holds for all, as in ros/xacro.
+    return tuple(with_sign.get(parameter.name, parameter) for parameter in parameters)
 
 
 class Macro:

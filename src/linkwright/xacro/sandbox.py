@@ -10,7 +10,6 @@ from __future__ import annotations
 import operator
 import re
 from collections.abc import Callable
-from datetime import date, datetime
 from typing import Any
 
 from linkwright.xacro.scope import Namespace
@@ -70,9 +69,10 @@ _ATTRIBUTES: dict[type, set[str]] = {
     frozenset: _SET,
     range: {*_SEQUENCE, "start", "step", "stop"},
     slice: {"start", "step", "stop"},
-    date: {"day", "isoformat", "isoweekday", "month", "weekday", "year"},
-    datetime: {"day", "hour", "isoformat", "microsecond", "minute", "month", "second", "weekday", "year"},
 }
+
+_DATES = {"day", "hour", "isoformat", "microsecond", "minute", "month", "second", "weekday", "year"}
+"""For the dates that YAML files hold."""
 
 CALLABLE_TYPES = frozenset(
     {bool, complex, dict, enumerate, filter, float, frozenset, int, list, map, reversed, set, slice, str, tuple, zip}
@@ -102,6 +102,8 @@ def attribute(value: Any, name: str) -> Any:
         return _Bound(grown, value)
     if kind is YamlDict:
         return value[name]
+    if kind.__module__ == "datetime" and name in _DATES:
+        return getattr(value, name)
     if kind is type and value in _ATTRIBUTES and name in _ATTRIBUTES[value]:
         return getattr(value, name)
     if name.startswith("_") or hasattr(value, name):

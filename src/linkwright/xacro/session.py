@@ -117,7 +117,9 @@ class Session:
             hint = did_you_mean(name, [known for known in environment.names() if known not in provided])
             if hint is None and len(name) > len("pi"):
                 hint = did_you_mean(name, provided)
-        return Fault("XAC201", f"the property '{name}' is not defined", start, end, hint)
+        fault = Fault("XAC201", f"the property '{name}' is not defined", start, end, hint)
+        fault.missing = name
+        return fault
 
     def nearest_attribute(self, owner: Any, name: str) -> str | None:
         """A hint for a name that a value does not have."""

@@ -7,7 +7,8 @@ import os
 from linkwright.xmltree import Document, parse_file
 
 _KEPT = 500
-_documents: dict[tuple[str, str], tuple[int, int, Document]] = {}
+documents: dict[tuple[str, str], tuple[int, int, Document]] = {}
+"""Path and current folder -> time of change, size and document."""
 
 
 def read(path: str) -> Document:
@@ -21,11 +22,11 @@ def read(path: str) -> Document:
         status = os.stat(path)  # noqa: PTH116
     except (OSError, ValueError):
         return parse_file(path)  # which says what is wrong
-    known = _documents.get(key)
+    known = documents.get(key)
     if known is not None and known[:2] == (status.st_mtime_ns, status.st_size):
         return known[2]
     document = parse_file(path)
-    if len(_documents) >= _KEPT:
-        _documents.clear()
-    _documents[key] = (status.st_mtime_ns, status.st_size, document)
+    if len(documents) >= _KEPT:
+        documents.clear()
+    documents[key] = (status.st_mtime_ns, status.st_size, document)
     return document

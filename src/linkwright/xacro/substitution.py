@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from linkwright.xacro.session import Session
 
 _COMMANDS = ("arg", "find", "env", "optenv", "dirname", "cwd", "eval")
+_KNOWN = f"the commands are {', '.join(_COMMANDS)}"
 _REFERENCE = re.compile(r"\$\(([^()$]+)\)")
 
 
@@ -58,13 +59,14 @@ def _found_again(whole: str, body: str, session: Session) -> str:
 
 def _command(body: str, session: Session, *, only_find: bool) -> str:
     words = [word for word in body.split(" ") if word]
-    command = words[0] if words else ""
+    if not words:
+        raise Fault("XAC213", "there is no command between the parentheses", hint=_KNOWN)
+    command = words[0]
     evaluate = _EVALUATE.get(command)
     if evaluate is None:
         from linkwright.diagnostics import did_you_mean
 
-        known = ", ".join(_COMMANDS)
-        hint = did_you_mean(command, _COMMANDS) or f"the commands are {known}"
+        hint = did_you_mean(command, _COMMANDS) or _KNOWN
         at = body.find(command)
         raise Fault("XAC212", f"unknown substitution command '{command}'", at, at + len(command), hint)
     try:
@@ -130,6 +132,8 @@ def _evaluated(source: str, session: Session) -> str:
     except Fault as fault:
         if fault.start is not None and fault.end is not None:
             fault.start, fault.end = fault.start + len("eval "), fault.end + len("eval ")
+        if source.count("(") > source.count(")"):
+            fault.hint = "the first ')' ends the substitution; write ${...} for an expression with parentheses"
         raise
 
 

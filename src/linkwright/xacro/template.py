@@ -86,8 +86,9 @@ class Template:
         return part
 
 
-_templates: dict[str, Template] = {}
-_expressions: dict[str, Expression] = {}
+templates: dict[str, Template] = {}
+expressions: dict[str, Expression] = {}
+"""What was compiled so far, by its text."""
 
 
 def compile_template(text: str) -> Template:
@@ -96,11 +97,11 @@ def compile_template(text: str) -> Template:
     Raises:
         Fault: XAC101 or XAC102 when the text is malformed.
     """
-    template = _templates.get(text)
+    template = templates.get(text)
     if template is None:
-        if len(_templates) >= _KEPT:
-            _templates.clear()
-        template = _templates[text] = Template(text)
+        if len(templates) >= _KEPT:
+            templates.clear()
+        template = templates[text] = Template(text)
     return template
 
 
@@ -110,11 +111,11 @@ def compile_expression(source: str) -> Expression:
     Raises:
         Fault: XAC102 or XAC204 when it is malformed or forbidden.
     """
-    expression = _expressions.get(source)
+    expression = expressions.get(source)
     if expression is None:
-        if len(_expressions) >= _KEPT:
-            _expressions.clear()
-        expression = _expressions[source] = Expression(source)
+        if len(expressions) >= _KEPT:
+            expressions.clear()
+        expression = expressions[source] = Expression(source)
     return expression
 
 

@@ -61,15 +61,15 @@ def load(text: str, evaluate: Callable[[str], Any]) -> Any:
     """
     if "!" in text:
         return dotted(_load(text, evaluate))
-    if text not in _loaded:
-        if len(_loaded) >= _KEPT:
-            _loaded.clear()
-        _loaded[text] = _load(text, evaluate)
-    return dotted(_loaded[text])
+    if text not in loaded:
+        if len(loaded) >= _KEPT:
+            loaded.clear()
+        loaded[text] = _load(text, evaluate)
+    return dotted(loaded[text])
 
 
 _KEPT = 200
-_loaded: dict[str, Any] = {}
+loaded: dict[str, Any] = {}
 """Text -> its value, for texts without tags, whose values never differ; who asks gets a copy."""
 
 

@@ -104,7 +104,10 @@ class _Fault:
         if code == _NO_ELEMENT:
             return self._diagnostic("XML206", "there is no root element", hint="a robot starts with <robot name=...>")
         if code == _UNCLOSED_CDATA:
-            return self._diagnostic("XML203", "this CDATA section is never closed", 9, hint="close it with ']]>'")
+            at = self._text.rfind("<![CDATA[", 0, self._offset)
+            return self._diagnostic(
+                "XML203", "this CDATA section is never closed", 9, at=at, hint="close it with ']]>'"
+            )
         if code == _SYNTAX and self._open == []:
             hint = "an XML file holds nothing but comments before its root element"
             return self._diagnostic("XML206", "this is not XML", hint=hint)
@@ -159,9 +162,9 @@ class _Fault:
         before = text[max(0, at - 200) : at]
         if character and not character.isprintable() and character not in "\t\r\n":
             return self._diagnostic("XML206", f"the character U+{ord(character):04X} is not allowed in XML")
-        ampersand = re.search(r"&[^\s;&<>\"']*$", text[: at + 1][-60:])
+        ampersand = re.search(r"&[^\s;&<>\"']*$", before)
         if ampersand:
-            start = at + 1 - len(ampersand[0])
+            start = at - len(ampersand[0])
             return self._diagnostic("XML206", "'&' does not begin an entity", at=start, hint=_AMPERSAND_HINT)
         if re.search(r"<!--(?:(?!-->).)*--$", before, re.DOTALL):
             message = "'--' is not allowed inside a comment"
@@ -171,10 +174,14 @@ class _Fault:
         if unquoted := _UNQUOTED.search(before):
             name = unquoted[1]
             return self._diagnostic("XML206", f"the value of '{name}' is not in quotes", hint=f'write {name}="..."')
+        if character == "<" and "<!ENTITY" in text and before.rstrip().endswith(">"):
+            hint = "look at the entities that the document declares"
+            return self._diagnostic("XML206", "this is not well-formed once its entities are expanded", hint=hint)
         if character == "<":
             return self._diagnostic("XML206", "'<' is not allowed inside a tag", hint=_LESS_HINT)
         if before[-1:] in ('"', "'") and _NAME.match(character):
-            return self._diagnostic("XML206", "a blank is missing between two attributes")
+            hint = "write a blank here, or look for a missing quote before it"
+            return self._diagnostic("XML206", "a blank is missing between two attributes", hint=hint)
         if bare := _BARE_ATTRIBUTE.search(before):
             at -= len(bare[0])
             message = f"the attribute '{bare[1]}' has no value"

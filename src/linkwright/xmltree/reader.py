@@ -66,6 +66,7 @@ class _Reader:
     def __init__(self, source: SourceText) -> None:
         self._source = source
         self._data = source.text.encode("utf-8", "surrogatepass")
+        self._is_ascii = source.text.isascii()
         self._parser = parser = ParserCreate("utf-8")
         parser.buffer_text = True
         parser.specified_attributes = True  # the defaults of a DTD are not written, so they are not there
@@ -109,7 +110,7 @@ class _Reader:
         document = Document(self._root, self._source)
         document.prolog, document.epilog = self._prolog, self._outside
         document.doctype, document.doctype_index = self._doctype, self._doctype_at
-        if not self._source.text.isascii():
+        if not self._is_ascii:
             _to_character_offsets(document, self._data)
         return document
 
@@ -186,9 +187,14 @@ class _Reader:
         # Expat hands text over when it meets what follows it, so the place is counted back from there; a text that
         # is longer as written than as read (entities, Windows line ends) begins after the tag before it.
         end = self._parser.CurrentByteIndex
-        raw = data.encode("utf-8", "surrogatepass")
-        if self._data.endswith(raw, 0, end):
-            return end - len(raw)
+        if self._is_ascii:
+            start = end - len(data)
+            if self._source.text.startswith(data, start):
+                return start
+        else:
+            raw = data.encode("utf-8", "surrogatepass")
+            if self._data.endswith(raw, 0, end):
+                return end - len(raw)
         return self._data.rfind(b">", 0, end) + 1
 
     def _start_cdata(self) -> None:

@@ -88,6 +88,7 @@ export class RobotModelDrawing implements Drawing {
     this.next = null;
     this.root.add(robot.root);
     this.styleIsOld = true;
+    this.update();
     this.context.invalidate();
   }
 }

@@ -1,14 +1,11 @@
 import { Group, Matrix4, Quaternion, Vector3 } from "three";
 import { FrameFilter } from "./frame-filter";
-import { arrowHeadGeometry, arrowShaftGeometry, axesGeometry } from "../objects/geometries";
-import { CopyBatch } from "../objects/copy-batch";
 import { LabelBatch } from "../objects/label-batch";
 import { framePose } from "../pose";
 import type { Drawing, DrawingContext } from "./drawing";
 import { fadeForAge, type Fade } from "./fade";
+import { FrameMarkers } from "./frame-markers";
 
-const AXIS_LENGTH = 0.2;
-const AXIS_RADIUS = 0.02;
 const SHAFT_RADIUS = 0.01;
 const HEAD_RADIUS = 0.04;
 const HEAD_LENGTH = 0.1;
@@ -19,12 +16,15 @@ const SHORTEST_ARROW = 0.001;
 const FADE_STEPS = 32;
 const ALONG_Z = new Vector3(0, 0, 1);
 
+/** From this many frames on they are drawn with fewer corners. */
+const MANY_FRAMES = 120;
+const FINE_SEGMENTS = 12;
+const COARSE_SEGMENTS = 5;
+
 /** rviz_default_plugins/TF: axes, arrows to the parents and names of all frames, each kind in one draw call. */
 export class TfDrawing implements Drawing {
   readonly root = new Group();
-  private readonly axes = new CopyBatch(this.root, axesGeometry(AXIS_LENGTH, AXIS_RADIUS));
-  private readonly shafts = new CopyBatch(this.root, arrowShaftGeometry());
-  private readonly heads = new CopyBatch(this.root, arrowHeadGeometry());
+  private readonly markers = new FrameMarkers(this.root, FINE_SEGMENTS);
   private readonly names = new LabelBatch();
   private readonly forget: (() => void)[];
   private filter = new FrameFilter("", "");
@@ -54,11 +54,13 @@ export class TfDrawing implements Drawing {
     const { frames } = this.context.session;
     const showAxes = rows.bool(true, "Show Axes");
     const showNames = rows.bool(false, "Show Names");
-    this.axes.begin(visible.length);
+    this.markers.refine(visible.length > MANY_FRAMES ? COARSE_SEGMENTS : FINE_SEGMENTS);
+    const { axes } = this.markers;
+    axes.begin(visible.length);
     this.names.begin(showNames ? visible.reduce((sum, [row]) => sum + (frames.names[row]?.length ?? 0), 0) : 0);
     for (const [row, fade] of visible) {
       if (!framePose(frames, row, pose)) continue;
-      if (showAxes) this.axes.add(pose.clone().multiply(size), fade.grey, fade.alpha);
+      if (showAxes) axes.add(pose.clone().multiply(size), fade.grey, fade.alpha);
       if (!showNames) continue;
       this.names.add(
         frames.names[row] ?? "",
@@ -68,7 +70,7 @@ export class TfDrawing implements Drawing {
         fade.alpha,
       );
     }
-    this.axes.end();
+    axes.end();
     this.names.end();
     this.drawArrows(rows.bool(true, "Show Arrows") ? visible : [], scale);
     this.ageing = this.ageKey();
@@ -76,16 +78,18 @@ export class TfDrawing implements Drawing {
 
   dispose(): void {
     for (const forget of this.forget) forget();
-    for (const batch of [this.axes, this.shafts, this.heads, this.names]) batch.dispose();
+    this.markers.dispose();
+    this.names.dispose();
   }
 
   private drawArrows(visible: readonly (readonly [number, Fade])[], scale: number): void {
     const { poses, parents } = this.context.session.frames;
+    const { shafts, heads } = this.markers;
     const [from, to, along] = [new Vector3(), new Vector3(), new Vector3()];
     const turn = new Quaternion();
     const matrix = new Matrix4();
-    this.shafts.begin(visible.length);
-    this.heads.begin(visible.length);
+    shafts.begin(visible.length);
+    heads.begin(visible.length);
     for (const [row, fade] of visible) {
       const parent = parents[row] ?? -1;
       if (!this.context.session.frames.has(parent)) continue;
@@ -97,16 +101,16 @@ export class TfDrawing implements Drawing {
       const head = distance < HEAD_LENGTH * scale ? HEAD_LENGTH * scale * distance : HEAD_LENGTH * scale;
       const shaft = distance - head;
       matrix.compose(from, turn, new Vector3(SHAFT_RADIUS * scale, SHAFT_RADIUS * scale, shaft));
-      this.shafts.add(matrix, fade.grey, fade.alpha);
+      shafts.add(matrix, fade.grey, fade.alpha);
       matrix.compose(
         from.addScaledVector(along, shaft),
         turn,
         new Vector3(HEAD_RADIUS * scale, HEAD_RADIUS * scale, head),
       );
-      this.heads.add(matrix, fade.grey, fade.alpha);
+      heads.add(matrix, fade.grey, fade.alpha);
     }
-    this.shafts.end();
-    this.heads.end();
+    shafts.end();
+    heads.end();
   }
 
   private visibleFrames(): (readonly [number, Fade])[] {

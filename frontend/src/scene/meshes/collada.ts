@@ -12,8 +12,9 @@ export async function readCollada(data: ArrayBuffer, url: string): Promise<MeshT
   const wait = new TextureWait();
   const collada = new ColladaLoader(wait.manager).parse(text, LoaderUtils.extractUrlBase(url));
   if (!collada) throw new Error("the COLLADA file is not valid XML");
+  const problem = await wait.settle();
   // The loader's stand-in for a missing material is magenta and has no name.
   const parts = flatten(collada.scene, (material) => material.name !== "");
   if (parts.length === 0) throw new Error("the COLLADA file has no meshes");
-  return { parts, problem: await wait.settle() };
+  return { parts, problem };
 }

@@ -7,8 +7,9 @@ import { TextureWait } from "./texture-wait";
 export async function readGltf(data: ArrayBuffer, url: string): Promise<MeshTemplate> {
   const wait = new TextureWait();
   const { scene } = await new GLTFLoader(wait.manager).parseAsync(data, LoaderUtils.extractUrlBase(url));
+  const problem = await wait.settle();
   scene.rotation.set(Math.PI / 2, 0, 0);
   const parts = flatten(scene, () => true);
   if (parts.length === 0) throw new Error("the glTF file has no meshes");
-  return { parts, problem: await wait.settle() };
+  return { parts, problem };
 }

@@ -32,7 +32,7 @@ export interface MeshTemplate {
 /** What Assimp, and with it RViz, gives a mesh that says nothing about its colour. */
 export const UNCOLOURED_GREY = 0.6;
 
-/** Flattens what a loader made. `isOwn` tells the materials of the file from those the loader made up. */
+/** Flattens what a loader made, its textures being there. `isOwn` tells the materials of the file from those the loader made up. */
 export function flatten(root: Object3D, isOwn: (material: Material) => boolean): MeshPart[] {
   root.updateMatrixWorld(true);
   const parts: MeshPart[] = [];
@@ -48,12 +48,14 @@ export function flatten(root: Object3D, isOwn: (material: Material) => boolean):
 }
 
 function own(material: Material): OwnMaterial {
-  const { color, map } = material as Partial<MeshPhongMaterial>;
+  const { color, map: texture } = material as Partial<MeshPhongMaterial>;
+  // A texture that did not come would be drawn as nothing at all.
+  const map = texture?.image ? texture : null;
   if (map) map.colorSpace = NoColorSpace;
   return {
     color: color ? [color.r, color.g, color.b] : [UNCOLOURED_GREY, UNCOLOURED_GREY, UNCOLOURED_GREY],
     opacity: material.opacity,
-    map: map ?? null,
+    map,
     vertexColors: material.vertexColors,
   };
 }

@@ -23,10 +23,11 @@ export async function readObj(data: ArrayBuffer, url: string): Promise<MeshTempl
     for (const each of Object.keys(materials.materials)) known.add(each);
     loader.setMaterials(materials);
   }
-  const parts = flatten(loader.parse(text), (material) => known.has(material.name));
-  if (parts.length === 0) throw new Error("the OBJ file has no faces");
+  const root = loader.parse(text);
   const missing = await wait.settle();
   if (missing) problems.push(missing);
+  const parts = flatten(root, (material) => known.has(material.name));
+  if (parts.length === 0) throw new Error("the OBJ file has no faces");
   return { parts, problem: problems.length > 0 ? problems.join("; ") : null };
 }
 

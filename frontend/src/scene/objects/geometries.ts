@@ -28,7 +28,7 @@ export function capsule(length: number): BufferGeometry {
 }
 
 /** Three cylinders along x, y and z in red, green and blue, as RViz's Axes. Metres. */
-export function axesGeometry(length: number, radius: number, segments = 8): BufferGeometry {
+export function axesGeometry(length: number, radius: number, segments: number): BufferGeometry {
   const arm = (): BufferGeometry => mergeGeometries([tube(radius, length, segments), disc(radius, length, segments)]);
   return mergeGeometries([
     paint(arm().rotateY(Math.PI / 2), 1, 0, 0),
@@ -38,13 +38,13 @@ export function axesGeometry(length: number, radius: number, segments = 8): Buff
 }
 
 /** RViz's arrow from a frame to its parent: from the origin one metre along z, radius one; its ends are never seen. */
-export function arrowShaftGeometry(): BufferGeometry {
-  return paint(tube(1, 1, 6), 0.8, 0.8, 0.3);
+export function arrowShaftGeometry(segments: number): BufferGeometry {
+  return paint(tube(1, 1, segments), 0.8, 0.8, 0.3);
 }
 
 /** Base at the origin, tip one metre along z, radius one. */
-export function arrowHeadGeometry(): BufferGeometry {
-  return paint(new ConeGeometry(1, 1, 10).rotateX(Math.PI / 2).translate(0, 0, 0.5), 1, 0.1, 0.6);
+export function arrowHeadGeometry(segments: number): BufferGeometry {
+  return paint(new ConeGeometry(1, 1, segments).rotateX(Math.PI / 2).translate(0, 0, 0.5), 1, 0.1, 0.6);
 }
 
 function tube(radius: number, length: number, segments: number): BufferGeometry {

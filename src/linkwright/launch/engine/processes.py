@@ -16,8 +16,9 @@ if TYPE_CHECKING:
     from linkwright.launch.actions.execute import ExecuteProcess
     from linkwright.launch.engine.log import LaunchLog
 
-_CHUNK = 1 << 16
 _HAS_GROUPS = hasattr(os, "killpg")
+_LAST_WORDS_SECONDS = 0.2
+"""How long to read on after a process has ended: another that it left behind may hold its streams open for ever."""
 
 
 @dataclass(frozen=True)
@@ -65,8 +66,10 @@ class RunningProcess:
         self._log = log
         self._emit = emit
         self._wants_output = wants_output
-        self._process: asyncio.subprocess.Process | None = None
+        self._transport: asyncio.SubprocessTransport | None = None
         self._rests = {1: b"", 2: b""}
+        self._open_streams = {1, 2}
+        self._streams_closed = asyncio.Event()
         self._ended = asyncio.Event()
         self._stopping = False
 
@@ -80,32 +83,28 @@ class RunningProcess:
         plan = self.plan
         if plan.log_command:
             self._log.say(self.name, f"process details: cmd='{' '.join(plan.command)}', cwd='{plan.folder}'")
-        reader_ends: list[int] = []
         try:
-            process = await self._start(reader_ends)
+            await self._start()
         except (OSError, ValueError) as error:
-            for descriptor in reader_ends:
-                os.close(descriptor)
             self._report_start_failure(error)
             self._ended.set()
             return None
-        self._process = process
-        details = self._details()
-        plan.action.process_details = details
-        self._log.say(self.name, f"process started with pid [{process.pid}]")
-        self._emit(events.ProcessStarted(action=plan.action, **details))
+        transport = self._transport
+        assert transport is not None
         try:
-            await self._follow(process, reader_ends)
+            await self._ended.wait()
+            with contextlib.suppress(asyncio.TimeoutError):
+                await asyncio.wait_for(self._streams_closed.wait(), _LAST_WORDS_SECONDS)
         finally:
             # Whatever happens to us, nothing of the process's group may outlive us.
-            self.signal_group(signal.SIGKILL if process.returncode is None else 0)
-        returncode = await process.wait()
-        if process.stdin is not None:
-            process.stdin.close()
+            if not self._ended.is_set():
+                self.signal_group(signal.SIGKILL)
+            transport.close()
+        returncode = transport.get_returncode()
+        assert returncode is not None
         self._flush()
-        self._ended.set()
-        self._report_end(returncode)
-        self._emit(events.ProcessExited(action=plan.action, returncode=returncode, **details))
+        self._report_end(transport.get_pid(), returncode)
+        self._emit(events.ProcessExited(action=plan.action, returncode=returncode, **self._details(transport)))
         return returncode
 
     async def stop(self, seconds_to_sigterm: float, seconds_to_sigkill: float, *, interrupt: bool = True) -> None:
@@ -138,50 +137,56 @@ class RunningProcess:
 
     def signal_group(self, number: int) -> None:
         """Send a signal to the process and all that it started; 0 sends none."""
-        process = self._process
-        if process is None or number == 0:
+        transport = self._transport
+        if transport is None:
             return
         with contextlib.suppress(ProcessLookupError, PermissionError):
             if _HAS_GROUPS:
-                os.killpg(process.pid, number)
-            elif process.returncode is None:
-                process.terminate()
+                os.killpg(transport.get_pid(), number)
+            elif transport.get_returncode() is None:
+                transport.terminate()
 
     # --- the start ------------------------------------------------------------------------------------------
 
-    async def _start(self, reader_ends: list[int]) -> asyncio.subprocess.Process:
+    async def _start(self) -> None:
         plan = self.plan
-        options: dict[str, Any] = {
-            "stdin": asyncio.subprocess.PIPE,
-            "stdout": asyncio.subprocess.PIPE,
-            "stderr": asyncio.subprocess.PIPE,
-            "cwd": plan.folder,
-            "env": plan.environment,
-            "start_new_session": True,
-        }
-        writer_ends: list[int] = []
-        if plan.emulate_tty and hasattr(os, "openpty"):
-            for stream in ("stdout", "stderr"):
-                reader, writer = os.openpty()
-                reader_ends.append(reader)
-                writer_ends.append(writer)
-                options[stream] = writer
+        loop = asyncio.get_running_loop()
+        options: dict[str, Any] = {"cwd": plan.folder, "env": plan.environment, "start_new_session": True}
+        terminals = _pseudo_terminals() if plan.emulate_tty else []
+        if terminals:
+            options["stdout"], options["stderr"] = (inner for _, inner in terminals)
         try:
             if plan.shell:
-                return await asyncio.create_subprocess_shell(" ".join(plan.command), **options)
-            return await asyncio.create_subprocess_exec(*plan.command, **options)
+                started = loop.subprocess_shell(lambda: _Streams(self), " ".join(plan.command), **options)
+            else:
+                started = loop.subprocess_exec(lambda: _Streams(self), *plan.command, **options)
+            await started
+        except BaseException:
+            for outer, _ in terminals:
+                os.close(outer)
+            raise
         finally:
-            for writer in writer_ends:
-                os.close(writer)
+            for _, inner in terminals:
+                os.close(inner)
+        for number, (outer, _) in enumerate(terminals, 1):
+            pipe = os.fdopen(outer, "rb", 0)
+            await loop.connect_read_pipe(lambda number=number: _Terminal(self, number), pipe)  # type: ignore[misc]
 
-    def _details(self) -> dict[str, Any]:
-        assert self._process is not None
+    def started(self, transport: asyncio.SubprocessTransport) -> None:
+        """Take note that the process runs; nothing of its output comes before this."""
+        self._transport = transport
+        details = self._details(transport)
+        self.plan.action.process_details = details
+        self._log.say(self.name, f"process started with pid [{transport.get_pid()}]")
+        self._emit(events.ProcessStarted(action=self.plan.action, **details))
+
+    def _details(self, transport: asyncio.SubprocessTransport) -> dict[str, Any]:
         return {
             "name": self.name,
             "cmd": list(self.plan.command),
             "cwd": self.plan.folder,
             "env": dict(self.plan.environment),
-            "pid": self._process.pid,
+            "pid": transport.get_pid(),
         }
 
     def _report_start_failure(self, error: Exception) -> None:
@@ -202,44 +207,28 @@ class RunningProcess:
 
     # --- output ---------------------------------------------------------------------------------------------
 
-    async def _follow(self, process: asyncio.subprocess.Process, reader_ends: Sequence[int]) -> None:
-        """Read both streams until the last writer is gone or the process has ended."""
-        if reader_ends:
-            streams = [await _pty_reader(descriptor) for descriptor in reader_ends]
-        else:
-            assert process.stdout is not None
-            assert process.stderr is not None
-            streams = [process.stdout, process.stderr]
-        readers = [asyncio.ensure_future(self._read(number, each)) for number, each in enumerate(streams, 1)]
-        try:
-            await process.wait()
-            # A grandchild may hold the pipes open for ever: what the process itself wrote is there by now.
-            await asyncio.wait(readers, timeout=0.2)
-        finally:
-            for reader in readers:
-                reader.cancel()
-            await asyncio.gather(*readers, return_exceptions=True)
-
-    async def _read(self, number: int, stream: asyncio.StreamReader) -> None:
-        while True:
-            try:
-                chunk = await stream.read(_CHUNK)
-            except OSError:  # a pseudo terminal ends with an error on Linux
-                return
-            if not chunk:
-                return
-            self._take(number, chunk)
-
-    def _take(self, number: int, chunk: bytes) -> None:
-        plan = self.plan
-        plan.action.wrote(number, chunk)
+    def take(self, number: int, chunk: bytes) -> None:
+        """Take what the process wrote to stdout (1) or stderr (2)."""
+        action = self.plan.action
+        action.wrote(number, chunk)
         kind = events.ProcessStdout if number == 1 else events.ProcessStderr
-        event = kind(text=chunk, action=plan.action, **self._details())
+        assert self._transport is not None
+        event = kind(text=chunk, action=action, **self._details(self._transport))
         if self._wants_output(event):
             self._emit(event)
         *lines, self._rests[number] = (self._rests[number] + chunk).split(b"\n")
         for line in lines:
             self._show(number, line)
+
+    def stream_closed(self, number: int) -> None:
+        """Take note that nothing more can come from stdout (1) or stderr (2)."""
+        self._open_streams.discard(number)
+        if not self._open_streams:
+            self._streams_closed.set()
+
+    def ended(self) -> None:
+        """Take note that the process has ended."""
+        self._ended.set()
 
     def _flush(self) -> None:
         for number, rest in self._rests.items():
@@ -251,21 +240,48 @@ class RunningProcess:
         shown = self.plan.output_format.format(line=text, this=self.plan.action)
         self._log.process_line(self.name, number, shown, self.plan.destinations[number])
 
-    def _report_end(self, returncode: int) -> None:
-        assert self._process is not None
+    def _report_end(self, pid: int, returncode: int) -> None:
         if returncode == 0 or (self._stopping and returncode in (-signal.SIGINT, 128 + signal.SIGINT)):
-            self._log.say(self.name, f"process has finished cleanly [pid {self._process.pid}]")
+            self._log.say(self.name, f"process has finished cleanly [pid {pid}]")
             return
         command = " ".join(self.plan.command)
-        self._log.complain(
-            self.name,
-            f"process has died [pid {self._process.pid}, exit code {returncode}, cmd '{command}'].",
-        )
+        self._log.complain(self.name, f"process has died [pid {pid}, exit code {returncode}, cmd '{command}'].")
 
 
-async def _pty_reader(descriptor: int) -> asyncio.StreamReader:
-    reader = asyncio.StreamReader()
-    loop = asyncio.get_running_loop()
-    pipe = os.fdopen(descriptor, "rb", 0)
-    await loop.connect_read_pipe(lambda: asyncio.StreamReaderProtocol(reader), pipe)
-    return reader
+class _Streams(asyncio.SubprocessProtocol):
+    """Hands on what asyncio tells of a process."""
+
+    def __init__(self, process: RunningProcess) -> None:
+        self._process = process
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        assert isinstance(transport, asyncio.SubprocessTransport)
+        self._process.started(transport)
+
+    def pipe_data_received(self, fd: int, data: bytes) -> None:
+        self._process.take(fd, data)
+
+    def pipe_connection_lost(self, fd: int, exc: Exception | None) -> None:  # noqa: ARG002 - asyncio's interface
+        self._process.stream_closed(fd)
+
+    def process_exited(self) -> None:
+        self._process.ended()
+
+
+class _Terminal(asyncio.Protocol):
+    """Hands on what a process writes to a pseudo terminal."""
+
+    def __init__(self, process: RunningProcess, number: int) -> None:
+        self._process = process
+        self._number = number
+
+    def data_received(self, data: bytes) -> None:
+        self._process.take(self._number, data)
+
+    def connection_lost(self, exc: Exception | None) -> None:  # noqa: ARG002 - asyncio's interface
+        self._process.stream_closed(self._number)
+
+
+def _pseudo_terminals() -> list[tuple[int, int]]:
+    """Outer and inner end of two pseudo terminals, for stdout and stderr; none where the system has no such thing."""
+    return [os.openpty(), os.openpty()] if hasattr(os, "openpty") else []

@@ -241,6 +241,8 @@ class LaunchSession:
         return bool(self._processes or self._tasks or self._waiting or self.host.is_busy)
 
     def _handle(self, event: events.Event) -> None:
+        if self.ending and isinstance(event, events.Shutdown):
+            return  # once is enough
         context = self.context
         context._push_locals()
         try:
@@ -280,8 +282,6 @@ class LaunchSession:
             self.host.stop_matching(event.process_matcher)
 
     def _begin_end(self, event: events.Shutdown) -> None:
-        if self.ending:
-            return
         self.ending = True
         self._waiting.clear()
         self.reload.close()

@@ -25,8 +25,8 @@ def find_executable(finder: PackageFinder, package: str, executable: str) -> Pat
         notes = error.diagnostics[0].notes
         if package in ours:
             message = f"package '{package}' has no executable '{executable}' that runs without ROS"
-            hint = did_you_mean(executable, ours[package]) or "there is " + ", ".join(ours[package])
-            raise LinkwrightError(Diagnostic("LAUNCH131", message, notes=notes, hint=hint)) from error
+            advice = did_you_mean(executable, ours[package]) or "there is " + ", ".join(ours[package])
+            raise LinkwrightError(Diagnostic("LAUNCH131", message, notes=notes, hint=advice)) from error
         hint = did_you_mean(package, (*ours, *finder.packages())) or error.diagnostics[0].hint
         message = f"package '{package}' of node executable '{executable}' not found"
         raise LinkwrightError(Diagnostic("LAUNCH131", message, notes=notes, hint=hint)) from error

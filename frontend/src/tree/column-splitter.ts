@@ -1,0 +1,23 @@
+import { h } from "../dom";
+
+const SMALLEST = 0.2;
+const LARGEST = 0.8;
+
+/** The line between names and values, to be dragged. */
+export class ColumnSplitter {
+  readonly element = h("div", { class: "splitter", aria: { hidden: "true" } });
+
+  constructor() {
+    this.element.addEventListener("pointerdown", (event) => {
+      this.element.setPointerCapture(event.pointerId);
+      event.preventDefault();
+    });
+    this.element.addEventListener("pointermove", (event) => {
+      const box = this.element.parentElement;
+      if (!box || !this.element.hasPointerCapture(event.pointerId)) return;
+      const { left, width } = box.getBoundingClientRect();
+      const part = Math.min(LARGEST, Math.max(SMALLEST, (event.clientX - left) / width));
+      box.style.setProperty("--names", `${(part * 100).toFixed(1)}%`);
+    });
+  }
+}

@@ -1,0 +1,76 @@
+"""Editing the model while it is shown: change, break, repair; joint positions and camera survive."""
+
+from __future__ import annotations
+
+import shutil
+
+import pytest
+
+from tests.browser.conftest import state, until
+from tests.places import PACKAGE
+
+pytestmark = pytest.mark.browser
+
+
+@pytest.fixture
+def model(tmp_path):
+    path = tmp_path / "mbot.xacro"
+    shutil.copy(PACKAGE / "urdf" / "mbot_base.xacro", path)
+    return path
+
+
+def edit(path, before, after):
+    text = path.read_text(encoding="utf-8")
+    assert before in text
+    path.write_text(text.replace(before, after), encoding="utf-8")
+
+
+def test_change_break_and_repair(start, open_page, model):
+    program = start("launch", "my_robot_description", "display_xacro.launch.py", f"model:={model}")
+    page = open_page(program)
+    page.locator('[data-joint="left_wheel_joint"] input[type=range]').fill("1.2")
+    until(page, "lw.joints.left_wheel_joint > 1")
+    joint = state(page, "joints.left_wheel_joint")
+    page.keyboard.press("Escape")
+    page.mouse.move(600, 400)
+    page.mouse.wheel(0, -120)
+    until(page, "lw.view.distance < 1.7")
+    distance = state(page, "view.distance")
+
+    edit(model, 'name="wheel_joint_y" value="0.19"', 'name="wheel_joint_y" value="0.25"')
+    until(page, "Math.abs(lw.frames.left_wheel_link.position[1] - 0.25) < 1e-6")
+    assert state(page, "joints.left_wheel_joint") == joint
+    assert state(page, "view.distance") == distance
+    assert state(page, "robot.visuals") == 12
+
+    edit(model, "<xacro:wheel ", "<xacro:whel ")
+    page.get_by_text("unknown macro", exact=False).first.wait_for()
+    program.wait_for(r"unknown macro")
+    program.wait_for(r"did you mean")
+    assert state(page, "robot.links") == 12
+    assert state(page, "frames.left_wheel_link.position[1]") == pytest.approx(0.25)
+    line = next(i for i, text in enumerate(model.read_text().splitlines(), 1) if "<xacro:whel" in text)
+    assert page.get_by_text(f"mbot.xacro:{line}", exact=False).count() > 0
+
+    edit(model, "<xacro:whel ", "<xacro:wheel ")
+    page.get_by_text("unknown macro", exact=False).first.wait_for(state="hidden")
+    assert state(page, "joints.left_wheel_joint") == joint
+    assert program.interrupt() == 130
+
+
+def test_a_link_that_goes_leaves_no_ghost(start, open_page, model):
+    page = open_page(start("view", str(model)))
+    assert state(page, "robot.links") == 12
+    edit(model, "<xacro:laser ", "<!-- <xacro:laser ")
+    edit(model, '"${laser_joint_z}"/>', '"${laser_joint_z}"/> -->')
+    until(page, "lw.robot.links === 11")
+    until(page, "!('laser_link' in lw.frames)")
+
+
+def test_a_model_broken_at_the_start_is_shown_when_it_is_mended(start, open_page, model):
+    edit(model, "</robot>", "</robott>")
+    program = start("view", str(model))
+    page = open_page(program, wait=False)
+    page.get_by_text("</robott>", exact=False).first.wait_for()
+    edit(model, "</robott>", "</robot>")
+    until(page, "lw.robot !== null && lw.robot.links === 12 && lw.ready")

@@ -1,0 +1,244 @@
+from __future__ import annotations
+
+import asyncio
+import io
+import os
+import time
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
+from pathlib import Path
+
+import pytest
+from launch import LaunchDescription
+from launch.substitutions import Command
+from launch_ros.actions import Node
+from launch_ros.parameter_descriptions import ParameterValue
+
+from linkwright.diagnostics import Diagnostic
+from linkwright.launch.engine.log import LaunchLog
+from linkwright.launch.engine.session import LaunchSession, SessionOptions
+from linkwright.workspace import PackageFinder, use_finder
+
+XACRO = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
+
+
+def model(link: str) -> str:
+    return f'<robot name="r" {XACRO}><link name="{link}"/></robot>'
+
+
+BROKEN = f'<robot name="r" {XACRO}>\n  <link name="${{nothing}}"/>\n</robot>'
+
+
+class Bench:
+    """A running launch of robot_state_publisher and viewer on one model."""
+
+    def __init__(self, session: LaunchSession, err: io.StringIO, out: io.StringIO) -> None:
+        self.session = session
+        self._err = err
+        self._out = out
+
+    @property
+    def err(self) -> str:
+        return self._err.getvalue()
+
+    @property
+    def out(self) -> str:
+        return self._out.getvalue()
+
+    def description(self) -> str:
+        for plan, running in self.session.host._running.values():
+            if plan.package == "robot_state_publisher":
+                return running.node.get_parameter("robot_description").value
+        return ""
+
+    def findings(self) -> list[Diagnostic]:
+        return self.session.reload.findings()
+
+    async def until(self, condition: Callable[[], bool], seconds: float = 3.0) -> float:
+        began = time.monotonic()
+        while not condition():
+            assert time.monotonic() - began < seconds, f"it never came:\n{self.err}"
+            await asyncio.sleep(0.002)
+        return time.monotonic() - began
+
+    async def shows(self, link: str) -> float:
+        return await self.until(lambda: f'<link name="{link}"/>' in self.description())
+
+    async def watching(self) -> None:
+        await asyncio.sleep(0.25)  # the watcher has no word for "ready"
+
+
+@asynccontextmanager
+async def running(path: Path, *, viewer: bool = True) -> AsyncIterator[Bench]:
+    out, err = io.StringIO(), io.StringIO()
+    description = ParameterValue(Command(["xacro ", str(path)]), value_type=str)
+    entities = [
+        Node(
+            package="robot_state_publisher",
+            executable="robot_state_publisher",
+            parameters=[{"robot_description": description}],
+        )
+    ]
+    if viewer:
+        entities.append(Node(package="rviz2", executable="rviz2"))
+    finder = PackageFinder(start=path.parent, environment={})
+    with use_finder(finder):
+        session = LaunchSession(finder, SessionOptions(port=0, open_browser=False), LaunchLog(out, err))
+        task = asyncio.create_task(session.run(LaunchDescription(entities)))
+        try:
+            yield Bench(session, err, out)
+        finally:
+            session.interrupt("the test is over")
+            await asyncio.wait_for(task, 3.0)
+
+
+async def test_a_saved_file_reaches_the_node_at_once(write) -> None:
+    path = write("r.xacro", model("a"))
+    async with running(path) as bench:
+        await bench.shows("a")
+        await bench.watching()
+        times = []
+        for link in ("b", "c", "d"):
+            path.write_text(model(link))
+            times.append(await bench.shows(link))
+            await asyncio.sleep(0.1)
+        assert min(times) < 0.15
+        assert "reloaded" in bench.err
+
+
+async def test_an_editor_that_renames(write) -> None:
+    path = write("r.xacro", model("a"))
+    async with running(path) as bench:
+        await bench.shows("a")
+        await bench.watching()
+        for link in ("b", "c"):
+            path.rename(path.with_suffix(".bak"))
+            await asyncio.sleep(0.08)
+            new = path.with_suffix(".new")
+            new.write_text(model(link))
+            new.replace(path)
+            await bench.shows(link)
+        assert "error" not in bench.err
+
+
+async def test_an_include_behind_a_link(write, tmp_path: Path) -> None:
+    real = write("sources/part.xacro", f'<robot {XACRO}><link name="a"/></robot>')
+    link = tmp_path / "share" / "part.xacro"
+    link.parent.mkdir()
+    link.symlink_to(real)
+    path = write("share/r.xacro", f'<robot name="r" {XACRO}><xacro:include filename="part.xacro"/></robot>')
+    async with running(path) as bench:
+        await bench.shows("a")
+        await bench.watching()
+        real.write_text(f'<robot {XACRO}><link name="b"/></robot>')
+        await bench.shows("b")
+
+
+async def test_a_new_include_is_watched_too(write) -> None:
+    path = write("r.xacro", model("a"))
+    part = write("parts/part.xacro", f'<robot {XACRO}><link name="b"/></robot>')
+    async with running(path) as bench:
+        await bench.shows("a")
+        await bench.watching()
+        path.write_text(f'<robot name="r" {XACRO}><xacro:include filename="parts/part.xacro"/></robot>')
+        await bench.shows("b")
+        await bench.watching()
+        part.write_text(f'<robot {XACRO}><link name="c"/></robot>')
+        await bench.shows("c")
+
+
+async def test_a_broken_file_leaves_the_last_good_robot_until_it_is_repaired(write) -> None:
+    path = write("r.xacro", model("a"))
+    async with running(path) as bench:
+        await bench.shows("a")
+        await bench.watching()
+        path.write_text(BROKEN)
+        await bench.until(lambda: bool(bench.findings()))
+        (finding,) = bench.findings()
+        assert finding.span is not None
+        assert (finding.span.file, finding.span.line) == (str(path), 2)
+        assert "nothing" in finding.message
+        assert bench.err.count("error[XAC") == 1
+        assert '<link name="a"/>' in bench.description()
+        path.write_text(model("c"))
+        await bench.shows("c")
+        await bench.until(lambda: not bench.findings())
+        assert "repaired" in bench.err
+
+
+async def test_two_roots_are_refused_with_the_readers_words(write) -> None:
+    path = write("r.urdf", '<robot name="r"><link name="a"/></robot>')
+    async with running(path) as bench:
+        await bench.shows("a")
+        await bench.watching()
+        path.write_text('<robot name="r"><link name="a"/><link name="b"/></robot>')
+        await bench.until(lambda: bool(bench.findings()))
+        assert bench.findings()[0].code.startswith("URDF")
+        assert '<link name="b"/>' not in bench.description()
+
+
+async def test_a_deleted_file_is_told_after_a_while_and_may_come_back(write) -> None:
+    path = write("r.xacro", model("a"))
+    async with running(path) as bench:
+        await bench.shows("a")
+        await bench.watching()
+        path.unlink()
+        await bench.until(lambda: bool(bench.findings()))
+        assert '<link name="a"/>' in bench.description()
+        path.write_text(model("b"))
+        await bench.shows("b")
+
+
+@pytest.mark.parametrize(
+    "start", [BROKEN, '<robot name="r"><link name="a"/><link name="b"/></robot>', "<robot", ""]
+)
+async def test_a_model_broken_at_the_start_waits_for_the_repair(write, start: str) -> None:
+    path = write("r.xacro", start)
+    async with running(path) as bench:
+        await bench.until(lambda: "Viewer: " in bench.out and bool(bench.findings()))
+        assert "error[" in bench.err
+        assert bench.description() == ""
+        await bench.watching()
+        path.write_text(model("good"))
+        await bench.shows("good")
+        await bench.until(lambda: not bench.findings())
+        await bench.watching()
+        path.write_text(model("better"))
+        await bench.shows("better")
+
+
+async def test_a_broken_model_with_no_viewer_ends_the_launch(write) -> None:
+    path = write("r.xacro", BROKEN)
+    async with running(path, viewer=False) as bench:
+        await bench.until(lambda: bench.session.ending)
+        assert bench.err.count("error[XAC") == 1
+
+
+async def test_a_model_that_does_not_exist_ends_the_launch(tmp_path: Path) -> None:
+    async with running(tmp_path / "none.urdf") as bench:
+        await bench.until(lambda: bench.session.ending)
+        assert bench.err.count("error[") == 1
+        assert "Viewer:" not in bench.out
+
+
+async def test_a_change_before_the_watch_began_is_not_missed(write) -> None:
+    path = write("r.xacro", model("a"))
+    async with running(path) as bench:
+        await bench.shows("a")
+        path.write_text(model("b"))
+        os.utime(path, ns=(time.time_ns() + 10**9,) * 2)
+        await bench.shows("b")
+
+
+async def test_a_save_without_a_change_of_meaning_keeps_the_positions_right(write) -> None:
+    path = write("r.xacro", model("a"))
+    async with running(path) as bench:
+        await bench.shows("a")
+        await bench.watching()
+        path.write_text("\n\n" + model("a"))
+        await bench.until(lambda: "reloaded" in bench.err)
+        robot = bench.session.descriptions.library.read(bench.description()).robot
+        assert robot is not None
+        span = robot.links["a"].element.span()
+        assert span is not None
+        assert span.line == 3

@@ -1,0 +1,18 @@
+"""Evaluating single texts in tests."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from linkwright.xacro.limits import Limits, room_for
+from linkwright.xacro.scope import Scope
+from linkwright.xacro.session import Session
+
+
+def evaluate(text: str, limits: Limits | None = None, **properties: Any) -> Any:
+    """The value of a text that sees some properties."""
+    limits = limits or Limits()
+    session = Session("main.xacro", {}, {}, limits)
+    scope = Scope(session.globals, session, dict(properties))
+    with room_for(limits):
+        return session.evaluate(text, scope)

@@ -1,0 +1,69 @@
+"""The literal rule and what counts as true."""
+
+from __future__ import annotations
+
+import math
+from contextlib import suppress
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from linkwright.xacro.literals import literal, truth
+
+
+def reference(value: str) -> Any:
+    """The rule as it is told, without short cuts."""
+    if len(value) >= 2 and value[0] == value[-1] == "'":
+        return value[1:-1]
+    if "_" in value:
+        return value
+    with suppress(ValueError):
+        return int(value)
+    with suppress(ValueError):
+        return float(value)
+    return {"true": True, "True": True, "false": False, "False": False}.get(value, value)
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        *(("007", 7), (" 5 ", 5), ("1.50", 1.5), ("1e2", 100.0), ("+4", 4), (".5", 0.5), ("5.", 5.0)),
+        *(("true", True), ("True", True), ("false", False), ("TRUE", "TRUE"), ("yes", "yes"), ("0x10", "0x10")),
+        *(("1_000", "1_000"), ("'5'", "5"), ("'x y'", "x y"), ("''", ""), ("", ""), ("'", "'"), ("infinity", math.inf)),
+        *(("link", "link"), ("-", "-"), ("e5", "e5"), ("1e400", math.inf), ("٣", 3), ("null", "null")),
+    ],
+)
+def test_literals(text: str, value: object) -> None:
+    assert literal(text) == value
+    assert type(literal(text)) is type(value)
+
+
+@given(
+    st.one_of(st.text(max_size=8), st.text(alphabet="0123456789.+-eE_'infatrueTF ", max_size=8), st.floats().map(str))
+)
+def test_the_short_cuts_change_nothing(text: str) -> None:
+    expected, value = reference(text), literal(text)
+    assert type(value) is type(expected)
+    assert value == expected or (math.isnan(value) and math.isnan(expected))
+
+
+@given(st.one_of(st.integers(), st.booleans(), st.none(), st.lists(st.integers())))
+def test_what_is_no_string_stays(value: object) -> None:
+    assert literal(value) is value
+
+
+TRUE = ["true", "True", "1", " 1 ", "-1", "2", 0.5, [0]]
+FALSE = ["false", "False", "0", "00", 0.0, [], None]
+
+
+@pytest.mark.parametrize(("value", "holds"), [*((value, True) for value in TRUE), *((value, False) for value in FALSE)])
+def test_truth(value: object, holds: bool) -> None:
+    assert truth(value) is holds
+
+
+@pytest.mark.parametrize("value", ["1.0", "", "yes", "TRUE", " true", "none"])
+def test_what_is_neither_true_nor_false(value: str) -> None:
+    with pytest.raises(ValueError):
+        truth(value)

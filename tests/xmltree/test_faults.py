@@ -1,0 +1,130 @@
+"""What is said of a text that is not well-formed."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.xmltree import parse, parse_file
+
+
+def told(text: str | bytes) -> tuple[str, str, int, int, str | None]:
+    with pytest.raises(LinkwrightError) as caught:
+        parse(text, "robot.urdf")
+    (found,) = caught.value.diagnostics
+    assert found.span is not None
+    assert found.source is not None
+    return found.code, found.message, found.span.line, found.span.column, found.hint
+
+
+AMPERSAND = "write '&amp;' for the character '&'"
+CASES = [
+    ("<a>\n  <b></c>\n</a>", "XML201", "'</c>' does not close '<b>'", 2, 6, "write '</b>', or remove it"),
+    ("<a>\n  <b>\n</a>", "XML201", "'</a>' does not close '<b>'", 3, 1, "write '</b>' before it"),
+    ("<a>\n  <b>", "XML202", "'<b>' is never closed", 2, 3, "write '</b>' where it ends"),
+    ("<a>é<b/>", "XML202", "'<a>' is never closed", 1, 1, "write '</a>' where it ends"),
+    ("<a><!-- x", "XML203", "this comment is never closed", 1, 4, "close it with '-->'"),
+    ("<a><![CDATA[ x", "XML203", "this CDATA section is never closed", 1, 4, "close it with ']]>'"),
+    ("<a>\n<b x='1", "XML203", "this tag is never finished", 2, 1, "look for a missing '>' or a missing quote"),
+    ("<a b='1' b='2'/>", "XML204", "the attribute 'b' is given twice", 1, 10, "keep one of the two"),
+    ("<a>\n<é:b/></a>", "XML205", "the prefix 'é' of 'é:b' is not declared", 2, 2, None),
+    ("<a x:b='1'/>", "XML205", "the prefix 'x' of 'x:b' is not declared", 1, 4, None),
+    ("<a>é & b</a>", "XML206", "'&' does not begin an entity", 1, 6, AMPERSAND),
+    ("<a b='x&y'/>", "XML206", "'&' does not begin an entity", 1, 8, AMPERSAND),
+    ("<a b=1/>", "XML206", "the value of 'b' is not in quotes", 1, 6, 'write b="..."'),
+    ("<a b/>", "XML206", "the attribute 'b' has no value", 1, 4, 'write b="..."'),
+    ("<a b='1'c='2'/>", "XML206", "a blank is missing between two attributes", 1, 9, None),
+    ("<a>1 < 2</a>", "XML206", "'<' does not begin a tag", 1, 6, "write '&lt;'"),
+    (
+        "<a><!-- a -- b --></a>",
+        "XML206",
+        "'--' is not allowed inside a comment",
+        1,
+        11,
+        "use other characters, such as '=='",
+    ),
+    ("<a>\x01</a>", "XML206", "the character U+0001 is not allowed in XML", 1, 4, None),
+    ("<a>&nope;</a>", "XML208", "the entity '&nope;' is not defined", 1, 4, AMPERSAND),
+    ("<a/>\n<b/>", "XML207", "there is content after the end of the root element", 2, 1, "a file has one root element"),
+    ("hello", "XML206", "this is not XML", 1, 1, None),
+    (
+        "\n<?xml version='1.0'?><a/>",
+        "XML206",
+        "the XML declaration '<?xml' must be the very first thing in the file",
+        2,
+        1,
+        None,
+    ),
+    ("<!-- only -->", "XML206", "there is no root element", 1, 14, None),
+]
+
+
+@pytest.mark.parametrize(("text", "code", "message", "line", "column", "hint"), CASES, ids=[case[2] for case in CASES])
+def test_mistakes(text: str, code: str, message: str, line: int, column: int, hint: str | None) -> None:
+    found = told(text)
+    assert found[:4] == (code, message, line, column)
+    if hint is not None:
+        assert found[4] == hint
+
+
+def test_a_mismatched_tag_says_where_it_was_opened() -> None:
+    with pytest.raises(LinkwrightError) as caught:
+        parse("<a>\n  <b>\n</a>", "x")
+    (note,) = caught.value.diagnostics[0].notes
+    assert note.span is not None
+    assert (note.message, note.span.line, note.span.column) == ("'<b>' is opened here", 2, 3)
+
+
+def test_an_attribute_whose_quote_is_missing() -> None:
+    code, _, line, _, hint = told('<a>\n<b x="1 y="2">\n</b></a>')
+    assert code == "XML206"
+    assert line == 2
+    assert hint is not None
+
+
+@pytest.mark.parametrize("text", ["", "  \n "])
+def test_empty_files(text: str) -> None:
+    code, message, *_ = told(text)
+    assert (code, message) == ("XML105", "'robot.urdf' is empty")
+
+
+def test_bytes_that_are_no_text() -> None:
+    code, message, line, column, hint = told(b"<a>\n\xc3\xa9<b n='\xff'/></a>")
+    assert (code, message, line, column) == ("XML104", "byte 0xff is not valid UTF-8", 2, 8)
+    assert hint is not None
+
+
+def test_an_unknown_encoding() -> None:
+    with pytest.raises(LinkwrightError) as caught:
+        parse(b'<?xml version="1.0" encoding="klingon"?><a>\xff</a>', "x")
+    assert caught.value.diagnostics[0].code == "XML104"
+
+
+def test_files_that_cannot_be_read(tmp_path: Path) -> None:
+    codes = []
+    for path in (tmp_path / "none.urdf", tmp_path, Path("a\0b")):
+        with pytest.raises(LinkwrightError) as caught:
+            parse_file(path)
+        codes.append(caught.value.diagnostics[0].code)
+    assert codes == ["XML101", "XML102", "XML103"]
+
+
+@pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() == 0, reason="everything can be read by root")
+def test_a_file_without_permission(tmp_path: Path) -> None:
+    path = tmp_path / "a.urdf"
+    path.write_text("<a/>", encoding="utf-8")
+    path.chmod(0)
+    with pytest.raises(LinkwrightError) as caught:
+        parse_file(path)
+    assert caught.value.diagnostics[0].code == "XML103"
+
+
+def test_prefixes_are_in_scope_only_below_their_declaration() -> None:
+    parse('<a><b xmlns:k="u"><k:c k:d="1"/></b></a>', "x")
+    parse('<a xml:lang="en" xmlns:k="u"><k:b/><c xmlns:k="v"><k:d/></c><k:e/></a>', "x")
+    with pytest.raises(LinkwrightError) as caught:
+        parse('<a><b xmlns:k="u"/><k:c/></a>', "x")
+    assert caught.value.diagnostics[0].code == "XML205"

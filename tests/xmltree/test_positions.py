@@ -1,0 +1,33 @@
+"""Places inside a start tag."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.xmltree.positions import attribute_name_range, attribute_value_range, raw_offset
+
+TAG = """<joint\n\tname = "a b"\n  type='fixed' note="type='x' &lt;1&gt;\r\n2"/>"""
+
+
+@pytest.mark.parametrize(("name", "value"), [("name", "a b"), ("type", "fixed"), ("note", "type='x' &lt;1&gt;\r\n2")])
+def test_values_and_names(name: str, value: str) -> None:
+    text = f"<robot>é{TAG}</robot>"
+    found = attribute_value_range(text, 8, name)
+    assert found is not None
+    assert text[slice(*found)] == value
+    found = attribute_name_range(text, 8, name)
+    assert found is not None
+    assert text[slice(*found)] == name
+
+
+@pytest.mark.parametrize("name", ["absent", "joint", "x", "1"])
+def test_absent(name: str) -> None:
+    assert attribute_value_range(TAG, 0, name) is None
+    assert attribute_name_range(TAG, 0, name) is None
+
+
+def test_offsets_in_values_with_entities() -> None:
+    start, end = attribute_value_range(TAG, 0, "note") or (0, 0)
+    value = "type='x' <1> 2"
+    assert [TAG[raw_offset(TAG, start, end, value.index(sign))] for sign in "x<1>2"] == ["x", "&", "1", "&", "2"]
+    assert raw_offset(TAG, start, end, 100) == end

@@ -1,0 +1,174 @@
+"""Reading: the tree, and where its nodes were written."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.xmltree import Comment, Element, ProcessingInstruction, Text, parse, parse_file
+
+
+def nodes(element: Element) -> list[Element | Text | Comment | ProcessingInstruction]:
+    found: list[Element | Text | Comment | ProcessingInstruction] = [element]
+    for child in element.children:
+        found.extend(nodes(child) if isinstance(child, Element) else [child])
+    return found
+
+
+def test_names_attributes_and_children_are_as_written() -> None:
+    document = parse('<r:robot xmlns:r="u" z="1" a=" 2 "><a/>t<b/><a r:k="v"/></r:robot>', "x")
+    root = document.root
+    assert root.tag == "r:robot"
+    assert list(root.attributes.items()) == [("xmlns:r", "u"), ("z", "1"), ("a", " 2 ")]
+    assert [child.tag for child in root.elements()] == ["a", "b", "a"]
+    assert [child.tag for child in root.elements("a")] == ["a", "a"]
+    assert root.first("b") is root.children[2]
+    assert root.text() == "t"
+
+
+def test_every_node_knows_where_it_was_written() -> None:
+    text = (
+        '<?xml version="1.0"?>\n<!-- 前 -->\n<robot name="轮">\n  <!--c-->文<a\n b="é">x &lt; y</a><?pi d?>'
+        "<![CDATA[<é>]]>\r\n<b/>ü</robot>\n<!-- after -->"
+    )
+    document = parse(text, "x")
+    for node in [*document.prolog, *nodes(document.root), *document.epilog]:
+        rest = text[node.offset :]
+        if isinstance(node, Element):
+            assert rest.startswith("<" + node.tag)
+        elif isinstance(node, Comment):
+            assert rest.startswith(f"<!--{node.data}-->")
+        elif isinstance(node, ProcessingInstruction):
+            assert rest.startswith(f"<?{node.target} {node.data}?>")
+        elif "<" not in node.data or node.cdata:
+            assert rest.replace("\r\n", "\n").startswith(node.data)
+        else:
+            assert rest.startswith("x &lt; y")
+    span = document.root.first("a").span()  # type: ignore[union-attr]
+    assert span is not None
+    assert (span.line, span.column, span.end_column) == (4, 12, 14)
+
+
+def test_spans_of_attributes() -> None:
+    root = parse("<robot\n  name = 'a &amp; b'   名=\"é\" /><!---->", "x").root
+    for name, place in (("name", (2, 11, 20)), ("名", (2, 27, 28)), ("absent", (1, 1, 7))):
+        span = root.attribute_span(name)
+        assert span is not None
+        assert (span.line, span.column, span.end_column) == place
+    assert Element("made").span() is None
+    assert Element("made").attribute_span("x") is None
+
+
+def test_cdata_comments_and_instructions_are_kept() -> None:
+    document = parse("<?a b?><!--p--><r>t<![CDATA[c]]><!--i--><?k v?></r><!--e-->", "x")
+    assert [type(node) for node in document.prolog] == [ProcessingInstruction, Comment]
+    assert [type(node) for node in document.root.children] == [Text, Text, Comment, ProcessingInstruction]
+    first, second = document.root.children[:2]
+    assert isinstance(first, Text)
+    assert isinstance(second, Text)
+    assert (first.data, first.cdata, second.data, second.cdata) == ("t", False, "c", True)
+    assert isinstance(document.epilog[0], Comment)
+
+
+def test_internal_entities_are_expanded() -> None:
+    document = parse('<!DOCTYPE r [<!ENTITY e "v"><!ENTITY f "&e;&e;">]><r a="&f;">&f;&#33;</r>', "x")
+    assert document.root.attributes == {"a": "vv"}
+    assert document.root.text() == "vv!"
+    assert document.doctype == '<!DOCTYPE r [<!ENTITY e "v"><!ENTITY f "&e;&e;">]>'
+
+
+def test_line_ends_are_normalised_in_the_tree_only() -> None:
+    document = parse("<r>a\r\nb</r>", "x")
+    assert document.root.text() == "a\nb"
+    assert document.source is not None
+    assert document.source.text == "<r>a\r\nb</r>"
+
+
+def test_long_text_is_one_node() -> None:
+    data = "x &amp; " * 400_000
+    assert [type(node) for node in parse(f"<r>{data}</r>", "x").root.children] == [Text]
+
+
+def test_deep_documents_are_read() -> None:
+    document = parse("<a>" * 50_000 + "</a>" * 50_000, "x")
+    assert document.root.tag == "a"
+
+
+@pytest.mark.parametrize(
+    ("data", "text"),
+    [
+        ("<r>é</r>".encode(), "é"),
+        (b"\xef\xbb\xbf<r>x</r>", "x"),
+        ("<r>é</r>".encode("utf-16"), "é"),
+        ('<?xml version="1.0" encoding="ISO-8859-1"?><r>é</r>'.encode("latin-1"), "é"),
+        ('<?xml version="1.0" encoding="ISO-8859-1"?><r>é</r>'.encode(), "é"),
+    ],
+)
+def test_encodings(data: bytes, text: str) -> None:
+    assert parse(data, "x").root.text() == text
+
+
+def test_files(tmp_path: Path) -> None:
+    path = tmp_path / "a.urdf"
+    path.write_bytes(b"<robot/>")
+    document = parse_file(path)
+    assert document.root.tag == "robot"
+    assert document.source is not None
+    assert document.source.name == str(path)
+
+
+NAMES = st.sampled_from(["a", "b", "名", "x-y.z", "_1"])
+VALUES = st.text(alphabet="ab <&>\"'é\n\t中", max_size=6)
+
+
+def escaped(text: str) -> str:
+    return "".join(f"&#{ord(character)};" if character in "<&>\"'\n\t" else character for character in text)
+
+
+def write(name: str, attributes: dict[str, str], children: list[str]) -> str:
+    inside = "".join(f' {key}="{escaped(value)}"' for key, value in attributes.items())
+    return f"<{name}{inside}>{''.join(children)}</{name}>"
+
+
+TREES = st.recursive(
+    VALUES.map(escaped),
+    lambda inner: st.builds(write, NAMES, st.dictionaries(NAMES, VALUES, max_size=3), st.lists(inner, max_size=4)),
+    max_leaves=12,
+)
+
+
+@given(st.lists(TREES, max_size=4))
+def test_agrees_with_element_tree(parts: list[str]) -> None:
+    text = write("root", {}, parts)
+    ours, theirs = parse(text, "x").root, ET.fromstring(text)
+    pending = [(ours, theirs)]
+    while pending:
+        element, expected = pending.pop()
+        assert element.tag == expected.tag
+        assert element.attributes == expected.attrib
+        assert element.text() == (expected.text or "") + "".join(child.tail or "" for child in expected)
+        assert text.startswith(f"<{element.tag}", element.offset)
+        pending.extend(zip(element.elements(), expected, strict=True))
+
+
+@given(st.text(alphabet="<>/&;=\"'ab !-[]?x:é\n\x01", max_size=25))
+def test_any_text_is_read_or_refused_at_a_place_within_it(text: str) -> None:
+    try:
+        ET.fromstring(text)
+        well_formed = True
+    except ET.ParseError:
+        well_formed = False
+    if well_formed:
+        assert isinstance(parse(text, "x").root, Element)
+        return
+    with pytest.raises(LinkwrightError) as caught:
+        parse(text, "x")
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.code.startswith("XML")
+    assert diagnostic.span is not None
+    assert diagnostic.span.line <= text.count("\n") + 1
