@@ -28,9 +28,11 @@ export function h<K extends keyof HTMLElementTagNameMap>(
   return element as HTMLElementTagNameMap[K];
 }
 
-/** A push button; `label` is what it does, for those who do not see the icon. */
+/** A push button; `label` is its tooltip, and its name for those who do not see the icon when there is no text. */
 export function button(label: string, onClick: () => void, className: string, ...children: readonly Child[]): HTMLButtonElement {
-  const element = h("button", { class: className, title: label, aria: { label }, onClick }, ...children);
+  const named = children.some((child) => typeof child === "string");
+  const aria = named ? {} : { label };
+  const element = h("button", { class: className, title: label, aria, onClick }, ...children);
   element.type = "button";
   return element;
 }

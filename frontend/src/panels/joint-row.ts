@@ -6,7 +6,6 @@ import { clamp, parseNumber } from "../tree/numbers";
 
 export type AngleUnit = "rad" | "deg";
 
-const SLIDER_STEPS = 2000;
 /** After the user's last touch, how long the server's positions wait before they move the slider, ms. */
 const HANDS_OFF_MS = 250;
 
@@ -32,8 +31,9 @@ export class JointRow {
       ? h("span", { class: "mimic", title: strings.joints.follows(joint.mimic ?? "") }, icon("link"), joint.mimic)
       : null;
     this.slider.type = "range";
-    this.slider.min = "0";
-    this.slider.max = String(SLIDER_STEPS);
+    this.slider.min = String(joint.lower);
+    this.slider.max = String(joint.upper);
+    this.slider.step = "any";
     this.field.type = "text";
     this.field.inputMode = "decimal";
     this.slider.disabled = this.field.disabled = follower;
@@ -67,10 +67,7 @@ export class JointRow {
   }
 
   private listen(): void {
-    this.slider.addEventListener("input", () => {
-      const { lower, upper } = this.joint;
-      this.take(lower + (Number(this.slider.value) / SLIDER_STEPS) * (upper - lower));
-    });
+    this.slider.addEventListener("input", () => this.take(Number(this.slider.value)));
     this.slider.addEventListener("pointerdown", () => (this.dragging = true));
     for (const end of ["pointerup", "pointercancel", "blur"]) {
       this.slider.addEventListener(end, () => (this.dragging = false));
@@ -105,7 +102,7 @@ export class JointRow {
   private show(force = false): void {
     const { lower, upper } = this.joint;
     const part = upper > lower ? (this.position - lower) / (upper - lower) : 0;
-    if (!this.dragging) this.slider.value = String(Math.round(part * SLIDER_STEPS));
+    if (!this.dragging) this.slider.value = String(this.position);
     this.slider.style.setProperty("--part", String(clamp(part, 0, 1)));
     const zero = upper > lower ? (this.joint.zero - lower) / (upper - lower) : 0;
     this.slider.style.setProperty("--zero", String(clamp(zero, 0, 1)));

@@ -2,6 +2,7 @@ import { Box3, Matrix4, Raycaster, Vector2, Vector3 } from "three";
 import type { DisplayState } from "../state/displays";
 import type { Session } from "../state/session";
 import type { Drawing } from "./displays/drawing";
+import { Pacing } from "./displays/pacing";
 import { DRAWINGS } from "./displays/registry";
 import { RobotModelDrawing } from "./displays/robot-model";
 import { FocalShape } from "./focal-shape";
@@ -11,12 +12,18 @@ import { Outline } from "./outline";
 import { framePose } from "./pose";
 import { Viewport } from "./viewport";
 
+interface DrawnDisplay {
+  display: DisplayState;
+  drawing: Drawing;
+  pacing: Pacing;
+}
+
 /** The 3-D view: one drawing for each display, drawn when something changed. */
 export class Stage {
   readonly viewport: Viewport;
   readonly loop = new FrameLoop((fine) => this.draw(fine));
   private readonly meshes = new MeshLibrary();
-  private readonly drawings = new Map<string, { display: DisplayState; drawing: Drawing }>();
+  private readonly drawings = new Map<string, DrawnDisplay>();
   private readonly outline: Outline;
   private readonly focalShape = new FocalShape();
   private robotSettled = false;
@@ -102,7 +109,7 @@ export class Stage {
       if (display) this.propertiesChanged(display);
       else this.globalOptionsChanged();
     });
-    displays.enabledChanged.on(invalidate);
+    displays.enabledChanged.on((display) => this.propertiesChanged(display));
     frames.tableChanged.on(invalidate);
     frames.posesChanged.on(invalidate);
     view.changed.on(invalidate);
@@ -111,20 +118,22 @@ export class Stage {
 
   private matchDisplays(): void {
     const { displays } = this.session.displays;
-    for (const [id, { display, drawing }] of this.drawings) {
+    for (const [id, { display, drawing, pacing }] of this.drawings) {
       if (displays.includes(display)) continue;
       drawing.root.removeFromParent();
+      pacing.restart();
       drawing.dispose();
       this.drawings.delete(id);
     }
     for (const display of displays) {
       const known = this.drawings.get(display.id);
       const Drawing = DRAWINGS.get(display.cls);
-      if (known) known.drawing.propertiesChanged();
+      if (known) this.propertiesChanged(known.display);
       else if (Drawing && display.supported) {
         const { session, meshes } = this;
-        const drawing = new Drawing({ display, session, meshes, invalidate: () => this.loop.invalidate() });
-        this.drawings.set(display.id, { display, drawing });
+        const invalidate = (): void => this.loop.invalidate();
+        const drawing = new Drawing({ display, session, meshes, invalidate });
+        this.drawings.set(display.id, { display, drawing, pacing: new Pacing(invalidate) });
         this.viewport.scene.add(drawing.root);
       }
     }
@@ -132,7 +141,9 @@ export class Stage {
   }
 
   private propertiesChanged(display: DisplayState): void {
-    this.drawings.get(display.id)?.drawing.propertiesChanged();
+    const drawn = this.drawings.get(display.id);
+    drawn?.drawing.propertiesChanged();
+    drawn?.pacing.restart();
     this.loop.invalidate();
   }
 
@@ -148,10 +159,11 @@ export class Stage {
     this.viewport.aim(view);
     this.focalShape.place(view);
     let settled = true;
-    for (const { display, drawing } of this.drawings.values()) {
+    const now = performance.now();
+    for (const { display, drawing, pacing } of this.drawings.values()) {
       drawing.root.visible = display.enabled;
       if (!display.enabled) continue;
-      drawing.update();
+      if (pacing.due(now, 1000 * display.rows.number(0, "Update Interval"))) drawing.update();
       settled &&= drawing.settled?.() ?? true;
     }
     const { selected } = selection;

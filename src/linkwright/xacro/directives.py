@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -14,12 +15,16 @@ from linkwright.xacro.properties import define_property
 from linkwright.xacro.tags import check_attributes
 from linkwright.xmltree import Element
 
+_NAME = re.compile(r"[^\W\d][\w.\-]*(:[^\W\d][\w.\-]*)?")
+"""What XML allows as a name, nearly."""
+
 
 def declare_argument(expander: Expander, site: Site) -> None:
     """``<xacro:arg name default/>``: gives an argument a value, unless it has one."""
     node, session = site.node, expander.session
     check_attributes(expander, node, ("name", "default"), ())
     name = node.attributes["name"]
+    session.known_arguments.add(name)
     if name not in session.arguments:
         session.arguments[name] = expander.text_value(node, "default", site.scope)
     expander.sweep(site)
@@ -76,9 +81,7 @@ def expand_element(expander: Expander, site: Site) -> None:
     if "xacro:name" not in node.attributes:
         expander.fail_at("XAC301", "'xacro:element' lacks its attribute 'xacro:name'", node, node.span())
     tag = expander.text_value(node, "xacro:name", site.scope)
-    if not tag:
-        span = node.attribute_span("xacro:name")
-        expander.fail_at("XAC309", "the name of this element is empty", node, span)
+    _check_name(expander, node, "xacro:name", "element", tag)
     attributes = {name: value for name, value in node.attributes.items() if name != "xacro:name"}
     renamed = Element(tag, attributes, node.source, node.offset)
     renamed.children = node.children
@@ -93,10 +96,14 @@ def set_attribute(expander: Expander, site: Site) -> None:
     node = site.node
     check_attributes(expander, node, ("name", "value"), ())
     name = expander.text_value(node, "name", site.scope)
-    if not name:
-        span = node.attribute_span("name")
-        expander.fail_at("XAC309", "the name of this attribute is empty", node, span)
+    _check_name(expander, node, "name", "attribute", name)
     site.parent.attributes[name] = expander.text_value(node, "value", site.scope)
+
+
+def _check_name(expander: Expander, node: Element, attribute: str, what: str, name: str) -> None:
+    if not _NAME.fullmatch(name):
+        message = f"'{name}' cannot be the name of an {what}" if name else f"the name of this {what} is empty"
+        expander.fail_at("XAC309", message, node, node.attribute_span(attribute))
 
 
 DIRECTIVES: Mapping[str, Directive] = {

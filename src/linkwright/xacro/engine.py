@@ -80,6 +80,7 @@ def expand(
     session = Session(name, arguments or {}, packages, limits)
     with room_for(limits):
         expanded = Expander(session, DIRECTIVES, call_macro).document(document)
+    session.warn_of_unused_arguments()
     expanded.prolog[:0] = _banner(name)
     expanded.doctype_index += len(_BANNER)
     dependencies = tuple(Path(file) for file in session.dependencies)

@@ -49,6 +49,7 @@ class Session:
 
     Attributes:
         arguments: name -> value of every argument given or declared so far.
+        known_arguments: the names of those that the files declare or use.
         limits: the bounds of the expansion.
         budget: what is left of them.
         file: the file being processed, to whose folder relative paths refer.
@@ -61,6 +62,7 @@ class Session:
 
     def __init__(self, file: str, arguments: Mapping[str, str], packages: PackageSource, limits: Limits) -> None:
         self.arguments: dict[str, str] = {name: str(value) for name, value in arguments.items()}
+        self.known_arguments: set[str] = set()
         self.limits = limits
         self.budget = Budget(limits)
         self.file = file
@@ -69,6 +71,7 @@ class Session:
         self.resolving: list[str] = []
         self.dependencies: dict[str, None] = {file: None}
         self.diagnostics: list[Diagnostic] = []
+        self._told: set[tuple[str, str, Span | None]] = set()
         self._packages = packages
         self._main_file = file
         self.globals = Scope(None, self, symbols.global_names(self))
@@ -138,13 +141,14 @@ class Session:
         Raises:
             Fault: XAC211 when it is neither declared nor given.
         """
-        try:
-            return self.arguments[name]
-        except (KeyError, TypeError):
+        value = self.arguments.get(name) if isinstance(name, str) else None
+        if value is None:
             hint = did_you_mean(str(name), self.arguments)
             if hint is None:
                 hint = f'declare it before this: <xacro:arg name="{name}" default="..."/>'
-            raise Fault("XAC211", f"the argument '{name}' is not declared", hint=hint) from None
+            raise Fault("XAC211", f"the argument '{name}' is not declared", hint=hint)
+        self.known_arguments.add(name)
+        return value
 
     def package(self, name: str) -> str:
         """The share folder of a package.
@@ -220,6 +224,14 @@ class Session:
 
     # findings
 
+    def warn_of_unused_arguments(self) -> None:
+        """Warn of arguments that were given and that no file declares or uses; they are probably misspelt."""
+        self.place = self.frame = None
+        for name in self.arguments:
+            if name not in self.known_arguments:
+                hint = did_you_mean(name, self.known_arguments)
+                self.warn("XAC215", f"the argument '{name}' is given, but '{self.file}' does not use it", None, hint)
+
     def warn(
         self,
         code: str,
@@ -232,8 +244,9 @@ class Session:
         place = self.place
         if span is None and place is not None:
             span = place.span() if isinstance(place, Element) else text_part(place, None, None)
-        if any((known.code, known.message, known.span) == (code, message, span) for known in self.diagnostics):
+        if (code, message, span) in self._told:
             return
+        self._told.add((code, message, span))
         source = place.source if place is not None and span is not None else None
         self.diagnostics.append(Diagnostic(code, message, span, severity, trail(self.frame), hint, source))
 
