@@ -71,9 +71,11 @@ $(LOCKED): uv.lock tools/lock.py
 # The program alone, installed so that changes to the sources count at once; the build makes the page.
 $(VENV)/.ready: pyproject.toml hatch_build.py $(LOCKED) $(PAGE_SOURCES) | $(UV)
 	test -x $(BIN)/python || $(UV) venv --quiet --python $(or $(VERSION),$(PYTHON)) $(VENV)
-	$(UV) pip install --quiet --python $(BIN)/python --reinstall-package linkwright --editable . --constraints $(LOCKED)
+	$(UV) pip install --quiet --compile-bytecode --python $(BIN)/python --constraints $(LOCKED) \
+		--reinstall-package linkwright --editable .
+	$(BIN)/python -m compileall -q src
 	touch $@
 
 $(VENV)/.dev: $(VENV)/.ready
-	$(UV) pip install --quiet --python $(BIN)/python --group dev --constraints $(LOCKED)
+	$(UV) pip install --quiet --compile-bytecode --python $(BIN)/python --constraints $(LOCKED) --group dev
 	touch $@

@@ -44,8 +44,8 @@ def test_change_break_and_repair(start, open_page, model):
     assert state(page, "robot.visuals") == 12
 
     edit(model, "<xacro:wheel ", "<xacro:whel ")
-    page.get_by_text("unknown macro", exact=False).first.wait_for()
-    program.wait_for(r"unknown macro")
+    page.get_by_text("there is no macro", exact=False).first.wait_for()
+    program.wait_for(r"there is no macro .whel.")
     program.wait_for(r"did you mean")
     assert state(page, "robot.links") == 12
     assert state(page, "frames.left_wheel_link.position[1]") == pytest.approx(0.25)
@@ -53,7 +53,7 @@ def test_change_break_and_repair(start, open_page, model):
     assert page.get_by_text(f"mbot.xacro:{line}", exact=False).count() > 0
 
     edit(model, "<xacro:whel ", "<xacro:wheel ")
-    page.get_by_text("unknown macro", exact=False).first.wait_for(state="hidden")
+    page.get_by_text("there is no macro", exact=False).first.wait_for(state="hidden")
     assert state(page, "joints.left_wheel_joint") == joint
     assert program.interrupt() == 130
 

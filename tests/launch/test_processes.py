@@ -23,10 +23,10 @@ from launch.substitutions import LaunchConfiguration
 from launch import LaunchDescription
 
 STUBBORN = """
-import signal, sys, time
-signal.signal(signal.SIGINT, lambda *_: print('int', flush=True))
-signal.signal(signal.SIGTERM, lambda *_: print('term', flush=True))
-print('ready', flush=True)
+import os, signal, time
+signal.signal(signal.SIGINT, lambda *_: os.write(1, b'int\\n'))
+signal.signal(signal.SIGTERM, lambda *_: os.write(1, b'term\\n'))
+os.write(1, b'ready\\n')
 time.sleep(60)
 time.sleep(60)
 time.sleep(60)
@@ -100,6 +100,10 @@ async def test_a_pseudo_terminal(launch) -> None:
     assert (await launch(python(program))).out == "[py-1] False False\n"
 
 
+def written_below(folder: Path) -> dict[str, list[str]]:
+    return {path.name: sorted(path.read_text().splitlines()) for path in folder.glob("*/*")}
+
+
 class TestOutput:
     PROGRAM = "import sys; print('out'); print('err', file=sys.stderr)"
 
@@ -118,8 +122,7 @@ class TestOutput:
         done = await launch(python(self.PROGRAM, output=mode))
         assert ("[py-1] out" in done.out) is out
         assert ("[py-1] err" in done.err) is err
-        written = {path.name: sorted(path.read_text().splitlines()) for path in tmp_path.glob("ros_log/*/*")}
-        assert written == files
+        assert written_below(tmp_path / "ros_log") == files
         assert ("can be found below" in done.err) is bool(files)
 
     async def test_an_unknown_mode(self, launch) -> None:
@@ -162,7 +165,7 @@ class TestFailures:
 
 class TestHandlers:
     async def test_start_io_and_exit(self, launch) -> None:
-        first, second = python("print('hello')", output="log"), python("0")
+        first, second = python("import os; os.write(1, b'hello\\n')", output="log"), python("0")
         done = await launch(
             first,
             RegisterEventHandler(OnProcessStart(target_action=first, on_start=[LogInfo(msg="started")])),

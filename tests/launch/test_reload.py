@@ -9,11 +9,11 @@ from contextlib import asynccontextmanager
 from pathlib import Path
 
 import pytest
-from launch import LaunchDescription
 from launch.substitutions import Command
 from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
 
+from launch import LaunchDescription
 from linkwright.diagnostics import Diagnostic
 from linkwright.launch.engine.log import LaunchLog
 from linkwright.launch.engine.session import LaunchSession, SessionOptions
@@ -189,9 +189,7 @@ async def test_a_deleted_file_is_told_after_a_while_and_may_come_back(write) -> 
         await bench.shows("b")
 
 
-@pytest.mark.parametrize(
-    "start", [BROKEN, '<robot name="r"><link name="a"/><link name="b"/></robot>', "<robot", ""]
-)
+@pytest.mark.parametrize("start", [BROKEN, '<robot name="r"><link name="a"/><link name="b"/></robot>', "<robot", ""])
 async def test_a_model_broken_at_the_start_waits_for_the_repair(write, start: str) -> None:
     path = write("r.xacro", start)
     async with running(path) as bench:

@@ -26,7 +26,7 @@ _DESCRIPTION = "robot_description"
 _CLOSE_SECONDS = 0.8
 
 
-@dataclass
+@dataclass(eq=False)
 class HostedPlan:
     """A node to be started in this process.
 

@@ -1,0 +1,155 @@
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from launch.actions import DeclareLaunchArgument, GroupAction
+from launch.conditions import IfCondition
+from launch.substitutions import LaunchConfiguration
+
+from launch import LaunchDescription
+from linkwright.diagnostics import LinkwrightError, Severity
+from linkwright.launch import LaunchTarget, parse_launch_words, show_arguments
+from linkwright.launch.arguments import argument_listing, check_arguments, parse_arguments
+from linkwright.workspace import PackageFinder
+
+Write = Callable[[str, str], Path]
+
+
+@pytest.fixture
+def package(write: Write, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
+    write("src/arm/package.xml", "<package><name>arm</name></package>")
+    write("src/arm/launch/display.launch.py", "")
+    write("src/arm/launch/sub/deep.launch.py", "")
+    write("src/arm/other_launch.py", "")
+    write("src/arm/launch/twice.launch.py", "")
+    write("src/arm/old/twice.launch.py", "")
+    monkeypatch.chdir(tmp_path)
+    return tmp_path / "src" / "arm"
+
+
+@pytest.mark.parametrize(
+    ("name", "path"),
+    [
+        ("display.launch.py", "launch/display.launch.py"),
+        ("launch/display.launch.py", "launch/display.launch.py"),
+        ("deep.launch.py", "launch/sub/deep.launch.py"),
+        ("other_launch.py", "other_launch.py"),
+    ],
+)
+def test_files_of_a_package(package: Path, name: str, path: str) -> None:
+    assert LaunchTarget(name, "arm").resolve(PackageFinder()) == package / path
+
+
+def test_a_file_that_the_package_has_not(package: Path) -> None:
+    with pytest.raises(LinkwrightError, match="package 'arm' has no launch file 'dsplay.launch.py'") as caught:
+        LaunchTarget("dsplay.launch.py", "arm").resolve(PackageFinder())
+    assert "did you mean 'display.launch.py'" in (caught.value.diagnostics[0].hint or "")
+    with pytest.raises(LinkwrightError) as caught:
+        LaunchTarget("zzz", "arm").resolve(PackageFinder())
+    assert "it has display.launch.py" in (caught.value.diagnostics[0].hint or "")
+
+
+def test_several_of_a_name(package: Path) -> None:
+    package.joinpath("launch", "twice.launch.py").rename(package / "launch" / "sub" / "twice.launch.py")
+    with pytest.raises(LinkwrightError, match="has several launch files 'twice.launch.py'") as caught:
+        LaunchTarget("twice.launch.py", "arm").resolve(PackageFinder())
+    assert "launch/sub/twice.launch.py, old/twice.launch.py" in (caught.value.diagnostics[0].hint or "")
+
+
+def test_a_path_finds_the_package_it_lies_in(package: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    monkeypatch.chdir(elsewhere)
+    target = LaunchTarget(str(package / "launch" / "display.launch.py"))
+    assert target.finder().share("arm") == package
+
+
+class TestWords:
+    def test_package_and_file(self) -> None:
+        target, arguments = parse_launch_words(["arm", "display.launch.py", "a:=1", "b:=x:=y", "a:="])
+        assert target == LaunchTarget("display.launch.py", "arm")
+        assert arguments == {"a": "", "b": "x:=y"}
+
+    def test_path(self, package: Path) -> None:
+        path = str(package / "launch" / "display.launch.py")
+        assert parse_launch_words([path, "a:=1"]) == (LaunchTarget(path), {"a": "1"})
+
+    def test_a_path_and_an_argument_with_a_slip(self, package: Path) -> None:
+        path = str(package / "launch" / "display.launch.py")
+        with pytest.raises(LinkwrightError, match="malformed launch argument 'gui=true'") as caught:
+            parse_launch_words([path, "gui=true"])
+        assert caught.value.diagnostics[0].hint == "write gui:=true"
+
+    def test_nothing(self) -> None:
+        with pytest.raises(LinkwrightError, match="no launch file is named"):
+            parse_launch_words([])
+
+    def test_a_package_alone(self, package: Path) -> None:
+        with pytest.raises(LinkwrightError, match="'arm' is a package: name a launch file in it too") as caught:
+            parse_launch_words(["arm"])
+        assert "display.launch.py" in (caught.value.diagnostics[0].hint or "")
+
+    def test_all_malformed_arguments_at_once(self) -> None:
+        with pytest.raises(LinkwrightError) as caught:
+            parse_arguments(["a=1", "good:=1", "--gui", "b: 2", ":=x"])
+        messages = [diagnostic.message for diagnostic in caught.value.diagnostics]
+        assert messages == [f"malformed launch argument '{word}'" for word in ("a=1", "--gui", "b: 2", ":=x")]
+        assert {diagnostic.code for diagnostic in caught.value.diagnostics} == {"LAUNCH111"}
+
+
+class TestChecks:
+    def description(self) -> LaunchDescription:
+        return LaunchDescription(
+            [
+                DeclareLaunchArgument("gui", default_value="true", choices=["true", "false"]),
+                DeclareLaunchArgument("model"),
+                DeclareLaunchArgument("speed", default_value=LaunchConfiguration("model")),
+                GroupAction([DeclareLaunchArgument("behind")], condition=IfCondition("false")),
+            ]
+        )
+
+    def test_all_errors_at_once(self) -> None:
+        with pytest.raises(LinkwrightError) as caught:
+            check_arguments(self.description(), {"gui": "yes"})
+        codes = [diagnostic.code for diagnostic in caught.value.diagnostics]
+        assert codes == ["LAUNCH112", "LAUNCH114"]
+        assert all(diagnostic.span and diagnostic.span.file == __file__ for diagnostic in caught.value.diagnostics)
+
+    def test_undeclared_arguments_are_warned_about(self) -> None:
+        warnings = check_arguments(self.description(), {"model": "m", "modl": "n", "launch-prefix": "gdb"})
+        (warning,) = warnings
+        assert warning.severity is Severity.WARNING
+        assert warning.message == "argument 'modl' is not declared by the launch file"
+        assert warning.hint == "did you mean 'model'?"
+
+    def test_listing(self) -> None:
+        assert argument_listing(self.description()) == (
+            "Arguments (pass arguments as '<name>:=<value>'):\n"
+            "\n"
+            "    'gui':\n"
+            "        One of: ['true', 'false']\n"
+            "        (default: 'true')\n"
+            "\n"
+            "    'model':\n"
+            "        no description given\n"
+            "\n"
+            "    'speed':\n"
+            "        no description given\n"
+            "        (default: LaunchConfig('model'))\n"
+            "\n"
+            "    'behind':*\n"
+            "        no description given\n"
+            "\n"
+            "* argument(s) which are only used if specific conditions occur"
+        )
+
+    def test_listing_of_nothing(self) -> None:
+        assert argument_listing(LaunchDescription()).endswith("\n\n  No arguments.")
+
+
+def test_show_arguments_of_the_shipped_package() -> None:
+    listing = show_arguments(LaunchTarget("display.launch.py", "my_robot_description"))
+    assert "    'gui':\n        " in listing
+    assert "'rvizconfig'" in listing

@@ -1,0 +1,42 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+from linkwright.launch.engine.viewer_arguments import read_viewer_config
+
+CONFIG = """
+Visualization Manager:
+  Displays: []
+  Global Options:
+    Fixed Frame: base_link
+"""
+
+
+def test_the_configuration_file(tmp_path: Path) -> None:
+    path = tmp_path / "a.rviz"
+    path.write_text(CONFIG)
+    for option in ("-d", "--display-config"):
+        config, findings = read_viewer_config([option, str(path), "--ros-args", "-r", "a:=b"])
+        assert config.options.text("Fixed Frame") == "base_link"
+        assert findings == []
+
+
+def test_the_fixed_frame() -> None:
+    config, findings = read_viewer_config(["-f", "odom"])
+    assert config.options.text("Fixed Frame") == "odom"
+    assert findings == []
+
+
+def test_a_file_that_cannot_be_read_gives_way_to_the_default(tmp_path: Path) -> None:
+    config, (finding,) = read_viewer_config(["-d", str(tmp_path / "none.rviz")])
+    assert finding.code == "RVIZ101"
+    assert config.options.text("Fixed Frame") == "map"
+
+
+def test_no_file() -> None:
+    assert read_viewer_config(["-d", ""])[1] == []
+
+
+def test_remarks() -> None:
+    messages = [finding.message for finding in read_viewer_config(["--display-confg", "-l", "-d"])[1]]
+    assert messages == ["argument '--display-confg' of rviz2 is unknown", "argument '-d' of rviz2 needs a value"]
