@@ -43,7 +43,7 @@ def test_files_of_a_package(package: Path, name: str, path: str) -> None:
 
 
 def test_a_file_that_the_package_has_not(package: Path) -> None:
-    with pytest.raises(LinkwrightError, match="package 'arm' has no launch file 'dsplay.launch.py'") as caught:
+    with pytest.raises(LinkwrightError, match=r"package 'arm' has no launch file 'dsplay\.launch\.py'") as caught:
         LaunchTarget("dsplay.launch.py", "arm").resolve(PackageFinder())
     assert "did you mean 'display.launch.py'" in (caught.value.diagnostics[0].hint or "")
     with pytest.raises(LinkwrightError) as caught:
@@ -53,7 +53,7 @@ def test_a_file_that_the_package_has_not(package: Path) -> None:
 
 def test_several_of_a_name(package: Path) -> None:
     package.joinpath("launch", "twice.launch.py").rename(package / "launch" / "sub" / "twice.launch.py")
-    with pytest.raises(LinkwrightError, match="has several launch files 'twice.launch.py'") as caught:
+    with pytest.raises(LinkwrightError, match=r"has several launch files 'twice\.launch\.py'") as caught:
         LaunchTarget("twice.launch.py", "arm").resolve(PackageFinder())
     assert "launch/sub/twice.launch.py, old/twice.launch.py" in (caught.value.diagnostics[0].hint or "")
 

@@ -1,0 +1,308 @@
+from __future__ import annotations
+
+import contextlib
+import os
+import re
+import signal
+import socket
+import subprocess
+import sys
+import time
+import urllib.request
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.launch import LaunchOptions, LaunchTarget, run_launch, run_view
+from tests.places import PACKAGE, TUTORIAL
+
+Write = Callable[[str, str], Path]
+
+DRIVER = """
+import sys
+from linkwright.diagnostics import LinkwrightError, print_diagnostics
+from linkwright.launch import LaunchOptions, parse_launch_words, run_launch, run_view
+from linkwright.standins import activate
+activate()
+options = LaunchOptions(open_browser=False)
+try:
+    if sys.argv[1] == "view":
+        sys.exit(run_view(sys.argv[2], {}, options))
+    sys.exit(run_launch(*parse_launch_words(sys.argv[1:]), options))
+except LinkwrightError as error:
+    print_diagnostics(error.diagnostics, sys.stderr)
+    sys.exit(1)
+"""
+STUBBORN = (
+    "import os, signal, time\n"
+    "for number in (signal.SIGINT, signal.SIGTERM): signal.signal(number, signal.SIG_IGN)\n"
+    "child = os.fork()\n"
+    "os.write(1, f'pid {os.getpid()}\\n'.encode())\n"
+    "time.sleep(60)\n"
+)
+
+
+class Running:
+    """A launch in a process of its own; what it writes is collected in files."""
+
+    def __init__(self, folder: Path, words: list[str], cwd: Path) -> None:
+        self._files = [folder / f"{len(list(folder.glob('*-out')))}-{name}" for name in ("out", "err")]
+        streams = [path.open("w") for path in self._files]
+        self.process = subprocess.Popen(
+            [sys.executable, "-c", DRIVER, *words], stdout=streams[0], stderr=streams[1], cwd=cwd
+        )
+        for stream in streams:
+            stream.close()
+
+    @property
+    def out(self) -> str:
+        return self._files[0].read_text()
+
+    @property
+    def err(self) -> str:
+        return self._files[1].read_text()
+
+    def until(self, text: str, seconds: float = 15.0) -> None:
+        deadline = time.monotonic() + seconds
+        while text not in self.out and text not in self.err:
+            assert self.process.poll() is None, f"it ended:\n{self.out}\n{self.err}"
+            assert time.monotonic() < deadline, f"'{text}' never came:\n{self.out}\n{self.err}"
+            time.sleep(0.01)
+
+    def end(self, number: int = signal.SIGINT) -> tuple[int, float]:
+        """Send a signal; gives the exit status and how long the end took, in seconds."""
+        began = time.monotonic()
+        self.process.send_signal(number)
+        return self.process.wait(5.0), time.monotonic() - began
+
+    @property
+    def url(self) -> str:
+        self.until("Viewer: ")
+        found = re.search(r"^Viewer: (http://127\.0\.0\.1:\d+/\?token=\S+)$", self.out, re.MULTILINE)
+        assert found
+        return found[1]
+
+
+@pytest.fixture
+def start(tmp_path: Path) -> Iterator[Callable[..., Running]]:
+    running: list[Running] = []
+
+    def begin(*words: object, cwd: Path = tmp_path) -> Running:
+        running.append(Running(tmp_path, [str(word) for word in words], cwd))
+        return running[-1]
+
+    yield begin
+    for each in running:
+        if each.process.poll() is None:
+            each.process.kill()
+            each.process.wait()
+
+
+def is_gone(pid: int) -> bool:
+    with contextlib.suppress(ProcessLookupError):
+        os.kill(pid, 0)
+        return "\nState:\tZ" in Path(f"/proc/{pid}/status").read_text()
+    return True
+
+
+def launch_file(*actions: str, head: str = "") -> str:
+    lines = ",\n        ".join(actions)
+    return (
+        "import sys, time\nfrom launch import LaunchDescription\nfrom launch.actions import *\n"
+        "from launch.substitutions import *\nfrom launch_ros.actions import Node\n"
+        f"{head}\ndef generate_launch_description():\n    return LaunchDescription([\n        {lines}\n    ])\n"
+    )
+
+
+def folders_to_launch_from() -> list[Path]:
+    return [folder for folder in (PACKAGE.parent, TUTORIAL) if (folder / "my_robot_description").is_dir()]
+
+
+@pytest.mark.parametrize("file", ["display.launch.py", "display_xacro.launch.py"])
+@pytest.mark.parametrize("folder", folders_to_launch_from(), ids=lambda folder: folder.name)
+def test_the_tutorial(start: Callable[..., Running], folder: Path, file: str) -> None:
+    running = start("my_robot_description", file, cwd=folder)
+    with urllib.request.urlopen(running.url) as response:
+        assert response.status == 200
+    running.until("Robot initialized")
+    status, seconds = running.end()
+    assert status == 130
+    assert seconds < 2.0
+    assert running.out.count("\n") == 1
+    assert "Traceback" not in running.err
+    assert "error" not in running.err
+    assert "user interrupted with ctrl-c (SIGINT)" in running.err
+    assert running.err.count("has finished cleanly") == 3
+
+
+def test_a_source_package_is_launched_by_path_with_its_own_files(start: Callable[..., Running], write: Write) -> None:
+    write("ws/src/arm/package.xml", "<package><name>arm</name></package>")
+    write("ws/src/arm/urdf/arm.urdf", '<robot name="arm"><link name="base"/></robot>')
+    path = write(
+        "ws/src/arm/launch/show.launch.py",
+        launch_file(
+            "Node(package='robot_state_publisher', executable='robot_state_publisher', parameters=[{"
+            "'robot_description': Command(['xacro ', FindPackageShare('arm'), '/urdf/arm.urdf'])}])",
+            head="from launch_ros.substitutions import FindPackageShare",
+        ),
+    )
+    running = start(path)
+    running.until("Robot initialized")
+    assert running.end()[0] == 130
+
+
+def test_two_launches_take_two_ports(start: Callable[..., Running]) -> None:
+    both = [start("my_robot_description", "display.launch.py") for _ in range(2)]
+    urls = [running.url for running in both]
+    assert urls[0].split("/?")[0] != urls[1].split("/?")[0]
+    for running, url in zip(both, urls, strict=True):
+        with urllib.request.urlopen(url) as response:
+            assert response.status == 200
+        assert running.end()[0] == 130
+
+
+class TestSignals:
+    def test_sigterm(self, start: Callable[..., Running]) -> None:
+        running = start("my_robot_description", "display.launch.py")
+        running.until("Robot initialized")
+        assert running.end(signal.SIGTERM)[0] == 143
+        assert "received signal SIGTERM" in running.err
+
+    @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+    def test_nothing_outlives_it_and_it_takes_two_seconds_at_most(
+        self, start: Callable[..., Running], write: Write, number: int
+    ) -> None:
+        action = f"ExecuteProcess(cmd=[sys.executable, '-c', {STUBBORN!r}], output='screen', name='bad')"
+        running = start(write("a.launch.py", launch_file(action, action)))
+        running.until("[bad-1] pid")
+        running.until("[bad-2] pid")
+        while running.out.count("pid ") < 4:
+            time.sleep(0.01)
+        pids = [int(pid) for pid in re.findall(r"pid (\d+)", running.out)]
+        status, seconds = running.end(number)
+        assert status == 128 + number
+        assert seconds < 2.0
+        assert "escalating to 'SIGKILL'" in running.err
+        deadline = time.monotonic() + 1.0
+        while not all(map(is_gone, pids)):
+            assert time.monotonic() < deadline
+            time.sleep(0.01)
+
+    def test_a_second_one_ends_it_at_once(self, start: Callable[..., Running], write: Write) -> None:
+        action = f"ExecuteProcess(cmd=[sys.executable, '-c', {STUBBORN!r}], output='screen', name='bad')"
+        running = start(write("a.launch.py", launch_file(action)))
+        running.until("[bad-1] pid")
+        running.process.send_signal(signal.SIGINT)
+        time.sleep(0.4)
+        assert running.process.poll() is None
+        status, seconds = running.end()
+        assert status == 130
+        assert seconds < 0.3
+
+    def test_a_well_behaved_process_is_asked_with_sigint(self, start: Callable[..., Running], write: Write) -> None:
+        program = (
+            "import time\ntry:\n    print('ready', flush=True); time.sleep(60)\n"
+            "except KeyboardInterrupt: print('asked')"
+        )
+        action = f"ExecuteProcess(cmd=[sys.executable, '-c', {program!r}], output='screen', name='good')"
+        running = start(write("a.launch.py", launch_file(action)))
+        running.until("[good-1] ready")
+        status, seconds = running.end()
+        assert (status, seconds < 0.7) == (130, True)
+        assert "[good-1] asked" in running.out
+        assert "process has finished cleanly" in running.err
+
+    @pytest.mark.parametrize(
+        ("action", "head"),
+        [
+            (
+                "OpaqueFunction(function=wait)",
+                "def wait(context):\n    print('waiting', flush=True)\n    time.sleep(60)",
+            ),
+            ("LogInfo(msg=Command('sleep 60'))", "print('waiting', flush=True)"),
+            ("", "print('waiting', flush=True)\ntime.sleep(60)"),
+        ],
+    )
+    def test_while_the_launch_file_itself_runs(
+        self, start: Callable[..., Running], write: Write, action: str, head: str
+    ) -> None:
+        running = start(write("a.launch.py", launch_file(action, head=head)))
+        running.until("waiting")
+        time.sleep(0.1)
+        status, seconds = running.end()
+        assert status == 130
+        assert seconds < 2.0
+        assert "Traceback" not in running.err
+
+
+class TestBadInput:
+    def test_what_is_wrong_before_the_start_is_raised(self, write: Write) -> None:
+        path = write("a.launch.py", launch_file("DeclareLaunchArgument('gui', default_value='a', choices=['a'])"))
+        with pytest.raises(LinkwrightError, match="'gui' has the value 'x'"):
+            run_launch(LaunchTarget(str(path)), {"gui": "x"}, LaunchOptions(open_browser=False))
+
+    def test_a_port_in_use(self, write: Write, capsys: pytest.CaptureFixture[str]) -> None:
+        with socket.socket() as taken:
+            taken.bind(("127.0.0.1", 0))
+            taken.listen()
+            port = taken.getsockname()[1]
+            options = LaunchOptions(port=port, open_browser=False)
+            assert run_view(write("a.urdf", '<robot name="a"><link name="b"/></robot>'), {}, options) == 1
+        err = capsys.readouterr().err
+        assert f"{port}" in err
+        assert err.count("error[VIEW") == 1
+
+    def test_a_failing_action_ends_the_launch_with_status_1(
+        self, write: Write, capsys: pytest.CaptureFixture[str]
+    ) -> None:
+        path = write("a.launch.py", launch_file("LogInfo(msg=LaunchConfiguration('none'))"))
+        assert run_launch(LaunchTarget(str(path))) == 1
+        err = capsys.readouterr().err
+        assert "error[LAUNCH121]: launch configuration 'none' is not set" in err
+        assert re.search(r"a\.launch\.py:\d+:\d+", err)
+
+    def test_success(self, write: Write, capsys: pytest.CaptureFixture[str]) -> None:
+        path = write("a.launch.py", launch_file("LogInfo(msg=ThisLaunchFile())", "SetEnvironmentVariable('LW_X', '1')"))
+        assert run_launch(LaunchTarget(str(path)), {"extra": "1"}) == 0
+        err = capsys.readouterr().err
+        assert f"[INFO] [launch.user]: {path}" in err
+        assert "warning[LAUNCH113]: argument 'extra' is not declared" in err
+        assert "LW_X" not in os.environ
+
+    def test_the_real_modules_may_not_be_needed(self) -> None:
+        script = (
+            "from linkwright.standins import activate\nactivate(); activate()\nimport launch\nprint(launch.__file__)"
+        )
+        out = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True).stdout
+        assert "standins/path/launch" in out
+
+
+class TestView:
+    def test_a_model(self, start: Callable[..., Running], write: Write) -> None:
+        running = start("view", write("m.urdf", '<robot name="a"><link name="b"/></robot>'))
+        with urllib.request.urlopen(running.url) as response:
+            assert response.status == 200
+        running.until("Robot initialized")
+        assert running.end()[0] == 130
+
+    def test_a_model_that_does_not_exist(self, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+        assert run_view(tmp_path / "none.urdf", {}, LaunchOptions(open_browser=False)) == 1
+        captured = capsys.readouterr()
+        assert captured.err.count("error[") == 1
+        assert "none.urdf" in captured.err
+        assert captured.out == ""
+
+    def test_a_broken_model_is_shown_as_such_until_it_is_repaired(
+        self, start: Callable[..., Running], write: Write
+    ) -> None:
+        path = write("m.urdf", '<robot name="a">\n  <link name="b">\n</robot>')
+        running = start("view", path)
+        running.until("Viewer: ")
+        running.until("error[XML")
+        time.sleep(0.3)
+        path.write_text('<robot name="a"><link name="b"/></robot>')
+        running.until("Robot initialized")
+        assert running.end()[0] == 130
+        assert "Traceback" not in running.err
