@@ -31,9 +31,12 @@ _FLAGS = (
 )
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def browser() -> Iterator[Browser]:
-    """One browser for the session, drawing in software."""
+    """One browser for a module, drawing in software.
+
+    Not for the session: as long as it lives Playwright keeps an event loop running, which asyncio tests must not meet.
+    """
     path = os.environ.get("LINKWRIGHT_CHROMIUM") or shutil.which("chromium")
     if path is None:
         pytest.fail("no Chromium: `make test` fetches one, or set LINKWRIGHT_CHROMIUM")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from linkwright.diagnostics import did_you_mean, nearest
+from linkwright.diagnostics import did_you_mean, missing_file_hint, nearest
 
 LINKS = ["base_link", "base_footprint", "left_wheel", "right_wheel"]
 
@@ -40,3 +40,16 @@ def test_nothing_near():
 )
 def test_hints(candidates, hint):
     assert did_you_mean("efort", candidates) == hint
+
+
+def test_a_missing_file_has_a_hint_whatever_is_beside_it(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert missing_file_hint(tmp_path / "no" / "a.urdf") == (
+        f"the folder 'no' does not exist; the current folder is '{tmp_path}'"
+    )
+    assert missing_file_hint(tmp_path / "a.urdf") == f"the current folder is '{tmp_path}'"
+    (tmp_path / "robot.urdf").touch()
+    (tmp_path / "notes.txt").touch()
+    assert missing_file_hint(tmp_path / "a.urdf") == "there are: robot.urdf"
+    assert missing_file_hint(tmp_path / "robto.urdf") == "did you mean 'robot.urdf'?"
+    assert missing_file_hint(tmp_path / "x", lambda name: name.endswith(".txt")) == "there are: notes.txt"

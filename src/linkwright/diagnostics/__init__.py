@@ -3,7 +3,7 @@
 from linkwright.diagnostics.diagnostic import Diagnostic, LinkwrightError, Note, Severity, has_errors
 from linkwright.diagnostics.render import display_path, print_diagnostics, render, to_data, wants_colour
 from linkwright.diagnostics.source import SourceText, Span
-from linkwright.diagnostics.suggest import did_you_mean, nearest
+from linkwright.diagnostics.suggest import did_you_mean, missing_file_hint, nearest
 
 __all__ = [
     "Diagnostic",
@@ -15,6 +15,7 @@ __all__ = [
     "did_you_mean",
     "display_path",
     "has_errors",
+    "missing_file_hint",
     "nearest",
     "print_diagnostics",
     "render",

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from difflib import get_close_matches
+from collections.abc import Callable, Iterable
+from pathlib import Path
+
+from linkwright.diagnostics.render import display_path
+
+_LISTED = 8
 
 
 def nearest(name: str, candidates: Iterable[str], limit: int = 3) -> list[str]:
     """The candidates most like `name`, best first; upper and lower case count as alike."""
+    from difflib import get_close_matches  # here, because most runs of a command end without a hint
+
     by_fold: dict[str, str] = {}
     for candidate in candidates:
         by_fold.setdefault(candidate.casefold(), candidate)
@@ -16,9 +22,39 @@ def nearest(name: str, candidates: Iterable[str], limit: int = 3) -> list[str]:
 
 def did_you_mean(name: str, candidates: Iterable[str]) -> str | None:
     """A hint such as ``did you mean 'radius'?``, or None when no candidate is near."""
-    matches = nearest(name, candidates)
-    if not matches:
+    return _quoted(nearest(name, candidates))
+
+
+def _quoted(names: Iterable[str]) -> str | None:
+    quoted = [f"'{name}'" for name in names]
+    if not quoted:
         return None
-    quoted = [f"'{match}'" for match in matches]
     listed = quoted[0] if len(quoted) == 1 else ", ".join(quoted[:-1]) + " or " + quoted[-1]
     return f"did you mean {listed}?"
+
+
+def missing_file_hint(path: Path, wanted: Callable[[str], bool] | None = None) -> str:
+    """What to say about a file that is not there: a missing folder, the nearest names beside it, or what is beside it.
+
+    Args:
+        path: of the file.
+        wanted: which names may be meant; those with the same ending when left out.
+    """
+    folder = path.parent
+    if wanted is None:
+
+        def wanted(name: str) -> bool:
+            return name.endswith(path.suffix)
+
+    try:
+        names = sorted(entry.name for entry in folder.iterdir() if entry.is_file())
+    except OSError:
+        return f"the folder '{display_path(folder)}' does not exist; the current folder is '{Path.cwd()}'"
+    # By what stands before the ending: 'a.urdf' and 'robot.urdf' are not alike for sharing it.
+    ending = "".join(path.suffixes)
+    stems = {name.removesuffix(ending): name for name in names if name.endswith(ending)}
+    like = _quoted(stems[stem] for stem in nearest(path.name.removesuffix(ending), stems))
+    if like:
+        return like
+    there = [name for name in names if wanted(name)][:_LISTED]
+    return "there are: " + ", ".join(there) if there else f"the current folder is '{Path.cwd()}'"

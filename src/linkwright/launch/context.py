@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import os
 import sys
-from collections.abc import Iterable, MutableMapping
+from collections.abc import Iterable, MutableMapping, Sequence
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
@@ -130,6 +130,13 @@ class LaunchContext:
             print_diagnostics([warning], sys.stderr)
         else:
             self._session.log.diagnostics([warning])
+
+    def remark(self, about: object, findings: Sequence[Diagnostic]) -> None:
+        """Tell the user what is remarkable about a robot description, here and in the viewer."""
+        if self._session is None:
+            print_diagnostics(findings, sys.stderr)
+        else:
+            self._session.reload.report(about, findings)
 
     @property
     def is_shutdown(self) -> bool:

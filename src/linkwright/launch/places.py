@@ -13,6 +13,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText, Span
 
 _OURS = str(Path(linkwright.__file__).parent) + os.sep
 _SHIPPED_PACKAGES = _OURS + "robots" + os.sep
+_COMMAND_LINE = _OURS + "cli" + os.sep
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,9 +26,14 @@ class Place:
 
     @classmethod
     def of_caller(cls) -> Place | None:
-        """The nearest frame on the stack that is not Linkwright's own; None where there is none."""
+        """The nearest frame on the stack that is not Linkwright's own; None where there is none.
+
+        What our command line was started by (a script, Python itself) is no place of the user's.
+        """
         frame: FrameType | None = sys._getframe(1)
         while frame is not None and is_ours(frame.f_code.co_filename):
+            if frame.f_code.co_filename.startswith(_COMMAND_LINE):
+                return None
             frame = frame.f_back
         return None if frame is None else cls(frame.f_code, frame.f_lasti, frame.f_lineno)
 

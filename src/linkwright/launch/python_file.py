@@ -5,7 +5,15 @@ from __future__ import annotations
 from pathlib import Path
 from types import ModuleType
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText, Span, did_you_mean, display_path
+from linkwright.diagnostics import (
+    Diagnostic,
+    LinkwrightError,
+    SourceText,
+    Span,
+    did_you_mean,
+    display_path,
+    missing_file_hint,
+)
 from linkwright.launch.description import LaunchDescription
 from linkwright.launch.user_errors import explain
 
@@ -58,22 +66,17 @@ def _read(path: Path) -> SourceText:
     try:
         return SourceText(str(path), path.read_text(encoding="utf-8"))
     except FileNotFoundError as error:
-        raise _error("LAUNCH101", f"launch file '{shown}' does not exist", _neighbours(path)) from error
+        raise _error(
+            "LAUNCH101", f"launch file '{shown}' does not exist", missing_file_hint(path, is_launch_file_name)
+        ) from error
     except IsADirectoryError as error:
-        raise _error("LAUNCH101", f"'{shown}' is a folder, not a launch file", _neighbours(path / "_")) from error
+        raise _error(
+            "LAUNCH101", f"'{shown}' is a folder, not a launch file", missing_file_hint(path / "_", is_launch_file_name)
+        ) from error
     except OSError as error:
         raise _error("LAUNCH102", f"launch file '{shown}' cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:
         raise _error("LAUNCH102", f"launch file '{shown}' is not UTF-8: {error.reason}") from error
-
-
-def _neighbours(path: Path) -> str | None:
-    """The nearest launch file names beside a path that does not exist, or all of them."""
-    try:
-        names = sorted(entry.name for entry in path.parent.iterdir() if is_launch_file_name(entry.name))
-    except OSError:
-        return f"folder '{display_path(path.parent)}' does not exist"
-    return did_you_mean(path.name, names) or ("there are: " + ", ".join(names) if names else None)
 
 
 def is_launch_file_name(name: str) -> bool:

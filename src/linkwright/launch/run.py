@@ -11,6 +11,7 @@ from typing import Any
 
 from linkwright.launch.arguments import argument_listing, check_arguments
 from linkwright.launch.description import LaunchDescription
+from linkwright.launch.engine.descriptions import Descriptions, use_descriptions
 from linkwright.launch.engine.log import LaunchLog
 from linkwright.launch.engine.session import LaunchSession, SessionOptions
 from linkwright.launch.engine.signals import SignalWatch, interruption_text
@@ -96,7 +97,7 @@ def run_description(
     """
     environment = dict(os.environ)
     log = LaunchLog()
-    with SignalWatch() as signals, use_finder(finder):
+    with SignalWatch() as signals, use_finder(finder), use_descriptions(Descriptions(finder)):
         try:
             description, values = load(log)
             session_options = SessionOptions(options.host, options.port, options.open_browser, title)

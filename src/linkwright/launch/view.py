@@ -41,8 +41,7 @@ class ModelText(Substitution):
         """
         descriptions = context.session.descriptions
         text = descriptions.expand(self.call)
-        for warning in descriptions.warnings:
-            context.warn(warning)
+        context.remark(self.call, descriptions.warnings_of(self.call))
         return text
 
 

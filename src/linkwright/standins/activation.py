@@ -8,7 +8,7 @@ from pathlib import Path
 
 _FOLDER = Path(__file__).parent / "path"
 
-LAUNCH_MODULES = ("launch", "launch_ros", "ament_index_python")
+LAUNCH_MODULES = ("launch", "launch_ros", "ament_index_python", "xacro")
 """What launch files import. These are always ours when Linkwright runs a launch file, beside a sourced ROS too:
 the real ones would describe the launch to a launcher that is not running."""
 

@@ -90,6 +90,11 @@ class PackageFinder:
         """
         return uri.resolve(address, self.share, relative_to)
 
+    def forget(self) -> None:
+        """Look at the disk anew at the next question; packages may have come, gone or moved."""
+        self._known.clear()
+        self._scans.clear()
+
     def package_of(self, path: str | Path) -> str | None:
         """The name of the package that a file lies in (installed or source), or None."""
         found = enclosing_package(_absolute(path))

@@ -81,7 +81,8 @@ class _Fault:
         code = error.code
         if not self._text.strip():
             message = f"'{self._source.name}' is empty"
-            return Diagnostic("XML105", message, span=self._source.span(0, 0), source=self._source)
+            hint = 'a description begins with <robot name="...">; was the file saved?'
+            return Diagnostic("XML105", message, span=self._source.span(0, 0), hint=hint, source=self._source)
         if code == _MISMATCH:
             return self._mismatched_tag()
         if self._offset >= len(self._text.rstrip()) and code in (_NO_ELEMENT, _UNCLOSED_TOKEN) and self._open:

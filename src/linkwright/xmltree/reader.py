@@ -7,7 +7,7 @@ from bisect import bisect_right
 from pathlib import Path
 from xml.parsers.expat import ExpatError, ParserCreate
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText
+from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText, missing_file_hint
 from linkwright.xmltree.decoding import decode
 from linkwright.xmltree.entities import GROWTH_LIMIT, EntityGuard
 from linkwright.xmltree.faults import forbidden_entity, syntax_error, undeclared_prefix
@@ -48,12 +48,16 @@ def read_bytes(path: str | Path) -> bytes:
     try:
         return Path(path).read_bytes()
     except FileNotFoundError:
-        raise LinkwrightError(Diagnostic("XML101", f"no such file: '{path}'")) from None
+        message = f"no such file: '{path}'"
+        raise LinkwrightError(Diagnostic("XML101", message, hint=missing_file_hint(Path(path)))) from None
     except IsADirectoryError:
-        raise LinkwrightError(Diagnostic("XML102", f"'{path}' is a folder, not a file")) from None
+        message = f"'{path}' is a folder, not a file"
+        hint = missing_file_hint(Path(path) / "_.xacro")
+        raise LinkwrightError(Diagnostic("XML102", message, hint=hint)) from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        raise LinkwrightError(Diagnostic("XML103", f"cannot read '{path}': {reason}")) from None
+        hint = "is it yours to read?" if isinstance(error, PermissionError) else None
+        raise LinkwrightError(Diagnostic("XML103", f"cannot read '{path}': {reason}", hint=hint)) from None
 
 
 class _Reader:

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Sequence
+import time
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity
+from linkwright.diagnostics import Diagnostic, LinkwrightError
 from linkwright.workspace import PackageFinder
 
 if TYPE_CHECKING:
@@ -58,7 +61,8 @@ class Descriptions:
 
     def __init__(self, finder: PackageFinder) -> None:
         self.finder = finder
-        self.warnings: list[Diagnostic] = []
+        self._warnings: dict[XacroCall, tuple[Diagnostic, ...]] = {}
+        self._read_ns: dict[XacroCall, int] = {}
         self._calls: dict[str, XacroCall] = {}
         self._files: dict[XacroCall, tuple[Path, ...]] = {}
         self._library: DescriptionLibrary | None = None
@@ -88,6 +92,7 @@ class Descriptions:
         """
         from linkwright.xacro import expand
 
+        self._read_ns[call] = time.time_ns()
         try:
             return expand(call.path, dict(call.arguments), packages=self.finder)
         except LinkwrightError as error:
@@ -99,16 +104,42 @@ class Descriptions:
         self.library.remember(text, expansion.document)
         self._calls[text] = call
         self._files[call] = expansion.dependencies
-        self.warnings = [each for each in expansion.diagnostics if each.severity is not Severity.ERROR]
+        self._warnings[call] = expansion.diagnostics
         return text
 
     def call_of(self, text: str) -> XacroCall | None:
         """The use of xacro that gave a text, or None for a text from elsewhere."""
         return self._calls.get(text)
 
+    def warnings_of(self, call: XacroCall) -> tuple[Diagnostic, ...]:
+        """What the last good expansion had to remark."""
+        return self._warnings.get(call, ())
+
+    def read_ns(self, call: XacroCall) -> int:
+        """When the files were last read, nanoseconds since the epoch; 0 for never."""
+        return self._read_ns.get(call, 0)
+
     def files_of(self, call: XacroCall) -> tuple[Path, ...]:
         """The files that the last good expansion read; the model file alone while there was none."""
         return self._files.get(call, (call.path,))
+
+
+_current: ContextVar[Descriptions | None] = ContextVar("linkwright_descriptions", default=None)
+
+
+def current_descriptions() -> Descriptions | None:
+    """The descriptions of the launch that is being loaded or run, for those who cannot be handed them."""
+    return _current.get()
+
+
+@contextmanager
+def use_descriptions(descriptions: Descriptions) -> Iterator[None]:
+    """Make `current_descriptions` return them inside a ``with`` block."""
+    token = _current.set(descriptions)
+    try:
+        yield
+    finally:
+        _current.reset(token)
 
 
 def parse_xacro_words(words: Sequence[str], text: str, folder: Path) -> tuple[XacroCall, str | None]:

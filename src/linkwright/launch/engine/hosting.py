@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import os
+import sys
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -223,7 +224,8 @@ class NodeHost:
                 session.reload.bind(call, lambda text, name=name: self._set(plan, running, name, text))  # type: ignore[misc]
             if name == _DESCRIPTION and plan.package == "robot_state_publisher":
                 reading = session.descriptions.library.read(value)
-                session.reload.report(call or plan.process_name, reading.diagnostics)
+                warnings = session.descriptions.warnings_of(call) if call else ()
+                session.reload.report(call or plan.process_name, (*warnings, *reading.diagnostics))
 
     def _set(self, plan: HostedPlan, running: RunningNode, name: str, text: str) -> None:
         from linkwright.graph import Parameter
@@ -257,6 +259,7 @@ class NodeHost:
 
         session = self._session
         self._speaking = plan.process_name
+        node_name = plan.node_name or plan.executable
         try:
             if plan.viewer_config is not None:
                 config, findings = plan.viewer_config(), list[Diagnostic]()
@@ -271,7 +274,7 @@ class NodeHost:
                 host=session.options.host,
                 port=session.options.port,
                 title=session.options.title,
-                name=plan.node_name or plan.executable,
+                name=node_name,
                 namespace=plan.namespace,
                 remappings=plan.remappings,
             )
@@ -285,6 +288,9 @@ class NodeHost:
         finally:
             self._speaking = "launch"
         self._viewers[plan.process_name] = plan, viewer
+        self._process_of_logger[".".join([*plan.namespace.strip("/").split("/"), node_name]).lstrip(".")] = (
+            plan.process_name
+        )
         session.log.announce(f"Viewer: {viewer.url}")
         if session.options.open_browser:
             _open_in_browser(viewer.url)
@@ -333,7 +339,13 @@ def _attach_panel(viewer: Viewer, running: RunningNode) -> None:
 
 
 def _open_in_browser(url: str) -> None:
-    """Open the page; in a thread, because some browsers take their time to answer."""
+    """Open the page; in a thread, because some browsers take their time to answer.
+
+    Not where there is no display: a browser for the terminal would take ours.
+    """
+    displays = ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER")
+    if sys.platform.startswith("linux") and not any(os.environ.get(name) for name in displays):
+        return
     import webbrowser
 
     threading.Thread(target=webbrowser.open, args=(url,), name="linkwright-browser", daemon=True).start()

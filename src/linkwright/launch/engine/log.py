@@ -7,6 +7,7 @@ import socket
 import sys
 import time
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
@@ -94,11 +95,12 @@ class LaunchLog:
 
     def announce(self, line: str) -> None:
         """A line for programs that read our stdout; written at once."""
-        print(line, file=self._streams[1], flush=True)
+        self._print(1, line)
 
     def diagnostics(self, diagnostics: Iterable[Diagnostic]) -> None:
         """Findings about the user's files."""
-        print_diagnostics(diagnostics, self._streams[2])
+        with suppress(BrokenPipeError):
+            print_diagnostics(diagnostics, self._streams[2])
 
     def node_record(self, process: str, record: LogRecord) -> None:
         """What a node of this process logs, in rcutils' format behind the name of its process."""
@@ -106,7 +108,7 @@ class LaunchLog:
 
         line = f"[{process}] {console_line(record)}"
         colour = {"WARN": "33", "ERROR": "31", "FATAL": "31"}.get(record.level.name)
-        print(self._painted(line, colour), file=self._streams[2], flush=True)
+        self._print(2, self._painted(line, colour))
 
     def process_line(self, process: str, stream: int, line: str, destinations: frozenset[str]) -> None:
         """A line that a process wrote.
@@ -118,7 +120,7 @@ class LaunchLog:
             destinations: of `SCREEN`, `LOG` and `OWN_LOG`.
         """
         if SCREEN in destinations:
-            print(line, file=self._streams[stream], flush=True)
+            self._print(stream, line)
         if LOG in destinations:
             self._write("launch.log", line)
         if OWN_LOG in destinations:
@@ -133,7 +135,11 @@ class LaunchLog:
 
     def _own_line(self, level: str, name: str, text: str) -> None:
         line = f"[{level}] [{name}]: {text}"
-        print(self._painted(line, _LEVEL_COLOURS.get(level)), file=self._streams[2], flush=True)
+        self._print(2, self._painted(line, _LEVEL_COLOURS.get(level)))
+
+    def _print(self, stream: int, line: str) -> None:
+        with suppress(BrokenPipeError):  # the reader, such as head, has gone; the launch goes on
+            print(line, file=self._streams[stream], flush=True)
 
     def _painted(self, line: str, colour: str | None) -> str:
         return f"\x1b[{colour}m{line}\x1b[0m" if colour and self._colour else line

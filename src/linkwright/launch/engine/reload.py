@@ -20,8 +20,7 @@ _SETTLE_SECONDS = 0.06
 _MISSING_ATTEMPTS = 8
 """How many such waits a missing file is given: some editors delete it before they write it."""
 _CATCH_UP_SECONDS = 0.4
-"""When the files are compared once with their state at the first expansion, for changes before the watch
-began."""
+"""When the files are looked at once for changes between their first reading and the beginning of the watch."""
 
 Apply = Callable[[str], None]
 """Takes the new text of a description."""
@@ -42,7 +41,6 @@ class LiveReload:
         self._log = log
         self._targets: dict[XacroCall, list[Apply]] = {}
         self._findings: dict[object, tuple[Diagnostic, ...]] = {}
-        self._stamps: dict[Path, int] = {}
         self._watch: FileWatch | None = None
         self._running: dict[XacroCall, asyncio.Task[None]] = {}
         self._again: set[XacroCall] = set()
@@ -59,12 +57,16 @@ class LiveReload:
         self._targets[call].remove(apply)
 
     def report(self, about: object, diagnostics: Iterable[Diagnostic]) -> None:
-        """Print what is wrong with a description, if it is news, and show it; nothing wrong clears it."""
+        """Print what is wrong with a description and show it; nothing wrong clears it.
+
+        Errors are printed again and again, as long as they are there; warnings and remarks once.
+        """
         findings = tuple(diagnostics)
-        if findings == self._findings.get(about, ()):
-            return
+        known = {_essence(finding) for finding in self._findings.get(about, ())}
         self._findings[about] = findings
-        self._log.diagnostics(findings)
+        self._log.diagnostics(
+            finding for finding in findings if finding.severity is Severity.ERROR or _essence(finding) not in known
+        )
         self._show(self.findings())
 
     def findings(self) -> list[Diagnostic]:
@@ -76,9 +78,6 @@ class LiveReload:
         if self._closed or not self._targets:
             return
         self._watch = FileWatch(self._on_change, self._on_watch_failure)
-        for call in self._targets:
-            for path in self._files_of_interest(call):
-                self._stamps[path] = _stamp(path)
         self._watch_files()
         asyncio.get_running_loop().call_later(_CATCH_UP_SECONDS, self._catch_up)
 
@@ -108,9 +107,11 @@ class LiveReload:
         self._log.caution("launch", f"model files are not watched for changes: {reason}")
 
     def _catch_up(self) -> None:
-        changed = {path for path, stamp in self._stamps.items() if _stamp(path) != stamp}
-        if changed:
-            self._on_change(changed)
+        """Reload what was saved after it was read and before the watch began."""
+        for call in self._targets if not self._closed else ():
+            read_ns = self._descriptions.read_ns(call)
+            if any(_saved_ns(path) > read_ns for path in self._files_of_interest(call)):
+                self._start_reload(call)
 
     # --- a change -------------------------------------------------------------------------------------------
 
@@ -119,7 +120,9 @@ class LiveReload:
             return
         for call in self._targets:
             files = self._files_of_interest(call)
-            # While a model is broken, any file beside it may be the missing piece.
+            # While a model is broken, any file beside it may be the missing piece, and any package.
+            if self._is_broken(call):
+                self._descriptions.finder.forget()
             if self._is_broken(call) or not paths.isdisjoint(files | {real(file) for file in files}):
                 self._start_reload(call)
 
@@ -179,7 +182,11 @@ class LiveReload:
         self._watch_files()
 
 
-def _stamp(path: Path) -> int:
+def _essence(finding: Diagnostic) -> tuple[object, ...]:
+    return finding.code, finding.message, finding.span
+
+
+def _saved_ns(path: Path) -> int:
     try:
         return path.stat().st_mtime_ns
     except OSError:

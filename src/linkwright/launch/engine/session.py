@@ -4,26 +4,29 @@ from __future__ import annotations
 
 import asyncio
 import os
-import tempfile
 from collections import deque
 from collections.abc import Callable, Coroutine, Sequence
 from dataclasses import dataclass
 from itertools import count
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.launch import events
 from linkwright.launch.context import LaunchContext
-from linkwright.launch.engine.descriptions import DescriptionError, Descriptions, XacroCall
+from linkwright.launch.engine.descriptions import DescriptionError, Descriptions, XacroCall, current_descriptions
 from linkwright.launch.engine.hosting import NodeHost
 from linkwright.launch.engine.log import LaunchLog
 from linkwright.launch.engine.processes import ProcessPlan, RunningProcess
 from linkwright.launch.engine.reload import LiveReload
 from linkwright.launch.entity import LaunchDescriptionEntity
 from linkwright.launch.event_handlers import EventHandler
+from linkwright.launch.places import located
 from linkwright.launch.user_errors import explain
 from linkwright.workspace import PackageFinder
+
+if TYPE_CHECKING:
+    from tempfile import TemporaryDirectory
 
 _INTERRUPT_GRACE = (1.0, 0.5)
 """Seconds to SIGTERM and from there to SIGKILL on the user's interrupt: all has to end within two seconds."""
@@ -59,7 +62,7 @@ class LaunchSession:
         self.finder = finder
         self.options = options
         self.log = log
-        self.descriptions = Descriptions(finder)
+        self.descriptions = current_descriptions() or Descriptions(finder)
         self.context = LaunchContext()
         self.context.attach(self)
         self.handlers: list[EventHandler] = []
@@ -76,7 +79,7 @@ class LaunchSession:
         self._tasks: set[asyncio.Task[Any]] = set()
         self._process_numbers = count(1)
         self._crash: BaseException | None = None
-        self._scratch: tempfile.TemporaryDirectory[str] | None = None
+        self._scratch: TemporaryDirectory[str] | None = None
         self.host = NodeHost(self)
         self.reload = LiveReload(self.descriptions, self.host.show_findings, log)
 
@@ -110,6 +113,8 @@ class LaunchSession:
     def scratch_folder(self) -> Path:
         """A folder for files that the processes of this launch read; it goes when the launch is over."""
         if self._scratch is None:
+            import tempfile
+
             self._scratch = tempfile.TemporaryDirectory(prefix="linkwright_launch_")
         return Path(self._scratch.name)
 
@@ -194,8 +199,8 @@ class LaunchSession:
         try:
             following = entity.visit(context)
         except DescriptionError as error:
-            if error.missing or not self._can_be_repaired(entity):
-                raise
+            if error.missing or self.ending:
+                raise located(error, entity.place) from error
             self._await_repair(entity, context.snapshot(), error)
             return
         except Exception as error:
@@ -203,9 +208,6 @@ class LaunchSession:
             raise explain(error, f"launch action {name}", entity.place) from error
         for each in following or ():
             self._visit(each, context)
-
-    def _can_be_repaired(self, entity: LaunchDescriptionEntity) -> bool:
-        return getattr(entity, "hosted", False) and not self.ending
 
     def _await_repair(self, entity: LaunchDescriptionEntity, context: LaunchContext, error: DescriptionError) -> None:
         """Visit an entity again as soon as the model file that it needs can be expanded."""

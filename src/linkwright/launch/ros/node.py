@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import tempfile
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -196,6 +195,8 @@ def _ros_arguments(
 
 def _written(parameters: dict[str, Any], folder: Path) -> Path:
     """A parameter file with these values for any node."""
+    import tempfile
+
     import yaml
 
     descriptor, path = tempfile.mkstemp(prefix="launch_params_", suffix=".yaml", dir=folder)
