@@ -25,6 +25,7 @@ _SECTION = re.compile(r"(?=^## )", re.MULTILINE)
 _FILE = re.compile(r'^```\w+ title="([^"]+)"\n(.*?)^```$', re.MULTILINE | re.DOTALL)
 _COMMAND = re.compile(r"^```bash\nlinkwright (.*?)\n```$", re.MULTILINE)
 _OUTPUT = re.compile(r"(?<=^```text\n).*?(?=^```$)", re.MULTILINE | re.DOTALL)
+_READERS_FOLDER = "/home/you/robots"
 # A folder's look must not depend on where the program is run, nor on a workspace that happens to be sourced.
 _LEFT_OUT = ("AMENT_PREFIX_PATH", "COLCON_PREFIX_PATH", "ROS_PACKAGE_PATH")
 
@@ -53,7 +54,7 @@ def output_of(words: Sequence[str], files: Sequence[tuple[str, str]]) -> str:
         )
     if result.returncode != 1:
         raise RuntimeError(f"linkwright {shlex.join(words)} exited with {result.returncode}, not 1:\n{result.stderr}")
-    return result.stderr
+    return result.stderr.replace(folder, _READERS_FOLDER)
 
 
 def _refreshed_section(section: str) -> str:

@@ -240,3 +240,32 @@ async def test_a_save_without_a_change_of_meaning_keeps_the_positions_right(writ
         span = robot.links["a"].element.span()
         assert span is not None
         assert span.line == 3
+
+
+async def test_a_package_that_comes_later_repairs_the_model(write, tmp_path: Path) -> None:
+    path = write("r.xacro", f'<robot name="r" {XACRO}><xacro:include filename="$(find late)/part.xacro"/></robot>')
+    async with running(path) as bench:
+        await bench.until(lambda: "Viewer: " in bench.out and bool(bench.findings()))
+        assert bench.findings()[0].code == "PKG101"
+        await bench.watching()
+        write("late/part.xacro", f'<robot {XACRO}><link name="a"/></robot>')
+        write("late/package.xml", "<package><name>late</name></package>")
+        path.write_text(path.read_text() + "\n")
+        await bench.shows("a")
+
+
+async def test_what_the_viewer_says_carries_its_name(write) -> None:
+    path = write(
+        "r.urdf",
+        '<robot name="r"><link name="a"><visual><geometry><mesh filename="package://none_at_all/a.dae"/></geometry>'
+        "</visual></link></robot>",
+    )
+    config = write(
+        "a.rviz",
+        "Visualization Manager:\n  Displays:\n    - Class: rviz_default_plugins/RobotModel\n      Enabled: true\n"
+        "      Name: RobotModel\n      Description Topic: {Value: /robot_description}\n",
+    )
+    async with running(path, "-d", str(config)) as bench:
+        await bench.until(lambda: "none_at_all" in bench.err)
+        line = next(line for line in bench.err.splitlines() if "none_at_all" in line and line.startswith("["))
+        assert line.startswith("[rviz2-2] [ERROR]")

@@ -10,7 +10,7 @@ import asyncio
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, display_path
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, display_path, has_errors
 from linkwright.launch.engine.descriptions import Descriptions, XacroCall
 from linkwright.launch.engine.file_watch import FileWatch, real
 from linkwright.launch.engine.log import LaunchLog
@@ -119,15 +119,17 @@ class LiveReload:
         if self._closed:
             return
         for call in self._targets:
-            files = self._files_of_interest(call)
-            # While a model is broken, any file beside it may be the missing piece, and any package.
             if self._is_broken(call):
+                # Any file beside it may be the missing piece, and any package.
                 self._descriptions.finder.forget()
-            if self._is_broken(call) or not paths.isdisjoint(files | {real(file) for file in files}):
+                self._start_reload(call)
+                continue
+            files = self._files_of_interest(call)
+            if not paths.isdisjoint(files | {real(file) for file in files}):
                 self._start_reload(call)
 
     def _is_broken(self, call: XacroCall) -> bool:
-        return any(finding.severity is Severity.ERROR for finding in self._findings.get(call, ()))
+        return has_errors(self._findings.get(call, ()))
 
     def _start_reload(self, call: XacroCall) -> None:
         if call in self._running:
@@ -177,7 +179,8 @@ class LiveReload:
                 apply(text)
         except LinkwrightError as error:
             findings = (*findings, *error.diagnostics)
-        self._log.say("launch", f"{'repaired' if was_broken else 'reloaded'} {display_path(call.path)}")
+        verb = "repaired" if was_broken and not has_errors(findings) else "reloaded"
+        self._log.say("launch", f"{verb} {display_path(call.path)}")
         self.report(call, findings)
         self._watch_files()
 
