@@ -219,6 +219,24 @@ class TestEnds:
         done = await launch(python("print('up')", respawn=True, respawn_delay=0.01, respawn_max_retries=2))
         assert done.out == "[py-1] up\n" * 3
 
+    async def test_a_process_that_was_about_to_start_ends_with_the_launch(self, launch) -> None:
+        began = time.monotonic()
+        done = await launch(
+            python("import time; time.sleep(60)"),
+            python("import time; time.sleep(60)"),
+            LogInfo(msg=LaunchConfiguration("x")),
+        )
+        assert time.monotonic() - began < 2.0
+        assert not done.succeeded
+
+    async def test_a_respawn_that_waits_ends_with_the_launch(self, launch) -> None:
+        began = time.monotonic()
+        done = await launch(
+            python("0", respawn=True, respawn_delay=60.0), TimerAction(period=0.3, actions=[Shutdown(reason="over")])
+        )
+        assert time.monotonic() - began < 2.0
+        assert done.err.count("process started") == 1
+
     async def test_escalation(self, launch) -> None:
         action = python(STUBBORN, sigterm_timeout=0.15, sigkill_timeout="0.15")
         done = await launch(

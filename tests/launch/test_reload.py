@@ -9,6 +9,7 @@ from contextlib import asynccontextmanager
 from pathlib import Path
 
 import pytest
+from launch.actions import TimerAction
 from launch.substitutions import Command
 from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
@@ -69,7 +70,7 @@ class Bench:
 
 
 @asynccontextmanager
-async def running(path: Path, *, viewer: bool = True) -> AsyncIterator[Bench]:
+async def running(path: Path, *arguments: str, viewer: bool = True, delay: float | None = None) -> AsyncIterator[Bench]:
     out, err = io.StringIO(), io.StringIO()
     description = ParameterValue(Command(["xacro ", str(path)]), value_type=str)
     entities = [
@@ -79,8 +80,10 @@ async def running(path: Path, *, viewer: bool = True) -> AsyncIterator[Bench]:
             parameters=[{"robot_description": description}],
         )
     ]
+    if delay is not None:
+        entities = [TimerAction(period=delay, actions=entities)]
     if viewer:
-        entities.append(Node(package="rviz2", executable="rviz2"))
+        entities.append(Node(package="rviz2", executable="rviz2", arguments=arguments))
     finder = PackageFinder(start=path.parent, environment={})
     with use_finder(finder):
         session = LaunchSession(finder, SessionOptions(port=0, open_browser=False), LaunchLog(out, err))
@@ -104,6 +107,15 @@ async def test_a_saved_file_reaches_the_node_at_once(write) -> None:
             await asyncio.sleep(0.1)
         assert min(times) < 0.15
         assert "reloaded" in bench.err
+
+
+async def test_a_node_that_starts_later_is_served_too(write) -> None:
+    path = write("r.xacro", model("a"))
+    async with running(path, delay=0.2) as bench:
+        await bench.shows("a")
+        await bench.watching()
+        path.write_text(model("b"))
+        await bench.shows("b")
 
 
 async def test_an_editor_that_renames(write) -> None:

@@ -66,29 +66,36 @@ class LaunchContext:
         """Set values that outlast the moment."""
         self._globals.update(extensions)
 
-    def _push_locals(self) -> None:
+    def push_locals(self) -> None:
+        """Begin a moment: what `extend_locals` sets from here on ends with `pop_locals`."""
         self._locals.append({})
 
-    def _pop_locals(self) -> None:
+    def pop_locals(self) -> None:
+        """End a moment."""
         self._locals.pop()
 
     # --- scopes ---------------------------------------------------------------------------------------------
 
-    def _push_launch_configurations(self) -> None:
+    def push_launch_configurations(self) -> None:
+        """Open a scope of launch configurations."""
         self._configurations_stack.append(dict(self.launch_configurations))
 
-    def _pop_launch_configurations(self) -> None:
+    def pop_launch_configurations(self) -> None:
+        """Close it: they are what they were before."""
         restored = self._configurations_stack.pop()
         self.launch_configurations.clear()
         self.launch_configurations.update(restored)
 
-    def _push_environment(self) -> None:
+    def push_environment(self) -> None:
+        """Open a scope of environment variables."""
         self._environment_stack.append(dict(self.environment))
 
-    def _pop_environment(self) -> None:
-        self._reset_environment(self._environment_stack.pop())
+    def pop_environment(self) -> None:
+        """Close it: they are what they were before."""
+        self.reset_environment(self._environment_stack.pop())
 
-    def _reset_environment(self, environment: dict[str, str]) -> None:
+    def reset_environment(self, environment: dict[str, str]) -> None:
+        """Make the environment the one given."""
         for name in [name for name in self.environment if name not in environment]:
             del self.environment[name]
         self.environment.update(environment)

@@ -56,8 +56,8 @@ def read_bytes(path: str | Path) -> bytes:
         raise LinkwrightError(Diagnostic("XML102", message, hint=hint)) from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        hint = "is it yours to read?" if isinstance(error, PermissionError) else None
-        raise LinkwrightError(Diagnostic("XML103", f"cannot read '{path}': {reason}", hint=hint)) from None
+        advice = "is it yours to read?" if isinstance(error, PermissionError) else None
+        raise LinkwrightError(Diagnostic("XML103", f"cannot read '{path}': {reason}", hint=advice)) from None
 
 
 class _Reader:

@@ -61,7 +61,7 @@ class PushLaunchConfigurations(Action):
 
     def execute(self, context: LaunchContext) -> None:
         """Open it."""
-        context._push_launch_configurations()
+        context.push_launch_configurations()
 
 
 class PopLaunchConfigurations(Action):
@@ -69,7 +69,7 @@ class PopLaunchConfigurations(Action):
 
     def execute(self, context: LaunchContext) -> None:
         """Close it."""
-        context._pop_launch_configurations()
+        context.pop_launch_configurations()
 
 
 class ResetLaunchConfigurations(Action):

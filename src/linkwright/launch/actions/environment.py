@@ -105,7 +105,7 @@ class PushEnvironment(Action):
 
     def execute(self, context: LaunchContext) -> None:
         """Open it."""
-        context._push_environment()
+        context.push_environment()
 
 
 class PopEnvironment(Action):
@@ -113,7 +113,7 @@ class PopEnvironment(Action):
 
     def execute(self, context: LaunchContext) -> None:
         """Close it."""
-        context._pop_environment()
+        context.pop_environment()
 
 
 class ResetEnvironment(Action):
@@ -121,4 +121,4 @@ class ResetEnvironment(Action):
 
     def execute(self, context: LaunchContext) -> None:
         """Give it back."""
-        context._reset_environment(context.session.initial_environment)
+        context.reset_environment(context.session.initial_environment)

@@ -150,7 +150,7 @@ class ExecuteProcess(Action):
             LinkwrightError: LAUNCH141, what cannot be understood of how it is to run.
         """
         if not context.is_shutdown:
-            context.session.start_process(self._plan(context, self._command(context)), context)
+            self._start(context, self._command(context))
         return None
 
     def exited(self, event: events.ProcessExited, context: LaunchContext) -> list[LaunchDescriptionEntity]:
@@ -164,6 +164,11 @@ class ExecuteProcess(Action):
         """Take note of what the process wrote to stdout (1) or stderr (2)."""
         if self._cached is not None:
             self._cached[stream].append(text)
+
+    def _start(self, context: LaunchContext, command: list[str]) -> None:
+        plan = self._plan(context, command)
+        session = context.session
+        session.processes.start(plan, session.number_process(plan.name), context)
 
     def _command(self, context: LaunchContext) -> list[str]:
         return [perform_substitutions(context, part) for part in self._cmd]

@@ -31,13 +31,17 @@ class FileWatch:
         self._folders: frozenset[str] = frozenset()
         self._stop: threading.Event | None = None
 
-    def watch(self, files: Iterable[Path]) -> None:
-        """Watch the folders of these files, and of those only, from now on."""
+    def watch(self, files: Iterable[Path]) -> bool:
+        """Watch the folders of these files, and of those only, from now on.
+
+        Returns:
+            Whether that is a new watch, which takes a moment to begin.
+        """
         folders = frozenset(
             str(folder) for file in files for folder in {file.parent, real(file).parent} if folder.is_dir()
         )
         if folders == self._folders:
-            return
+            return False
         self.close()
         self._folders = folders
         if folders:
@@ -45,6 +49,7 @@ class FileWatch:
             threading.Thread(
                 target=self._run, args=(folders, self._stop), name="linkwright-file-watch", daemon=True
             ).start()
+        return True
 
     def close(self) -> None:
         """Watch nothing any more."""

@@ -73,11 +73,6 @@ class RunningProcess:
         self._ended = asyncio.Event()
         self._stopping = False
 
-    @property
-    def stopping(self) -> bool:
-        """Whether it was asked to end."""
-        return self._stopping
-
     async def run(self) -> int | None:
         """Follow the process from start to end; returns its exit status, None if it could not be started."""
         plan = self.plan
@@ -107,14 +102,13 @@ class RunningProcess:
         self._emit(events.ProcessExited(action=plan.action, returncode=returncode, **self._details(transport)))
         return returncode
 
-    async def stop(self, seconds_to_sigterm: float, seconds_to_sigkill: float, *, interrupt: bool = True) -> None:
+    async def stop(self, seconds_to_sigterm: float, seconds_to_sigkill: float) -> None:
         """Ask the process to end, with SIGINT, then SIGTERM, then SIGKILL."""
         if self._stopping or self._ended.is_set():
             return
         self._stopping = True
-        if interrupt:
-            self._log.say(self.name, f"sending signal 'SIGINT' to process[{self.name}]")
-            self.signal_group(signal.SIGINT)
+        self._log.say(self.name, f"sending signal 'SIGINT' to process[{self.name}]")
+        self.signal_group(signal.SIGINT)
         for seconds, sent, following in (
             (seconds_to_sigterm, "SIGINT", "SIGTERM"),
             (seconds_to_sigkill, "SIGTERM", "SIGKILL"),
@@ -135,8 +129,18 @@ class RunningProcess:
         self._log.say(self.name, f"sending signal '{number.name}' to process[{self.name}]")
         self.signal_group(number)
 
+    def group_lives(self) -> bool:
+        """Whether the process, or any that it started, still runs."""
+        if self._transport is None or not _HAS_GROUPS:
+            return False
+        try:
+            os.killpg(self._transport.get_pid(), 0)
+        except (ProcessLookupError, PermissionError):
+            return False
+        return True
+
     def signal_group(self, number: int) -> None:
-        """Send a signal to the process and all that it started; 0 sends none."""
+        """Send a signal to the process and all that it started."""
         transport = self._transport
         if transport is None:
             return
@@ -179,6 +183,8 @@ class RunningProcess:
         self.plan.action.process_details = details
         self._log.say(self.name, f"process started with pid [{transport.get_pid()}]")
         self._emit(events.ProcessStarted(action=self.plan.action, **details))
+        if self._stopping:  # asked to end before there was anybody to ask
+            self.signal_group(signal.SIGINT)
 
     def _details(self, transport: asyncio.SubprocessTransport) -> dict[str, Any]:
         return {

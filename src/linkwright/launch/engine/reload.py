@@ -44,13 +44,13 @@ class LiveReload:
         self._watch: FileWatch | None = None
         self._running: dict[XacroCall, asyncio.Task[None]] = {}
         self._again: set[XacroCall] = set()
+        self._started = False
         self._closed = False
 
     def bind(self, call: XacroCall, apply: Apply) -> None:
         """Call `apply` with every new text of a description."""
         self._targets.setdefault(call, []).append(apply)
-        if self._watch is not None:
-            self._watch_files()
+        self._watch_files()
 
     def unbind(self, call: XacroCall, apply: Apply) -> None:
         """Call `apply` no longer."""
@@ -75,11 +75,8 @@ class LiveReload:
 
     def start(self) -> None:
         """Begin to watch; needs the running event loop."""
-        if self._closed or not self._targets:
-            return
-        self._watch = FileWatch(self._on_change, self._on_watch_failure)
+        self._started = True
         self._watch_files()
-        asyncio.get_running_loop().call_later(_CATCH_UP_SECONDS, self._catch_up)
 
     def close(self) -> None:
         """Watch no longer."""
@@ -100,8 +97,12 @@ class LiveReload:
         return files
 
     def _watch_files(self) -> None:
-        if self._watch is not None:
-            self._watch.watch({file for call in self._targets for file in self._files_of_interest(call)})
+        if not self._started or self._closed or not self._targets:
+            return
+        if self._watch is None:
+            self._watch = FileWatch(self._on_change, self._on_watch_failure)
+        if self._watch.watch({file for call in self._targets for file in self._files_of_interest(call)}):
+            asyncio.get_running_loop().call_later(_CATCH_UP_SECONDS, self._catch_up)
 
     def _on_watch_failure(self, reason: str) -> None:
         self._log.caution("launch", f"model files are not watched for changes: {reason}")

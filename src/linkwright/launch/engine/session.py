@@ -17,7 +17,7 @@ from linkwright.launch.context import LaunchContext
 from linkwright.launch.engine.descriptions import DescriptionError, Descriptions, XacroCall, current_descriptions
 from linkwright.launch.engine.hosting import NodeHost
 from linkwright.launch.engine.log import LaunchLog
-from linkwright.launch.engine.processes import ProcessPlan, RunningProcess
+from linkwright.launch.engine.process_table import ProcessTable
 from linkwright.launch.engine.reload import LiveReload
 from linkwright.launch.entity import LaunchDescriptionEntity
 from linkwright.launch.event_handlers import EventHandler
@@ -73,13 +73,12 @@ class LaunchSession:
         self._visiting = False
         self._queue: deque[events.Event] = deque()
         self._wake = asyncio.Event()
-        self._processes: set[RunningProcess] = set()
-        self._ended_processes: list[RunningProcess] = []
         self._waiting: set[object] = set()
         self._tasks: set[asyncio.Task[Any]] = set()
         self._process_numbers = count(1)
         self._crash: BaseException | None = None
         self._scratch: TemporaryDirectory[str] | None = None
+        self.processes = ProcessTable(self)
         self.host = NodeHost(self)
         self.reload = LiveReload(self.descriptions, self.host.show_findings, log)
 
@@ -152,10 +151,6 @@ class LaunchSession:
         """The name of a process in the log: that of its program with the next number."""
         return f"{base_name}-{next(self._process_numbers)}"
 
-    def start_process(self, plan: ProcessPlan, context: LaunchContext) -> None:
-        """Start a process and follow it to its end, and begin anew where it respawns."""
-        self.spawn(self._follow_process(plan, self.number_process(plan.name), context))
-
     def call_later(
         self, seconds: float, event: events.Event, entities: Sequence[LaunchDescriptionEntity]
     ) -> Callable[[], None]:
@@ -182,16 +177,11 @@ class LaunchSession:
     # --- the end --------------------------------------------------------------------------------------------
 
     def interrupt(self, reason: str) -> None:
-        """End the launch because the user said so (SIGINT or SIGTERM)."""
+        """End the launch because the user said so; one that is ending already gets no more time."""
         self.log.caution("launch", reason)
+        if self.ending:
+            self.processes.kill_all()
         self.emit(events.Shutdown(reason=reason, due_to_sigint=True))
-
-    def kill_processes(self) -> None:
-        """End all processes of the launch at once; safe to call from a signal handler."""
-        import signal
-
-        for process in (*self._processes, *self._ended_processes):
-            process.signal_group(getattr(signal, "SIGKILL", signal.SIGTERM))
 
     # --- visits ---------------------------------------------------------------------------------------------
 
@@ -240,13 +230,13 @@ class LaunchSession:
             await self._wake.wait()
 
     def _is_busy(self) -> bool:
-        return bool(self._processes or self._tasks or self._waiting or self.host.is_busy)
+        return bool(self.processes.is_busy or self._tasks or self._waiting or self.host.is_busy)
 
     def _handle(self, event: events.Event) -> None:
         if self.ending and isinstance(event, events.Shutdown):
             return  # once is enough
         context = self.context
-        context._push_locals()
+        context.push_locals()
         try:
             entities: list[LaunchDescriptionEntity] = []
             for handler in tuple(self.handlers):
@@ -264,7 +254,7 @@ class LaunchSession:
             self.fail(event)
             self.emit(events.Shutdown(reason="an event handler failed"))
         finally:
-            context._pop_locals()
+            context.pop_locals()
         self._react(event)
 
     def _react(self, event: events.Event) -> None:
@@ -272,15 +262,10 @@ class LaunchSession:
         if isinstance(event, events.Shutdown):
             self._begin_end(event)
         elif isinstance(event, events.ShutdownProcess):
-            for process in tuple(self._processes):
-                if event.process_matcher(process.plan.action):
-                    plan = process.plan
-                    self.spawn(process.stop(plan.seconds_to_sigterm, plan.seconds_to_sigkill))
+            self.processes.stop_matching(event.process_matcher)
             self.host.stop_matching(event.process_matcher)
         elif isinstance(event, events.SignalProcess):
-            for process in tuple(self._processes):
-                if event.process_matcher(process.plan.action):
-                    process.signal(event.signal)
+            self.processes.signal_matching(event.process_matcher, event.signal)
             self.host.stop_matching(event.process_matcher)
 
     def _begin_end(self, event: events.Shutdown) -> None:
@@ -288,44 +273,13 @@ class LaunchSession:
         self._waiting.clear()
         self.reload.close()
         self.host.close_nodes()
-        for process in tuple(self._processes):
-            plan = process.plan
-            grace = _INTERRUPT_GRACE
-            if not event.due_to_sigint:
-                grace = plan.seconds_to_sigterm, plan.seconds_to_sigkill
-            self.spawn(process.stop(*grace))
+        self.processes.stop_all(_INTERRUPT_GRACE if event.due_to_sigint else None)
 
     async def _start_hosted(self) -> None:
         await self.host.start_planned()
         waits = any(isinstance(failure, XacroCall) for failure in self._failures)
         if waits and not self.host.has_viewer and not self.ending:
             self.emit(events.Shutdown(reason="the robot cannot be read, and there is no viewer to wait in"))
-
-    # --- processes ------------------------------------------------------------------------------------------
-
-    async def _follow_process(self, plan: ProcessPlan, name: str, context: LaunchContext) -> None:
-        starts = 0
-        while True:
-            process = RunningProcess(plan, name, self.log, self.emit, context.would_handle_event)
-            self._processes.add(process)
-            try:
-                returncode = await process.run()
-            finally:
-                self._processes.discard(process)
-                self._ended_processes.append(process)
-            if returncode is None:
-                self.fail(process)
-                return
-            starts += 1
-            if not self._respawns(plan, starts):
-                return
-            await asyncio.sleep(plan.respawn_delay)
-            if not self._respawns(plan, starts):
-                return
-
-    def _respawns(self, plan: ProcessPlan, starts: int) -> bool:
-        exhausted = 0 <= plan.respawn_limit < starts
-        return plan.respawn and not self.ending and not exhausted
 
     def spawn(self, work: Coroutine[Any, Any, None]) -> None:
         """Have something done beside; the launch does not end before it is."""
@@ -343,7 +297,7 @@ class LaunchSession:
 
     async def _close(self) -> None:
         self.reload.close()
-        self.kill_processes()
+        self.processes.kill_all()
         for task in tuple(self._tasks):
             task.cancel()
         await asyncio.gather(*self._tasks, return_exceptions=True)

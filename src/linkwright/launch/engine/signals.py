@@ -74,7 +74,7 @@ class SignalWatch:
 
     def _end_at_once(self) -> None:
         if self.session is not None:
-            self.session.kill_processes()
+            self.session.processes.kill_all()
         for stream in (sys.stdout, sys.stderr):
             stream.flush()
         os._exit(self.exit_status or 1)

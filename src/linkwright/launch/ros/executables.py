@@ -6,7 +6,7 @@ import os
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, did_you_mean, display_path
-from linkwright.launch.engine.hosting import hosted_executables
+from linkwright.launch.engine.hosted_plan import hosted_executables
 from linkwright.workspace import PackageFinder, PackageNotFoundError, install_prefix, is_installed
 
 

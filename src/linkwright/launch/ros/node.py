@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from linkwright.diagnostics import LinkwrightError
 from linkwright.launch.actions.execute import ExecuteProcess
 from linkwright.launch.context import LaunchContext
-from linkwright.launch.engine.hosting import HostedPlan, is_hosted
+from linkwright.launch.engine.hosted_plan import HostedPlan, is_hosted
 from linkwright.launch.places import error_at, located
 from linkwright.launch.ros.executables import find_executable
 from linkwright.launch.ros.parameters import EvaluatedParameters, check_parameters, evaluate_parameters
@@ -139,7 +139,7 @@ class Node(ExecuteProcess):
             return
         command = [self._program(context, package, executable), *arguments]
         command += _ros_arguments(name, namespace, parameters, remappings, ros_arguments, session.scratch_folder)
-        session.start_process(self._plan(context, command), context)
+        self._start(context, command)
 
     def viewer_config(self, context: LaunchContext) -> Callable[[], RvizConfig] | None:  # noqa: ARG002
         """What makes the configuration of a viewer; None has its command line say which."""
