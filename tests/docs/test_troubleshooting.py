@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import pytest
@@ -12,6 +13,7 @@ from tests.repository_tools import load_tool
 TOOL = load_tool("documented_output")
 
 
+@pytest.mark.skipif(sys.version_info < (3, 11), reason="Python 3.10 does not know columns in launch files; the pages do")
 @pytest.mark.parametrize("page", TOOL.PAGES, ids=["en", "zh"])
 def test_output_is_current(page: Path) -> None:
     text = page.read_text(encoding="utf-8")

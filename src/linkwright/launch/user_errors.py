@@ -8,7 +8,7 @@ import sys
 import sysconfig
 from collections.abc import Iterable
 from traceback import walk_tb
-from types import FrameType, TracebackType
+from types import ModuleType, FrameType, TracebackType
 from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, SourceText, Span, did_you_mean
@@ -76,17 +76,26 @@ def _hint(error: Exception, source: SourceText | None, span: Span | None) -> str
         return did_you_mean(name, known) if name else None
     if isinstance(error, AttributeError):
         name, owner = getattr(error, "name", None), getattr(error, "obj", None)
-        return did_you_mean(name, (each for each in dir(owner) if not each.startswith("_"))) if name else None
+        return did_you_mean(name, _offered(owner)) if name else None
     if isinstance(error, TypeError):
         return _keyword_hint(error) or _missing_hint(error, source, span)
     return None
+
+
+def _offered(owner: object) -> list[str]:
+    """The public names of a module or object; not its submodules, which share their names with what they define."""
+    return [
+        name
+        for name in dir(owner)
+        if not name.startswith("_") and not isinstance(getattr(owner, name, None), ModuleType)
+    ]
 
 
 def _import_hint(error: ImportError) -> str | None:
     found = _CANNOT_IMPORT.search(str(error))
     if found:
         name, module = found.groups()
-        return did_you_mean(name, (each for each in dir(sys.modules.get(module)) if not each.startswith("_")))
+        return did_you_mean(name, _offered(sys.modules.get(module)))
     missing = error.name or ""
     parent, _, name = missing.rpartition(".")
     if parent in sys.modules:
