@@ -8,7 +8,7 @@ import sys
 import sysconfig
 from collections.abc import Iterable
 from traceback import walk_tb
-from types import ModuleType, FrameType, TracebackType
+from types import FrameType, ModuleType, TracebackType
 from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, SourceText, Span, did_you_mean

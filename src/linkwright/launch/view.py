@@ -20,6 +20,8 @@ from linkwright.workspace import PackageFinder
 if TYPE_CHECKING:
     from linkwright.viewer import RvizConfig
 
+_PUBLISH_FREQUENCY = 60.0
+"""Hz; at robot_state_publisher's own 20 a dragged slider is seen to lag."""
 _FIRST_LINK = re.compile(r"""<link\s[^>]*?\bname\s*=\s*["']([^"'$]+)["']""")
 
 
@@ -98,7 +100,7 @@ def describe_view(call: XacroCall) -> LaunchDescription:
             Node(
                 package="robot_state_publisher",
                 executable="robot_state_publisher",
-                parameters=[{"robot_description": description}],
+                parameters=[{"robot_description": description, "publish_frequency": _PUBLISH_FREQUENCY}],
             ),
             Node(package="joint_state_publisher_gui", executable="joint_state_publisher_gui"),
             ModelViewer(call),
