@@ -55,6 +55,7 @@ def test_change_break_and_repair(start, open_page, model):
     edit(model, "<xacro:whel ", "<xacro:wheel ")
     page.get_by_text("there is no macro", exact=False).first.wait_for(state="hidden")
     assert state(page, "joints.left_wheel_joint") == joint
+    page.close()  # or it would tell the console that the server is gone
     assert program.interrupt() == 130
 
 

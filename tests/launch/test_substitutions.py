@@ -79,12 +79,12 @@ def test_an_unset_launch_configuration_names_the_nearest_and_the_line(context: L
 
 
 def test_environment_variable(context: LaunchContext, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("LINKWRIGHT_TEST", "here")
-    assert text(EnvironmentVariable("LINKWRIGHT_TEST"), context) == "here"
+    monkeypatch.setenv("MBOT_COLOUR", "here")
+    assert text(EnvironmentVariable("MBOT_COLOUR"), context) == "here"
     assert text(EnvironmentVariable("LINKWRIGHT_NONE", default_value="d"), context) == "d"
     with pytest.raises(LinkwrightError, match="environment variable 'LINKWRIGHT_TESST' is not set") as caught:
         text(EnvironmentVariable("LINKWRIGHT_TESST"), context)
-    assert caught.value.diagnostics[0].hint == "did you mean 'LINKWRIGHT_TEST'?"
+    assert caught.value.diagnostics[0].hint == "did you mean 'MBOT_COLOUR'?"
 
 
 def test_local_substitution(context: LaunchContext) -> None:
