@@ -82,8 +82,8 @@ def test_environment_variable(context: LaunchContext, monkeypatch: pytest.Monkey
     monkeypatch.setenv("MBOT_COLOUR", "here")
     assert text(EnvironmentVariable("MBOT_COLOUR"), context) == "here"
     assert text(EnvironmentVariable("LINKWRIGHT_NONE", default_value="d"), context) == "d"
-    with pytest.raises(LinkwrightError, match="environment variable 'LINKWRIGHT_TESST' is not set") as caught:
-        text(EnvironmentVariable("LINKWRIGHT_TESST"), context)
+    with pytest.raises(LinkwrightError, match="environment variable 'MBOT_COLUOR' is not set") as caught:
+        text(EnvironmentVariable("MBOT_COLUOR"), context)
     assert caught.value.diagnostics[0].hint == "did you mean 'MBOT_COLOUR'?"
 
 
