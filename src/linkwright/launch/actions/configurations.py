@@ -5,55 +5,30 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from linkwright.launch.actions.named import AssigningAction, NamedAction
 from linkwright.launch.context import LaunchContext
 from linkwright.launch.entity import Action
 from linkwright.launch.substitution import (
     SomeSubstitutionsType,
-    Substitution,
     normalize_to_list_of_substitutions,
     perform_substitutions,
 )
 
 
-class SetLaunchConfiguration(Action):
+class SetLaunchConfiguration(AssigningAction):
     """Sets a launch configuration."""
-
-    def __init__(self, name: SomeSubstitutionsType, value: SomeSubstitutionsType, **kwargs: Any) -> None:
-        super().__init__(**kwargs)
-        self._name = normalize_to_list_of_substitutions(name)
-        self._value = normalize_to_list_of_substitutions(value)
-
-    @property
-    def name(self) -> list[Substitution]:
-        """The name, as substitutions."""
-        return self._name
-
-    @property
-    def value(self) -> list[Substitution]:
-        """The value, as substitutions."""
-        return self._value
 
     def execute(self, context: LaunchContext) -> None:
         """Set it."""
-        name = perform_substitutions(context, self._name)
-        context.launch_configurations[name] = perform_substitutions(context, self._value)
+        context.launch_configurations[self.resolved_name(context)] = self.resolved_value(context)
 
 
-class UnsetLaunchConfiguration(Action):
+class UnsetLaunchConfiguration(NamedAction):
     """Unsets a launch configuration; one that is not set stays so."""
-
-    def __init__(self, name: SomeSubstitutionsType, **kwargs: Any) -> None:
-        super().__init__(**kwargs)
-        self._name = normalize_to_list_of_substitutions(name)
-
-    @property
-    def name(self) -> list[Substitution]:
-        """The name, as substitutions."""
-        return self._name
 
     def execute(self, context: LaunchContext) -> None:
         """Unset it."""
-        context.launch_configurations.pop(perform_substitutions(context, self._name), None)
+        context.launch_configurations.pop(self.resolved_name(context), None)
 
 
 class PushLaunchConfigurations(Action):

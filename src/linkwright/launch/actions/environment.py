@@ -5,59 +5,34 @@ from __future__ import annotations
 import os
 from typing import Any
 
+from linkwright.launch.actions.named import AssigningAction, NamedAction
 from linkwright.launch.conditions import evaluate_condition_expression
 from linkwright.launch.context import LaunchContext
 from linkwright.launch.entity import Action
 from linkwright.launch.substitution import (
     SomeSubstitutionsType,
-    Substitution,
     normalize_to_list_of_substitutions,
     perform_substitutions,
 )
 
 
-class SetEnvironmentVariable(Action):
+class SetEnvironmentVariable(AssigningAction):
     """Sets an environment variable."""
-
-    def __init__(self, name: SomeSubstitutionsType, value: SomeSubstitutionsType, **kwargs: Any) -> None:
-        super().__init__(**kwargs)
-        self._name = normalize_to_list_of_substitutions(name)
-        self._value = normalize_to_list_of_substitutions(value)
-
-    @property
-    def name(self) -> list[Substitution]:
-        """The name, as substitutions."""
-        return self._name
-
-    @property
-    def value(self) -> list[Substitution]:
-        """The value, as substitutions."""
-        return self._value
 
     def execute(self, context: LaunchContext) -> None:
         """Set it."""
-        name = perform_substitutions(context, self._name)
-        context.environment[name] = perform_substitutions(context, self._value)
+        context.environment[self.resolved_name(context)] = self.resolved_value(context)
 
 
-class UnsetEnvironmentVariable(Action):
+class UnsetEnvironmentVariable(NamedAction):
     """Unsets an environment variable; one that is not set stays so."""
-
-    def __init__(self, name: SomeSubstitutionsType, **kwargs: Any) -> None:
-        super().__init__(**kwargs)
-        self._name = normalize_to_list_of_substitutions(name)
-
-    @property
-    def name(self) -> list[Substitution]:
-        """The name, as substitutions."""
-        return self._name
 
     def execute(self, context: LaunchContext) -> None:
         """Unset it."""
-        context.environment.pop(perform_substitutions(context, self._name), None)
+        context.environment.pop(self.resolved_name(context), None)
 
 
-class AppendEnvironmentVariable(Action):
+class AppendEnvironmentVariable(AssigningAction):
     """Adds a value to an environment variable that is a list, such as a search path.
 
     Args:
@@ -75,26 +50,13 @@ class AppendEnvironmentVariable(Action):
         separator: SomeSubstitutionsType = os.pathsep,
         **kwargs: Any,
     ) -> None:
-        super().__init__(**kwargs)
-        self._name = normalize_to_list_of_substitutions(name)
-        self._value = normalize_to_list_of_substitutions(value)
+        super().__init__(name, value, **kwargs)
         self._prepend = normalize_to_list_of_substitutions(str(prepend) if isinstance(prepend, bool) else prepend)
         self._separator = normalize_to_list_of_substitutions(separator)
 
-    @property
-    def name(self) -> list[Substitution]:
-        """The name, as substitutions."""
-        return self._name
-
-    @property
-    def value(self) -> list[Substitution]:
-        """The value, as substitutions."""
-        return self._value
-
     def execute(self, context: LaunchContext) -> None:
         """Add it."""
-        name = perform_substitutions(context, self._name)
-        value = perform_substitutions(context, self._value)
+        name, value = self.resolved_name(context), self.resolved_value(context)
         parts = [context.environment[name]] if name in context.environment else []
         parts.insert(0 if evaluate_condition_expression(context, self._prepend) else len(parts), value)
         context.environment[name] = perform_substitutions(context, self._separator).join(parts)

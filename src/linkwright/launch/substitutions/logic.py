@@ -80,12 +80,12 @@ class PythonExpression(Substitution):
             raise error_at(self.place, "LAUNCH126", message, hint) from error
 
 
-class EqualsSubstitution(Substitution):
-    """``true`` if two texts are equal, by number or truth value where both are such."""
+class _TwoSided(Substitution):
+    """What compares or joins two sides."""
 
-    def __init__(self, left: Any, right: Any) -> None:
-        self._left = _operand(left)
-        self._right = _operand(right)
+    def __init__(self, left: list[Substitution], right: list[Substitution]) -> None:
+        self._left = left
+        self._right = right
 
     @property
     def left(self) -> list[Substitution]:
@@ -100,6 +100,13 @@ class EqualsSubstitution(Substitution):
     def describe(self) -> str:
         """Both sides."""
         return f"{type(self).__name__}({describe(self._left)} {describe(self._right)})"
+
+
+class EqualsSubstitution(_TwoSided):
+    """``true`` if two texts are equal, by number or truth value where both are such."""
+
+    def __init__(self, left: Any, right: Any) -> None:
+        super().__init__(_operand(left), _operand(right))
 
     def perform(self, context: LaunchContext) -> str:
         """``true`` or ``false``."""
@@ -147,31 +154,18 @@ class NotSubstitution(Substitution):
         return _text(not _boolean(self, context, self._value))
 
 
-class AndSubstitution(Substitution):
+class AndSubstitution(_TwoSided):
     """Whether both values are true."""
 
     def __init__(self, left: SomeSubstitutionsType, right: SomeSubstitutionsType) -> None:
-        self._left = normalize_to_list_of_substitutions(left)
-        self._right = normalize_to_list_of_substitutions(right)
-
-    @property
-    def left(self) -> list[Substitution]:
-        """The left side, as substitutions."""
-        return self._left
-
-    @property
-    def right(self) -> list[Substitution]:
-        """The right side, as substitutions."""
-        return self._right
-
-    def describe(self) -> str:
-        """Both sides."""
-        return f"{type(self).__name__}({describe(self._left)} {describe(self._right)})"
+        super().__init__(normalize_to_list_of_substitutions(left), normalize_to_list_of_substitutions(right))
 
     def perform(self, context: LaunchContext) -> str:
         """``true`` or ``false``."""
-        left, right = (_boolean(self, context, side) for side in (self._left, self._right))
-        return _text(left and right)
+        return _text(all(self._truths(context)))
+
+    def _truths(self, context: LaunchContext) -> list[bool]:
+        return [_boolean(self, context, side) for side in (self._left, self._right)]
 
 
 class OrSubstitution(AndSubstitution):
@@ -179,8 +173,7 @@ class OrSubstitution(AndSubstitution):
 
     def perform(self, context: LaunchContext) -> str:
         """``true`` or ``false``."""
-        left, right = (_boolean(self, context, side) for side in (self._left, self._right))
-        return _text(left or right)
+        return _text(any(self._truths(context)))
 
 
 class AnySubstitution(Substitution):
