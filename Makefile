@@ -45,7 +45,7 @@ bench: $(VENV)/.dev page
 	$(BIN)/python -m benchmarks $(ARGS)
 
 docs: $(VENV)/.dev
-	$(BIN)/mkdocs build --strict
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
 
 page: $(VENV)/.dev
 	$(BIN)/python tools/build_page.py
