@@ -19,7 +19,7 @@ PAGE_SOURCES := $(shell find frontend -path frontend/node_modules -prune -o -typ
 .PHONY: demo test test-quick test-browser check bench docs page lock format clean
 
 demo: $(VENV)/.ready
-	$(BIN)/linkwright launch my_robot_description display.launch.py $(ARGS)
+	$(BIN)/linkwright launch my_robot_description display_xacro.launch.py $(ARGS)
 
 test: $(VENV)/.dev page
 	$(BIN)/python tools/build_page.py test
