@@ -1,84 +1,21 @@
-"""How long URDF text takes to become a validated robot, and forward kinematics of all its links.
+"""How long URDF text takes to become a validated robot, beside other readers in Python.
 
-Run it with ``python benchmarks/bench_urdf.py [URDF ...]``; without a file it makes robots of 23 and 88 links. Times are
-the best of several rounds, in the units that the targets are given in; "cold" forgets the values remembered from
-earlier readings.
+Run it with ``python -m benchmarks urdf``. "Cold" forgets the values that the reader remembers from earlier texts. The
+other readers check less: they name no place, and accept much that urdfdom refuses.
 """
 
 from __future__ import annotations
 
-import random
-import sys
+import io
 from collections.abc import Callable
-from pathlib import Path
-from time import perf_counter
+from contextlib import redirect_stderr
 
-import numpy as np
+from benchmarks import peers
+from benchmarks.measure import Row, show, side_by_side
+from benchmarks.robots import detailed_robot
+from linkwright.urdf import load, materials, origins, values
 
-from linkwright.kinematics import KinematicTree
-from linkwright.urdf import Robot, load, materials, origins, read, values
-from linkwright.xmltree import parse
-
-ROUNDS = 15
-CONFIGURATIONS = 10_000
-
-
-def robot_text(links: int, moving: int) -> str:
-    """A robot with as many links and moving joints, each link with inertia, two shapes and numbers of its own."""
-    chance = random.Random(links)
-
-    def numbers(count: int) -> str:
-        return " ".join(repr(chance.uniform(-1, 1)) for _ in range(count))
-
-    parts = ['<robot name="bench">', '<material name="grey"><color rgba="0.5 0.5 0.5 1"/></material>']
-    for index in range(links):
-        tensor = " ".join(f'{name}="{numbers(1)}"' for name in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"))
-        parts.append(
-            f"""  <link name="link_{index}">
-    <inertial>
-      <origin xyz="{numbers(3)}" rpy="0 0 0"/>
-      <mass value="{numbers(1)}"/>
-      <inertia {tensor}/>
-    </inertial>
-    <visual>
-      <origin xyz="0 0 0" rpy="{numbers(3)}"/>
-      <geometry>
-        <mesh filename="package://bench/meshes/visual_{index}.dae"/>
-      </geometry>
-      <material name="grey"/>
-    </visual>
-    <collision>
-      <origin xyz="{numbers(3)}" rpy="0 0 0"/>
-      <geometry>
-        <cylinder radius="0.1" length="0.2"/>
-      </geometry>
-    </collision>
-  </link>"""
-        )
-    for index in range(1, links):
-        kind = "revolute" if index <= moving else "fixed"
-        limit = '<limit lower="-3.1" upper="3.1" effort="10" velocity="1"/>' if kind == "revolute" else ""
-        parts.append(
-            f"""  <joint name="joint_{index}" type="{kind}">
-    <origin xyz="{numbers(3)}" rpy="{numbers(3)}"/>
-    <parent link="link_{max(0, index - chance.randint(1, 3))}"/>
-    <child link="link_{index}"/>
-    <axis xyz="0 0 1"/>
-    {limit}
-  </joint>"""
-        )
-    return "\n".join([*parts, "</robot>"])
-
-
-def best(action: Callable[[], object], repeat: int = 1) -> float:
-    """The shortest time of one call, in seconds."""
-    times = []
-    for _ in range(ROUNDS):
-        start = perf_counter()
-        for _ in range(repeat):
-            action()
-        times.append((perf_counter() - start) / repeat)
-    return min(times)
+ROUNDS = 25
 
 
 def forget() -> None:
@@ -87,46 +24,49 @@ def forget() -> None:
         cached.cache_clear()
 
 
-def report(name: str, text: str) -> Robot:
-    """Time reading one text, print the row, and give the robot."""
-    document = parse(text, "<bench>")
+def rows() -> list[Row]:
+    """Measure."""
+    found = []
+    for links, moving, target in ((23, 12, ""), (88, 45, "3 ms")):
+        text = detailed_robot(links, moving)
+        readers = _others(text)
 
-    def cold() -> None:
-        forget()
-        load(text)
+        def cold(text: str = text) -> None:
+            forget()
+            load(text)
 
-    robot = load(text)
-    whole, cold_time = best(lambda: load(text)), best(cold)
-    parsing, reading = best(lambda: parse(text, "<bench>")), best(lambda: read(document))
-    print(
-        f"{name:40} {len(robot.links):4} links {len(text) / 1000:6.1f} kB   text to robot {whole * 1e3:6.2f} ms "
-        f"(cold {cold_time * 1e3:.2f})   parse {parsing * 1e3:.2f}   read {reading * 1e3:.2f}"
-    )
-    return robot
-
-
-def report_kinematics(name: str, robot: Robot) -> None:
-    """Time forward kinematics of all links and print the row."""
-    tree = KinematicTree(robot)
-    positions = np.random.default_rng(0).uniform(-1, 1, (CONFIGURATIONS, len(tree.joint_names)))
-    batch = best(lambda: tree.forward(positions)) / CONFIGURATIONS
-    single = best(lambda: tree.forward(positions[0]), repeat=200)
-    print(
-        f"{name:40} {len(tree.link_names):4} links {len(tree.joint_names):3} joints   forward of {CONFIGURATIONS} "
-        f"{batch * 1e6:6.2f} us each   of one {single * 1e6:6.1f} us"
-    )
+        times = side_by_side({"warm": lambda text=text: load(text), "cold": cold, **readers}, ROUNDS)
+        others = {name: times[name] * 1e3 if name in times else None for name in readers}
+        size = f"{links} links, {len(text) / 1000:.0f} kB"
+        found.append(Row(f"text to Robot, {size}", times["warm"] * 1e3, "ms", target, others))
+        found.append(Row(f"text to Robot, {size}, cold", times["cold"] * 1e3, "ms"))
+    return found
 
 
-def main(paths: list[str]) -> None:
-    """Time the files given, or robots made up."""
-    texts = {path: Path(path).read_text() for path in paths} or {
-        "made up": robot_text(23, 12),
-        "made up, large": robot_text(88, 45),
+def _others(text: str) -> dict[str, Callable[[], object] | None]:
+    data = text.encode()
+    yourdfpy = peers.load("yourdfpy")
+    parser = peers.load("urdf_parser_py", "urdf_parser_py.urdf")
+    pinocchio = peers.load("pinocchio")
+
+    def with_yourdfpy() -> object:
+        return yourdfpy.URDF.load(io.BytesIO(data), build_scene_graph=False, load_meshes=False)
+
+    def with_parser() -> object:
+        with redirect_stderr(io.StringIO()):
+            return parser.URDF.from_xml_string(data)
+
+    return {
+        "yourdfpy": with_yourdfpy if yourdfpy else None,
+        "urdf_parser_py": with_parser if parser else None,
+        "pinocchio": (lambda: pinocchio.buildModelFromXML(text)) if pinocchio else None,
     }
-    robots = {name: report(Path(name).name, text) for name, text in texts.items()}
-    for name, robot in robots.items():
-        report_kinematics(Path(name).name, robot)
+
+
+def main() -> None:
+    """Measure and print."""
+    show(rows())
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    main()

@@ -1,52 +1,34 @@
-"""What expanding costs: real robots in this process, and one small robot in a process of its own.
+"""What expanding costs: real robots in this process, whole commands, and memory, beside PyPI's xacro.
 
 Run it with ``python -m benchmarks xacro``. The robots are those of the corpus, where it is beside the repository, else
-the one that is shipped. Where PyPI's `xacro` is installed it is measured too; it is no dependency of this project.
+robots made for this. "Cold" forgets at the beginning of each pass, or of each single model, everything that was kept
+from earlier ones; within a pass over all models a file is read once.
 """
 
 from __future__ import annotations
 
-import importlib.util
-import json
-import statistics
-import subprocess
+import io
+import os
 import sys
-import time
+import tempfile
 import types
 from collections.abc import Callable
-from dataclasses import dataclass
+from contextlib import redirect_stderr
 from pathlib import Path
 
-from linkwright.xacro import expand, sources, template, yamldata
+from benchmarks import peers
+from benchmarks.measure import LINKWRIGHT, Row, commands, peak_memory, show, side_by_side
+from benchmarks.robots import SHIPPED, Model, models
+from linkwright.xacro import expand, literals, macros, sources, template, yamldata, yamlnodes
 
-REPOSITORY = Path(__file__).resolve().parents[1]
-CORPUS = REPOSITORY.parent / "shared" / "corpus"
-SHIPPED = REPOSITORY / "robots" / "my_robot_description"
 SMALL = SHIPPED / "urdf" / "mbot_base.xacro"
 PASSES = 7
+SINGLES = 9
 STARTS = 11
-
-
-@dataclass(frozen=True)
-class Model:
-    """A description, its arguments, and where the packages are that it names."""
-
-    path: str
-    arguments: dict[str, str]
-    packages: dict[str, str]
-
+LARGEST = 4
+PEER = "xacro"
 
 Engine = Callable[[Model], object]
-
-
-def models() -> list[Model]:
-    """The robots to expand."""
-    if not CORPUS.is_dir():
-        found = sorted(SHIPPED.rglob("*.xacro"))
-        return [Model(str(path), {}, {SHIPPED.name: str(SHIPPED)}) for path in found if path.parent.name == "urdf"]
-    manifest = json.loads((CORPUS / "manifest.json").read_text(encoding="utf-8"))
-    packages = {name: str(CORPUS / folder) for name, folder in manifest["packages"].items()}
-    return [Model(str(CORPUS / "robots" / model["entry"]), model["args"], packages) for model in manifest["models"]]
 
 
 def ours(model: Model) -> object:
@@ -56,75 +38,142 @@ def ours(model: Model) -> object:
 
 def theirs() -> Engine | None:
     """What expands with PyPI's xacro, or None where it is not installed."""
-    if importlib.util.find_spec("xacro") is None:
+    xacro = peers.load(PEER)
+    if xacro is None:
         return None
-    import xacro
-
     packages: dict[str, str] = {}
     index = types.ModuleType("ament_index_python.packages")
     index.get_package_share_directory = packages.__getitem__  # type: ignore[attr-defined]
-    sys.modules.setdefault("ament_index_python", types.ModuleType("ament_index_python"))
+    sys.modules["ament_index_python"] = types.ModuleType("ament_index_python")
     sys.modules["ament_index_python.packages"] = index
 
     def run(model: Model) -> object:
         packages.clear()
         packages.update(model.packages)
-        return xacro.process_file(model.path, mappings=dict(model.arguments)).toprettyxml(indent="  ")
+        with redirect_stderr(io.StringIO()):
+            return xacro.process_file(model.path, mappings=dict(model.arguments)).toprettyxml(indent="  ")
 
     return run
 
 
 def forget() -> None:
     """Drop everything that was kept from earlier expansions."""
-    for kept in (sources.documents, template.templates, template.expressions, yamldata.loaded):
+    for kept in (sources.documents, template.templates, template.expressions, yamldata.loaded, yamlnodes.tags):
         kept.clear()
+    macros.parse_parameters.cache_clear()
+    literals.number_or_boolean.cache_clear()
 
 
-def one_pass(engine: Engine, robots: list[Model]) -> float:
-    """Seconds for all robots once."""
-    started = time.perf_counter()
+def one_pass(engine: Engine, robots: list[Model]) -> None:
+    """Expand all robots once."""
     for model in robots:
         engine(model)
-    return time.perf_counter() - started
 
 
-def first_pass(robots: list[Model]) -> float:
-    """Seconds for all robots, each as if it were the first of the process."""
-    seconds = 0.0
-    for model in robots:
-        forget()
-        seconds += one_pass(ours, [model])
-    return seconds
+def rows() -> list[Row]:
+    """Measure."""
+    with tempfile.TemporaryDirectory() as folder:
+        robots = models(Path(folder))
+        other = theirs()
+        largest = _largest(robots, other or ours)
+        found = _in_process(robots, largest, other)
+        return found + _whole_commands(largest[0], Path(folder))
 
 
-def start(code: str) -> float:
-    """Seconds that a fresh interpreter takes for some code, the median of several."""
-    times = []
-    for _ in range(STARTS):
-        started = time.perf_counter()
-        subprocess.run([sys.executable, "-c", code], check=True, stdout=subprocess.DEVNULL)
-        times.append(time.perf_counter() - started)
-    return statistics.median(times)
+def _in_process(robots: list[Model], largest: list[Model], other: Engine | None) -> list[Row]:
+    def cold(chosen: list[Model]) -> Callable[[], None]:
+        def run() -> None:
+            forget()
+            one_pass(ours, chosen)
+
+        return run
+
+    def peer(chosen: list[Model]) -> Callable[[], None] | None:
+        return None if other is None else lambda: one_pass(other, chosen)
+
+    calls = {"cold": cold(robots), "warm": lambda: one_pass(ours, robots), PEER: peer(robots)}
+    times = side_by_side(calls, PASSES)
+    found = [
+        _row(f"{len(robots)} models, cold at the start of the pass", times, "cold", "5 times faster, towards 10"),
+        _row(f"{len(robots)} models, files and texts known", times, "warm", ""),
+    ]
+    for model in largest:
+        times = side_by_side({"cold": cold([model]), PEER: peer([model])}, SINGLES)
+        found.append(_row(f"{model.name}, cold", times, "cold", "5 times faster"))
+    return found
+
+
+def _row(what: str, seconds: dict[str, float], key: str, target: str) -> Row:
+    other = seconds.get(PEER)
+    return Row(what, seconds[key] * 1e3, "ms", target, {PEER: None if other is None else other * 1e3})
+
+
+def _largest(robots: list[Model], engine: Engine) -> list[Model]:
+    """The models that take longest, one of each file."""
+    times = {model.name: side_by_side({"": lambda model=model: engine(model)}, 1)[""] for model in robots}
+    chosen: dict[str, Model] = {}
+    for model in sorted(robots, key=lambda model: -times[model.name]):
+        chosen.setdefault(model.path, model)
+    return list(chosen.values())[:LARGEST]
+
+
+def _whole_commands(large: Model, folder: Path) -> list[Row]:
+    prefix, stand_in = _prefix(large, folder), _ament_index(folder)
+    environment = {"AMENT_PREFIX_PATH": str(prefix), "PYTHONPATH": str(stand_in)}
+    peer = peers.command(PEER)
+    values = [f"{name}:={value}" for name, value in large.arguments.items()]
+    found = []
+    for what, words, target in (
+        (f"command, small model ({SMALL.name})", [str(SMALL)], "60 ms over a bare interpreter"),
+        (f"command, large model ({large.name})", [large.path, *values], "half of xacro's"),
+    ):
+        calls = {
+            "ours": [LINKWRIGHT, "xacro", *words],
+            PEER: [peer, *words] if peer else None,
+            "bare interpreter": [sys.executable, "-c", "pass"],
+        }
+        times = commands(calls, STARTS, **environment)
+        others = {name: times[name] * 1e3 if name in times else None for name in (PEER, "bare interpreter")}
+        found.append(Row(what, times["ours"] * 1e3, "ms", target, others))
+        peaks = {name: peak_memory(words, **environment) if words else None for name, words in calls.items()}
+        mine = peaks.pop("ours")
+        assert mine is not None
+        found.append(Row(what.replace("command", "memory"), mine, "MB", "at most twice xacro's", peaks))
+    return found
+
+
+def _prefix(model: Model, folder: Path) -> Path:
+    """An install prefix with the packages of a model, as both programs look for them."""
+    prefix = folder / "prefix"
+    index = prefix / "share" / "ament_index" / "resource_index" / "packages"
+    index.mkdir(parents=True)
+    for name, place in model.packages.items():
+        (index / name).touch()
+        (prefix / "share" / name).symlink_to(place)
+    return prefix
+
+
+def _ament_index(folder: Path) -> Path:
+    """A module that finds share folders for PyPI's xacro, with less ado than ament_index_python does."""
+    package = folder / "stand_in" / "ament_index_python"
+    package.mkdir(parents=True)
+    (package / "__init__.py").touch()
+    (package / "packages.py").write_text(_INDEX, encoding="utf-8")
+    return package.parent
+
+
+_INDEX = """
+import os
+
+def get_package_share_directory(name):
+    return os.path.join(os.environ["AMENT_PREFIX_PATH"], "share", name)
+"""
 
 
 def main() -> None:
     """Measure and print."""
-    robots = models()
-    one_pass(ours, robots)
-    cold = min(first_pass(robots) for _ in range(PASSES))
-    warm = min(one_pass(ours, robots) for _ in range(PASSES))
-    print(f"{len(robots)} robots, each as if first in its process {cold * 1e3:8.1f} ms")
-    print(f"{len(robots)} robots, files and texts known            {warm * 1e3:8.1f} ms")
-    other = theirs()
-    if other is None:
-        print("PyPI's xacro is not installed, so there is nothing to compare with")
-    else:
-        seconds = min(one_pass(other, robots) for _ in range(PASSES))
-        print(f"{len(robots)} robots, PyPI's xacro                     {seconds * 1e3:8.1f} ms", end="")
-        print(f"  ({seconds / cold:.1f} and {seconds / warm:.1f} times as long)")
-    bare = start("pass")
-    code = f"from linkwright.xacro import expand; print(expand({str(SMALL)!r}, packages={{}}))"
-    print(f"a process for {SMALL.name:<29} {start(code) * 1e3:8.1f} ms  (a bare interpreter {bare * 1e3:.1f} ms)")
+    os.environ.pop("AMENT_PREFIX_PATH", None)
+    show(rows())
 
 
 if __name__ == "__main__":

@@ -2,7 +2,106 @@
 
 from __future__ import annotations
 
+import json
+import random
+from dataclasses import dataclass
 from pathlib import Path
+
+REPOSITORY = Path(__file__).resolve().parents[1]
+CORPUS = REPOSITORY.parent / "shared" / "corpus"
+SHIPPED = REPOSITORY / "robots" / "my_robot_description"
+
+
+@dataclass(frozen=True)
+class Model:
+    """A description to expand, its arguments, and where the packages are that it names."""
+
+    path: str
+    arguments: dict[str, str]
+    packages: dict[str, str]
+
+    @property
+    def name(self) -> str:
+        """A short name for tables."""
+        return Path(self.path).name + "".join(f" {name}:={value}" for name, value in self.arguments.items())
+
+
+def has_corpus() -> bool:
+    """Whether the real robots are beside the repository."""
+    return (CORPUS / "manifest.json").is_file()
+
+
+def models(folder: Path) -> list[Model]:
+    """The descriptions to expand: those of the corpus, else the shipped ones and some written into a folder."""
+    if has_corpus():
+        manifest = json.loads((CORPUS / "manifest.json").read_text(encoding="utf-8"))
+        packages = {name: str(CORPUS / place) for name, place in manifest["packages"].items()}
+        return [Model(str(CORPUS / "robots" / model["entry"]), model["args"], packages) for model in manifest["models"]]
+    found = [path for path in sorted(SHIPPED.rglob("*.xacro")) if path.parent.name == "urdf"]
+    for legs in (4, 16, 64):
+        path = folder / f"crawler_{legs}.urdf.xacro"
+        path.write_text(crawler(legs), encoding="utf-8")
+        found.append(path)
+    return [Model(str(path), {}, {SHIPPED.name: str(SHIPPED)}) for path in found]
+
+
+def crawler(legs: int) -> str:
+    """A xacro text: a macro for a leg of three links, called as often as there are legs."""
+    calls = "\n".join(
+        f'  <xacro:leg name="leg_{leg}" x="${{{leg} * 0.1}}" side="{1 if leg % 2 else -1}"/>' for leg in range(legs)
+    )
+    return _CRAWLER.replace("CALLS", calls)
+
+
+_CRAWLER = """<?xml version="1.0"?>
+<robot name="crawler" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:property name="length" value="0.3"/>
+  <xacro:property name="mass" value="${length * 0.8}"/>
+  <!-- a slim box -->
+  <xacro:macro name="inertia" params="mass length">
+    <inertial>
+      <mass value="${mass}"/>
+      <inertia ixx="${mass * length ** 2 / 12}" ixy="0" ixz="0" iyy="${mass * length ** 2 / 12}" iyz="0"
+               izz="${mass * 0.0001}"/>
+    </inertial>
+  </xacro:macro>
+  <xacro:macro name="segment" params="name parent length:=0.2 *origin">
+    <link name="${name}">
+      <visual>
+        <origin xyz="0 0 ${-length / 2}" rpy="0 0 0"/>
+        <geometry><box size="0.02 0.02 ${length}"/></geometry>
+      </visual>
+      <collision>
+        <origin xyz="0 0 ${-length / 2}" rpy="0 0 0"/>
+        <geometry><box size="0.02 0.02 ${length}"/></geometry>
+      </collision>
+      <xacro:inertia mass="${mass}" length="${length}"/>
+    </link>
+    <joint name="${name}_joint" type="revolute">
+      <xacro:insert_block name="origin"/>
+      <parent link="${parent}"/>
+      <child link="${name}"/>
+      <axis xyz="0 1 0"/>
+      <limit lower="${-pi / 2}" upper="${pi / 2}" effort="10" velocity="3"/>
+    </joint>
+  </xacro:macro>
+  <xacro:macro name="leg" params="name x side">
+    <xacro:segment name="${name}_hip" parent="base_link">
+      <origin xyz="${x} ${side * 0.2} 0" rpy="0 0 0"/>
+    </xacro:segment>
+    <xacro:segment name="${name}_thigh" parent="${name}_hip" length="${length}">
+      <origin xyz="0 0 -0.2" rpy="0 0 0"/>
+    </xacro:segment>
+    <xacro:if value="${side > 0}">
+      <xacro:segment name="${name}_shin" parent="${name}_thigh" length="${length}">
+        <origin xyz="0 0 ${-length}" rpy="0 0 0"/>
+      </xacro:segment>
+    </xacro:if>
+  </xacro:macro>
+  <link name="base_link"/>
+CALLS
+</robot>
+"""
 
 
 def tree_robot(links: int, branching: int = 8) -> str:
@@ -22,6 +121,53 @@ def tree_robot(links: int, branching: int = 8) -> str:
             )
     parts.append("</robot>")
     return "\n".join(parts)
+
+
+def detailed_robot(links: int, moving: int) -> str:
+    """A robot with as many links and moving joints, each link with inertia, two shapes and numbers of its own."""
+    chance = random.Random(links)
+
+    def numbers(count: int) -> str:
+        return " ".join(repr(chance.uniform(-1, 1)) for _ in range(count))
+
+    parts = ['<robot name="bench">', '<material name="grey"><color rgba="0.5 0.5 0.5 1"/></material>']
+    for index in range(links):
+        tensor = " ".join(f'{name}="{numbers(1)}"' for name in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"))
+        parts.append(
+            f"""  <link name="link_{index}">
+    <inertial>
+      <origin xyz="{numbers(3)}" rpy="0 0 0"/>
+      <mass value="{numbers(1)}"/>
+      <inertia {tensor}/>
+    </inertial>
+    <visual>
+      <origin xyz="0 0 0" rpy="{numbers(3)}"/>
+      <geometry>
+        <mesh filename="meshes/visual_{index}.dae"/>
+      </geometry>
+      <material name="grey"/>
+    </visual>
+    <collision>
+      <origin xyz="{numbers(3)}" rpy="0 0 0"/>
+      <geometry>
+        <cylinder radius="0.1" length="0.2"/>
+      </geometry>
+    </collision>
+  </link>"""
+        )
+    for index in range(1, links):
+        kind = "revolute" if index <= moving else "fixed"
+        limit = '<limit lower="-3.1" upper="3.1" effort="10" velocity="1"/>' if kind == "revolute" else ""
+        parts.append(
+            f"""  <joint name="joint_{index}" type="{kind}">
+    <origin xyz="{numbers(3)}" rpy="{numbers(3)}"/>
+    <parent link="link_{max(0, index - chance.randint(1, 3))}"/>
+    <child link="link_{index}"/>
+    <axis xyz="0 0 1"/>
+    {limit}
+  </joint>"""
+        )
+    return "\n".join([*parts, "</robot>"])
 
 
 SWEEP_LAUNCH = """

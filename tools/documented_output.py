@@ -4,7 +4,7 @@ Usage: python tools/documented_output.py [--check]
 
 A section of these pages that can be tried has fenced blocks with titles (the files), one ``bash`` block (the command)
 and one ``text`` block, which this program fills with what the command writes to standard error in a folder of these
-files.
+files, in the language of the page.
 """
 
 from __future__ import annotations
@@ -30,14 +30,20 @@ _READERS_FOLDER = "/home/you/robots"
 _LEFT_OUT = ("AMENT_PREFIX_PATH", "COLCON_PREFIX_PATH", "ROS_PACKAGE_PATH")
 
 
-def refreshed(page: str) -> str:
+def refreshed(page: str, language: str = "en") -> str:
     """The text of a page with every output as it is now."""
-    return "".join(_refreshed_section(section) for section in _SECTION.split(page))
+    return "".join(_refreshed_section(section, language) for section in _SECTION.split(page))
 
 
-def output_of(words: Sequence[str], files: Sequence[tuple[str, str]]) -> str:
+def language_of(page: Path) -> str:
+    """The language of a page: its folder's name."""
+    return "zh" if page.parent.name == "zh" else "en"
+
+
+def output_of(words: Sequence[str], files: Sequence[tuple[str, str]], language: str = "en") -> str:
     """What ``linkwright`` with these words writes to standard error in a folder of these files (path, text)."""
     environment = {name: value for name, value in os.environ.items() if name not in _LEFT_OUT}
+    environment["LINKWRIGHT_LANG"] = language
     with tempfile.TemporaryDirectory() as folder:
         for name, text in files:
             path = Path(folder) / name
@@ -57,11 +63,11 @@ def output_of(words: Sequence[str], files: Sequence[tuple[str, str]]) -> str:
     return result.stderr.replace(folder, _READERS_FOLDER)
 
 
-def _refreshed_section(section: str) -> str:
+def _refreshed_section(section: str, language: str) -> str:
     command = _COMMAND.search(section)
     if command is None or _OUTPUT.search(section) is None:
         return section
-    output = output_of(shlex.split(command[1]), _FILE.findall(section))
+    output = output_of(shlex.split(command[1]), _FILE.findall(section), language)
     return _OUTPUT.sub(lambda _: output, section, count=1)
 
 
@@ -70,7 +76,7 @@ def main(words: Sequence[str]) -> int:
     stale = False
     for page in PAGES:
         before = page.read_text(encoding="utf-8")
-        after = refreshed(before)
+        after = refreshed(before, language_of(page))
         if before != after and "--check" in words:
             print(f"{page} is stale: run python tools/documented_output.py", file=sys.stderr)
             stale = True

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from pathlib import Path
 
@@ -17,13 +18,24 @@ TOOL = load_tool("documented_output")
 @pytest.mark.parametrize("page", TOOL.PAGES, ids=["en", "zh"])
 def test_output_is_current(page: Path) -> None:
     text = page.read_text(encoding="utf-8")
-    assert text == TOOL.refreshed(text), "run tools/documented_output.py"
+    assert text == TOOL.refreshed(text, TOOL.language_of(page)), "run tools/documented_output.py"
 
 
 def test_both_languages_show_the_same_cases() -> None:
     english, chinese = map(blocks, TOOL.PAGES)
     assert [block.language for block in english].count("text") >= 6
-    assert chinese == english
+    for ours, theirs in zip(english, chinese, strict=True):
+        if ours.language == "text":
+            assert without_words(theirs.text) == without_words(ours.text)
+            assert theirs.text.startswith("错误[")
+        else:
+            assert theirs == ours
+
+
+def without_words(output: str) -> list[str]:
+    """What does not depend on the language: codes, places, the excerpt with its carets, how many notes and hints."""
+    lines = [re.sub(r"^\S+(\[\w+\]).*", r"\1", line) for line in output.splitlines()]
+    return [re.sub(r"^   = .*?( \(\S+\))?$", r"=\1", line) for line in lines]
 
 
 def test_a_stale_page_is_found_and_mended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,19 +1,13 @@
-"""Ways out of an expression that are known from other sandboxes, and ways to make it never end. None works."""
+"""Ways out of an expression that are known from other sandboxes. None works."""
 
 from __future__ import annotations
-
-import sys
-import time
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from linkwright.diagnostics import LinkwrightError
-from linkwright.xacro import Limits, expand
 from linkwright.xacro.faults import Fault
 
-from .cases import ROOT
 from .evaluating import evaluate
 
 ESCAPES = [
@@ -77,13 +71,132 @@ ESCAPES = [
     "python.slice(1).indices",
     "math.sin.__module__",
     "python.map(1, 2)._x",
+    "''.__class__.__base__",
+    "[].__class__.__mro__",
+    "(lambda x=(lambda: 0).__globals__: x)()",
+    "(lambda: (yield))()",
+    "[(yield 1)]",
+    "(await 1)",
+    "(x for x in [1]).gi_frame.f_back.f_globals",
+    "(x for x in [1]).send",
+    "(x for x in [1]).throw(1)",
+    "(x for x in [1]).close",
+    "(x for x in [1]).gi_yieldfrom",
+    "python.reversed([1]).__reduce__",
+    "python.enumerate([1]).__class__",
+    "python.type(python.type)",
+    "python.type('').format",
+    "python.type('').join",
+    "python.type([]).extend",
+    "python.type('')('x').format",
+    "python.type(xacro)",
+    "python.type(print)",
+    "python.type(None)",
+    "list(map(python.type, [math]))",
+    "min(['a'], key=str.format_map)",
+    "python.vars(math)['sin'].__module__",
+    "vars(math)",
+    "python.vars(python)['type'](1).mro",
+    "python.filter(str.format, ['x'])",
+    "str.format_map",
+    "str.maketrans",
+    "str.translate",
+    "bytes.fromhex('00')",
+    "int.from_bytes(b'a', 'big')",
+    "int.to_bytes(1, 10**9, 'big')",
+    "(1).to_bytes(10**9, 'big')",
+    "python.hash('a').to_bytes",
+    "float.fromhex('1')",
+    "dict.fromkeys([1])",
+    "dict.fromkeys(python.range(10**6), [1])",
+    "python.set.__init__",
+    "data.__class__",
+    "data.__init__.__globals__",
+    "data._x",
+    "xacro.dotify(dict(__class__=1)).__class__",
+    "(a := ''.__class__)",
+    "[a := 1, a.__class__]",
+    "(__x := 1)",
+    "[__x for __x in [1]]",
+    "(lambda __x: __x)(1)",
+    "(lambda x, *, __y=1: 0)()",
+    "(lambda: __import__('os'))()",
+    "[__import__ for i in [1]]",
+    "sin.__self__",
+    "math.__spec__",
+    "math.sys",
+    "math._",
+    "python.__builtins__",
+    "python['__builtins__']",
+    "xacro['__class__']",
+    "math['__loader__']",
+    "python.getattr",
+    "python.object",
+    "python.eval",
+    "python.open",
+    "python.globals",
+    "python.super",
+    "python.memoryview",
+    "python.property",
+    "python.staticmethod",
+    "python.iter",
+    "python.next",
+    "python.print",
+    "python.format",
+    "python.input",
+    "xacro.abs_filename(1)",
+    "xacro.arg.__closure__",
+    "1 .__class__",
+    "1..real.__class__",
+    "''.join.__self__",
+    "''.join.__name__",
+    "[].append.__self__",
+    "[].sort(key=str.format)",
+    "'a'.upper.__call__",
+    "list(map(list, [[1]]*10**6))",
+    "python.vars(xacro)['load_yaml'].__self__",
+    "xacro.load_yaml.__func__",
+    "python['type'].__subclasses__()",
+    "data.get.__self__",
+    "items.append.__self__",
+    "items.__iter__",
+    "items.__class__.__init__.__globals__",
+    "python.dict(__class__=1).__class__",
+    "python.zip([1])._",
+    "(lambda x: x.__class__)(1)",
+    "[(lambda: x.__class__)() for x in [1]]",
+    "[a.__class__ := 1]",
+    "(lambda *, x=''.__class__: x)()",
+    "python.all(x.__class__ for x in [1])",
+    "list(map(lambda x: x.__class__, [1]))",
+    "python.sorted([1], key=lambda x: x.__class__)",
+    "python.filter(lambda x: x.__class__, [1])",
+    "1 if ''.__class__ else 2",
+    "''.__class__ and 1",
+    "[''.__class__]",
+    "dict(a=''.__class__)",
+    "a[''.__class__]",
+    "-''.__class__",
+    "f'{1'",
+    "(yield)",
+    "lambda: (yield)",
+    "[await x for x in []]",
+    "[x async for x in []]",
+    "a = 1",
+    "del a",
+    "import os",
+    "assert a",
+    "raise a",
+    "@a",
+    "class A: pass",
+    "print 1",
 ]
 
 
 @pytest.mark.parametrize("source", ESCAPES)
 def test_escape_is_refused(source: str) -> None:
     with pytest.raises(Fault):
-        evaluate("${" + source + "}")
+        evaluate("${" + source + "}", items=[1], data={"a": 1}, a=1)
 
 
 @given(
@@ -98,125 +211,6 @@ def test_no_attribute_gives_anything_but_plain_values_and_methods(name: str) -> 
         assert not name.startswith("_")
         assert not isinstance(result, type)
         assert name not in ("format", "format_map")
-
-
-HUGE = [
-    "10**10**10",
-    "2**20000**2",
-    "'a' * 10**9",
-    "10**9 * 'a'",
-    "[0] * 10**10",
-    "(0,) * 10**10",
-    "1 << 10**9",
-    "'%1000000000d' % 1",
-    "'%.1000000000f' % 1",
-    "'%*d' % (10**9, 1)",
-    "'x'.ljust(10**10)",
-    "'x'.zfill(10**10)",
-    "'x'.center(10**10)",
-    "'\\t'.expandtabs(10**10)",
-    "('x' * 10**6).join(['a'] * 10**6)",
-    "('a' * 10**6).replace('a', 'b' * 10**6)",
-    "python.range(10**12)",
-    "list(python.range(10**8))",
-    "factorial(10**7)",
-    "comb(10**7, 10**6)",
-    "perm(10**7)",
-    "prod([10**1000] * 10**5)",
-    "round(5, -10**9)",
-    "[1 for a in python.range(10**6) for b in python.range(10**6)]",
-    "python.sum(1 for a in python.range(10**6) for b in python.range(10**6))",
-    "python.sum([[1]] * 10**6, [])",
-    "(lambda f: f(f))(lambda f: f(f))",
-    "(lambda f, n: f(f, n-1) + f(f, n-1) if n else 1)(lambda f, n: f(f, n-1) + f(f, n-1) if n else 1, 45)",
-    "+".join(["1"] * 5000),
-    "(" * 5000 + "1" + ")" * 5000,
-    "-" * 9000 + "1",
-    "not " * 4000 + "1",
-    "1**" * 4000 + "1",
-    "x." * 4000 + "y",
-    "'" + "a" * 30000 + "'",
-]
-
-
-@pytest.mark.parametrize("source", HUGE, ids=lambda source: source[:40])
-def test_what_would_grow_or_never_end_is_stopped(source: str) -> None:
-    started = time.perf_counter()
-    with pytest.raises(Fault):
-        evaluate("${" + source + "}", Limits(steps=20_000))
-    assert time.perf_counter() - started < 5
-
-
-def test_growth_over_many_properties_is_stopped() -> None:
-    for first, step in (("ab", "${p{0}}${p{0}}"), ("ab", "${p{0} + p{0}}"), ("${[1]}", "${[p{0}, p{0}]}")):
-        chain = "".join(
-            f'<xacro:property name="p{number + 1}" value="{step.replace("{0}", str(number))}"/>' for number in range(60)
-        )
-        with pytest.raises(LinkwrightError) as caught:
-            expand("m.xacro", text=f'{ROOT}<xacro:property name="p0" value="{first}"/>{chain}<a v="${{p60}}"/></robot>')
-        assert caught.value.diagnostics[0].code in ("XAC202", "XAC204")
-
-
-def test_long_texts_are_counted() -> None:
-    text = f'{ROOT}<xacro:property name="p" value="${{"a" * 100000}}"/>'.replace('"a"', "'a'")
-    with pytest.raises(LinkwrightError) as caught:
-        expand("m.xacro", text=text + '<a v="${p}"/>' * 20 + "</robot>", limits=Limits(characters=1_000_000))
-    assert caught.value.diagnostics[0].code == "XAC605"
-
-
-def test_macros_that_multiply_are_stopped() -> None:
-    macros = "".join(
-        f'<xacro:macro name="m{number}"><xacro:m{number + 1}/><xacro:m{number + 1}/></xacro:macro>'
-        for number in range(60)
-    )
-    text = f'{ROOT}{macros}<xacro:macro name="m60"/><xacro:m0/></robot>'
-    with pytest.raises(LinkwrightError) as caught:
-        expand("m.xacro", text=text, limits=Limits(elements=10_000))
-    assert caught.value.diagnostics[0].code == "XAC602"
-
-
-RECURSIVE = (
-    '<xacro:macro name="r" params="n"><l><k><xacro:if value="${n>1}"><xacro:r n="${n-1}"/></xacro:if></k></l>'
-    '</xacro:macro><xacro:r n="%d"/>'
-)
-
-
-@pytest.mark.parametrize("levels", [1, 150, 200])
-def test_deep_recursion_of_macros_works(levels: int) -> None:
-    limit = sys.getrecursionlimit()
-    text = str(expand("m.xacro", text=f"{ROOT}{RECURSIVE % levels}</robot>"))
-    assert text.count("<l>") == levels
-    assert sys.getrecursionlimit() == limit
-
-
-@pytest.mark.parametrize("levels", [201, 100_000])
-def test_too_deep_recursion_is_one_clear_error(levels: int) -> None:
-    with pytest.raises(LinkwrightError) as caught:
-        expand("m.xacro", text=f"{ROOT}{RECURSIVE % levels}</robot>")
-    (diagnostic,) = caught.value.diagnostics
-    assert diagnostic.code == "XAC601"
-    assert "more than 200 deep" in diagnostic.message
-
-
-def test_too_deep_nesting_of_elements_is_an_error() -> None:
-    with pytest.raises(LinkwrightError) as caught:
-        expand("m.xacro", text=f"{ROOT}{'<a>' * 5000}{'</a>' * 5000}</robot>")
-    assert [diagnostic.code for diagnostic in caught.value.diagnostics] == ["XAC601"]
-
-
-def test_a_long_chain_of_lazy_properties_is_an_error() -> None:
-    chain = "".join(f'<xacro:property name="p{n}" value="${{p{n + 1} + 1}}"/>' for n in range(5000))
-    with pytest.raises(LinkwrightError) as caught:
-        expand("m.xacro", text=f'{ROOT}{chain}<a v="${{p0}}"/></robot>')
-    assert caught.value.diagnostics[0].code == "XAC601"
-
-
-def test_iterators_do_not_pile_up() -> None:
-    chain = "".join(
-        f'<xacro:property name="p{n + 1}" value="${{map(str, p{n})}}" lazy_eval="false"/>' for n in range(5000)
-    )
-    text = f'{ROOT}<xacro:property name="p0" value="${{[1]}}"/>{chain}<a v="${{list(p5000)}}"/></robot>'
-    assert "['1']" in str(expand("m.xacro", text=text))
 
 
 def test_a_yaml_file_cannot_run_code() -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.xmltree import parse, parse_file
+from linkwright.xmltree import parse, parse_file, reader
 
 
 def told(text: str | bytes) -> tuple[str, str, int, int, str | None]:
@@ -112,10 +112,10 @@ def test_files_that_cannot_be_read(tmp_path: Path) -> None:
 
 
 def test_a_file_without_permission(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def refuse(_path: Path) -> bytes:
+    def refuse(_path: Path, _mode: str) -> bytes:
         raise PermissionError(13, "Permission denied")
 
-    monkeypatch.setattr(Path, "read_bytes", refuse)  # root, who runs some test machines, may read anything
+    monkeypatch.setattr(reader, "open", refuse, raising=False)  # root, who runs some test machines, may read anything
     with pytest.raises(LinkwrightError) as caught:
         parse_file(tmp_path / "a.urdf")
     assert caught.value.diagnostics[0].code == "XML103"

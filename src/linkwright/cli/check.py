@@ -1,29 +1,207 @@
-"""``linkwright check``: read a description and print its tree, or what is wrong with it."""
+"""``linkwright check``: read descriptions, print the tree, and say what is wrong with them."""
 
 from __future__ import annotations
 
 import argparse
 import sys
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 from linkwright.cli.assignments import parse_assignments
-from linkwright.diagnostics import has_errors, print_diagnostics
+from linkwright.diagnostics import Diagnostic, Severity, has_errors, print_diagnostics
+from linkwright.diagnostics.formats import FORMATS, format_diagnostics
+
+if TYPE_CHECKING:
+    from linkwright.lint.apply import Mended
+    from linkwright.lint.engine import Checked
+    from linkwright.lint.settings import Settings
+    from linkwright.urdf import Robot
 
 NAME = "check"
-HELP = "check a URDF or xacro file and print its link tree"
+HELP = "check URDF and xacro files and the packages around them; of one file, print the link tree"
+
+_USAGE = 2
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
-    parser.add_argument("file", metavar="FILE", help="the URDF or xacro file")
-    parser.add_argument("values", metavar="NAME:=VALUE", nargs="*", help="values for the file's <xacro:arg>")
+    parser.add_argument(
+        "words",
+        metavar="FILE|FOLDER|NAME:=VALUE",
+        nargs="+",
+        help="URDF and xacro files, folders that are searched for descriptions and packages, and values for the"
+        " files' <xacro:arg>",
+    )
+    parser.add_argument("--format", choices=FORMATS, default="text", help="how to print what is found (default: text)")
+    parser.add_argument("--strict", action="store_true", help="warnings make the exit status 1 too")
+    parser.add_argument("--select", metavar="RULES", action="append", help="report only these, such as LW2,axis-zero")
+    parser.add_argument("--ignore", metavar="RULES", action="append", help="do not report these")
+    parser.add_argument("--config", metavar="FILE", help="the settings, instead of the nearest linkwright.toml")
+    parser.add_argument("--statistics", action="store_true", help="print how often each code was found")
+    parser.add_argument("--fix", action="store_true", help="mend what can be mended safely, in the files")
+    parser.add_argument("--unsafe-fixes", action="store_true", help="mend too what may change the meaning")
+    parser.add_argument("--diff", action="store_true", help="print what the fixes would change, and change nothing")
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Print the tree as check_urdf does, and every finding; 1 when one of them is an error."""
-    from linkwright.urdf import examine, tree_text
+    """Check; the tree and findings in forms for programs go to standard output, findings as text to standard error."""
+    paths = [Path(word) for word in arguments.words if ":=" not in word]
+    if not paths:
+        return _usage("name a file or folder to check")
+    words = _Words(
+        parse_assignments(word for word in arguments.words if ":=" in word),
+        None if arguments.select is None else _listed(arguments.select),
+        _listed(arguments.ignore or ()),
+        None if arguments.config is None else Path(arguments.config),
+    )
+    unknown = words.unknown_selector()
+    if unknown:
+        return _usage(unknown)
+    if arguments.config is not None and not Path(arguments.config).is_file():
+        return _usage(f"no such file: '{arguments.config}'")
+    if arguments.diff:
+        return _print_diff(paths, words, arguments.unsafe_fixes)
+    mended = _fix(paths, words, arguments.unsafe_fixes, write=True) if arguments.fix or arguments.unsafe_fixes else []
+    found, robot = _check(paths, words)
+    _print(found, arguments.format)
+    if arguments.format == "text":
+        if robot is not None:
+            from linkwright.urdf import tree_text
 
-    reading = examine(arguments.file, arguments=parse_assignments(arguments.values))
-    print_diagnostics(reading.diagnostics, sys.stderr)
-    if reading.robot is not None:
-        sys.stdout.write(tree_text(reading.robot))
-    return 1 if has_errors(reading.diagnostics) else 0
+            sys.stdout.write(tree_text(robot))
+        _summarise(found, mended, several=len(paths) > 1 or paths[0].is_dir())
+    if arguments.statistics:
+        _print_statistics(found)
+    failed = has_errors(found) or (arguments.strict and any(each.severity is Severity.WARNING for each in found))
+    return 1 if failed else 0
+
+
+@dataclass(frozen=True, slots=True)
+class _Words:
+    """What the command line says of every file."""
+
+    values: dict[str, str]
+    select: tuple[str, ...] | None
+    ignore: tuple[str, ...]
+    config: Path | None
+
+    def unknown_selector(self) -> str | None:
+        """What to say of a selector that selects nothing, or None."""
+        from linkwright.lint.selectors import is_selector, selector_hint
+
+        for word in (*(self.select or ()), *self.ignore):
+            if not is_selector(word):
+                return f"there is no rule '{word}'; {selector_hint(word)}"
+        return None
+
+    def settings(self, path: Path) -> tuple[Settings, tuple[Diagnostic, ...]]:
+        """The settings for a file or folder, with what is wrong with their text."""
+        from linkwright.lint.configuration import read_settings, settings_for
+        from linkwright.lint.selectors import canonical
+
+        settings, trouble = settings_for(path) if self.config is None else read_settings(self.config)
+        select = None if self.select is None else tuple(map(canonical, self.select))
+        return settings.with_words(select, tuple(map(canonical, self.ignore))), trouble
+
+
+def _check(paths: Sequence[Path], words: _Words) -> tuple[list[Diagnostic], Robot | None]:
+    """Everything found, each thing once, and the robot where one file was named."""
+    from linkwright.lint.engine import examine_package
+    from linkwright.lint.targets import find_targets
+
+    targets = find_targets(paths)
+    found: dict[tuple[str, object, str], Diagnostic] = {}
+    robot = None
+    for file in targets.files:
+        checked, trouble = _examine(file, words)
+        _add(found, (*trouble, *checked.diagnostics))
+        robot = checked.robot
+    for folder in targets.packages:
+        settings, trouble = words.settings(folder)
+        _add(found, (*trouble, *examine_package(folder, settings).diagnostics))
+    return list(found.values()), robot if len(paths) == 1 and paths[0].is_file() else None
+
+
+def _add(found: dict[tuple[str, object, str], Diagnostic], more: Iterable[Diagnostic]) -> None:
+    """Add what is new; a file that two robots include says the same twice."""
+    for diagnostic in more:
+        found.setdefault((diagnostic.code, diagnostic.span, diagnostic.message), diagnostic)
+
+
+def _examine(file: Path, words: _Words, text: str | None = None) -> tuple[Checked, tuple[Diagnostic, ...]]:
+    from linkwright.lint.engine import examine
+    from linkwright.lint.rule import Scope
+
+    settings, trouble = words.settings(file)
+    return examine(file, arguments=words.values, settings=settings, text=text, scopes=(Scope.DESCRIPTION,)), trouble
+
+
+def _fix(paths: Sequence[Path], words: _Words, unsafe: bool, *, write: bool) -> list[Mended]:
+    from linkwright.lint.apply import fix_file
+    from linkwright.lint.engine import examine_package
+    from linkwright.lint.targets import find_targets
+    from linkwright.workspace.manifest import MANIFEST
+
+    def file_again(file: Path, text: str | None) -> Iterable[Diagnostic]:
+        return _examine(file, words, text)[0].diagnostics
+
+    def package_again(folder: Path, _text: str | None) -> Iterable[Diagnostic]:
+        return examine_package(folder, words.settings(folder)[0]).diagnostics
+
+    targets = find_targets(paths)
+    checks = [(file, partial(file_again, file)) for file in targets.files]
+    checks += [(folder / MANIFEST, partial(package_again, folder)) for folder in targets.packages]
+    return [fix_file(path, check, unsafe=unsafe, write=write) for path, check in checks]
+
+
+def _print_diff(paths: Sequence[Path], words: _Words, unsafe: bool) -> int:
+    mended = _fix(paths, words, unsafe, write=False)
+    seen: set[str] = set()
+    for each in mended:
+        each.texts = {file: text for file, text in each.texts.items() if file not in seen}
+        seen.update(each.texts)
+        sys.stdout.write(each.diff())
+    return 1 if seen else 0
+
+
+def _print(found: Sequence[Diagnostic], form: str) -> None:
+    if form == "text":
+        print_diagnostics(found, sys.stderr)
+    else:
+        sys.stdout.write(format_diagnostics(found, form))
+
+
+def _summarise(found: Sequence[Diagnostic], mended: Sequence[Mended], *, several: bool) -> None:
+    if mended:
+        count = sum(sum(each.counts.values()) for each in mended)
+        files = len({file for each in mended for file in each.texts})
+        print(f"mended {_count(count, 'finding')} in {_count(files, 'file')}", file=sys.stderr)
+    if several:
+        errors = sum(each.severity is Severity.ERROR for each in found)
+        warnings = sum(each.severity is Severity.WARNING for each in found)
+        print(f"{_count(errors, 'error')}, {_count(warnings, 'warning')}", file=sys.stderr)
+
+
+def _print_statistics(found: Iterable[Diagnostic]) -> None:
+    from linkwright.lint.explain import find_page
+
+    for code, count in sorted(Counter(each.code for each in found).items(), key=lambda each: (-each[1], each[0])):
+        page = find_page(code)
+        print(f"{count:6}  {code:<9} {page.name or page.title if page else ''}".rstrip(), file=sys.stderr)
+
+
+def _count(number: int, what: str) -> str:
+    return f"{number} {what}" if number == 1 else f"{number} {what}s"
+
+
+def _listed(words: Iterable[str]) -> tuple[str, ...]:
+    return tuple(name for word in words for name in word.replace(",", " ").split())
+
+
+def _usage(message: str) -> int:
+    print(f"linkwright check: {message}", file=sys.stderr)
+    return _USAGE

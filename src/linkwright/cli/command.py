@@ -13,9 +13,12 @@ from importlib import import_module
 from typing import Protocol, cast
 
 from linkwright._version import __version__
+from linkwright.cli.language import HELP as LANGUAGE_HELP
+from linkwright.cli.language import UnknownLanguageError, take_language
 from linkwright.diagnostics import LinkwrightError, did_you_mean, print_diagnostics
+from linkwright.diagnostics.translation import set_language
 
-VERBS = ("launch", "view", "xacro", "check", "diagram", "pkg")
+VERBS = ("launch", "view", "xacro", "check", "explain", "inertia", "diagram", "pkg")
 """In the order in which the help lists them; each is a module of this package."""
 _NESTED = frozenset({"pkg"})
 """Verbs with verbs of their own; elsewhere options may stand between words (`launch PACKAGE --no-open FILE`)."""
@@ -39,7 +42,10 @@ class Verb(Protocol):
 def main(words: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit status; never raises."""
     try:
-        return _dispatch(list(sys.argv[1:] if words is None else words))
+        return _dispatch(take_language(sys.argv[1:] if words is None else words))
+    except UnknownLanguageError as error:
+        print(f"linkwright: {error}", file=sys.stderr)
+        return USAGE
     except LinkwrightError as error:
         print_diagnostics(error.diagnostics, sys.stderr)
         return FINDINGS
@@ -54,6 +60,8 @@ def main(words: Sequence[str] | None = None) -> int:
     except Exception as error:  # noqa: BLE001 - the last line of defence: a bug of ours must not print a traceback
         _report_bug(error)
         return BUG
+    finally:
+        set_language(None)
 
 
 def verb(name: str) -> Verb:
@@ -64,9 +72,18 @@ def verb(name: str) -> Verb:
 def parser_for(name: str) -> argparse.ArgumentParser:
     """The argument parser of one verb, as the command reference and the verb itself use it."""
     module = verb(name)
-    parser = argparse.ArgumentParser(prog=f"linkwright {name}", description=module.HELP)
+    parser = argparse.ArgumentParser(prog=f"linkwright {name}", description=module.HELP, formatter_class=_formatter)
     module.configure(parser)
     return parser
+
+
+def _formatter(prog: str) -> argparse.HelpFormatter:
+    """A help formatter as wide as the terminal; left to itself, argparse would import much only to learn that width."""
+    try:
+        columns = int(os.environ.get("COLUMNS", 0)) or os.get_terminal_size().columns
+    except (ValueError, OSError):
+        columns = 80
+    return argparse.HelpFormatter(prog, width=columns - 2)
 
 
 def _dispatch(words: list[str]) -> int:
@@ -83,7 +100,8 @@ def _dispatch(words: list[str]) -> int:
         print(f"linkwright: there is no {what} '{name}'; {hint}", file=sys.stderr)
         return USAGE
     parser = parser_for(name)
-    parse = parser.parse_args if name in _NESTED else parser.parse_intermixed_args
+    mixed = name not in _NESTED and any(word.startswith("-") for word in words)
+    parse = parser.parse_intermixed_args if mixed else parser.parse_args
     return verb(name).run(parse(words[1:]))
 
 
@@ -97,6 +115,7 @@ def _overview() -> str:
         "commands:",
     ]
     lines += [f"  {name:{width}}  {verb(name).HELP}" for name in VERBS]
+    lines += ["", "options of all commands:", f"  --lang LANGUAGE  {LANGUAGE_HELP}"]
     lines += ["", "`linkwright COMMAND --help` says more. `linkwright --version` prints the version."]
     return "\n".join(lines)
 

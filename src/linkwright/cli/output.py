@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 
 def write_output(path: Path, text: str) -> None:

@@ -1,38 +1,181 @@
-"""``linkwright xacro``: expand a xacro file to URDF."""
+"""``linkwright xacro``: expand a xacro file to URDF, list its arguments, or explain what it expands to."""
 
 from __future__ import annotations
 
 import argparse
 import sys
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 from linkwright.cli.assignments import parse_assignments
 from linkwright.cli.output import write_output
-from linkwright.diagnostics import print_diagnostics
+from linkwright.diagnostics import Diagnostic, Severity, print_diagnostics
+
+if TYPE_CHECKING:
+    from linkwright.xacro.engine import Inputs
 
 NAME = "xacro"
-HELP = "expand a xacro file to URDF"
+HELP = "expand a xacro file to URDF, list its arguments, or explain its parts"
+
+_QUIET, _PROPERTIES, _ALL_PROPERTIES = 0, 3, 4
+_USAGE = 2
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     parser.add_argument("file", metavar="FILE", help="the xacro file, or - for standard input")
-    parser.add_argument("values", metavar="NAME:=VALUE", nargs="*", help="values for the file's <xacro:arg>")
+    parser.add_argument(
+        "values",
+        metavar="NAME:=VALUE",
+        nargs="*",
+        help="values for the file's <xacro:arg>; an empty value, as in prefix:=, leaves the default in force",
+    )
     parser.add_argument("-o", metavar="OUT", dest="output", help="write to this file instead of standard output")
+    parser.add_argument(
+        "--deps",
+        action="store_true",
+        help="print the files that are included and the YAML files that are loaded, on one line, instead of the URDF",
+    )
+    parser.add_argument(
+        "--args", action="store_true", help="list the arguments that the file takes, instead of the URDF"
+    )
+    parser.add_argument(
+        "--explain",
+        metavar="LINK_OR_JOINT",
+        help="tell where an element of the URDF comes from: places, macro calls, includes and values",
+    )
+    parser.add_argument(
+        "--format",
+        choices=("text", "json"),
+        default="text",
+        help="form of what --args and --explain print (default: text)",
+    )
+    parser.add_argument(
+        "--root-dir", metavar="DIR", help="folder that relative paths and $(cwd) refer to (default: the current one)"
+    )
+    parser.add_argument(
+        "-i",
+        "--inorder",
+        action="store_true",
+        help="process in reading order; this is always so, and the option can be left out",
+    )
+    parser.add_argument(
+        "-q",
+        dest="verbosity",
+        action="store_const",
+        const=_QUIET,
+        default=1,
+        help="print errors only; the same as --verbosity 0",
+    )
+    parser.add_argument(
+        "-v", dest="verbosity", action="count", default=1, help="print more; the same as one --verbosity level higher"
+    )
+    parser.add_argument(
+        "--verbosity",
+        metavar="LEVEL",
+        type=int,
+        dest="verbosity",
+        default=1,
+        help="0: errors only, 1: warnings too (default), 2: the same, 3: log where the properties of the document are "
+        "set and used, 4: those of macros and namespaces too",
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Expand; warnings go to standard error, the text to standard output or the file."""
+    """Do what is asked for; findings go to standard error, results to standard output or the file."""
+    from linkwright.xacro.engine import Inputs
+    from linkwright.xacro.limits import Limits
+
+    words = [arguments.file, *arguments.values]
+    files = [word for word in words if ":=" not in word]
+    if not files or (len(files) > 1 and not any("=" in word for word in files[1:])):
+        given = f"given {len(files)}: {', '.join(files)}" if files else "given none"
+        print(f"linkwright xacro: exactly one file is expected and {given}", file=sys.stderr)
+        return _USAGE
+    if (arguments.explain is not None and (arguments.args or arguments.deps)) or (arguments.args and arguments.deps):
+        print("linkwright xacro: --args, --deps and --explain are different questions; ask one", file=sys.stderr)
+        return _USAGE
+    verbosity = arguments.verbosity
+    if arguments.inorder and verbosity > _QUIET:
+        print("linkwright xacro: files are always processed in reading order; -i can be left out", file=sys.stderr)
+    words.remove(files[0])
+    values, ignored = _values(words)
+    if verbosity > _QUIET:
+        print_diagnostics(ignored, sys.stderr)
+    file, text = files[0], None
+    if file == "-":
+        file, text = "<stdin>", sys.stdin.read()
+    inputs = Inputs(file, values, None, text, Limits(), arguments.root_dir or "")
+    if arguments.args:
+        result = _arguments(inputs, verbosity, arguments.format)
+    elif arguments.explain is not None:
+        result = _story(inputs, arguments.explain, arguments.format)
+    else:
+        result = _expansion(inputs, verbosity, deps=arguments.deps)
+    if arguments.output:
+        from pathlib import Path
+
+        write_output(Path(arguments.output), result)
+    else:
+        sys.stdout.write(result)
+    return 0
+
+
+def _values(words: list[str]) -> tuple[dict[str, str], list[Diagnostic]]:
+    """The arguments given, and remarks on those that xacro ignores: empty ones, and ROS parameters (``_name:=``)."""
+    values = parse_assignments(words)
+    ignored = []
+    for name, value in list(values.items()):
+        private = len(name) > 1 and name[0] == "_" and name[1] != "_"
+        if value and not private:
+            continue
+        del values[name]
+        why = "its name begins with an underscore" if value else "it is empty"
+        message = f"the argument '{name}' is ignored, as xacro does: {why}"
+        ignored.append(Diagnostic("CLI103", message, severity=Severity.WARNING))
+    return values, ignored
+
+
+def _expansion(inputs: Inputs, verbosity: int, *, deps: bool) -> str:
     from linkwright.xacro import expand
 
-    values = parse_assignments(arguments.values)
-    if arguments.file == "-":
-        expansion = expand("<stdin>", values, text=sys.stdin.read())
+    if verbosity >= _PROPERTIES:
+        from linkwright.xacro.property_log import log_properties
+
+        log_properties(inputs, lambda line: print(line, file=sys.stderr), everywhere=verbosity >= _ALL_PROPERTIES)
+    name, values, packages, text, limits, root_dir = inputs
+    expansion = expand(name, values, packages=packages, text=text, limits=limits, root_dir=root_dir)
+    if verbosity > _QUIET:
+        print_diagnostics(expansion.diagnostics, sys.stderr)
     else:
-        expansion = expand(arguments.file, values)
-    print_diagnostics(expansion.diagnostics, sys.stderr)
-    if arguments.output:
-        write_output(Path(arguments.output), str(expansion))
-    else:
-        sys.stdout.write(str(expansion))
-    return 0
+        print_diagnostics([found for found in expansion.diagnostics if found.severity is Severity.ERROR], sys.stderr)
+    return " ".join(map(str, expansion.dependencies[1:])) if deps else str(expansion)
+
+
+def _arguments(inputs: Inputs, verbosity: int, form: str) -> str:
+    from linkwright.xacro.arguments import arguments_data, examine_arguments
+    from linkwright.xacro.arguments_text import arguments_text, incomplete
+
+    examined = examine_arguments(inputs)
+    if verbosity > _QUIET:
+        print_diagnostics([*incomplete(examined), *examined.unused], sys.stderr)
+    if form == "json":
+        return _json({"arguments": arguments_data(examined.arguments)})
+    return arguments_text(examined.arguments)
+
+
+def _story(inputs: Inputs, name: str, form: str) -> str:
+    from linkwright.xacro.limits import room_for
+    from linkwright.xacro.story import stories
+    from linkwright.xacro.story_text import story_data, story_text
+
+    found = stories(inputs, name)
+    if form == "json":
+        with room_for(inputs.limits):  # elements may be nested deeper than Python's calls
+            return _json({"elements": [story_data(story) for story in found]})
+    return "\n".join(map(story_text, found))
+
+
+def _json(data: object) -> str:
+    import json
+
+    return json.dumps(data, indent=2, ensure_ascii=False) + "\n"

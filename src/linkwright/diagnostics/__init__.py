@@ -4,6 +4,7 @@ from linkwright.diagnostics.diagnostic import Diagnostic, LinkwrightError, Note,
 from linkwright.diagnostics.render import display_path, print_diagnostics, render, to_data, wants_colour
 from linkwright.diagnostics.source import SourceText, Span
 from linkwright.diagnostics.suggest import did_you_mean, missing_file_hint, nearest
+from linkwright.diagnostics.translation import translated
 
 __all__ = [
     "Diagnostic",
@@ -20,5 +21,6 @@ __all__ = [
     "print_diagnostics",
     "render",
     "to_data",
+    "translated",
     "wants_colour",
 ]

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable
-from pathlib import Path
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING, Any
 from unicodedata import combining, east_asian_width
 
 from linkwright.diagnostics.diagnostic import Diagnostic, Note, Severity
 from linkwright.diagnostics.source import Span
+from linkwright.diagnostics.translation import labels, language, translated
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 _COLOURS = {Severity.ERROR: "31", Severity.WARNING: "33", Severity.INFO: "36"}
 _TAB = "    "
@@ -22,28 +25,32 @@ def wants_colour(stream: IO[str]) -> bool:
     return stream.isatty() and os.environ.get("TERM") != "dumb"
 
 
-def render(diagnostic: Diagnostic, *, colour: bool = False) -> str:
-    """The diagnostic as a terminal shows it: head line, place, excerpt with a caret, notes and hint."""
+def render(diagnostic: Diagnostic, *, colour: bool = False, lang: str = "en") -> str:
+    """The diagnostic as a terminal shows it: head line, place, excerpt with a caret, notes and hint.
+
+    Its texts are printed as they are; `lang` is the language of the words beside them, such as "error" and "hint".
+    """
     paint = _Paint(colour)
-    severity = diagnostic.severity
-    head = f"{severity.value}[{diagnostic.code}]"
-    lines = [f"{paint(head, _COLOURS[severity] + ';1')}{paint(': ' + diagnostic.message, '1')}"]
+    words = labels(lang)
+    severity, colon = diagnostic.severity, words[":"]
+    head = f"{words[severity.value]}[{diagnostic.code}]"
+    lines = [f"{paint(head, _COLOURS[severity] + ';1')}{paint(colon + diagnostic.message, '1')}"]
     if diagnostic.span:
         lines.append(f"  {paint('-->', '34')} {_place(diagnostic.span)}")
         lines += _excerpt(diagnostic, paint)
     for note in diagnostic.notes:
         where = f" ({_place(note.span)})" if note.span else ""
-        lines.append(f"   {paint('=', '34')} note: {_indented(note.message)}{where}")
+        lines.append(f"   {paint('=', '34')} {words['note']}{colon}{_indented(note.message)}{where}")
     if diagnostic.hint:
-        lines.append(f"   {paint('=', '34')} {paint('hint', '32')}: {_indented(diagnostic.hint)}")
+        lines.append(f"   {paint('=', '34')} {paint(words['hint'], '32')}{colon}{_indented(diagnostic.hint)}")
     return "\n".join(lines)
 
 
 def print_diagnostics(diagnostics: Iterable[Diagnostic], stream: IO[str]) -> None:
-    """Write diagnostics to a stream, one after another, coloured where the stream wants it."""
-    colour = wants_colour(stream)
-    for diagnostic in diagnostics:
-        print(render(diagnostic, colour=colour), file=stream)
+    """Write diagnostics to a stream, in the reader's language, coloured where the stream wants it."""
+    colour, lang = wants_colour(stream), language()
+    for diagnostic in translated(diagnostics):
+        print(render(diagnostic, colour=colour, lang=lang), file=stream)
     stream.flush()
 
 

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterable
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 from linkwright.diagnostics.render import display_path
 
+if TYPE_CHECKING:
+    from pathlib import Path
+
 _LISTED = 8
+_MOST_COMPARED = 1_000
+"""Of more names than these, only those are compared that begin alike and are about as long."""
 
 
 def nearest(name: str, candidates: Iterable[str], limit: int = 3) -> list[str]:
@@ -17,7 +23,12 @@ def nearest(name: str, candidates: Iterable[str], limit: int = 3) -> list[str]:
     by_fold: dict[str, str] = {}
     for candidate in candidates:
         by_fold.setdefault(candidate.casefold(), candidate)
-    return [by_fold[match] for match in get_close_matches(name.casefold(), by_fold, n=limit, cutoff=0.6)]
+    folded = name.casefold()
+    near: Iterable[str] = by_fold
+    if len(by_fold) > _MOST_COMPARED:
+        near = [other for other in by_fold if abs(len(other) - len(folded)) < 3 and other[:2] == folded[:2]]
+        near = near[:_MOST_COMPARED]
+    return [by_fold[match] for match in get_close_matches(folded, near, n=limit, cutoff=0.6)]
 
 
 def did_you_mean(name: str, candidates: Iterable[str]) -> str | None:
@@ -49,7 +60,7 @@ def missing_file_hint(path: Path, wanted: Callable[[str], bool] | None = None) -
     try:
         names = sorted(entry.name for entry in folder.iterdir() if entry.is_file())
     except OSError:
-        return f"the folder '{display_path(folder)}' does not exist; the current folder is '{Path.cwd()}'"
+        return f"the folder '{display_path(folder)}' does not exist; the current folder is '{os.getcwd()}'"  # noqa: PTH109 - pathlib takes long to import
     # By what stands before the ending: 'a.urdf' and 'robot.urdf' are not alike for sharing it.
     ending = "".join(path.suffixes)
     stems = {name.removesuffix(ending): name for name in names if name.endswith(ending)}
@@ -57,4 +68,4 @@ def missing_file_hint(path: Path, wanted: Callable[[str], bool] | None = None) -
     if like:
         return like
     there = [name for name in names if wanted(name)][:_LISTED]
-    return "there are: " + ", ".join(there) if there else f"the current folder is '{Path.cwd()}'"
+    return "there are: " + ", ".join(there) if there else f"the current folder is '{os.getcwd()}'"  # noqa: PTH109

@@ -31,7 +31,7 @@ class OneConfiguration:
         terms[slides, 0] = mounts[slides]
         terms[slides, 3, :, 3] = mounts[slides, :, 2]
         self._terms = terms.reshape(count - 1, 4, 16)
-        self._jumps = _doubling_jumps(layout.parents, int(layout.depths.max()))
+        self._jumps = _doubling_jumps(layout.parents, layout.depths)
         self._link_bodies = layout.link_bodies
         self._offsets = layout.offsets
 
@@ -46,8 +46,9 @@ class OneConfiguration:
         bodies = np.empty((count + 1, 4, 4))
         bodies[0] = _IDENTITY
         np.matmul(factors.T[:, None, :], self._terms, bodies[1:].reshape(count, 1, 16))
-        for jump in self._jumps:
-            bodies = bodies.take(jump, 0) @ bodies
+        for first, above in self._jumps:
+            deep = bodies[first:]
+            deep[...] = bodies.take(above, 0) @ deep
         frames: Array = bodies.take(self._link_bodies, 0) @ self._offsets
         return frames
 
@@ -113,13 +114,17 @@ class _Level:
         bodies[self._members] = mounted
 
 
-def _doubling_jumps(parents: Indices, depth: int) -> list[Indices]:
-    """For each step the ancestor 1, 2, 4, ... bodies up; past the root's body, itself, it stays there."""
+def _doubling_jumps(parents: Indices, depths: Indices) -> list[tuple[int, Indices]]:
+    """For each step the first body that is deep enough to matter, and of it and all after it the ancestors.
+
+    They are 1, 2, 4, ... bodies up, short of the root's body, whose frame changes nothing.
+    """
     jumps = []
     jump = parents
     reach = 1
-    while reach < depth:
-        jumps.append(jump)
+    while reach < depths[-1]:
+        first = int(np.searchsorted(depths, reach, side="right"))
+        jumps.append((first, jump[first:]))
         jump = jump[jump]
         reach *= 2
     return jumps

@@ -31,14 +31,14 @@ def parse_as_urdfdom(text: str | bytes, name: str) -> Document:
     if late:
         text = _blanked(late[0]) + text[late.end() :]
     try:
-        document = parse(text, name)
+        document = parse(text, name, blanks=False)
     except LinkwrightError as error:
         end = _end_of_root(error)
         if end is None:
             raise
         parse(f"<rest>{text[end:]}</rest>", name)  # tinyxml2 wants it well-formed all the same
         text = text[:end] + _blanked(text[end:])
-        document = parse(text, name)
+        document = parse(text, name, blanks=False)
     if any(blank in text and inside.search(text) for blank, inside in _INSIDE_VALUE.items()):
         _restore_blanks(document.root, text)
     return document

@@ -13,6 +13,8 @@ from linkwright.urdf.findings import Findings
 from linkwright.urdf.model import Joint, Link, Robot
 from linkwright.xmltree import Element
 
+_MOST_COMPARED = 100
+"""After so many findings no nearest names are looked for: in a file with thousands of mistakes it would take long."""
 _MOST_VISITS = 64
 
 
@@ -81,7 +83,8 @@ def _ends_exist(links: Mapping[str, Link], joints: Sequence[Joint], findings: Fi
             assert joint.element is not None
             end = joint.element.first(tag)
             assert end is not None
-            hint = did_you_mean(name, links) or f'add <link name="{name}"/>'
+            near = did_you_mean(name, links) if len(findings) < _MOST_COMPARED else None
+            hint = near or f'add <link name="{name}"/>'
             message = f"{tag} link '{name}' of joint '{joint.name}' does not exist"
             findings.reject("URDF150", message, end, "link", hint=hint)
     return good

@@ -17,6 +17,8 @@ _DIGITS = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 _NUMBER = re.compile(rf"[ \t\n\v\f\r]*{_DIGITS}").fullmatch
 _PIECE = rf"[\t\n\v\f\r]*({_DIGITS})"
 _VECTOR3 = re.compile(rf" *{_PIECE} +{_PIECE} +{_PIECE} *").fullmatch
+# What consists of these signs alone is a number to Python exactly when it is one to urdfdom, and is soon told apart.
+_PLAIN = re.compile(r"[-+.0-9eE ]*").fullmatch
 
 _UNITS = {
     "deg": ("angles are in radians", 0.017453292519943295),
@@ -42,7 +44,7 @@ def number(text: str) -> float:
     Raises:
         ValueError: it says none, or one too large for a double.
     """
-    if not _NUMBER(text):
+    if not (_PLAIN(text) and text[-1:] != " ") and not _NUMBER(text):
         raise ValueError(text)
     value = float(text)
     if isinf(value):
@@ -57,10 +59,13 @@ def vector3(text: str) -> Vector3:
     Raises:
         ValueError: another count, or one of them is no number.
     """
-    match = _VECTOR3(text)
-    if not match:
-        raise ValueError(text)
-    x, y, z = map(float, match.groups())
+    if _PLAIN(text):
+        x, y, z = map(float, text.split())
+    else:
+        match = _VECTOR3(text)
+        if not match:
+            raise ValueError(text)
+        x, y, z = map(float, match.groups())
     if isinf(x) or isinf(y) or isinf(z):
         raise ValueError(text)
     return x, y, z
@@ -127,6 +132,8 @@ def vector_hint(text: str, count: int) -> str | None:
 
 def looks_like_degrees(*angles: float) -> bool:
     """Whether angles that should be radians can hardly be: one is a whole multiple of 5, several turns far."""
+    if max(map(abs, angles)) < 10:
+        return False
     return any(not -10 < angle < 10 and angle % 5 == 0 and -720 <= angle <= 720 for angle in angles)
 
 

@@ -3,5 +3,6 @@
 from linkwright.xacro.engine import Expansion, expand
 from linkwright.xacro.limits import Limits
 from linkwright.xacro.origin import Origin
+from linkwright.xacro.questions import arguments_of, explain
 
-__all__ = ["Expansion", "Limits", "Origin", "expand"]
+__all__ = ["Expansion", "Limits", "Origin", "arguments_of", "expand", "explain"]

@@ -5,10 +5,11 @@ from __future__ import annotations
 from typing import Any, NoReturn
 
 from linkwright.diagnostics import Note, did_you_mean
-from linkwright.xacro.expander import PREFIX, Expander, Site
+from linkwright.xacro.expander import Expander, Site
 from linkwright.xacro.faults import Fault, attribute_name, definition_elsewhere
 from linkwright.xacro.macros import Macro, MacroTable, Parameter, parse_parameters
 from linkwright.xacro.origin import Frame
+from linkwright.xacro.plan import PREFIX
 from linkwright.xacro.scope import Scope
 from linkwright.xacro.tags import check_attributes, warn_of_global
 from linkwright.xmltree import Element
@@ -19,27 +20,30 @@ def define_macro(expander: Expander, site: Site) -> None:
     node = site.node
     expander.sweep(site)
     check_attributes(expander, node, ("name",), ("params",))
-    name, span = node.attributes["name"], node.attribute_span("name")
+    name = node.attributes["name"]
     if name == "call":
+        span = node.attribute_span("name")
         expander.fail_at("XAC407", "a macro cannot be named 'call'", node, span, "'xacro:call' has another meaning")
     if "." in name:
+        span = node.attribute_span("name")
         hint = "a dot stands between a namespace and a macro"
         expander.fail_at("XAC407", f"the name of the macro '{name}' has a dot", node, span, hint)
     if name.startswith(PREFIX):
         name = name[len(PREFIX) :]
         message = f"the macro '{name}' is named with the prefix 'xacro:', which only its calls have"
-        expander.session.warn("XAC411", message, span, f'write name="{name}"')
+        expander.session.warn("XAC411", message, node.attribute_span("name"), f'write name="{name}"')
     try:
         parameters = parse_parameters(node.attributes.get("params", ""))
     except Fault as fault:
         fault.place_in_attribute(node, "params")
         expander.fail(fault)
-    names = [parameter.name for parameter in parameters]
-    twice = next((given for given in names if names.count(given) > 1), None)
-    if twice is not None:
+    macro = Macro(name, parameters, node)
+    if len(macro.known) < len(parameters):
+        names = [parameter.name for parameter in parameters]
+        twice = next(given for given in names if names.count(given) > 1)
         message = f"the macro '{name}' declares its parameter '{twice}' twice"
         expander.session.warn("XAC413", message, node.attribute_span("params"))
-    site.macros.define(name, Macro(name, parameters, node))
+    site.macros.define(name, macro)
 
 
 def call_dynamically(expander: Expander, site: Site) -> None:
@@ -133,22 +137,29 @@ class _Call:
 
     def _take_arguments(self, macro: Macro, scope: Scope) -> list[Parameter]:
         """Bind the attributes of the call; what is returned are the parameters that they leave."""
-        expander, node = self._expander, self._node
-        left = list(macro.parameters)
-        for name, text in node.attributes.items():
-            parameter = next((candidate for candidate in left if candidate.name == name), None)
-            if parameter is None:
+        expander, node, caller = self._expander, self._node, self._site.scope
+        attributes = node.attributes
+        for name, text in attributes.items():
+            if name not in macro.known:
                 self._report_unknown_parameter(macro, name)
-            left.remove(parameter)
-            value = expander.value(node, name, self._site.scope) if "$" in text else text
+            value = expander.value(node, name, caller) if "$" in text else text
             warn_of_global(expander, node, name, name)
             scope.define(name, value)
+        left = [parameter for parameter in macro.parameters if parameter.name not in attributes]
+        if len(macro.known) < len(macro.parameters):  # of one declared twice, the second is never given
+            seen: set[str] = set()
+            for parameter in macro.parameters:
+                if parameter.name in seen and parameter.name in attributes:
+                    left.append(parameter)
+                seen.add(parameter.name)
         return left
 
     def _take_blocks(self, macro: Macro, left: list[Parameter], scope: Scope) -> list[Parameter]:
+        if not left and not self._node.children:
+            return left
         container = Element(self._node.tag)
         if self._node.children:
-            self._expander.children(self._node.children, container, self._site.scope, self._site.macros)
+            self._expander.children(self._node, container, self._site.scope, self._site.macros)
         blocks = container.elements()
         remaining = []
         for parameter in left:
@@ -175,6 +186,8 @@ class _Call:
 
     def _default(self, macro: Macro, parameter: Parameter) -> Any:
         caller, node = self._site.scope, self._node
+        session = self._expander.session
+        session.place, session.attribute = macro.body, "params"
         try:
             if parameter.forward and parameter.name in caller:
                 return caller.lookup(parameter.name)
@@ -187,7 +200,7 @@ class _Call:
                 raise fault
             if "$" not in parameter.default:
                 return parameter.default
-            return self._expander.session.evaluate(parameter.default, caller)
+            return session.evaluate(parameter.default, caller)
         except Fault as fault:
             if fault.span is None:
                 if fault.start is None and parameter.default is not None:
@@ -213,7 +226,7 @@ class _Call:
                     evaluated = expander.text_value(body, name, scope)
                     if name.startswith("xmlns:"):
                         container.attributes[name] = evaluated
-            expander.children(body.children, container, scope, macros)
+            expander.children(body, container, scope, macros)
         finally:
             session.frame = around
         return container

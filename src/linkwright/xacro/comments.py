@@ -32,7 +32,7 @@ class CommentSweeper:
         at = len(siblings) - 1
         while at >= 0:
             node = siblings[at]
-            if isinstance(node, Text) and not node.cdata and _is_small_gap(node.data):
+            if isinstance(node, Text) and node.data.isspace() and not node.cdata and node.data.count("\n") <= 1:
                 at -= 1
             if at >= 0 and isinstance(siblings[at], Comment):
                 del siblings[at]
@@ -56,7 +56,3 @@ class CommentSweeper:
         """The nodes of a list have become the end of another one."""
         if self._home is old:
             self._home = new
-
-
-def _is_small_gap(data: str) -> bool:
-    return data.isspace() and data.count("\n") <= 1

@@ -13,9 +13,11 @@ from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
 from linkwright.xacro import sandbox
+from linkwright.xacro.calling import call, cost
 from linkwright.xacro.faults import Fault
 from linkwright.xacro.functions import Function, bind_parameters
 from linkwright.xacro.sandbox import RefusalError
+from linkwright.xacro.yamldata import YamlDict
 
 if TYPE_CHECKING:
     from linkwright.xacro.scope import Environment
@@ -33,7 +35,7 @@ _CHANGING = frozenset(
 _DEEPEST = 500
 """How deep the nodes of an expression may nest; a sum nests as deep as it has terms."""
 
-_FAILURES = (
+FAILURES = (
     ArithmeticError,
     LookupError,
     AttributeError,
@@ -66,6 +68,24 @@ _COMPARISONS: dict[str, Callable[[Any, Any], Any]] = {
 }
 
 
+def failure(error: Exception, segment: str, start: int, end: int) -> Fault:
+    """The fault for what Python raised at a part of an expression."""
+    segment = " ".join(segment.split())
+    if len(segment) > 60:
+        segment = f"{segment[:57]}..."
+    if isinstance(error, RefusalError):
+        return Fault("XAC204", f"'{segment}' is refused: {error}", start, end)
+    words = str(error) or error.__class__.__name__
+    hint = None
+    if isinstance(error, KeyError):
+        words = f"there is no key {error}"
+    elif isinstance(error, TypeError) and "str" in words and ("concatenate" in words or "+:" in words):
+        hint = "turn the number into text with str(...)"
+    elif isinstance(error, RecursionError):
+        words = "it is nested too deeply"
+    return Fault("XAC202", f"cannot evaluate '{segment}': {words}", start, end, hint)
+
+
 class Compiler:
     """Compiles the nodes of one expression.
 
@@ -80,6 +100,7 @@ class Compiler:
     def __init__(self, source: str, shift: int) -> None:
         self._source = source
         self._shift = shift
+        self._is_plain = source.isascii() and "\n" not in source
         self._depth = 0
         self.changes = False
 
@@ -89,25 +110,23 @@ class Compiler:
         Raises:
             Fault: XAC204 when expressions may not use such a node.
         """
-        kind = node.__class__.__name__
-        method = getattr(self, f"_{kind.lower()}", None)
+        method = _METHODS.get(node.__class__)
         if method is None:
             start, end = self._place(node)
             raise Fault("XAC204", f"'{self._segment(start, end)}' may not be used in an expression", start, end)
         self._depth += 1
         if self._depth > _DEEPEST:
             raise Fault("XAC102", "the expression is nested too deeply")
-        closure: Closure = method(node)
+        closure = method(self, node)
         self._depth -= 1
         return closure
 
     # places and failures
 
     def _place(self, node: Any) -> tuple[int, int]:
-        source = self._source
         start, end = node.col_offset, node.end_col_offset
-        if not source.isascii() or "\n" in source:
-            lines = source.split("\n")  # columns count UTF-8 bytes
+        if not self._is_plain:
+            lines = self._source.split("\n")  # columns count UTF-8 bytes
             start, end = (
                 sum(len(line) + 1 for line in lines[: number - 1])
                 + len(lines[number - 1].encode()[:column].decode("utf-8", "replace"))
@@ -119,20 +138,7 @@ class Compiler:
         return self._source[start - self._shift : end - self._shift]
 
     def _failure(self, error: Exception, start: int, end: int) -> Fault:
-        segment = " ".join(self._segment(start, end).split())
-        if len(segment) > 60:
-            segment = f"{segment[:57]}..."
-        if isinstance(error, RefusalError):
-            return Fault("XAC204", f"'{segment}' is refused: {error}", start, end)
-        words = str(error) or error.__class__.__name__
-        hint = None
-        if isinstance(error, KeyError):
-            words = f"there is no key {error}"
-        elif isinstance(error, TypeError) and "str" in words and ("concatenate" in words or "+:" in words):
-            hint = "turn the number into text with str(...)"
-        elif isinstance(error, RecursionError):
-            words = "it is nested too deeply"
-        return Fault("XAC202", f"cannot evaluate '{segment}': {words}", start, end, hint)
+        return failure(error, self._segment(start, end), start, end)
 
     # names and constants
 
@@ -179,9 +185,12 @@ class Compiler:
         def binary(env: Environment) -> Any:
             a, b = left(env), right(env)
             try:
-                return apply(a, b)
-            except _FAILURES as error:
+                result = apply(a, b)
+            except FAILURES as error:
                 raise self._failure(error, start, end) from None
+            if result.__class__ is not float and (steps := cost(result)):
+                env.session.budget.step(steps)
+            return result
 
         return binary
 
@@ -194,7 +203,7 @@ class Compiler:
             value = operand(env)
             try:
                 return apply(value)
-            except _FAILURES as error:
+            except FAILURES as error:
                 raise self._failure(error, start, end) from None
 
         return unary
@@ -226,9 +235,11 @@ class Compiler:
             result: Any = True
             for test, operand in rest:
                 right = operand(env)
+                if right.__class__ is not YamlDict and (steps := cost(right)):
+                    env.session.budget.step(steps)
                 try:
                     result = test(left, right)
-                except _FAILURES as error:
+                except FAILURES as error:
                     raise self._failure(error, start, end) from None
                 if not result:
                     break
@@ -257,7 +268,7 @@ class Compiler:
             except AttributeError as error:
                 hint = env.session.nearest_attribute(owner, name)
                 raise Fault("XAC205", str(error), start_of_name, end, hint) from None
-            except _FAILURES as error:
+            except FAILURES as error:
                 raise self._failure(error, start, end) from None
 
         return attribute
@@ -269,13 +280,16 @@ class Compiler:
         def subscript(env: Environment) -> Any:
             owner, index = value(env), key(env)
             try:
-                return sandbox.subscript(owner, index)
+                result = sandbox.subscript(owner, index)
             except (AttributeError, KeyError) as error:
                 words = f"there is no key {error}" if isinstance(error, KeyError) else str(error)
                 hint = env.session.nearest_attribute(owner, str(index))
                 raise Fault("XAC205", words, start, end, hint) from None
-            except _FAILURES as error:
+            except FAILURES as error:
                 raise self._failure(error, start, end) from None
+            if index.__class__ is slice and (steps := cost(result)):
+                env.session.budget.step(steps)
+            return result
 
         return subscript
 
@@ -295,7 +309,7 @@ class Compiler:
         if isinstance(node.func, ast.Attribute) and node.func.attr in _CHANGING:
             self.changes = True
 
-        def call(env: Environment) -> Any:
+        def call_function(env: Environment) -> Any:
             called = function(env)
             if plain:
                 arguments = [closure(env) for closure in simple]
@@ -303,16 +317,15 @@ class Compiler:
             else:
                 arguments, keywords = _arguments(env, positional, named)
             try:
-                sandbox.check_call(called)
-                return sandbox.check_size(called(*arguments, **keywords))
+                return call(env.session.budget, called, arguments, keywords)
             except Fault as fault:
                 if fault.span is None and fault.start is None:
                     fault.start, fault.end = start, end
                 raise
-            except _FAILURES as error:
+            except FAILURES as error:
                 raise self._failure(error, start, end) from None
 
-        return call
+        return call_function
 
     def _argument(self, node: ast.expr) -> tuple[bool, Closure]:
         if isinstance(node, ast.Starred):
@@ -443,6 +456,14 @@ class Compiler:
             return unpack
         start, end = self._place(node)
         raise Fault("XAC204", f"'{self._segment(start, end)}' may not be used in an expression", start, end)
+
+
+_METHODS: dict[type[ast.AST], Callable[[Compiler, Any], Closure]] = {
+    kind: getattr(Compiler, f"_{kind.__name__.lower()}")
+    for kind in vars(ast).values()
+    if isinstance(kind, type) and issubclass(kind, ast.AST) and hasattr(Compiler, f"_{kind.__name__.lower()}")
+}
+"""Node of a syntax tree -> what compiles it."""
 
 
 def _arguments(

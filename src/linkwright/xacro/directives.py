@@ -49,7 +49,7 @@ def expand_condition(expander: Expander, site: Site) -> None:
         if "$" in node.attributes["value"] and session.changes(node.attributes["value"]):
             expander.attributes(node, scope)  # ros/xacro evaluates the attributes of what it keeps once more
         container = Element(node.tag)
-        expander.children(node.children, container, scope, site.macros)
+        expander.children(node, container, scope, site.macros)
         expander.splice(container, site)
     if waiting:
         expander.sweeper.mark(output)
@@ -63,7 +63,7 @@ def insert_block(expander: Expander, site: Site) -> None:
     if f"**{name}" in scope:
         block: Element = scope.lookup(f"**{name}")
         container = Element(node.tag)
-        expander.children(block.children, container, scope, site.macros)
+        expander.children(block, container, scope, site.macros)
         expander.splice(container, site)
     elif f"*{name}" in scope:
         expander.element(scope.lookup(f"*{name}"), site.parent.children, scope, site.macros)

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
-from pathlib import Path
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, NamedTuple
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError
-from linkwright.xacro import sources
 from linkwright.xacro.calls import call_macro
 from linkwright.xacro.directives import DIRECTIVES
 from linkwright.xacro.expander import Expander
@@ -17,29 +16,58 @@ from linkwright.xacro.origin import Origin, origin_of
 from linkwright.xacro.session import PackageSource, Session
 from linkwright.xmltree import Comment, Document, Element, parse, write
 
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from linkwright.xacro.story import Story
+
+
+class Inputs(NamedTuple):
+    """What an expansion starts from; see `expand`."""
+
+    name: str
+    arguments: Mapping[str, str]
+    packages: PackageSource = None
+    text: str | None = None
+    limits: Limits = Limits()
+    root_dir: str = ""
+
+    def session(self) -> Session:
+        """A session in its initial state."""
+        return Session(self.name, self.arguments, self.packages, self.limits, self.root_dir)
+
 
 class Expansion:
     """What comes out of a file.
 
     Attributes:
         document: the expanded document. Every element has the source and offset where it was written.
-        dependencies: the files that were read, the main file first.
         arguments: name -> final value of every argument that was given or declared.
         diagnostics: warnings, and what the description says through ``xacro.message`` and its like.
+        inputs: what it started from, or None.
     """
 
     def __init__(
         self,
         document: Document,
-        dependencies: tuple[Path, ...],
+        dependencies: Iterable[str | Path],
         arguments: dict[str, str],
         diagnostics: tuple[Diagnostic, ...],
+        inputs: Inputs | None = None,
     ) -> None:
         self.document = document
-        self.dependencies = dependencies
+        self._dependencies = tuple(dependencies)
         self.arguments = arguments
         self.diagnostics = diagnostics
+        self.inputs = inputs
         self._text: str | None = None
+
+    @property
+    def dependencies(self) -> tuple[Path, ...]:
+        """The files that were read, the main file first."""
+        from pathlib import Path  # which is imported late because it takes long
+
+        return tuple(Path(file) for file in self._dependencies)
 
     def __str__(self) -> str:
         """The text that ros/xacro writes."""
@@ -51,6 +79,18 @@ class Expansion:
         """Where an element of the document was written, and the calls and includes that brought it there."""
         return origin_of(element)
 
+    def story(self, element: Element) -> Story:
+        """All there is to say of an element of the document: `origin`, its parameters, and each attribute's story.
+
+        The file is expanded once more for it, so it is told as long as the files are what they were.
+
+        Raises:
+            LinkwrightError: XAC802 when they no longer are, or the element is not one of the document's.
+        """
+        from linkwright.xacro.story import story_of
+
+        return story_of(self, element)
+
 
 def expand(
     path: str | Path,
@@ -59,6 +99,7 @@ def expand(
     packages: PackageSource = None,
     text: str | None = None,
     limits: Limits | None = None,
+    root_dir: str | Path | None = None,
 ) -> Expansion:
     """Expand a xacro file, as ros/xacro 2.1 does; a plain URDF file comes out as it is.
 
@@ -69,27 +110,32 @@ def expand(
             from package to share folder that is looked at before the surroundings of the file.
         text: the text to take for that of the file, such as one that is not saved yet.
         limits: bounds for the expansion.
+        root_dir: the folder that relative paths, `path` among them, are in; the current one if None.
 
     Raises:
         LinkwrightError: what is wrong, each mistake with its place, the macro calls and includes that led there, and
             a hint.
     """
-    limits = limits or Limits()
-    name = str(path)
-    document = _read(name, text)
-    session = Session(name, arguments or {}, packages, limits)
-    with room_for(limits):
+    inputs = Inputs(str(path), arguments or {}, packages, text, limits or Limits(), str(root_dir or ""))
+    session = inputs.session()
+    document = main_document(session, text)
+    with room_for(session.limits):
         expanded = Expander(session, DIRECTIVES, call_macro).document(document)
     session.warn_of_unused_arguments()
-    expanded.prolog[:0] = _banner(name)
+    session.close()
+    expanded.prolog[:0] = banner(inputs.name)
     expanded.doctype_index += len(_BANNER)
-    dependencies = tuple(Path(file) for file in session.dependencies)
-    return Expansion(expanded, dependencies, session.arguments, tuple(session.diagnostics))
+    return Expansion(expanded, session.dependencies, session.arguments, tuple(session.diagnostics), inputs)
 
 
-def _read(name: str, text: str | None) -> Document:
+def main_document(session: Session, text: str | None = None) -> Document:
+    """The document that a session begins with: that of its file, or of a text that stands for it.
+
+    Raises:
+        LinkwrightError: it cannot be read, or is not XML.
+    """
     try:
-        return sources.read(name) if text is None else parse(text, name)
+        return session.read(session.file) if text is None else parse(text, session.file)
     except LinkwrightError as error:
         found = error.diagnostics[0]
         hint = xml_hint(found)
@@ -109,7 +155,8 @@ _BANNER = (
 )
 
 
-def _banner(name: str) -> list[Comment]:
+def banner(name: str) -> list[Comment]:
+    """The comments that say from which file a text was made."""
     shown = re.sub("-+", "-", name)  # XML allows no two dashes in a comment
     return [
         Comment(_BANNER[0]),

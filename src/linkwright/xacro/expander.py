@@ -7,7 +7,7 @@ brought it there.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from typing import NamedTuple, NoReturn
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Span
@@ -16,14 +16,11 @@ from linkwright.xacro.comments import CommentSweeper
 from linkwright.xacro.faults import Fault
 from linkwright.xacro.macros import MacroTable
 from linkwright.xacro.origin import Frame, trail
+from linkwright.xacro.plan import COMMENT, ELEMENT, KEEP, TAG, TEXT, Plan, copy_of, plan_of
 from linkwright.xacro.scope import Scope
 from linkwright.xacro.session import Session
 from linkwright.xmltree import Comment, Document, Element, Node, Text
 
-PREFIX = "xacro:"
-_DECLARATION = "xmlns:xacro"
-_EVALUATE_COMMENTS = "xacro:eval-comments"
-_EVALUATE_COMMENTS_OFF = "xacro:eval-comments:off"
 _MOST_ERRORS = 20
 _ROOT_HINT = (
     "the attributes of the root come before what it holds; "
@@ -73,6 +70,7 @@ class Expander:
         self.sweeper = CommentSweeper()
         self._errors: list[Diagnostic] = []
         self._nesting = 0
+        self._deepest = session.limits.nesting
         self._root: Element | None = None
 
     def document(self, document: Document) -> Document:
@@ -105,71 +103,79 @@ class Expander:
 
     # the walk
 
-    def children(self, nodes: Sequence[Node], parent: Element, scope: Scope, macros: MacroTable) -> None:
-        """Expand nodes in order, and put what comes out at the end of a parent.
+    def children(self, node: Element, parent: Element, scope: Scope, macros: MacroTable) -> None:
+        """Expand what an element holds, and put what comes out at the end of a parent.
 
         Raises:
             LinkwrightError: a mistake after which going on makes no sense.
         """
-        output = parent.children
-        last = len(nodes) - 1
+        output, session, directives = parent.children, self.session, self._directives
         evaluate_comments = False
         self._nesting += 1
-        if self._nesting > self.session.limits.nesting:
-            self._too_deep(nodes)
-        for index, node in enumerate(nodes):
-            if isinstance(node, Text):
-                text = self._text(node, scope) if "$" in node.data or len(node.data) > LONG else node
+        if self._nesting > self._deepest:
+            self._too_deep(node)
+        for action, item, flag in plan_of(node).steps:
+            if action == KEEP:
+                session.budget.elements -= len(item) >> 3
+                output += item
+            elif action == ELEMENT:
+                self.element(item, output, scope, macros)
+            elif action == TAG:
+                session.budget.elements -= 2
+                session.place, session.attribute = item, None
+                directives.get(item.tag, self._call)(self, Site(item, parent, scope, macros, flag))
+            elif action == TEXT:
+                text = self._text(item, scope)
                 output.append(text)
-                if evaluate_comments and text.data and not text.cdata and not text.data.isspace():
+                if text.data and not text.cdata and not text.data.isspace():
                     evaluate_comments = False
-            elif isinstance(node, Element):
-                evaluate_comments = False
-                if node.tag.startswith(PREFIX):
-                    self.directive(Site(node, parent, scope, macros, index < last))
-                else:
-                    self.element(node, output, scope, macros)
-            elif isinstance(node, Comment):
-                if _EVALUATE_COMMENTS in node.data:
-                    evaluate_comments = _EVALUATE_COMMENTS_OFF not in node.data
-                else:
-                    output.append(self._comment(node, scope) if evaluate_comments else node)
+            elif action == COMMENT:
+                output.append(self._comment(item, scope) if evaluate_comments else item)
             else:
-                output.append(node)
+                evaluate_comments = flag
         self._nesting -= 1
 
     def element(self, node: Element, output: list[Node], scope: Scope, macros: MacroTable) -> None:
         """Expand an ordinary element: its attributes, then what it holds."""
-        self.pay(node)
-        attributes = self.attributes(node, scope)
-        made = Element(node.tag, attributes, node.source, node.offset, self.session.frame)
+        session = self.session
+        plan = node.plan
+        if not isinstance(plan, Plan):
+            plan = node.plan = Plan(node)
+        if plan.size and plan.size <= session.budget.elements and self._nesting + plan.height <= self._deepest:
+            session.budget.elements -= plan.size
+            output.append(copy_of(node, session.frame))
+            return
+        session.budget.elements -= 1
+        if session.budget.elements < 0:
+            self._too_many(node)
+        attributes = self.attributes(node, scope) if plan.evaluated else plan.attributes.copy()
+        made = Element(node.tag, attributes, node.source, node.offset, session.frame)
         output.append(made)
-        if node.children:
-            self.children(node.children, made, scope, macros)
+        if plan.steps:
+            self.children(node, made, scope, macros)
 
     def attributes(self, node: Element, scope: Scope) -> dict[str, str]:
         """The attributes of an element, evaluated; those of the language are left out."""
-        result: dict[str, str] = {}
-        for name, value in node.attributes.items():
-            if "x" in name and (name.startswith(PREFIX) or name == _DECLARATION):
-                continue
+        session, plan = self.session, plan_of(node)
+        result = plan.attributes.copy()
+        for name in plan.evaluated:
+            value = result[name]
             if "$" in value:
-                self.session.place = node
+                session.place, session.attribute = node, name
                 try:
-                    value = self.session.evaluate_text(value, scope)
+                    value = result[name] = session.evaluate_text(value, scope)
                 except Fault as fault:
                     fault.place_in_attribute(node, name)
                     if fault.code == "XAC211" and node is self._root:
-                        fault.hint = _ROOT_HINT.format(name=name, value=node.attributes[name])
+                        fault.hint = _ROOT_HINT.format(name=name, value=value)
                     self.note(fault)
             if len(value) > LONG:
                 self._pay_text(node, value)
-            result[name] = value
         return result
 
     def directive(self, site: Site) -> None:
         """Expand a tag of the language or a macro call."""
-        self.session.place = site.node
+        self.session.place, self.session.attribute = site.node, None
         self._directives.get(site.node.tag, self._call)(self, site)
 
     def _text(self, node: Text, scope: Scope) -> Text:
@@ -177,7 +183,7 @@ class Expander:
             self._pay_text(node, node.data)
         if node.cdata or "$" not in node.data:
             return node
-        self.session.place = node
+        self.session.place, self.session.attribute = node, None
         try:
             data = self.session.evaluate_text(node.data, scope)
         except Fault as fault:
@@ -210,6 +216,7 @@ class Expander:
         text = node.attributes[name]
         if "$" not in text:
             return text
+        self.session.place, self.session.attribute = node, name
         try:
             return self.session.evaluate(text, scope)
         except Fault as fault:
@@ -221,6 +228,7 @@ class Expander:
         text = node.attributes[name]
         if "$" not in text:
             return text
+        self.session.place, self.session.attribute = node, name
         try:
             return self.session.evaluate_text(text, scope)
         except Fault as fault:
@@ -264,7 +272,11 @@ class Expander:
             fault.hint = "end the recursion with xacro:if or xacro:unless"
             fault.place_at(frame.site)
             self.fail(fault)
-        self.pay(frame.site)
+        try:
+            self.session.budget.macro()
+        except Fault as fault:
+            fault.place_at(frame.site)
+            self.fail(fault)
         self.session.frame = frame
 
     def pay(self, node: Element) -> None:
@@ -276,9 +288,7 @@ class Expander:
         budget = self.session.budget
         budget.elements -= 1
         if budget.elements < 0:
-            fault = budget.too_many_elements()
-            fault.place_at(node)
-            self.fail(fault)
+            self._too_many(node)
 
     def _pay_text(self, node: Element | Text, text: str) -> None:
         try:
@@ -290,13 +300,14 @@ class Expander:
                 fault.place_in_text(node)
             self.fail(fault)
 
-    def _too_deep(self, nodes: Sequence[Node]) -> NoReturn:
-        limit = self.session.limits.nesting
-        fault = Fault("XAC601", f"elements are nested more than {limit} deep")
-        for node in nodes:
-            if isinstance(node, Element):
-                fault.place_at(node)
-                break
+    def _too_many(self, node: Element) -> NoReturn:
+        fault = self.session.budget.too_many_elements()
+        fault.place_at(node)
+        self.fail(fault)
+
+    def _too_deep(self, node: Element) -> NoReturn:
+        fault = Fault("XAC601", f"elements are nested more than {self._deepest} deep")
+        fault.place_at(next(node.elements(), node))
         self.fail(fault)
 
     # mistakes

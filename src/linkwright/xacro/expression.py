@@ -12,7 +12,7 @@ import warnings
 from types import GeneratorType
 from typing import TYPE_CHECKING, Any
 
-from linkwright.xacro.compiler import Closure, Compiler
+from linkwright.xacro.compiler import FAILURES, Closure, Compiler, failure
 from linkwright.xacro.faults import Fault
 
 if TYPE_CHECKING:
@@ -37,29 +37,21 @@ class Expression:
 
     Attributes:
         source: its text.
+        evaluate: gives its value in a scope, or raises a `Fault`, whose offsets count from the beginning of the source.
         changes: whether evaluating it may change a value, as ``items.pop(0)`` does.
     """
 
-    __slots__ = ("_closure", "changes", "source")
+    __slots__ = ("changes", "evaluate", "source")
 
     def __init__(self, source: str) -> None:
         self.source = source
         stripped = source.strip()
         compiler = Compiler(stripped, len(source) - len(source.lstrip()))
         if stripped.isidentifier() and stripped not in _KEYWORDS:
-            self._closure: Closure = compiler.name(stripped, 0)
+            self.evaluate: Closure = compiler.name(stripped, 0)
         else:
-            self._closure = compiler.compile(_parse(source, stripped).body)
+            self.evaluate = _run_through(compiler.compile(_parse(source, stripped).body), source)
         self.changes = compiler.changes
-
-    def evaluate(self, scope: Scope) -> Any:
-        """The value of the expression in a scope.
-
-        Raises:
-            Fault: it has none; the offsets count from the beginning of the source.
-        """
-        value = self._closure(scope)
-        return iter(list(value)) if value.__class__ in _ITERATORS else value
 
 
 _KEYWORDS = frozenset(
@@ -69,6 +61,19 @@ _KEYWORDS = frozenset(
         *("lambda", "nonlocal", "not", "or", "pass", "raise", "return", "try", "while", "with", "yield"),
     }
 )
+
+
+def _run_through(closure: Closure, source: str) -> Closure:
+    """A closure whose value is nothing that is still to be run through."""
+
+    def evaluate(scope: Scope) -> Any:
+        try:
+            value = closure(scope)
+            return iter(list(value)) if value.__class__ in _ITERATORS else value
+        except FAILURES as error:  # what goes wrong while something is run through, such as a generator
+            raise failure(error, source.strip(), 0, len(source)) from None
+
+    return evaluate
 
 
 def is_identifier(name: str) -> bool:
@@ -85,14 +90,20 @@ def _parse(source: str, stripped: str) -> ast.Expression:
         if _WARNS.search(stripped):
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
-                return ast.parse(stripped, mode="eval")
-        return ast.parse(stripped, mode="eval")
+                return _syntax_tree(stripped)
+        return _syntax_tree(stripped)
     except SyntaxError as error:
         raise _syntax_fault(source, stripped, error) from None
     except (ValueError, MemoryError, RecursionError) as error:
         raise Fault(
             "XAC102", f"'{_shortened(stripped)}' is not an expression: {str(error) or 'it is nested too deeply'}"
         ) from None
+
+
+def _syntax_tree(source: str) -> ast.Expression:
+    tree = compile(source, "<expression>", "eval", ast.PyCF_ONLY_AST)
+    assert isinstance(tree, ast.Expression), "that is what the mode 'eval' gives"
+    return tree
 
 
 def _syntax_fault(source: str, stripped: str, error: SyntaxError) -> Fault:

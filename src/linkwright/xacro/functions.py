@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 from linkwright.xacro.scope import Environment, Local
 
 _Closure = Callable[[Any], Any]
 
 
-@dataclass(frozen=True)
-class Parameters:
+class Parameters(NamedTuple):
     """The parameters of a lambda, with the values of their defaults.
 
     Attributes:

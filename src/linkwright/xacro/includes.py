@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import os
 import re
-from glob import glob
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, display_path
-from linkwright.xacro import sources
 from linkwright.xacro.expander import Expander, Site
 from linkwright.xacro.literals import truth
 from linkwright.xacro.macros import MacroTable
@@ -73,7 +71,10 @@ def _paths(expander: Expander, site: Site) -> list[str]:
     path = expander.session.absolute(name)
     if not _PATTERN.search(path):
         return [path]
-    paths = sorted(glob(path))  # noqa: PTH207 - kept as it is written
+    from glob import glob
+
+    root = expander.session.root_dir or None
+    paths = sorted(glob(path, root_dir=root))  # noqa: PTH207 - kept as it is written
     if not paths:
         span = site.node.attribute_span("filename")
         expander.session.warn("XAC502", f"no file matches '{path}'", span)
@@ -98,7 +99,7 @@ def _content(
         container = Element(root.tag, expander.attributes(root, scope), root.source, root.offset)
         declared = {name: value for name, value in container.attributes.items() if name.startswith("xmlns:")}
         container.attributes = declared
-        expander.children(root.children, container, scope, macros)
+        expander.children(root, container, scope, macros)
     finally:
         session.frame, session.file = around, file
     return container
@@ -106,12 +107,12 @@ def _content(
 
 def _document(expander: Expander, site: Site, path: str) -> Document:
     try:
-        return sources.read(path)
+        return expander.session.read(path)
     except LinkwrightError as error:
         node, frame = site.node, expander.session.frame
         found = error.diagnostics[0]
         if found.span is None:
-            hint = found.hint or _nearest_file(path)
+            hint = found.hint or _nearest_file(expander.session.on_disk(path))
             diagnostic = Diagnostic(
                 found.code,
                 found.message,

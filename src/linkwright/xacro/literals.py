@@ -7,6 +7,7 @@ are strings.
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 from typing import Any
 
 _NEVER_A_LITERAL = re.compile(r"[A-EGHJ-MO-SU-Za-eghj-mo-su-z$/<>(\[\"]")
@@ -24,15 +25,20 @@ def literal(value: Any) -> Any:
         return value[1:-1]
     if "_" in value or _NEVER_A_LITERAL.match(value):
         return value
+    return number_or_boolean(value)
+
+
+@lru_cache(maxsize=4096)
+def number_or_boolean(text: str) -> Any:
+    if "." not in text:
+        try:
+            return int(text)
+        except ValueError:
+            pass
     try:
-        return int(value)
+        return float(text)
     except ValueError:
-        pass
-    try:
-        return float(value)
-    except ValueError:
-        pass
-    return _BOOLEANS.get(value, value)
+        return _BOOLEANS.get(text, text)
 
 
 def truth(value: Any) -> bool:

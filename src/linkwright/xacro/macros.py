@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+from functools import lru_cache
+from typing import NamedTuple
 
 from linkwright.xacro.faults import Fault
 from linkwright.xmltree import Element
@@ -23,8 +24,7 @@ _BARE = re.compile(r"\s*(?P<name>\S+)\s*")
 _SIGN = re.compile(r"\s*[^\s:=]+\s*:?=")
 
 
-@dataclass(frozen=True, slots=True)
-class Parameter:
+class Parameter(NamedTuple):
     """A parameter of a macro.
 
     Attributes:
@@ -47,6 +47,7 @@ class Parameter:
         return self.name.startswith("*")
 
 
+@lru_cache(maxsize=2000)
 def parse_parameters(text: str) -> tuple[Parameter, ...]:
     """The parameters that the ``params`` of a macro declare.
 
@@ -77,13 +78,21 @@ def parse_parameters(text: str) -> tuple[Parameter, ...]:
 
 
 class Macro:
-    """A macro: its parameters, and the element that holds its body."""
+    """A macro.
 
-    __slots__ = ("body", "name", "parameters")
+    Attributes:
+        name: its name.
+        parameters: its parameters, in the order of their declaration.
+        known: their names.
+        body: the element that holds its body.
+    """
+
+    __slots__ = ("body", "known", "name", "parameters")
 
     def __init__(self, name: str, parameters: tuple[Parameter, ...], body: Element) -> None:
         self.name = name
         self.parameters = parameters
+        self.known = frozenset(parameter.name for parameter in parameters)
         self.body = body
 
 

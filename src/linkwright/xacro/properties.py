@@ -19,6 +19,10 @@ def define_property(expander: Expander, site: Site) -> None:
     check_attributes(expander, node, ("name",), _OPTIONAL)
     name = _name(expander, node, scope)
     attributes = node.attributes
+    if len(attributes) == 2 and "value" in attributes:  # as nearly always
+        warn_of_global(expander, node, name, "name")
+        scope.define(name, attributes["value"], lazy=True, element=node)
+        return
     remove = _flag(expander, node, "remove", scope, default=False)
     if ("value" in attributes) + ("default" in attributes) + remove > 1:
         message = f"the property '{name}' has more than one of 'value', 'default' and 'remove'"
@@ -47,7 +51,9 @@ def define_property(expander: Expander, site: Site) -> None:
 
 
 def _name(expander: Expander, node: Element, scope: Scope) -> str:
-    name = expander.text_value(node, "name", scope)
+    name = node.attributes["name"]
+    if "$" in name:
+        name = expander.text_value(node, "name", scope)
     if not is_identifier(name):
         message = f"'{name}' cannot be the name of a property"
         hint = "a name consists of letters, digits and underscores, and is no word of Python's"

@@ -143,17 +143,30 @@ def check_size(value: Any) -> Any:
     Raises:
         RefusalError: a string, list or number is larger than the bounds; for nested lists everything in them counts.
     """
+    weight(value)
+    return value
+
+
+def weight(value: Any) -> int:
+    """How many items or characters a value has, with all that is in it; for a number, how many machine words.
+
+    Raises:
+        RefusalError: a string, list or number is larger than the bounds.
+    """
     kind = value.__class__
     if kind is float or kind is bool:
-        return value
+        return 0
     if kind is int:
-        if value.bit_length() > MAX_BITS:
+        bits: int = value.bit_length()
+        if bits > MAX_BITS:
             raise RefusalError(f"the number has more than {MAX_BITS:,} bits")
-    elif kind is str or kind is bytes:
+        return bits // 64
+    if kind is str or kind is bytes:
         _check_length(len(value))
-    elif isinstance(value, (list, tuple, dict, set, frozenset)):
-        _weigh(value)
-    return value
+        return len(value)
+    if isinstance(value, (list, tuple, dict, set, frozenset)):
+        return _weigh(value)
+    return 0
 
 
 def joined(parts: list[str]) -> str:
@@ -162,7 +175,9 @@ def joined(parts: list[str]) -> str:
     Raises:
         RefusalError: it would be too long.
     """
-    _check_length(sum(map(len, parts)))
+    length = sum(map(len, parts))
+    if length > MAX_LENGTH:
+        _check_length(length)
     return "".join(parts)
 
 
@@ -182,21 +197,25 @@ def _check_length(length: int) -> None:
         raise RefusalError(f"the value has more than {MAX_LENGTH:,} characters or items")
 
 
-def _weigh(value: Any) -> None:
-    weight = 0
+def _weigh(value: Any) -> int:
+    total = 0
     pending: list[Any] = [value]
     while pending:
         item = pending.pop()
-        if isinstance(item, dict):
-            weight += len(item)
-            pending.extend(item.values())
-            pending.extend(key for key in item if isinstance(key, (tuple, str)))
+        if isinstance(item, (str, bytes)):
+            total += len(item)
+        elif isinstance(item, dict):
+            total += len(item)
+            pending += item.values()
+            pending += item
         elif isinstance(item, (list, tuple, set, frozenset)):
-            weight += len(item)
-            pending.extend(item)
-        elif isinstance(item, (str, bytes)):
-            weight += len(item)
-        _check_length(weight)
+            total += len(item)
+            pending += item
+        else:
+            continue
+        if total > MAX_LENGTH:
+            _check_length(total)
+    return total
 
 
 def _member(values: dict[str, Any], name: Any, message: str) -> Any:

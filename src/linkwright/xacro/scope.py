@@ -75,10 +75,13 @@ class Scope:
             element: the element that the text is written in, for messages.
             attribute: the attribute of it that holds the text.
         """
-        value = literal(value)
-        if lazy and isinstance(value, str):
-            value = Lazy(value, element, attribute) if "$" in value else literal(value)
-        self.values[name] = value
+        plain = literal(value)
+        if lazy and isinstance(plain, str):
+            if "$" in plain:
+                plain = Lazy(plain, element, attribute)
+            elif plain is not value:  # it was quoted
+                plain = literal(plain)
+        self.values[name] = plain
 
     def assign(self, name: str, value: Any) -> None:
         """What ``name := value`` in an expression does: it defines a property here."""
@@ -128,6 +131,10 @@ class Scope:
             raise Fault("XAC203", f"the property '{name}' is defined by itself: {circle}", hint=hint)
         if len(chain) >= self.session.limits.depth:
             raise Fault("XAC601", f"more than {len(chain)} properties are defined by one another")
+        session = self.session
+        around = session.place, session.attribute
+        if lazy.element is not None:
+            session.place, session.attribute = lazy.element, lazy.attribute
         lazy.resolving = True
         chain.append(name)
         try:
@@ -139,6 +146,7 @@ class Scope:
             raise
         finally:
             lazy.resolving = False
+            session.place, session.attribute = around
             chain.pop()
         self.values[name] = value
         return value

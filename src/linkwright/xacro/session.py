@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any, Protocol
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, did_you_mean
-from linkwright.xacro import sandbox, symbols
+from linkwright.xacro import sandbox, sources, symbols
 from linkwright.xacro.budget import Budget
-from linkwright.xacro.faults import Fault, text_part
+from linkwright.xacro.faults import Fault, attribute_part, text_part
 from linkwright.xacro.limits import Limits
 from linkwright.xacro.origin import Frame, trail
 from linkwright.xacro.sandbox import Module
 from linkwright.xacro.scope import Namespace, Scope
 from linkwright.xacro.substitution import package_fault
-from linkwright.xacro.template import compile_template
+from linkwright.xacro.template import compile_template, templates
 from linkwright.xacro.yamldata import YamlDict, YamlError, dotted
-from linkwright.xmltree import Element, Text
+from linkwright.xmltree import Document, Element, Text
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -36,13 +37,6 @@ class Packages(Protocol):
 
 PackageSource = Mapping[str, Any] | Packages | None
 
-_SAID = {
-    "XAC702": Severity.ERROR,
-    "XAC703": Severity.WARNING,
-    "XAC704": Severity.INFO,
-    "XAC705": Severity.INFO,
-}
-
 
 class Session:
     """The state of one expansion that is not the tree.
@@ -55,12 +49,21 @@ class Session:
         file: the file being processed, to whose folder relative paths refer.
         frame: the innermost macro call or include being processed, or None.
         place: the element or text being processed, which warnings point to.
+        attribute: the attribute of that element which is being evaluated, or None.
         resolving: the properties being evaluated because of one another, outermost first.
         dependencies: the files read so far, the main file first.
+        root_dir: the folder that relative paths are in; empty for the current one.
         diagnostics: the warnings so far.
     """
 
-    def __init__(self, file: str, arguments: Mapping[str, str], packages: PackageSource, limits: Limits) -> None:
+    def __init__(
+        self,
+        file: str,
+        arguments: Mapping[str, str],
+        packages: PackageSource,
+        limits: Limits,
+        root_dir: str = "",
+    ) -> None:
         self.arguments: dict[str, str] = {name: str(value) for name, value in arguments.items()}
         self.known_arguments: set[str] = set()
         self.limits = limits
@@ -68,13 +71,21 @@ class Session:
         self.file = file
         self.frame: Frame | None = None
         self.place: Element | Text | None = None
+        self.attribute: str | None = None
         self.resolving: list[str] = []
         self.dependencies: dict[str, None] = {file: None}
+        self.root_dir = root_dir
         self.diagnostics: list[Diagnostic] = []
         self._told: set[tuple[str, str, Span | None]] = set()
         self._packages = packages
+        self._known_packages: dict[str, str] = {}
         self._main_file = file
         self.globals = Scope(None, self, symbols.global_names(self))
+
+    def close(self) -> None:
+        """Let go of all scopes, which know the session: what nobody needs any more is then freed at once."""
+        self.globals.values.clear()
+        del self.globals
 
     # texts
 
@@ -84,7 +95,8 @@ class Session:
         Raises:
             Fault: it has none.
         """
-        return compile_template(text).evaluate(scope)
+        template = templates.get(text) or compile_template(text)
+        return template.evaluate(scope)
 
     def evaluate_text(self, text: str, scope: Scope) -> str:
         """What is written for a text in a scope.
@@ -92,9 +104,12 @@ class Session:
         Raises:
             Fault: it has no value.
         """
-        value = compile_template(text).evaluate(scope)
+        template = templates.get(text) or compile_template(text)
+        value = template.evaluate(scope)
         if value.__class__ is str:
-            return value
+            if not value.isprintable():
+                _check_characters(value)
+            return value  # type: ignore[no-any-return]
         try:
             return sandbox.as_text(value)
         except (sandbox.RefusalError, ValueError) as error:
@@ -156,6 +171,12 @@ class Session:
         Raises:
             Fault: no such package is found.
         """
+        known = self._known_packages.get(name)
+        if known is None:
+            known = self._known_packages[name] = self._find_package(name)
+        return known
+
+    def _find_package(self, name: str) -> str:
         packages = self._packages
         if isinstance(packages, Mapping) and name in packages:
             return str(packages[name])
@@ -164,7 +185,7 @@ class Session:
 
             from linkwright.workspace import PackageFinder
 
-            start = Path(self._main_file).resolve().parent
+            start = Path(self.on_disk(self._main_file)).resolve().parent
             packages = self._packages = PackageFinder(start=start, extra=packages)
         try:
             return str(packages.share(name))
@@ -180,7 +201,15 @@ class Session:
     @property
     def working_directory(self) -> str:
         """What ``$(cwd)`` gives."""
-        return os.getcwd()  # noqa: PTH109 - a string is wanted
+        return os.path.abspath(self.root_dir)  # noqa: PTH100 - a string is wanted
+
+    def on_disk(self, path: str) -> str:
+        """Where a file is found that goes by this path."""
+        return os.path.join(self.root_dir, path)  # noqa: PTH118 - kept as it is written
+
+    def read(self, path: str) -> Document:
+        """The document of a file; see `sources.read`."""
+        return sources.read(self.on_disk(path))
 
     def absolute(self, name: str) -> str:
         """A file name relative to the file being processed, with that file's folder before it."""
@@ -203,9 +232,9 @@ class Session:
         path = self.absolute(name)
         self.depends_on(path)
         try:
-            text = decode(read_bytes(path), path)
+            text = decode(read_bytes(self.on_disk(path)), path)
         except LinkwrightError as error:
-            fault = Fault("XAC506", error.diagnostics[0].message, hint=_nearest_file(path))
+            fault = Fault("XAC506", error.diagnostics[0].message, hint=_nearest_file(self.on_disk(path)))
             raise fault from None
         try:
             return yamldata.load(text, self._unit_value)
@@ -239,36 +268,67 @@ class Session:
         span: Span | None = None,
         hint: str | None = None,
         severity: Severity = Severity.WARNING,
+        called: str | None = None,
     ) -> None:
-        """Note a finding that does not stop the expansion; the same one at the same place only once."""
+        """Note a finding that does not stop the expansion; the same one at the same place only once.
+
+        Args:
+            code: the diagnostic's code.
+            message: its message.
+            span: its place; None stands for what is being evaluated.
+            hint: how to mend it.
+            severity: how bad it is.
+            called: the function whose call in the text being evaluated the finding is about.
+        """
         place = self.place
         if span is None and place is not None:
-            span = place.span() if isinstance(place, Element) else text_part(place, None, None)
+            span = self._place_of_call(place, called)
         if (code, message, span) in self._told:
             return
         self._told.add((code, message, span))
         source = place.source if place is not None and span is not None else None
         self.diagnostics.append(Diagnostic(code, message, span, severity, trail(self.frame), hint, source))
 
+    def _place_of_call(self, place: Element | Text, function: str | None) -> Span | None:
+        attribute = self.attribute
+        if isinstance(place, Element) and attribute is None:
+            return place.span()
+        text = place.data if isinstance(place, Text) else place.attributes.get(attribute or "", "")
+        found = re.search(rf"(?<![\w.]){re.escape(function)}(?=\s*\()", text) if function else None
+        start, end = found.span() if found else (None, None)
+        if isinstance(place, Text):
+            return text_part(place, start, end)
+        return attribute_part(place, attribute or "", start, end) or place.span()
+
     def deprecated(self, better: str, function: Callable[..., Any]) -> Callable[..., Any]:
         """A function that still has a bare name and warns when it is called by it."""
         bare = better.partition(".")[2]
 
         def warning(*arguments: Any, **named: Any) -> Any:
-            self.warn("XAC507", f"calling '{bare}' by its bare name is deprecated", hint=f"write {better}")
+            self.warn("XAC507", f"calling '{bare}' by its bare name is deprecated", hint=f"write {better}", called=bare)
             return function(*arguments, **named)
 
         return warning
 
-    def say(self, code: str) -> Callable[..., str]:
+    def say(self, name: str, code: str, severity: Severity) -> Callable[..., str]:
         """One of the functions with which a description says something to its user."""
 
         def said(*words: Any, **_options: Any) -> str:
             text = " ".join(map(sandbox.as_text, words)) or "here"
-            self.warn(code, text, severity=_SAID[code])
+            self.warn(code, text, severity=severity, called=f"xacro.{name}")
             return ""
 
         return said
+
+
+_NOT_XML = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
+
+
+def _check_characters(text: str) -> None:
+    found = _NOT_XML.search(text)
+    if found:
+        message = f"the value has a character that XML cannot hold: U+{ord(found[0]):04X}"
+        raise Fault("XAC206", message, hint="'\\' in a text begins an escape; write '\\\\' for a backslash")
 
 
 def _yaml_fault(path: str, text: str, error: YamlError) -> Fault:

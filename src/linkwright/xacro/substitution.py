@@ -9,7 +9,6 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Callable
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import LinkwrightError
@@ -109,7 +108,7 @@ def _optional_variable(words: list[str], _session: Session) -> str:
 
 
 def _directory(_words: list[str], session: Session) -> str:
-    return str(Path(session.file).resolve().parent)
+    return os.path.dirname(os.path.realpath(session.file))  # noqa: PTH120 - pathlib takes long to import
 
 
 _EVALUATE: dict[str, Callable[[list[str], Session], str]] = {

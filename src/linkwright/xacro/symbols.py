@@ -12,6 +12,7 @@ import re
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+from linkwright.diagnostics import Severity
 from linkwright.xacro import sandbox
 from linkwright.xacro.faults import Fault
 from linkwright.xacro.sandbox import CALLABLE_TYPES, MAX_BITS, MAX_LENGTH, Module, RefusalError
@@ -100,10 +101,18 @@ def _prod(items: Any, *, start: Any = 1) -> Any:
     return total
 
 
+def _lcm(*numbers: Any) -> int:
+    total = 1
+    for number in numbers:
+        total = sandbox.check_size(math.lcm(total, number))
+    return total
+
+
 MATHEMATICS: dict[str, Any] = {
     **{name: value for name, value in vars(math).items() if not name.startswith("_")},
     "factorial": _factorial,
     "comb": _of_two("comb"),
+    "lcm": _lcm,
     "perm": _of_two("perm"),
     "prod": _prod,
 }
@@ -115,12 +124,15 @@ _PYTHON_NAMES: dict[str, Any] = {name: _GUARDED.get(name, getattr(builtins, name
 def tokenize(text: str, sep: str = ",; ", skip_empty: bool = True) -> list[str]:
     """The parts of a text between any of some characters."""
     inside = re.sub(r"(?<!\\)([\[\]])", r"\\\1", sep)
-    parts = re.split(f"[{inside}]", text)
+    try:
+        parts = re.split(f"[{inside}]", text)
+    except re.error as error:
+        raise ValueError(f"'{sep}' are no characters to split at: {error}") from None
     return [part for part in parts if part] if skip_empty else parts
 
 
 def _fatal(*words: Any) -> None:
-    raise Fault("XAC701", " ".join(map(sandbox.as_text, words)))
+    raise Fault("XAC701", " ".join(map(sandbox.as_text, words)) or "the description stops the expansion here")
 
 
 def global_names(session: Session) -> dict[str, Any]:
@@ -135,10 +147,10 @@ def global_names(session: Session) -> dict[str, Any]:
         {
             **functions,
             "arg": session.argument,
-            "message": session.say("XAC704"),
-            "warning": session.say("XAC703"),
-            "error": session.say("XAC702"),
-            "print_location": session.say("XAC705"),
+            "message": session.say("message", "XAC704", Severity.INFO),
+            "warning": session.say("warning", "XAC703", Severity.WARNING),
+            "error": session.say("error", "XAC702", Severity.ERROR),
+            "print_location": session.say("print_location", "XAC705", Severity.INFO),
             "fatal": _fatal,
             "tokenize": tokenize,
         },

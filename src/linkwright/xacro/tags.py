@@ -22,6 +22,8 @@ def check_attributes(expander: Expander, node: Element, required: tuple[str, ...
             expander.fail_at("XAC301", f"'{node.tag}' lacks its attribute '{name}'", node, node.span(), hint)
     if len(attributes) == len(required):
         return
+    if optional and attributes.keys() <= {*required, *optional}:
+        return
     for name in attributes:
         if name in required or name in optional or name.startswith("xmlns:"):
             continue

@@ -28,33 +28,22 @@ class Template:
     """A compiled text.
 
     Attributes:
+        evaluate: gives the value of the text in a scope, or raises a `Fault`, whose offsets count from the beginning
+            of the text.
         changes: whether evaluating it may change a value, as ``${items.pop(0)}`` does.
     """
 
-    __slots__ = ("_parts", "changes")
+    __slots__ = ("changes", "evaluate")
 
     def __init__(self, text: str) -> None:
         self.changes = False
-        self._parts = [self._part(token) for token in tokenize(text)]
-
-    def evaluate(self, scope: Scope) -> Any:
-        """The value of the text in a scope.
-
-        Raises:
-            Fault: it has none; the offsets count from the beginning of the text.
-        """
-        if len(self._parts) == 1:
-            return self._parts[0](scope)
-        parts = [_as_text(part(scope)) for part in self._parts]
-        try:
-            return sandbox.joined(parts)
-        except RefusalError as error:
-            raise Fault("XAC202", f"cannot write the value: {error}") from None
+        tokens = tokenize(text)
+        parts = [None if token.kind is TokenKind.TEXT else self._part(token) for token in tokens]
+        only = parts[0] if len(parts) == 1 else None
+        self.evaluate: _Part = only or _joined([token.text for token in tokens], parts)
 
     def _part(self, token: Token) -> _Part:
         kind, text, start, end = token
-        if kind is TokenKind.TEXT:
-            return lambda _scope: text
         if "$" in text:
             return self._nested(token)
         if kind is TokenKind.SUBSTITUTION:
@@ -128,6 +117,23 @@ def _placed(evaluate: _Part, start: int, end: int) -> _Part:
             raise
 
     return part
+
+
+def _joined(texts: list[str], parts: list[_Part | None]) -> _Part:
+    """What evaluates the parts of a text and joins them; those without one stand for their text."""
+    evaluated = [(place, part) for place, part in enumerate(parts) if part is not None]
+
+    def join(scope: Scope) -> str:
+        pieces = texts.copy()
+        for place, part in evaluated:
+            value = part(scope)
+            pieces[place] = value if value.__class__ is str else _as_text(value)
+        try:
+            return sandbox.joined(pieces)
+        except RefusalError as error:
+            raise Fault("XAC202", f"cannot write the value: {error}") from None
+
+    return join
 
 
 def _as_text(value: Any) -> str:

@@ -64,7 +64,7 @@ def load(text: str, evaluate: Callable[[str], Any]) -> Any:
     if text not in loaded:
         if len(loaded) >= _KEPT:
             loaded.clear()
-        loaded[text] = _load(text, evaluate)
+        loaded[text] = _load(text, None)
     return dotted(loaded[text])
 
 
@@ -73,24 +73,21 @@ loaded: dict[str, Any] = {}
 """Text -> its value, for texts without tags, whose values never differ; who asks gets a copy."""
 
 
-def _load(text: str, evaluate: Callable[[str], Any]) -> Any:
+def _load(text: str, evaluate: Callable[[str], Any] | None) -> Any:
     import yaml
 
-    class UnitLoader(_fast_loader()):  # type: ignore[misc]
-        """The safe loader plus units; made anew for each file so that PyYAML itself stays as it is."""
+    from linkwright.xacro.yamlnodes import NodeLoader, construct
 
-    def with_unit(loader: Any, tag: str, node: Any) -> float:
-        return float(evaluate(loader.construct_scalar(node))) * UNITS[f"!{tag}"]
-
-    UnitLoader.add_multi_constructor("!", _only_units(with_unit))
-    loader = UnitLoader(text)
+    loader_class = NodeLoader if evaluate is None else _unit_loader(NodeLoader, evaluate)
+    loader = loader_class(text)
     try:
-        return loader.get_single_data()
+        node = loader.get_single_node()
+        return None if node is None else construct(loader, node)
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark
         words = error.problem or error.context or "not valid YAML"
         raise YamlError(words, mark.line + 1 if mark else 0, mark.column + 1 if mark else 0) from None
-    except (yaml.YAMLError, ValueError, TypeError, RecursionError) as error:
+    except (yaml.YAMLError, ValueError, TypeError, AttributeError, ArithmeticError, RecursionError) as error:
         raise YamlError(str(error).partition("\n")[0] or "not valid YAML") from None
     finally:
         loader.dispose()
@@ -108,18 +105,29 @@ def _dotted(value: Any, seen: dict[int, Any]) -> Any:
     if known is not None:
         return known
     if isinstance(value, dict):
-        mapping = seen[id(value)] = YamlDict()
-        mapping.update((key, _dotted(item, seen)) for key, item in value.items())
+        mapping = seen[id(value)] = YamlDict(value)
+        for key, item in value.items():
+            if isinstance(item, (dict, list)):
+                mapping[key] = _dotted(item, seen)
         return mapping
-    sequence = seen[id(value)] = YamlList()
-    sequence.extend(_dotted(item, seen) for item in value)
+    sequence = seen[id(value)] = YamlList(value)
+    for at, item in enumerate(value):
+        if isinstance(item, (dict, list)):
+            sequence[at] = _dotted(item, seen)
     return sequence
 
 
-def _fast_loader() -> Any:
-    import yaml
+def _unit_loader(base: type, evaluate: Callable[[str], Any]) -> Any:
+    """A loader class that knows units; made anew for each file, because each evaluates in an expansion of its own."""
 
-    return getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+    class UnitLoader(base):  # type: ignore[misc]
+        """The safe loader plus units."""
+
+    def with_unit(loader: Any, tag: str, node: Any) -> float:
+        return float(evaluate(loader.construct_scalar(node))) * UNITS[f"!{tag}"]
+
+    UnitLoader.add_multi_constructor("!", _only_units(with_unit))
+    return UnitLoader
 
 
 def _only_units(construct: Callable[[Any, str, Any], float]) -> Callable[[Any, str, Any], float]:

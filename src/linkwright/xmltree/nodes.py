@@ -52,9 +52,11 @@ class Element:
         source: the text it was read from; None for an element made by a program.
         offset: character offset of its ``<`` in that text.
         origin: what produced it when it was not simply read (the xacro room's chain of macro calls), else None.
+        plan: what the xacro room has worked out about expanding it, else None; whoever changes an element of a tree
+            that was expanded sets it back to None, on the elements around as well.
     """
 
-    __slots__ = ("attributes", "children", "offset", "origin", "source", "tag")
+    __slots__ = ("attributes", "children", "offset", "origin", "plan", "source", "tag")
 
     def __init__(
         self,
@@ -70,6 +72,7 @@ class Element:
         self.source = source
         self.offset = offset
         self.origin = origin
+        self.plan: object = None
 
     def __repr__(self) -> str:
         return f"<{self.tag} {self.attributes}>"

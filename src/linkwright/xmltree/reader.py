@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import re
 from bisect import bisect_right
-from pathlib import Path
+from collections.abc import Callable
+from typing import TYPE_CHECKING
 from xml.parsers.expat import ExpatError, ParserCreate
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText, missing_file_hint
@@ -13,11 +15,16 @@ from linkwright.xmltree.entities import GROWTH_LIMIT, EntityGuard
 from linkwright.xmltree.faults import forbidden_entity, syntax_error, undeclared_prefix
 from linkwright.xmltree.nodes import Comment, Document, Element, Node, ProcessingInstruction, Text
 
+if TYPE_CHECKING:
+    from pathlib import Path
+
 _BEYOND_ASCII = re.compile(rb"[\x80-\xff]+")
 _CDATA_START = len("<![CDATA[")
+_FIRST_READ = 1 << 17
+_LARGEST = 100_000_000
 
 
-def parse(text: str | bytes, name: str) -> Document:
+def parse(text: str | bytes, name: str, *, blanks: bool = True) -> Document:
     """Read a document.
 
     Names stay as written. Entities that the document itself declares are expanded; external ones are refused.
@@ -25,13 +32,14 @@ def parse(text: str | bytes, name: str) -> Document:
     Args:
         text: the document; bytes are decoded as a file is.
         name: what a reader knows the text by: a path, or a name in angle brackets such as ``<stdin>``.
+        blanks: whether to keep texts of nothing but blanks, which only matter to who writes the document again.
 
     Raises:
         LinkwrightError: XML104 (not text), XML105 (empty), XML2xx (not well-formed XML), with the place.
     """
     if isinstance(text, bytes):
         text = decode(text, name)
-    return _Reader(SourceText(name, text)).read()
+    return _Reader(SourceText(name, text), blanks=blanks).read()
 
 
 def parse_file(path: str | Path) -> Document:
@@ -46,38 +54,50 @@ def parse_file(path: str | Path) -> Document:
 def read_bytes(path: str | Path) -> bytes:
     """The bytes of a file, or a `LinkwrightError` (XML101, XML102, XML103) that says why there are none."""
     try:
-        return Path(path).read_bytes()
+        with open(path, "rb") as file:  # noqa: PTH123 - half the time of Path.open
+            data = file.read(_FIRST_READ)
+            if len(data) == _FIRST_READ:
+                data += file.read(_LARGEST - _FIRST_READ)
     except FileNotFoundError:
         message = f"no such file: '{path}'"
-        raise LinkwrightError(Diagnostic("XML101", message, hint=missing_file_hint(Path(path)))) from None
+        raise LinkwrightError(Diagnostic("XML101", message, hint=_missing(path))) from None
     except IsADirectoryError:
         message = f"'{path}' is a folder, not a file"
-        hint = missing_file_hint(Path(path) / "_.xacro")
+        hint = _missing(os.path.join(path, "_.xacro"))  # noqa: PTH118 - pathlib takes long to import
         raise LinkwrightError(Diagnostic("XML102", message, hint=hint)) from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         advice = "is it yours to read?" if isinstance(error, PermissionError) else None
         raise LinkwrightError(Diagnostic("XML103", f"cannot read '{path}': {reason}", hint=advice)) from None
+    if len(data) == _LARGEST:  # such as a device that never ends
+        message = f"cannot read '{path}': it has more than {_LARGEST // 1_000_000} million bytes"
+        raise LinkwrightError(Diagnostic("XML103", message))
+    return data
+
+
+def _missing(path: str | Path) -> str:
+    from pathlib import Path
+
+    return missing_file_hint(Path(path))
 
 
 class _Reader:
     """Builds the tree from expat's events.
 
     Positions are byte offsets while reading, which is what expat gives; for a text that is not plain ASCII they are
-    turned into character offsets at the end.
+    turned into character offsets at the end. Nearly all events are starts, ends and texts, whose handlers are
+    therefore closures over what they need.
     """
 
-    def __init__(self, source: SourceText) -> None:
+    def __init__(self, source: SourceText, *, blanks: bool) -> None:
         self._source = source
         self._data = source.text.encode("utf-8", "surrogatepass")
         self._is_ascii = source.text.isascii()
+        self._keep_blanks = blanks
         self._parser = parser = ParserCreate("utf-8")
         parser.buffer_text = True
         parser.specified_attributes = True  # the defaults of a DTD are not written, so they are not there
         parser.buffer_size = max(1024, min(len(self._data), 1 << 20))
-        parser.StartElementHandler = self._start
-        parser.EndElementHandler = self._end
-        parser.CharacterDataHandler = self._characters
         parser.CommentHandler = self._comment
         parser.ProcessingInstructionHandler = self._instruction
         parser.StartCdataSectionHandler = self._start_cdata
@@ -88,38 +108,71 @@ class _Reader:
         parser.ExternalEntityRefHandler = self._external_entity
         parser.SkippedEntityHandler = self._skipped_entity
         self._entities = EntityGuard()
-        self._root: Element | None = None
-        self._stack: list[Element] = []
-        self._children: list[Node] = []  # the children of the innermost open element
-        self._outside: list[Comment | ProcessingInstruction] = []
-        self._prolog: list[Comment | ProcessingInstruction] = []
+        self._top = Element("")  # holds the root and what stands outside it
+        self._open = [self._top]
         self._cdata_at: int | None = None
         self._doctype: str | None = None
         self._doctype_at = 0
         self._in_doctype = False
-        self._declared = {"xml", "xmlns"}  # prefixes declared on the root element
-        self._known: set[str] = set()  # names whose prefix was found to be declared
-        self._scopes: list[tuple[Element, set[str]]] = []  # prefixes declared further in
+        self._handle_elements()
+
+    def _handle_elements(self) -> None:
+        source, parser, open_elements = self._source, self._parser, self._open
+        begin, finish = open_elements.append, open_elements.pop
+
+        def start(tag: str, attributes: dict[str, str]) -> None:
+            element = Element(tag, attributes, source, parser.CurrentByteIndex)
+            open_elements[-1].children.append(element)
+            begin(element)
+
+        def end(_tag: str) -> None:
+            finish()
+
+        parser.StartElementHandler = start
+        parser.EndElementHandler = end
+        parser.CharacterDataHandler = self._characters_handler()
+
+    def _characters_handler(self) -> Callable[[str], None]:
+        source, parser, open_elements = self._source, self._parser, self._open
+        text, is_ascii, keep_blanks = source.text, self._is_ascii, self._keep_blanks
+
+        def characters(data: str) -> None:
+            if not keep_blanks and data.isspace():
+                return
+            children = open_elements[-1].children
+            if self._cdata_at is not None or (children and isinstance(children[-1], Text)):
+                self._more_characters(data, children)
+                return
+            # Expat hands text over when it meets what follows it, so its place is counted back from there.
+            at = parser.CurrentByteIndex - len(data)
+            if not (is_ascii and text.startswith(data, at)):
+                at = self._text_start(data)
+            children.append(Text(data, source, at))
+
+        return characters
 
     def read(self) -> Document:
         try:
             self._parser.Parse(self._data, True)
         except ExpatError as error:
-            open_elements = [(element.tag, self._character(element.offset)) for element in self._stack]
+            self._check_prefixes()
+            open_elements = [(element.tag, self._character(element.offset)) for element in self._open[1:]]
             offset = self._character(self._parser.ErrorByteIndex)
             raise syntax_error(self._source, error, offset, open_elements) from None
         finally:
             self._release()
-        assert self._root is not None, "expat accepts no document without a root element"
-        document = Document(self._root, self._source)
-        document.prolog, document.epilog = self._prolog, self._outside
+        self._check_prefixes()
+        top = self._top.children
+        at, root = next((at, node) for at, node in enumerate(top) if isinstance(node, Element))
+        document = Document(root, self._source)
+        document.prolog, document.epilog = _outside(top[:at]), _outside(top[at + 1 :])
         document.doctype, document.doctype_index = self._doctype, self._doctype_at
         if not self._is_ascii:
             _to_character_offsets(document, self._data)
         return document
 
     def _release(self) -> None:
-        # The handlers are bound methods: without this, parser and reader would wait for the garbage collector.
+        # The handlers refer to the parser: without this, parser and reader would wait for the garbage collector.
         parser = self._parser
         for handler in ("StartElement", "EndElement", "CharacterData", "Comment", "ProcessingInstruction"):
             setattr(parser, f"{handler}Handler", None)
@@ -131,51 +184,30 @@ class _Reader:
     def _character(self, byte_offset: int) -> int:
         return len(self._data[: max(0, byte_offset)].decode("utf-8", "replace"))
 
-    # elements
+    # prefixes
 
-    def _start(self, tag: str, attributes: dict[str, str]) -> None:
-        element = Element(tag, attributes, self._source, self._parser.CurrentByteIndex)
-        if self._root is None:
-            self._begin_root(element)
-        else:
-            self._children.append(element)
-        self._stack.append(element)
-        self._children = element.children
-        if not (tag in self._known and attributes.keys() <= self._known):
-            self._check_prefixes(element)
-
-    def _begin_root(self, element: Element) -> None:
-        self._root = element
-        self._prolog, self._outside = self._outside, []
-        self._declared.update(name[6:] for name in element.attributes if name.startswith("xmlns:"))
-        if self._entities and self._entities.growth(self._source.text) > GROWTH_LIMIT:
-            message = f"the entities of this document expand to more than {GROWTH_LIMIT:,} characters"
-            raise forbidden_entity(self._source, self._source.text.find("<!ENTITY"), message)
-
-    def _end(self, _tag: str) -> None:
-        element = self._stack.pop()
-        if self._scopes and self._scopes[-1][0] is element:
-            self._scopes.pop()
-        if self._stack:
-            self._children = self._stack[-1].children
-
-    def _check_prefixes(self, element: Element) -> None:
-        if element is not self._root:
-            inner = {name[6:] for name in element.attributes if name.startswith("xmlns:")}
-            if inner - self._declared:
-                self._scopes.append((element, inner))
-        for name in (element.tag, *element.attributes):
-            prefix, colon, _ = name.partition(":")
-            if not colon or prefix in self._declared:
-                self._known.add(name)
-            elif not any(prefix in declared for _, declared in self._scopes):
-                offset = self._source.text.find(name, self._character(element.offset))
-                raise undeclared_prefix(self._source, offset, name)
+    def _check_prefixes(self) -> None:
+        """Refuse names whose prefix is declared nowhere around them."""
+        used = {name.partition(":")[0] for name in self._parser.intern if name and ":" in name}
+        for root in self._top.elements():
+            declared = {"xml", "xmlns", *_declared_prefixes(root)}
+            if used <= declared:
+                return  # as in nearly every document
+            pending = [(root, declared)]
+            while pending:
+                element, declared = pending.pop()
+                declared = declared.union(_declared_prefixes(element))
+                for name in (element.tag, *element.attributes):
+                    prefix, colon, _ = name.partition(":")
+                    if colon and prefix not in declared:
+                        offset = self._source.text.find(name, self._character(element.offset))
+                        raise undeclared_prefix(self._source, offset, name)
+                pending.extend((child, declared) for child in reversed(list(element.elements())))
 
     # character data
 
-    def _characters(self, data: str) -> None:
-        children = self._children
+    def _more_characters(self, data: str, children: list[Node]) -> None:
+        """Character data in a CDATA section, or after other character data."""
         last = children[-1] if children else None
         if self._cdata_at is not None:
             if isinstance(last, Text) and last.cdata and last.offset == self._cdata_at:
@@ -188,17 +220,11 @@ class _Reader:
             children.append(Text(data, self._source, self._text_start(data)))
 
     def _text_start(self, data: str) -> int:
-        # Expat hands text over when it meets what follows it, so the place is counted back from there; a text that
-        # is longer as written than as read (entities, Windows line ends) begins after the tag before it.
+        # A text that is longer as written than as read (entities, Windows line ends) begins after the tag before it.
         end = self._parser.CurrentByteIndex
-        if self._is_ascii:
-            start = end - len(data)
-            if self._source.text.startswith(data, start):
-                return start
-        else:
-            raw = data.encode("utf-8", "surrogatepass")
-            if self._data.endswith(raw, 0, end):
-                return end - len(raw)
+        raw = data.encode("utf-8", "surrogatepass")
+        if self._data.endswith(raw, 0, end):
+            return end - len(raw)
         return self._data.rfind(b">", 0, end) + 1
 
     def _start_cdata(self) -> None:
@@ -216,16 +242,14 @@ class _Reader:
         self._keep(ProcessingInstruction(target, data, self._source, self._parser.CurrentByteIndex))
 
     def _keep(self, node: Comment | ProcessingInstruction) -> None:
-        if self._stack:
-            self._children.append(node)
-        elif not self._in_doctype:
-            self._outside.append(node)
+        if not self._in_doctype:
+            self._open[-1].children.append(node)
 
     # document type and entities
 
     def _start_doctype(self, name: str, system_id: str | None, public_id: str | None, _subset: bool) -> None:
         self._in_doctype = True
-        self._doctype_at = len(self._outside)
+        self._doctype_at = len(self._top.children)
         self._doctype = f"<!DOCTYPE {name}"
         if public_id:
             self._doctype += f"\n  PUBLIC '{public_id}'\n  '{system_id}'"
@@ -242,6 +266,9 @@ class _Reader:
             subset = declaration[declaration.index("[") + 1 : declaration.rindex("]")]
             self._doctype += f" [{subset}]"
         self._doctype += ">"
+        if self._entities and self._entities.growth(self._source.text) > GROWTH_LIMIT:
+            message = f"the entities of this document expand to more than {GROWTH_LIMIT:,} characters"
+            raise forbidden_entity(self._source, self._source.text.find("<!ENTITY"), message)
 
     def _entity(
         self,
@@ -267,6 +294,14 @@ class _Reader:
         if not is_parameter:
             offset = self._character(self._parser.CurrentByteIndex)
             raise forbidden_entity(self._source, offset, f"the entity '&{name};' is not defined")
+
+
+def _declared_prefixes(element: Element) -> list[str]:
+    return [name[6:] for name in element.attributes if name.startswith("xmlns:")]
+
+
+def _outside(nodes: list[Node]) -> list[Comment | ProcessingInstruction]:
+    return [node for node in nodes if isinstance(node, (Comment, ProcessingInstruction))]
 
 
 def _to_character_offsets(document: Document, data: bytes) -> None:

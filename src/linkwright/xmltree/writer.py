@@ -13,13 +13,16 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError
 from linkwright.xmltree.nodes import Comment, Document, Element, Node, ProcessingInstruction, Text
 
 _INDENT = "  "
+_DEEPEST = 3_000
+"""How deep elements may nest: the indentation grows with the square of it."""
 
 
 def write(document: Document) -> str:
     """The document as text, with an XML declaration and a newline at the end.
 
     Raises:
-        LinkwrightError: XML301 when a comment made by a program holds two dashes, which XML cannot say.
+        LinkwrightError: XML301 when a comment made by a program holds two dashes, which XML cannot say; XML302 when
+            elements are nested thousands deep.
     """
     pieces: list[str] = ['<?xml version="1.0" ?>\n']
     before: list[Node] = list(document.prolog)
@@ -52,27 +55,26 @@ def _write_nodes(nodes: Iterable[Node], put: Callable[[str], None]) -> None:
     indent = ""
     while True:
         for node in remaining:
-            if isinstance(node, Element):
-                put(f"{indent}<{node.tag}")
-                attributes = node.attributes
-                for name in sorted(attributes):
-                    put(f' {name}="{_escaped(attributes[name])}"')
-                children = node.children
-                if not children:
-                    put("/>\n")
-                elif len(children) == 1 and isinstance(only := children[0], Text) and not only.cdata:
-                    put(f">{_escaped(only.data)}</{node.tag}>\n")
-                else:
-                    put(">\n")
-                    stack.append((remaining, f"{indent}</{node.tag}>\n"))
-                    remaining = iter(children)
-                    indent += _INDENT
-                    break
-            elif isinstance(node, Text):
+            if isinstance(node, Text):
                 if node.cdata:
                     put(f"<![CDATA[{node.data.replace(']]>', ']]]]><![CDATA[>')}]]>")
                 elif node.data and not node.data.isspace():
                     put(f"{indent}{_escaped(node.data)}\n")
+            elif isinstance(node, Element):
+                tag, children = node.tag, node.children
+                attributes = _attributes(node.attributes) if node.attributes else ""
+                if not children:
+                    put(f"{indent}<{tag}{attributes}/>\n")
+                elif len(children) == 1 and isinstance(only := children[0], Text) and not only.cdata:
+                    put(f"{indent}<{tag}{attributes}>{_escaped(only.data)}</{tag}>\n")
+                else:
+                    put(f"{indent}<{tag}{attributes}>\n")
+                    stack.append((remaining, f"{indent}</{tag}>\n"))
+                    if len(stack) > _DEEPEST:
+                        raise _too_deep(node)
+                    remaining = iter(children)
+                    indent += _INDENT
+                    break
             elif isinstance(node, Comment):
                 put(f"{indent}<!--{_comment(node)}-->\n")
             else:
@@ -83,6 +85,19 @@ def _write_nodes(nodes: Iterable[Node], put: Callable[[str], None]) -> None:
             remaining, closing = stack.pop()
             indent = indent[: -len(_INDENT)]
             put(closing)
+
+
+def _too_deep(element: Element) -> LinkwrightError:
+    message = f"elements are nested more than {_DEEPEST:,} deep"
+    return LinkwrightError(Diagnostic("XML302", message, element.span(), source=element.source))
+
+
+def _attributes(attributes: dict[str, str]) -> str:
+    names = sorted(attributes) if len(attributes) > 1 else attributes
+    text = "".join([f' {name}="{attributes[name]}"' for name in names])
+    if "&" in text or "<" in text or ">" in text or text.count('"') != 2 * len(attributes):
+        text = "".join([f' {name}="{_escaped(attributes[name])}"' for name in names])
+    return text
 
 
 def _escaped(text: str) -> str:

@@ -92,15 +92,19 @@ class Descriptions:
         """
         from linkwright.xacro import expand
 
-        self._read_ns[call] = time.time_ns()
+        self.begin(call)
         try:
             return expand(call.path, dict(call.arguments), packages=self.finder)
         except LinkwrightError as error:
             raise DescriptionError(call, error.diagnostics) from error
 
-    def remember(self, call: XacroCall, expansion: Expansion) -> str:
-        """Keep an expansion; returns its text."""
-        text = str(expansion)
+    def begin(self, call: XacroCall) -> None:
+        """Say that the files of a model are about to be read."""
+        self._read_ns[call] = time.time_ns()
+
+    def remember(self, call: XacroCall, expansion: Expansion, text: str | None = None) -> str:
+        """Keep an expansion; returns its text, which is `text` if that is what stands for it elsewhere."""
+        text = str(expansion) if text is None else text
         self.library.remember(text, expansion.document)
         self._calls[text] = call
         self._files[call] = expansion.dependencies

@@ -1,0 +1,100 @@
+"""The pages with the figures: ``docs/benchmarks.md`` and its Chinese sister.
+
+Each run with ``--write`` keeps its rows below ``.build``, so that measurements made one at a time make one page.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import platform
+from datetime import datetime, timezone
+from pathlib import Path
+
+from benchmarks import peers
+from benchmarks.measure import ROOT, Row
+from linkwright import __version__
+
+KEPT = ROOT / ".build" / "benchmarks.json"
+TITLES = {
+    "xacro": ("xacro", "xacro"),
+    "urdf": ("URDF", "URDF"),
+    "kinematics": ("Forward kinematics", "正运动学"),
+    "graph": ("Computation graph", "计算图"),
+    "viewer": ("Viewer", "查看器"),
+    "page": ("Page", "网页"),
+}
+_ENGLISH = """# Benchmarks
+
+What `make bench` measures, side by side with programs from PyPI on the same machine in the same run: {machine}.
+Figures are medians. In brackets stands how many times as much the other program takes. The inputs are {inputs}.
+
+`python -m benchmarks.peers` installs the other programs into `.build/peers`; `python -m benchmarks --write` measures
+and writes this page.
+"""
+_CHINESE = """# 性能测试
+
+`make bench` 的测量结果，与 PyPI 上的程序在同一台机器、同一次运行中对比：{machine}。
+数值为中位数，括号内是对方用时（或内存）为我们的多少倍。输入为 {inputs}。
+
+`python -m benchmarks.peers` 把对比程序安装到 `.build/peers`；`python -m benchmarks --write` 测量并写出本页。
+"""
+_HEADS = (
+    "| what | Linkwright | promised | others |\n| --- | --- | --- | --- |\n",
+    "| 项目 | Linkwright | 承诺 | 其他程序 |\n| --- | --- | --- | --- |\n",
+)
+_INPUTS = {
+    True: (
+        "58 expansions of real robots, and robots made for measuring",
+        "真实机器人的 58 次展开，以及专为测量生成的机器人",
+    ),
+    False: ("robots made for measuring", "专为测量生成的机器人"),
+}
+
+
+def keep(name: str, outcome: list[Row] | str, *, corpus: bool) -> None:
+    """Remember what one measurement gave: rows, or the text that it printed."""
+    known = json.loads(KEPT.read_text(encoding="utf-8")) if KEPT.is_file() else {}
+    known[name] = {
+        "date": datetime.now(timezone.utc).date().isoformat(),
+        "rows": [row.cells() for row in outcome] if isinstance(outcome, list) else [],
+        "text": outcome if isinstance(outcome, str) else "",
+        "corpus": corpus,
+    }
+    KEPT.parent.mkdir(exist_ok=True)
+    KEPT.write_text(json.dumps(known), encoding="utf-8")
+
+
+def write() -> list[Path]:
+    """Write the pages from what is remembered; the files written."""
+    known = json.loads(KEPT.read_text(encoding="utf-8"))
+    corpus = any(section["corpus"] for section in known.values())
+    written = []
+    for place, (text, path) in enumerate(((_ENGLISH, "docs/benchmarks.md"), (_CHINESE, "docs/zh/benchmarks.md"))):
+        parts = [text.format(machine=_machine(), inputs=_INPUTS[corpus][place]), _versions()]
+        for name, titles in TITLES.items():
+            if name in known:
+                parts.append(f"## {titles[place]}\n\n{_section(known[name], place)}")
+        target = ROOT / path
+        target.write_text("\n".join(parts), encoding="utf-8")
+        written.append(target)
+    return written
+
+
+def _section(section: dict[str, object], place: int) -> str:
+    date = f"{section['date']}\n\n"
+    if section["text"]:
+        return f"{date}```text\n{str(section['text']).strip()}\n```\n"
+    rows = section["rows"]
+    assert isinstance(rows, list)
+    return date + _HEADS[place] + "".join("| " + " | ".join(cells) + " |\n" for cells in rows)
+
+
+def _machine() -> str:
+    return f"Python {platform.python_version()}, {platform.system()} {platform.machine()}, {os.cpu_count()} CPU"
+
+
+def _versions() -> str:
+    listed = [f"- Linkwright {__version__}"]
+    listed += [f"- {name} {peers.version(name) or '-'}" for name in peers.PEERS]
+    return "\n".join(listed) + "\n"

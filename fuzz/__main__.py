@@ -1,0 +1,122 @@
+"""Run the fuzzer: ``python -m fuzz [TARGET ...] --runs N``; see the README beside this file."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+from fuzz.names import SHARES
+
+FOLDER = Path(__file__).resolve().parent.parent / ".build" / "fuzz"
+LIMIT_SECONDS = 1.0
+_MEMORY_MIB = 2_048
+_LONGEST_INPUT = {"-text": 2_000, "": 600}
+
+
+def main() -> int:
+    """Fuzz the targets named, or all, one after another; 1 when something was found."""
+    parser = argparse.ArgumentParser(prog="python -m fuzz", description=__doc__)
+    parser.add_argument("targets", nargs="*", metavar="TARGET", help="what to fuzz; all by default")
+    parser.add_argument("--runs", type=int, default=1_000_000, help="how many inputs, shared among all targets")
+    parser.add_argument("--seconds", type=int, default=0, help="at most so long for each target; 0 means no bound")
+    parser.add_argument("--one", metavar="NAME", help=argparse.SUPPRESS)
+    arguments = parser.parse_args()
+    if arguments.one:
+        fuzz_one(arguments.one, arguments.runs, arguments.seconds)
+        return 0
+    names = arguments.targets or list(SHARES)
+    unknown = set(names) - set(SHARES)
+    if unknown:
+        parser.error(f"unknown target {', '.join(sorted(unknown))}; known are {', '.join(SHARES)}")
+    total = found = 0
+    for name in names:
+        runs = max(1, arguments.runs * SHARES[name] // sum(SHARES[other] for other in names))
+        command = [sys.executable, "-m", "fuzz", "--one", name, "--runs", str(runs)]
+        result = FOLDER / f"{name}.json"
+        result.unlink(missing_ok=True)
+        subprocess.run([*command, "--seconds", str(arguments.seconds)], check=False)
+        counted = json.loads(result.read_text()) if result.exists() else {"inputs": 0, "found": {"died": 1}, "seconds": 0}
+        summary = f"{counted['inputs']:>9,} inputs {counted['seconds']:>7.0f} s  found: {counted['found'] or 'nothing'}"
+        print(f"{name:16} {summary}", flush=True)
+        total += counted["inputs"]
+        found += len(counted["found"])
+    print(f"{'together':16} {total:>9,} inputs, {found} things found (inputs in {FOLDER}/found)")
+    return 1 if found else 0
+
+
+def fuzz_one(name: str, runs: int, seconds: int) -> None:
+    """Fuzz one target in this process, which ends with it; what is found is kept and the run goes on."""
+    import atheris
+
+    with atheris.instrument_imports(include=["linkwright"]):
+        from fuzz.targets import TARGETS, seeds
+
+    target = TARGETS[name]
+    corpus, found_in = FOLDER / "corpus" / name, FOLDER / "found"
+    for folder in (corpus, found_in, FOLDER / "work"):
+        folder.mkdir(parents=True, exist_ok=True)
+    os.chdir(FOLDER / "work")
+    if not any(corpus.iterdir()):
+        for number, seed in enumerate(seeds(name)):
+            (corpus / f"seed-{number}").write_bytes(seed)
+    found: dict[str, int] = {}
+    inputs = 0
+    started = time.monotonic()
+
+    def report() -> None:
+        counted = {"inputs": inputs, "found": found, "seconds": time.monotonic() - started}
+        (FOLDER / f"{name}.json").write_text(json.dumps(counted))
+
+    def run(data: bytes) -> None:
+        nonlocal inputs
+        inputs += 1
+        if inputs % 500 == 0:
+            report()
+        begun = time.process_time()
+        try:
+            target(data)
+            spent = time.process_time() - begun
+            what = f"slow-{spent:.0f}s" if spent > LIMIT_SECONDS else None
+        except Exception as error:  # noqa: BLE001 - whatever it is, it is what this looks for
+            what = _where(error)
+        if what is not None:
+            found[what] = found.get(what, 0) + 1
+            if found[what] <= 3:
+                (found_in / f"{name}-{what}-{found[what]}").write_bytes(data)
+        if inputs == runs or (seconds and time.monotonic() - started > seconds):
+            report()
+            os._exit(0)
+
+    longest = _LONGEST_INPUT["-text" if name.endswith("-text") else ""]
+    options = [
+        sys.argv[0],
+        str(corpus),
+        f"-max_len={longest}",
+        f"-rss_limit_mb={_MEMORY_MIB}",
+        "-timeout=30",
+        "-verbosity=0",
+        f"-artifact_prefix={found_in}/{name}-died-",
+        f"-dict={Path(__file__).resolve().parent / 'words.dict'}",
+    ]
+    atheris.Setup(options, run)
+    atheris.Fuzz()
+
+
+def _where(error: Exception) -> str:
+    trace = error.__traceback__
+    place = "unknown"
+    while trace is not None:
+        file = Path(trace.tb_frame.f_code.co_filename)
+        if "linkwright" in file.parts or file.name == "targets.py":
+            place = f"{file.stem}-{trace.tb_lineno}"
+        trace = trace.tb_next
+    return f"{type(error).__name__}-{place}"
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,194 @@
+"""What is fuzzed, and what must hold for every input.
+
+For each target: nothing but a `LinkwrightError` is raised, its diagnostics can be printed, what comes out can be read
+again, and it takes less than a second of processor time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from random import Random
+
+from fuzz import documents, robots
+from fuzz.choices import Choices
+from fuzz.expressions import expression
+from linkwright.diagnostics import LinkwrightError, render, to_data
+from linkwright.kinematics import KinematicTree
+from linkwright.urdf import read, save, to_gv, tree_text
+from linkwright.urdf.plaintext import parse_as_urdfdom
+from linkwright.viewer.rviz_config import RvizConfig
+from linkwright.xacro import expand, sources
+from linkwright.xacro.faults import Fault
+from linkwright.xacro.limits import Limits, room_for
+from linkwright.xacro.scope import Scope
+from linkwright.xacro.session import Session
+from linkwright.xacro.yamldata import YamlError, load
+from linkwright.xmltree import Comment, parse, write
+
+BUILT_IN = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
+_LIMITS = Limits()
+_FIXED = {"items": [3, 1, 2], "data": {"a": 1, "b": [1, {"c": 2}]}, "name": "r", "a": 1, "b": 2.5, "n": 3}
+
+
+def check_xml(text: str) -> None:
+    """A document that is read is written, read again and written alike."""
+    try:
+        document = parse(text, "fuzz.xml")
+    except LinkwrightError as error:
+        _check_printable(error)
+        return
+    try:
+        written = write(document)
+    except LinkwrightError as error:
+        _check_printable(error)
+        return
+    if document.doctype is None:
+        assert write(parse(written, "again.xml")).split() == written.split()
+
+
+def check_expansion(files: documents.Files) -> None:
+    """A description that is expanded gives a document that can be read, and the same one each time."""
+    _save("other.xacro", files.other)
+    _save("data.yaml", files.data)
+    try:
+        expansion = expand("main.xacro", {"given": "1"}, packages={"pkg": "."}, text=files.main)
+    except LinkwrightError as error:
+        _check_printable(error)
+        return
+    for diagnostic in expansion.diagnostics:
+        render(diagnostic)
+    expansion.document.prolog = [node for node in expansion.document.prolog if not isinstance(node, Comment)]
+    try:
+        written = write(expansion.document)
+    except LinkwrightError as error:
+        _check_printable(error)
+        return
+    if expansion.document.doctype is None and not any(ord(sign) < 32 and sign not in "\t\n\r" for sign in written):
+        parse(written, "expansion.xml")
+
+
+def check_expression(source: str) -> None:
+    """An expression has a value that can be written, or a mistake in it is told with its place."""
+    session = Session("main.xacro", {"name": "r", "n": "3"}, {}, _LIMITS)
+    scope = Scope(session.globals, session, dict(_FIXED, items=[3, 1, 2]))
+    for text in ("${" + source + "}", "a ${" + source + "} b"):
+        try:
+            with room_for(_LIMITS):
+                session.evaluate_text(text, scope)
+        except Fault as fault:
+            assert fault.start is None or 0 <= fault.start <= len(text), fault.start
+        except LinkwrightError as error:
+            _check_printable(error)
+
+
+def check_urdf(text: str) -> None:
+    """A robot that is read can be written and read again as the same robot."""
+    try:
+        reading = read(parse_as_urdfdom(text, "robot.urdf"))
+    except LinkwrightError as error:
+        _check_printable(error)
+        return
+    for diagnostic in reading.diagnostics:
+        assert render(diagnostic)
+        assert to_data(diagnostic)["line"]
+    robot = reading.robot
+    if robot is None:
+        assert reading.diagnostics
+        return
+    to_gv(robot)
+    tree_text(robot)
+    tree = KinematicTree(robot)
+    tree.forward([0.0] * len(tree.joint_names))
+    saved = save(robot)
+    assert save(read(parse(saved, "saved.urdf")).robot or robot) == saved
+
+
+def check_yaml(text: str) -> None:
+    """A YAML file has a value, or a mistake."""
+    session = Session("main.xacro", {}, {}, _LIMITS)
+    try:
+        load(text, session._unit_value)  # noqa: SLF001 - what a description's load_yaml hands over
+    except (YamlError, Fault):
+        return
+
+
+def check_rviz(text: str) -> None:
+    """A configuration that is read is written, and read again."""
+    try:
+        config = RvizConfig.parse(text)
+    except LinkwrightError as error:
+        _check_printable(error)
+        return
+    for diagnostic in config.warnings:
+        render(diagnostic)
+    for display in config.displays:
+        assert display.enabled in (True, False)
+    config.view = config.view
+    RvizConfig.parse(config.text())
+
+
+def _check_printable(error: LinkwrightError) -> None:
+    for diagnostic in error.diagnostics:
+        assert diagnostic.code in render(diagnostic)
+        assert to_data(diagnostic)["message"]
+
+
+def _save(name: str, text: str) -> None:
+    if _contents.get(name) != text:
+        Path(name).write_text(text, encoding="utf-8", errors="surrogatepass", newline="")
+        sources.documents.clear()  # a file that changes twice in a tick of the clock would be taken for the old one
+        _contents[name] = text
+
+
+_contents: dict[str, str] = {}
+
+
+def _text(data: bytes) -> str:
+    return data.decode("utf-8", "replace")
+
+
+def _raw_files(data: bytes) -> documents.Files:
+    main, _, rest = _text(data).partition("\x1e")
+    other, _, yaml = rest.partition("\x1e")
+    return documents.Files(main, other or f"{documents.HEAD}/>", yaml)
+
+
+TARGETS: dict[str, Callable[[bytes], None]] = {
+    "xacro": lambda data: check_expansion(documents.files(Choices(data))),
+    "xacro-text": lambda data: check_expansion(_raw_files(data)),
+    "attribute": lambda data: check_expansion(
+        documents.Files(f'{BUILT_IN}<a v="{documents.text(Choices(data))}"/></robot>', f"{BUILT_IN}</robot>", "")
+    ),
+    "expression": lambda data: check_expression(expression(Choices(data))),
+    "expression-text": lambda data: check_expression(_text(data).replace("}", "")),
+    "urdf": lambda data: check_urdf(robots.urdf(Choices(data))),
+    "urdf-text": lambda data: check_urdf(_text(data)),
+    "xml-text": lambda data: check_xml(_text(data)),
+    "yaml": lambda data: check_yaml(documents.yaml_text(Choices(data))),
+    "yaml-text": lambda data: check_yaml(_text(data)),
+    "rviz": lambda data: check_rviz(robots.rviz(Choices(data))),
+    "rviz-text": lambda data: check_rviz(_text(data)),
+}
+"""Name -> what takes an input. Those with ``-text`` take the bytes as the text, the others decide a grammar by them."""
+
+
+def seeds(name: str) -> list[bytes]:
+    """Inputs to begin a target with: random decisions, or texts that a grammar makes of them."""
+    random = Random(name)
+    decisions = [random.randbytes(random.randrange(4, 400)) for _ in range(_SEEDS)]
+    write_text = _SEED_TEXTS.get(name)
+    if write_text is None:
+        return decisions
+    return [write_text(Choices(data)).encode("utf-8", "replace") for data in decisions]
+
+
+_SEEDS = 300
+_SEED_TEXTS: dict[str, Callable[[Choices], str]] = {
+    "xacro-text": lambda choices: "\x1e".join(documents.files(choices)),
+    "expression-text": expression,
+    "urdf-text": robots.urdf,
+    "xml-text": lambda choices: documents.files(choices).main,
+    "yaml-text": documents.yaml_text,
+    "rviz-text": robots.rviz,
+}

@@ -1,0 +1,157 @@
+"""``linkwright inertia``: mass properties of links from their shapes."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from linkwright.cli.assignments import parse_assignments
+from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, has_errors, print_diagnostics
+
+if TYPE_CHECKING:
+    from linkwright.urdf import Robot
+
+NAME = "inertia"
+HELP = "compute mass and inertia of each link from its shapes, compare them with the file, or write them"
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    parser.add_argument("file", metavar="FILE", help="the URDF or xacro file")
+    parser.add_argument("values", metavar="NAME:=VALUE", nargs="*", help="values for the file's <xacro:arg>")
+    parser.add_argument(
+        "--density",
+        metavar="KG_PER_M3",
+        type=_positive,
+        help="density of all links; by default each keeps the mass it has, and one without a mass gets 1000 kg/m3",
+    )
+    parser.add_argument(
+        "--mass", metavar="LINK=KG", action="append", default=[], help="mass of one link; may be repeated"
+    )
+    parser.add_argument("--link", metavar="NAME", action="append", default=[], help="only this link; may be repeated")
+    parser.add_argument(
+        "--from",
+        dest="prefer",
+        choices=("collision", "visual"),
+        default="collision",
+        help="the shapes to take; the others where a link has none of these (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--write",
+        action="store_true",
+        help="put the blocks into the file the links are written in, and keep all else in it as it is",
+    )
+    parser.add_argument(
+        "--format", choices=("text", "json"), default="text", help="form of the result (default: %(default)s)"
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Print the blocks or write them; 1 when the description has errors or a block could not be written."""
+    from linkwright.inertia import MeshLibrary, estimate
+    from linkwright.inertia.reports import as_json, as_text
+    from linkwright.inertia.writing import Written, write_inertials
+    from linkwright.urdf import examine
+    from linkwright.workspace import PackageFinder
+
+    folder = Path(arguments.file).absolute().parent
+    finder = PackageFinder(start=[folder, Path.cwd()])
+    reading = examine(arguments.file, arguments=parse_assignments(arguments.values), packages=finder)
+    robot = reading.robot
+    if robot is None or has_errors(reading.diagnostics):
+        print_diagnostics(reading.diagnostics, sys.stderr)
+    if robot is None:
+        return 1
+    masses = _masses(arguments.mass, robot)
+    wanted = _wanted(arguments.link, robot)
+    meshes = MeshLibrary(finder, folder)
+    estimates = [
+        estimate(
+            robot.links[name],
+            meshes,
+            density=arguments.density,
+            mass=masses.get(name),
+            prefer=arguments.prefer,
+        )
+        for name in wanted
+    ]
+    written: Written | None = None
+    if arguments.write:
+        found = {each.link: each.properties for each in estimates if each.properties is not None}
+        written = write_inertials(robot, found)
+    report = as_json if arguments.format == "json" else as_text
+    sys.stdout.write(report(robot, estimates, written))
+    if written is not None:
+        print_diagnostics(_refusals(written.refused, robot), sys.stderr)
+    return 1 if has_errors(reading.diagnostics) or (written is not None and written.refused) else 0
+
+
+def _positive(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0.0
+    if not 0 < value < float("inf"):
+        raise argparse.ArgumentTypeError(f"'{text}' is not a positive number")
+    return value
+
+
+def _wanted(names: Sequence[str], robot: Robot) -> list[str]:
+    """The links to look at, in file order.
+
+    Raises:
+        LinkwrightError: CLI311 for a link the robot does not have.
+    """
+    unknown = [_unknown(name, robot) for name in names if name not in robot.links]
+    if unknown:
+        raise LinkwrightError(*unknown)
+    return [name for name in robot.links if not names or name in names]
+
+
+def _masses(words: Sequence[str], robot: Robot) -> dict[str, float]:
+    """Masses by link from words such as ``arm=1.5``.
+
+    Raises:
+        LinkwrightError: CLI311 for a link the robot does not have, CLI312 for a word that gives no mass.
+    """
+    masses: dict[str, float] = {}
+    wrong = []
+    for word in words:
+        name, _, value = word.rpartition("=")
+        name = name.removesuffix(":")
+        try:
+            masses[name] = _positive(value)
+        except argparse.ArgumentTypeError:
+            name = ""
+        if not name:
+            message = f"'{word}' gives no link a mass"
+            wrong.append(Diagnostic("CLI312", message, hint="write --mass LINK=KG, such as --mass arm_link=1.5"))
+        elif name not in robot.links:
+            wrong.append(_unknown(name, robot))
+    if wrong:
+        raise LinkwrightError(*wrong)
+    return masses
+
+
+def _unknown(name: str, robot: Robot) -> Diagnostic:
+    return Diagnostic("CLI311", f"the robot has no link '{name}'", hint=did_you_mean(name, robot.links))
+
+
+def _refusals(refused: Mapping[str, str], robot: Robot) -> list[Diagnostic]:
+    """One finding for each block that was not written."""
+    found = []
+    for name, why in refused.items():
+        element = robot.links[name].element
+        found.append(
+            Diagnostic(
+                "INR211",
+                f"<inertial> of link '{name}' is not written: {why}",
+                element.span() if element else None,
+                hint="put the block printed above where the link is written, or expressions that give its numbers",
+                source=element.source if element else None,
+            )
+        )
+    return found

@@ -1,0 +1,44 @@
+"""``--lang``, which every command takes: the language of messages."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from linkwright.diagnostics.translation import LANGUAGES, language_of, set_language
+
+HELP = "the language of messages: zh for Chinese, en for English (default: that of the environment)"
+
+_OPTION = "--lang"
+
+
+class UnknownLanguageError(Exception):
+    """``--lang`` with no language, or with one that messages are not known in."""
+
+
+def take_language(words: Sequence[str]) -> list[str]:
+    """The words without ``--lang LANGUAGE``, which may stand anywhere before ``--``; the language is set.
+
+    Raises:
+        UnknownLanguageError: with what is wrong with it.
+    """
+    left: list[str] = []
+    asked: str | None = None
+    pending = iter(words)
+    for word in pending:
+        name, sign, value = word.partition("=")
+        if name == _OPTION:
+            asked = _language(value if sign else next(pending, ""))
+        else:
+            left.append(word)
+        if word == "--":
+            left += pending
+    set_language(asked)
+    return left
+
+
+def _language(written: str) -> str:
+    found = language_of(written)
+    if found is None:
+        what = f"there is no language '{written}'" if written else f"'{_OPTION}' needs a language"
+        raise UnknownLanguageError(f"{what}; messages are in {' and '.join(LANGUAGES)}")
+    return found

@@ -1,0 +1,30 @@
+"""The forms there are, by the names that ``--format`` takes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from importlib import import_module
+from typing import cast
+
+from linkwright.diagnostics.diagnostic import Diagnostic
+from linkwright.diagnostics.translation import translated
+
+FORMATS = ("text", "concise", "json", "sarif", "github")
+"""``text`` for people, ``concise`` a line each, ``json`` and ``sarif`` for programs, ``github`` for its workflows."""
+
+_Formatter = Callable[[Iterable[Diagnostic]], str]
+
+
+def format_diagnostics(diagnostics: Iterable[Diagnostic], form: str) -> str:
+    """Diagnostics as text that ends with a newline; empty for none in the forms that have a line for each.
+
+    Their texts are in English unless another language was asked for by name (`--lang`).
+
+    Args:
+        diagnostics: in the order in which they are to be shown.
+        form: one of `FORMATS` but ``text``, which `linkwright.diagnostics.print_diagnostics` writes.
+    """
+    if form not in FORMATS or form == "text":
+        raise ValueError(f"no format '{form}'")
+    module = import_module(f"linkwright.diagnostics.formats.{form}")
+    return cast(_Formatter, module.to_text)(translated(diagnostics, for_programs=True))

@@ -1,0 +1,15 @@
+"""JSON: an object with ``diagnostics``, a list; places count from 1, absent ones are null."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+
+from linkwright.diagnostics.diagnostic import Diagnostic
+from linkwright.diagnostics.render import to_data
+
+
+def to_text(diagnostics: Iterable[Diagnostic]) -> str:
+    """The diagnostics as one JSON object."""
+    data = {"diagnostics": [to_data(diagnostic) for diagnostic in diagnostics]}
+    return json.dumps(data, indent=2, ensure_ascii=False) + "\n"

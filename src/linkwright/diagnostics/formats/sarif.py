@@ -1,0 +1,85 @@
+"""SARIF 2.1.0 (OASIS), which code scanning services read."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from linkwright._version import __version__
+from linkwright.diagnostics.diagnostic import Diagnostic, Severity
+from linkwright.diagnostics.source import Span
+
+_SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
+_LEVELS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "note"}
+_ROOT = "ROOT"
+
+
+def to_text(diagnostics: Iterable[Diagnostic]) -> str:
+    """The diagnostics as a SARIF log of one run; files below the current folder are named relative to it."""
+    found = list(diagnostics)
+    codes = sorted({diagnostic.code for diagnostic in found})
+    log = {
+        "$schema": _SCHEMA,
+        "version": "2.1.0",
+        "runs": [
+            {
+                "tool": {
+                    "driver": {
+                        "name": "linkwright",
+                        "version": __version__,
+                        "rules": [{"id": code} for code in codes],
+                    }
+                },
+                "originalUriBaseIds": {_ROOT: {"uri": Path.cwd().as_uri() + "/"}},
+                "columnKind": "unicodeCodePoints",
+                "results": [_result(diagnostic, codes.index(diagnostic.code)) for diagnostic in found],
+            }
+        ],
+    }
+    return json.dumps(log, indent=2, ensure_ascii=False) + "\n"
+
+
+def _result(diagnostic: Diagnostic, rule_index: int) -> dict[str, Any]:
+    text = diagnostic.message + (f". Hint: {diagnostic.hint}" if diagnostic.hint else "")
+    result: dict[str, Any] = {
+        "ruleId": diagnostic.code,
+        "ruleIndex": rule_index,
+        "level": _LEVELS[diagnostic.severity],
+        "message": {"text": text},
+    }
+    if diagnostic.span is not None:
+        result["locations"] = [{"physicalLocation": _location(diagnostic.span)}]
+    related = [
+        {"id": number, "message": {"text": note.message}, "physicalLocation": _location(note.span)}
+        for number, note in enumerate(diagnostic.notes)
+        if note.span is not None
+    ]
+    if related:
+        result["relatedLocations"] = related
+    return result
+
+
+def _location(span: Span) -> dict[str, Any]:
+    return {
+        "artifactLocation": _artifact(span.file),
+        "region": {
+            "startLine": span.line,
+            "startColumn": span.column,
+            "endLine": span.end_line,
+            "endColumn": span.end_column,
+        },
+    }
+
+
+def _artifact(file: str) -> dict[str, str]:
+    if file.startswith("<"):
+        return {"uri": f"urn:linkwright:{file.strip('<>')}"}
+    relative = os.path.relpath(file)
+    if relative.startswith(".."):
+        return {"uri": Path(file).absolute().as_uri()}
+    from urllib.parse import quote
+
+    return {"uri": quote(relative.replace(os.sep, "/")), "uriBaseId": _ROOT}

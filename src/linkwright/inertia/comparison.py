@@ -1,0 +1,47 @@
+"""How the mass properties in a file compare with those computed from the shapes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwright.inertia.properties import MassProperties
+from linkwright.inertia.validity import problems
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """What the file says against what its shapes say.
+
+    Attributes:
+        mass: in kg, in the file.
+        mass_ratio: mass in the file for each kg computed; None where one of them is not positive.
+        center_distance: between the centres of mass in m.
+        moment_ratios: principal moments for each kg of mass, those of the file divided by those computed, the
+            smallest first; None where they cannot be divided.
+        problems: what keeps the file's values from being those of a body.
+    """
+
+    mass: float
+    mass_ratio: float | None
+    center_distance: float
+    moment_ratios: tuple[float, float, float] | None
+    problems: tuple[str, ...]
+
+
+def compare(present: MassProperties, computed: MassProperties) -> Comparison:
+    """Compare what a file says with what was computed, both in the link frame.
+
+    The moments are compared for each kg, so that a difference in mass is not told twice.
+    """
+    mass_ratio = present.mass / computed.mass if present.mass > 0 and computed.mass > 0 else None
+    ratios = None
+    if mass_ratio is not None:
+        ours = computed.principal().moments
+        theirs = present.principal().moments
+        if ours[0] > 0:
+            first, second, third = (float(ratio) for ratio in theirs / ours / mass_ratio)
+            ratios = (first, second, third)
+    distance = float(np.linalg.norm(present.center - computed.center))
+    return Comparison(float(present.mass), mass_ratio, distance, ratios, tuple(problems(present)))

@@ -1,0 +1,113 @@
+"""The mass properties of a link, from the shapes it has."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.inertia.mesh_library import MeshLibrary
+from linkwright.inertia.properties import MassProperties, combine
+from linkwright.inertia.shapes import shape_properties
+from linkwright.urdf import Collision, Link, Mesh, Visual
+
+ShapeKind = Literal["collision", "visual"]
+
+DEFAULT_DENSITY = 1000.0
+"""kg/m3, that of water; most robots' links are near it when their hollows are counted in."""
+
+
+@dataclass(frozen=True, slots=True)
+class Estimate:
+    """What the shapes of a link tell of its mass properties.
+
+    Attributes:
+        link: the link's name.
+        properties: in the link frame; None when there is no shape with a volume.
+        kind: which shapes were taken; None without any.
+        shapes: how many of them went in.
+        basis: where the mass comes from: ``mass`` (asked for), ``density`` (asked for or the default), ``present`` (the
+            link's own ``<mass>``).
+        density: the mean density in kg/m3 that results; 0 without properties.
+        notes: what a reader should know: a hull in place of a mesh, a shape left out.
+    """
+
+    link: str
+    properties: MassProperties | None
+    kind: ShapeKind | None
+    shapes: int
+    basis: Literal["mass", "density", "present"]
+    density: float
+    notes: tuple[str, ...] = ()
+
+
+def estimate(
+    link: Link,
+    meshes: MeshLibrary,
+    *,
+    density: float | None = None,
+    mass: float | None = None,
+    prefer: ShapeKind = "collision",
+) -> Estimate:
+    """Mass properties of a link as solid shapes of one uniform density; where shapes overlap they count twice.
+
+    The mass is the one that is asked for, else the one of the density that is asked for, else the one that the link has
+    in the file, else that of `DEFAULT_DENSITY`.
+
+    Args:
+        link: the link.
+        meshes: where its meshes come from.
+        density: in kg/m3.
+        mass: in kg.
+        prefer: the shapes to take; the others where the link has none of these (or none with a volume).
+    """
+    notes: list[str] = []
+    kind: ShapeKind | None = None
+    parts: list[MassProperties] = []
+    other: ShapeKind = "visual" if prefer == "collision" else "collision"
+    for candidate in (prefer, other):
+        shapes = link.collisions if candidate == "collision" else link.visuals
+        parts = [part for shape in shapes if (part := _solid(shape, candidate, meshes, notes)) is not None]
+        if parts:
+            kind = candidate
+            break
+    basis: Literal["mass", "density", "present"] = "density"
+    if mass is not None:
+        basis = "mass"
+    elif density is None and link.inertial is not None and link.inertial.mass > 0:
+        basis, mass = "present", link.inertial.mass
+    if kind is None:
+        return Estimate(link.name, None, None, 0, basis, 0.0, tuple(notes))
+    if kind != prefer and (link.collisions if prefer == "collision" else link.visuals):
+        notes.append(f"taken from the {kind} shapes instead")
+    solid = combine(parts)
+    if mass is not None:
+        properties = solid.with_mass(mass)
+    else:
+        properties = solid.times(DEFAULT_DENSITY if density is None else density)
+    return Estimate(link.name, properties, kind, len(parts), basis, properties.mass / solid.mass, tuple(notes))
+
+
+def _solid(shape: Collision | Visual, kind: ShapeKind, meshes: MeshLibrary, notes: list[str]) -> MassProperties | None:
+    """A shape of density 1 in the link frame; None when it has no volume or cannot be read, which is noted."""
+    geometry = shape.geometry
+    if isinstance(geometry, Mesh):
+        try:
+            mesh = meshes.load(geometry, shape.element)
+        except LinkwrightError as error:
+            notes.append(f"a {kind} mesh is left out: {error.diagnostics[0].message}")
+            return None
+        solid = mesh.solid
+        name = geometry.filename.rpartition("/")[2]
+        if not solid.mass > 0:
+            notes.append(f"the {kind} mesh '{name}' is left out: it is flat")
+            return None
+        if not mesh.is_watertight:
+            notes.append(f"the {kind} mesh '{name}' is not watertight: its convex hull is taken")
+    else:
+        solid = shape_properties(geometry)
+        if not solid.mass > 0:
+            what = type(geometry).__name__.lower()
+            notes.append(f"a {kind} {what} is left out: it has a size that is not positive")
+            return None
+    return solid.moved(shape.origin)

@@ -1,0 +1,155 @@
+"""Reading mesh files: their triangles, in metres and in the frame that RViz shows them in."""
+
+from __future__ import annotations
+
+import logging
+import warnings
+from functools import cached_property
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, missing_file_hint
+from linkwright.inertia.hull import convex_hull
+from linkwright.inertia.polyhedron import Faces, is_closed, merged, polyhedron_properties
+from linkwright.inertia.properties import Array, MassProperties
+from linkwright.urdf import Vector3
+
+MESH_ENDINGS = (".stl", ".dae", ".obj", ".glb", ".gltf")
+"""The formats that are read, as RViz and Gazebo read them."""
+
+LARGEST_FILE = 1 << 29
+"""A mesh file of more bytes is not read."""
+
+
+class TriangleMesh:
+    """The triangles of a mesh file.
+
+    Attributes:
+        vertices: corners in m, in the frame of the file, unscaled; shape (vertices, 3).
+        faces: indices of corners; shape (faces, 3).
+    """
+
+    def __init__(self, vertices: Array, faces: Faces) -> None:
+        self.vertices = vertices
+        self.faces = faces
+
+    @cached_property
+    def bounds(self) -> tuple[Array, Array]:
+        """The lowest and highest corner of the box around the mesh, in m; each of shape (3,)."""
+        used = self.vertices[np.unique(self.faces)] if len(self.faces) else np.zeros((1, 3))
+        return used.min(axis=0), used.max(axis=0)
+
+    @cached_property
+    def is_watertight(self) -> bool:
+        """Whether the triangles bound a volume, without holes and all turned the same way."""
+        return is_closed(self._merged[1])
+
+    @cached_property
+    def solid(self) -> MassProperties:
+        """Mass properties for a density of 1 kg/m3: of the mesh if it is watertight, else of its convex hull.
+
+        Without mass when all triangles lie in one plane.
+        """
+        vertices, faces = self._merged
+        if self.is_watertight:
+            inside = polyhedron_properties(vertices, faces)
+            if inside.mass > 0:
+                return inside
+        hull = convex_hull(vertices)
+        return MassProperties(0.0) if hull is None else polyhedron_properties(vertices, hull)
+
+    def scaled(self, scale: Vector3) -> TriangleMesh:
+        """The mesh scaled along its axes, as the ``scale`` of a URDF mesh does; a negative factor mirrors it."""
+        return self if scale == (1.0, 1.0, 1.0) else TriangleMesh(self.vertices * np.asarray(scale), self.faces)
+
+    @cached_property
+    def _merged(self) -> tuple[Array, Faces]:
+        return merged(self.vertices, self.faces)
+
+
+def read_mesh(path: Path) -> TriangleMesh:
+    """The triangles of an STL, COLLADA, OBJ or glTF file.
+
+    STL and OBJ say nothing of their unit; URDF takes their numbers as metres. The unit of COLLADA is applied, its up
+    axis is not, as in RViz. Materials and textures are not read, and of other files only
+    what a glTF keeps beside itself.
+
+    Raises:
+        LinkwrightError: INR101 there is no such file, INR102 its ending is not known, INR103 it cannot be read.
+    """
+    kind = path.suffix.lower()
+    if kind not in MESH_ENDINGS:
+        message = f"'{display_path(path)}' is not a mesh of a format that is read"
+        raise LinkwrightError(Diagnostic("INR102", message, hint=f"use {', '.join(MESH_ENDINGS)}"))
+    try:
+        if path.stat().st_size > LARGEST_FILE:
+            raise _unreadable(path, f"it is larger than {LARGEST_FILE >> 20} MiB")
+        data = path.read_bytes()
+    except FileNotFoundError:
+        message = f"there is no mesh file '{display_path(path)}'"
+        raise LinkwrightError(Diagnostic("INR101", message, hint=missing_file_hint(path))) from None
+    except OSError as error:
+        raise _unreadable(path, error.strerror or str(error)) from None
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            mesh = _parse(data, kind[1:], path)
+    except Exception as error:  # noqa: BLE001 - a parser of foreign bytes may raise anything
+        raise _unreadable(path, _first_line(error)) from None
+    if not len(mesh.faces):
+        raise _unreadable(path, "it has no triangles")
+    if not np.isfinite(mesh.vertices).all():
+        raise _unreadable(path, "a coordinate is not finite")
+    return mesh
+
+
+def _parse(data: bytes, kind: str, path: Path) -> TriangleMesh:
+    # Imported here: trimesh costs 0.1 s, and most robots are checked without a look into their meshes.
+    import trimesh
+    from trimesh.resolvers import FilePathResolver
+
+    logging.getLogger("trimesh").addHandler(logging.NullHandler())  # what it warns of is no concern of the user
+    options: dict[str, Any] = {"process": False}
+    if kind in ("obj", "glb", "gltf"):
+        options["skip_materials"] = True
+    if kind in ("glb", "gltf"):
+        options["resolver"] = FilePathResolver(str(path))
+    scene: Any = trimesh.load_scene(BytesIO(data), file_type=kind, **options)
+    unit = _collada_unit(scene) if kind == "dae" else 1.0
+    vertices, faces, count = [np.zeros((0, 3))], [np.zeros((0, 3), dtype=np.int64)], 0
+    for node in scene.graph.nodes_geometry:
+        matrix, name = scene.graph[node]
+        geometry = scene.geometry[name]
+        if not isinstance(geometry, trimesh.Trimesh) or not len(geometry.faces):
+            continue  # lines and points bound nothing
+        matrix = np.asarray(matrix, dtype=np.float64)
+        corners = np.asarray(geometry.vertices, dtype=np.float64)
+        triangles = np.asarray(geometry.faces, dtype=np.int64)
+        if np.linalg.det(matrix[:3, :3]) < 0:
+            triangles = triangles[:, ::-1]
+        vertices.append((corners @ matrix[:3, :3].T + matrix[:3, 3]) * unit)
+        faces.append(triangles + count)
+        count += len(corners)
+    return TriangleMesh(np.concatenate(vertices), np.concatenate(faces))
+
+
+def _collada_unit(scene: Any) -> float:
+    """Metres for each unit of a COLLADA file; trimesh notes them with the meshes and leaves the numbers as they are."""
+    for geometry in scene.geometry.values():
+        words = str(geometry.metadata.get("units", "meters")).split(" * ")
+        if len(words) == 2:
+            return float(words[0])
+    return 1.0
+
+
+def _unreadable(path: Path, why: str) -> LinkwrightError:
+    hint = "export it again, or leave the link out"
+    return LinkwrightError(Diagnostic("INR103", f"cannot read the mesh '{display_path(path)}': {why}", hint=hint))
+
+
+def _first_line(error: Exception) -> str:
+    lines = str(error).strip().splitlines()
+    return lines[0] if lines else type(error).__name__

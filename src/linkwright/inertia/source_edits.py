@@ -1,0 +1,173 @@
+"""Putting ``<inertial>`` blocks into the source of a description, with everything around them left as it is."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from linkwright.diagnostics import SourceText
+from linkwright.inertia.blocks import Attributes, inertial_block, inertial_parts, start_tag
+from linkwright.inertia.properties import MassProperties
+from linkwright.urdf import Link
+from linkwright.xacro.origin import Frame, frames
+from linkwright.xmltree import Element, parse
+from linkwright.xmltree.positions import attribute_name_range, attribute_value_range
+
+_START_TAG = re.compile(r"""<(?:[^"'>]|"[^"]*"|'[^']*')*>""")
+_REST_OF_LINE = re.compile(r"(?:[ \t]*<!--(?:(?!-->).)*-->)*(?=[ \t]*\r?\n)")
+"""Comments behind a start tag, which belong to it."""
+
+_EXPRESSION = re.compile(r"\$[{(](?!find\b)")
+"""An expression whose value may change; a package's folder does not change the shape of a mesh."""
+
+
+@dataclass(frozen=True, slots=True)
+class Replacement:
+    """Characters `start` to `end` (exclusive) of a source text become `text`."""
+
+    start: int
+    end: int
+    text: str
+
+
+class NotWritableError(Exception):
+    """A link's ``<inertial>`` is not written in a file as plain text; the text of the error says why, as a clause."""
+
+
+def edits_for(link: Link, properties: MassProperties) -> tuple[SourceText, list[Replacement]]:
+    """What to change in which source, so that a link has these mass properties.
+
+    An ``<inertial>`` that is there keeps its formatting and comments; only values are exchanged and what it lacks is
+    added. A new one comes first in the link.
+
+    Args:
+        link: read from a file, maybe through xacro.
+        properties: in the link frame.
+
+    Raises:
+        NotWritableError: the link is written by a macro, or with expressions.
+    """
+    written = _written_element(link)
+    source = written.source
+    assert source is not None
+    inertial = written.first("inertial")
+    if inertial is None:
+        return source, [_new_block(source.text, written, properties)]
+    if _holds(inertial, _EXPRESSION):
+        raise NotWritableError("its <inertial> is written with expressions")
+    return source, list(_changed_block(source.text, inertial, properties))
+
+
+def apply(text: str, edits: Iterable[Replacement]) -> str:
+    """A text with replacements made, which must not overlap."""
+    for edit in sorted(edits, key=lambda edit: (edit.start, edit.end), reverse=True):
+        text = text[: edit.start] + edit.text + text[edit.end :]
+    return text
+
+
+def _written_element(link: Link) -> Element:
+    """The ``<link>`` as it stands in its file, before any expansion."""
+    element = link.element
+    if element is None or element.source is None:
+        raise NotWritableError("it is not written in a file")
+    frame = element.origin if isinstance(element.origin, Frame) else None
+    macro = next((each.macro for each in frames(frame) if each.macro is not None), None)
+    if macro is not None:
+        raise NotWritableError(f"it is written by the macro '{macro}'")
+    document = parse(element.source.text, element.source.name)
+    written = next((each for each in _walk(document.root) if each.offset == element.offset), None)
+    if written is None or written.tag != "link":
+        raise NotWritableError("it is not written as a plain <link>")
+    dynamic = next((child.tag for child in written.elements() if child.tag.startswith("xacro:")), None)
+    if dynamic is not None:
+        raise NotWritableError(f"part of it is written by <{dynamic}>")
+    for shape in (*written.elements("visual"), *written.elements("collision")):
+        parts = (shape.first("origin"), shape.first("geometry"))
+        if any(part is not None and _holds(part, _EXPRESSION) for part in parts):
+            raise NotWritableError(
+                "its shapes are written with expressions, which numbers in the file would not follow"
+            )
+    return written
+
+
+def _new_block(text: str, link: Element, properties: MassProperties) -> Replacement:
+    at = _tag_end(text, link.offset)
+    newline = "\r\n" if "\r\n" in text else "\n"
+    outer = _indentation(text, link.offset)
+    child = next(link.elements(), None)
+    inner = _indentation(text, child.offset) if child is not None else None
+    if inner is None:
+        inner = (outer or "") + "  "
+    step = inner.removeprefix(outer or "") if inner.startswith(outer or "") else ""
+    block = inertial_block(properties, inner, step or "  ", newline)
+    rest = _REST_OF_LINE.match(text, at)
+    if rest is not None:
+        return Replacement(rest.end(), rest.end(), f"{newline}{inner}{block}")
+    return Replacement(at, at, f"{newline}{inner}{block}{newline}{inner}")
+
+
+def _changed_block(text: str, inertial: Element, properties: MassProperties) -> Iterator[Replacement]:
+    end = _tag_end(text, inertial.offset)
+    newline = "\r\n" if "\r\n" in text else "\n"
+    if text[end - 2] == "/":
+        block = inertial_block(properties, _indentation(text, inertial.offset) or "", newline=newline)
+        yield Replacement(inertial.offset, end, block)
+        return
+    indent = (_indentation(text, inertial.offset) or "") + "  "
+    first = next(inertial.elements(), None)
+    if first is not None:
+        indent = _indentation(text, first.offset) or indent
+    missing = []
+    for tag, attributes in inertial_parts(properties):
+        child = inertial.first(tag)
+        if child is None:
+            missing.append(f"{newline}{indent}{start_tag(tag, attributes)}")
+        else:
+            yield from _changed_attributes(text, child, attributes)
+    if missing:
+        yield Replacement(end, end, "".join(missing))
+
+
+def _changed_attributes(text: str, element: Element, attributes: Attributes) -> Iterator[Replacement]:
+    added = ""
+    for name, value in attributes:
+        found = attribute_value_range(text, element.offset, name)
+        if found is None:
+            added += "" if (name, value) == ("rpy", "0 0 0") else f' {name}="{value}"'
+        else:
+            yield Replacement(*found, value)
+    if added:
+        after = element.offset + 1 + len(element.tag)
+        yield Replacement(after, after, added)
+    name_range = attribute_name_range(text, element.offset, "quat_xyzw")
+    value_range = attribute_value_range(text, element.offset, "quat_xyzw")
+    if name_range is not None and value_range is not None:  # the block's axes are those of the link
+        yield Replacement(name_range[0], value_range[1] + 1, "")
+
+
+def _walk(root: Element) -> Iterator[Element]:
+    waiting = [root]
+    while waiting:
+        element = waiting.pop()
+        yield element
+        waiting.extend(element.elements())
+
+
+def _holds(element: Element, pattern: re.Pattern[str]) -> bool:
+    """Whether the pattern is found in an attribute of an element or below it, or a child is left to xacro."""
+    return any(
+        each.tag.startswith("xacro:") or any(map(pattern.search, each.attributes.values())) for each in _walk(element)
+    )
+
+
+def _tag_end(text: str, offset: int) -> int:
+    found = _START_TAG.match(text, offset)
+    assert found is not None, "the text was parsed"
+    return found.end()
+
+
+def _indentation(text: str, offset: int) -> str | None:
+    """The blanks before a place in its line; None when something else stands there."""
+    before = text[text.rfind("\n", 0, offset) + 1 : offset]
+    return before if not before.strip() else None

@@ -1,0 +1,93 @@
+"""Writing computed ``<inertial>`` elements into the files that links are written in."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path
+from linkwright.inertia.properties import MassProperties
+from linkwright.inertia.source_edits import NotWritableError, Replacement, apply, edits_for
+from linkwright.urdf import Link, Robot
+from linkwright.xmltree.reader import read_bytes
+
+_BYTE_ORDER_MARK = "\ufeff"
+
+
+@dataclass(frozen=True, slots=True)
+class Written:
+    """What came of writing.
+
+    Attributes:
+        files: the files that were changed, in the order of their links.
+        links: the links whose ``<inertial>`` stands in one of them now.
+        refused: link -> why it cannot be written, as a clause.
+    """
+
+    files: tuple[Path, ...]
+    links: tuple[str, ...]
+    refused: Mapping[str, str]
+
+
+def write_inertials(robot: Robot, properties: Mapping[str, MassProperties]) -> Written:
+    """Put mass properties into the files that the links are written in; all else in them stays as it is.
+
+    Args:
+        robot: read from a file, maybe through xacro.
+        properties: link -> mass properties in the link frame.
+
+    Raises:
+        LinkwrightError: INR201 when a file cannot be written.
+    """
+    times = Counter(_place(link) for link in robot.links.values())
+    refused: dict[str, str] = {}
+    edits: dict[str, list[Replacement]] = {}
+    texts: dict[str, str] = {}
+    links: dict[str, list[str]] = {}
+    for name, wanted in properties.items():
+        link = robot.links[name]
+        if times[_place(link)] > 1:
+            refused[name] = "its place in the file makes several links"
+            continue
+        try:
+            source, changes = edits_for(link, wanted)
+            if source.name not in texts:
+                texts[source.name] = _current(source.name, source.text)
+        except NotWritableError as error:
+            refused[name] = str(error)
+            continue
+        edits.setdefault(source.name, []).extend(changes)
+        links.setdefault(source.name, []).append(name)
+    for file, changes in edits.items():
+        _save(file, texts[file], changes)
+    return Written(tuple(map(Path, edits)), tuple(name for names in links.values() for name in names), refused)
+
+
+def _place(link: Link) -> tuple[str, int]:
+    element = link.element
+    return ("", id(link)) if element is None or element.source is None else (element.source.name, element.offset)
+
+
+def _current(file: str, text: str) -> str:
+    """The text of a file as it is now, with its byte order mark; offsets of the text that was read hold in it."""
+    try:
+        now = read_bytes(file).decode("utf-8")
+    except UnicodeDecodeError:
+        raise NotWritableError("its file is not UTF-8") from None
+    except LinkwrightError:
+        raise NotWritableError("it is not written in a file") from None
+    if len(now.removeprefix(_BYTE_ORDER_MARK)) != len(text):
+        raise NotWritableError("its file has changed since it was read")
+    return now
+
+
+def _save(file: str, text: str, changes: list[Replacement]) -> None:
+    mark = _BYTE_ORDER_MARK if text.startswith(_BYTE_ORDER_MARK) else ""
+    changed = mark + apply(text.removeprefix(_BYTE_ORDER_MARK), changes)
+    try:
+        Path(file).write_bytes(changed.encode("utf-8"))
+    except OSError as error:
+        message = f"cannot write '{display_path(file)}': {error.strerror or error}"
+        raise LinkwrightError(Diagnostic("INR201", message, hint="make the file writable")) from None

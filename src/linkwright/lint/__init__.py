@@ -1,0 +1,10 @@
+"""Rules over descriptions and the packages around them."""
+
+from linkwright.lint.engine import Checked, check, examine
+from linkwright.lint.finding import Finding
+from linkwright.lint.fix import Edit, Fix
+from linkwright.lint.rule import Option, Rule, Scope
+from linkwright.lint.settings import Settings
+from linkwright.lint.subject import Subject
+
+__all__ = ["Checked", "Edit", "Finding", "Fix", "Option", "Rule", "Scope", "Settings", "Subject", "check", "examine"]

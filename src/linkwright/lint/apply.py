@@ -1,0 +1,180 @@
+"""Applying fixes to files: as many as fit together, then again, until nothing is left to mend."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from difflib import unified_diff
+from pathlib import Path
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path
+from linkwright.lint.finding import Finding
+from linkwright.lint.fix import Edit, Fix
+from linkwright.workspace import enclosing_package
+from linkwright.xmltree import parse
+from linkwright.xmltree.reader import read_bytes
+
+_MOST_PASSES = 20
+_MARK = b"\xef\xbb\xbf"
+_XML_ENDINGS = (".urdf", ".xacro", ".xml")
+
+Check = Callable[[str | None], Iterable[Diagnostic]]
+"""Checks the main file again, with another text where one is given."""
+
+
+@dataclass(slots=True)
+class Mended:
+    """What fixing did.
+
+    Attributes:
+        texts: path -> new text of every file that changes.
+        counts: code -> how many findings were mended.
+    """
+
+    texts: dict[str, str] = field(default_factory=dict)
+    counts: dict[str, int] = field(default_factory=dict)
+
+    def diff(self) -> str:
+        """The changes as a unified diff, as ``patch -p0`` takes it."""
+        return "".join(_diff(file, text) for file, text in self.texts.items())
+
+
+def fix_file(path: Path, check: Check, *, unsafe: bool = False, write: bool = True) -> Mended:
+    """Mend what can be mended of a description.
+
+    Only files of its package are changed, or, where it lies in none, those at and below its folder. A pass applies
+    all fixes that do not overlap; the next one looks at what came of it.
+
+    Args:
+        path: the description.
+        check: checks it; called with the new text of `path` where nothing is written, else with None.
+        unsafe: whether to apply fixes too that may change what was meant.
+        write: whether to change the files; else the result tells what would change. Then a file that the description
+            includes is looked at once.
+
+    Raises:
+        LinkwrightError: LINT201, a file cannot be written.
+    """
+    home = _home(path)
+    mended = Mended()
+    for _ in range(_MOST_PASSES):
+        found = check(mended.texts.get(str(path)) if not write else None)
+        done = {file for file in mended.texts if not write and file != str(path)}
+        fixes = [(each.code, each.fix) for each in _mendable(found, unsafe) if _may_change(each.fix, home, done)]
+        changed = _apply(fixes, mended, {} if write else mended.texts)
+        if not changed:
+            break
+        mended.texts.update(changed)
+        if write:
+            for file, text in changed.items():
+                write_text(Path(file), text)
+    return mended
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a file whole or not at all, with its permissions and its byte order mark; a link stays a link.
+
+    Raises:
+        LinkwrightError: LINT201, it cannot be written.
+    """
+    target = path.resolve()
+    try:
+        before = target.read_bytes()
+        data = (_MARK if before.startswith(_MARK) else b"") + text.encode("utf-8")
+        handle, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.")
+        try:
+            with os.fdopen(handle, "wb") as file:
+                file.write(data)
+            Path(name).chmod(target.stat().st_mode & 0o7777)
+            Path(name).replace(target)
+        except OSError:
+            Path(name).unlink(missing_ok=True)
+            raise
+    except OSError as error:
+        message = f"cannot write '{display_path(path)}': {error.strerror or error}"
+        raise LinkwrightError(Diagnostic("LINT201", message, hint="is the file yours to change?")) from None
+
+
+@dataclass(frozen=True, slots=True)
+class _Mendable:
+    code: str
+    fix: Fix
+
+
+def _mendable(found: Iterable[Diagnostic], unsafe: bool) -> Iterator[_Mendable]:
+    for diagnostic in found:
+        if isinstance(diagnostic, Finding) and diagnostic.fix and (diagnostic.fix.safe or unsafe):
+            yield _Mendable(diagnostic.code, diagnostic.fix)
+
+
+def _home(path: Path) -> Path:
+    folder = path.absolute().parent
+    package = enclosing_package(folder)
+    return (package[1] if package else folder).resolve()
+
+
+def _may_change(fix: Fix, home: Path, done: set[str]) -> bool:
+    return all(
+        edit.source_file not in done and Path(edit.source_file).resolve().is_relative_to(home) for edit in fix.edits
+    )
+
+
+def _apply(fixes: Iterable[tuple[str, Fix]], mended: Mended, texts: Mapping[str, str]) -> dict[str, str]:
+    """The new texts of the files that fixes change; of fixes that overlap, the first is applied."""
+    taken: dict[str, list[Edit]] = {}
+    counts: dict[str, int] = {}
+    before: dict[str, str | None] = {}
+    for code, fix in fixes:
+        if all(_fits(edit, taken.get(edit.source_file, ())) for edit in fix.edits):
+            for edit in fix.edits:
+                taken.setdefault(edit.source_file, []).append(edit)
+            counts[code] = counts.get(code, 0) + 1
+    changed = {}
+    for file, edits in taken.items():
+        text = before.setdefault(file, texts.get(file) if file in texts else _text(file))
+        if text is None:
+            return {}
+        new = _edited(text, edits)
+        if new != text and _is_sound(file, new):
+            changed[file] = new
+    if changed:
+        for code, count in counts.items():
+            mended.counts[code] = mended.counts.get(code, 0) + count
+    return changed
+
+
+def _fits(edit: Edit, others: Iterable[Edit]) -> bool:
+    return all(edit.end < other.start or other.end < edit.start for other in others)
+
+
+def _edited(text: str, edits: Iterable[Edit]) -> str:
+    for edit in sorted(edits, key=lambda edit: edit.start, reverse=True):
+        text = text[: edit.start] + edit.replacement + text[edit.end :]
+    return text
+
+
+def _text(file: str) -> str | None:
+    """The text of a file as it is on the disk, without a byte order mark; None where it is not UTF-8."""
+    try:
+        return read_bytes(file).removeprefix(_MARK).decode("utf-8")
+    except (LinkwrightError, UnicodeDecodeError):
+        return None
+
+
+def _is_sound(file: str, text: str) -> bool:
+    if not file.endswith(_XML_ENDINGS):
+        return True
+    try:
+        parse(text.lstrip(), file)
+    except LinkwrightError:
+        return False
+    return True
+
+
+def _diff(file: str, text: str) -> str:
+    before = _text(file) or ""
+    name = display_path(file)
+    lines = unified_diff(before.splitlines(keepends=True), text.splitlines(keepends=True), name, name)
+    return "".join(line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n" for line in lines)

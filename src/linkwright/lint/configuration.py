@@ -1,0 +1,253 @@
+"""Settings from files: ``linkwright.toml``, or ``[tool.linkwright]`` in ``pyproject.toml``, found upwards of a file.
+
+What is wrong with a configuration is told with its place, and the rest of it holds all the same.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Iterator, Mapping
+from functools import lru_cache
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, SourceText, Span, did_you_mean
+from linkwright.lint.explain import toml
+from linkwright.lint.registry import find_rule
+from linkwright.lint.rule import Option, OptionValue, Rule
+from linkwright.lint.selectors import canonical, is_selector, selector_hint
+from linkwright.lint.settings import Settings
+from linkwright.xmltree.decoding import decode
+from linkwright.xmltree.reader import read_bytes
+
+tomllib: Any = import_module("tomllib" if sys.version_info >= (3, 11) else "tomli")
+
+CONFIGURATION = "linkwright.toml"
+_PROJECT = "pyproject.toml"
+_PROJECT_TABLE = ("tool", "linkwright")
+KEYS = ("select", "extend-select", "ignore", "severity", "per-file-ignores", "options")
+
+_HEADER = re.compile(r"^[ \t]*\[(?!\[)([^\]\n]+)\]", re.MULTILINE)
+_PLACE = re.compile(r"\(at line (\d+), column (\d+)\)")
+_KINDS = {bool: "true or false", int: "a whole number", float: "a number", str: "a text", list: "a list of texts"}
+
+
+def settings_for(path: Path) -> tuple[Settings, tuple[Diagnostic, ...]]:
+    """The settings for a file or folder, with what is wrong with their text."""
+    found = find_configuration(path)
+    return (Settings(), ()) if found is None else read_settings(found)
+
+
+def find_configuration(path: Path) -> Path | None:
+    """The configuration that holds for a file or folder: the nearest upwards, ``linkwright.toml`` before the other."""
+    start = path.absolute()
+    for folder in (start, *start.parents):
+        own = folder / CONFIGURATION
+        if own.is_file():
+            return own
+        project = folder / _PROJECT
+        if project.is_file() and _has_table(project):
+            return project
+    return None
+
+
+def read_settings(file: Path) -> tuple[Settings, tuple[Diagnostic, ...]]:
+    """The settings that a configuration file says, with what is wrong with it (LINT1##)."""
+    try:
+        stamp = file.stat().st_mtime_ns
+    except OSError:
+        stamp = 0
+    return _read_settings(file, stamp)
+
+
+@lru_cache(maxsize=16)
+def _read_settings(file: Path, _stamp: int) -> tuple[Settings, tuple[Diagnostic, ...]]:
+    try:
+        source = SourceText(str(file), decode(read_bytes(file), str(file)))
+    except LinkwrightError as error:
+        return Settings(), error.diagnostics
+    try:
+        whole = tomllib.loads(source.text)
+    except tomllib.TOMLDecodeError as error:
+        return Settings(), (_syntax_error(source, error),)
+    prefix = _PROJECT_TABLE if file.name == _PROJECT else ()
+    table: Any = whole
+    for key in prefix:
+        table = table.get(key, {}) if isinstance(table, dict) else {}
+    reader = _Reader(source, prefix)
+    return reader.settings(table, file.absolute().parent), tuple(reader.found)
+
+
+def _has_table(project: Path) -> bool:
+    try:
+        text = project.read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return False
+    return re.search(r"^[ \t]*\[+\s*tool\s*\.\s*linkwright\b", text, re.MULTILINE) is not None
+
+
+def _syntax_error(source: SourceText, error: Exception) -> Diagnostic:
+    message = str(error)
+    place = _PLACE.search(message)
+    start = source.offset(int(place[1]), int(place[2])) if place else len(source.text)
+    reason = _PLACE.sub("", message).replace("(at end of document)", "").strip()
+    return Diagnostic(
+        "LINT101",
+        f"this is not TOML: {reason[:1].lower()}{reason[1:]}",
+        source.span(start),
+        hint='a value is a text in quotes, a number, true, false, or a list: ignore = ["LW204"]',
+        source=source,
+    )
+
+
+class _Reader:
+    """Turns a table into settings; `found` collects what is wrong."""
+
+    def __init__(self, source: SourceText, prefix: tuple[str, ...]) -> None:
+        self._source = source
+        self._prefix = prefix
+        self.found: list[Diagnostic] = []
+
+    def settings(self, table: Any, folder: Path) -> Settings:
+        if not isinstance(table, dict):
+            self._wrong(("linkwright",), "is not a table", "write [tool.linkwright] above the settings")
+            return Settings(folder=folder)
+        for key in table:
+            if key not in KEYS:
+                hint = did_you_mean(key, KEYS) or f"the settings are {', '.join(KEYS)}"
+                self._say("LINT102", f"there is no setting '{key}'", (key,), hint)
+        select = table.get("select")
+        return Settings(
+            None if select is None else self._selectors(("select",), select),
+            self._selectors(("extend-select",), table.get("extend-select", [])),
+            self._selectors(("ignore",), table.get("ignore", [])),
+            dict(self._severities(self._table("severity", table))),
+            tuple(self._per_file(self._table("per-file-ignores", table))),
+            dict(self._options(self._table("options", table))),
+            folder,
+        )
+
+    def _table(self, key: str, table: Mapping[str, Any]) -> Mapping[str, Any]:
+        value = table.get(key, {})
+        if isinstance(value, dict):
+            return value
+        self._wrong((key,), "is not a table", f"write [{'.'.join((*self._prefix, key))}]")
+        return {}
+
+    def _selectors(self, path: tuple[str, ...], value: Any) -> tuple[str, ...]:
+        if not isinstance(value, list) or not all(isinstance(each, str) for each in value):
+            self._wrong(path, "is not a list of texts", f'write {_written(path[-1])} = ["LW204", "limit-inverted"]')
+            return ()
+        return tuple(word for each in value if (word := self._selector(path, each, each)))
+
+    def _selector(self, path: tuple[str, ...], word: str, mark: str) -> str | None:
+        if is_selector(word):
+            return canonical(word)
+        self._say("LINT104", f"there is no rule '{word}'", path, selector_hint(word), mark=mark)
+        return None
+
+    def _severities(self, table: Mapping[str, Any]) -> Iterator[tuple[str, Severity]]:
+        words = [severity.value for severity in Severity]
+        for key, value in table.items():
+            path = ("severity", key)
+            selector = self._selector(path, key, key)
+            if value not in words:
+                hint = did_you_mean(str(value), words) or f"it is one of {', '.join(words)}; to silence, use ignore"
+                self._wrong(path, "is not a severity", hint, shown=value)
+            elif selector:
+                yield selector, Severity(value)
+
+    def _per_file(self, table: Mapping[str, Any]) -> Iterator[tuple[str, tuple[str, ...]]]:
+        for pattern, value in table.items():
+            yield pattern, self._selectors(("per-file-ignores", pattern), value)
+
+    def _options(self, table: Mapping[str, Any]) -> Iterator[tuple[str, Mapping[str, OptionValue]]]:
+        for key, value in table.items():
+            rule = find_rule(key)
+            if rule is None:
+                self._say("LINT104", f"there is no rule '{key}'", ("options", key), selector_hint(key))
+            elif not isinstance(value, dict):
+                self._wrong(("options", key), "is not a table", f"write [options.{key}]")
+            else:
+                yield rule.name, dict(self._rule_options(rule, key, value))
+
+    def _rule_options(self, rule: Rule, key: str, table: Mapping[str, Any]) -> Iterator[tuple[str, OptionValue]]:
+        known = {option.name: option for option in rule.options}
+        for name, value in table.items():
+            path = ("options", key, name)
+            option = known.get(name)
+            if option is None:
+                hint = did_you_mean(name, known) or (
+                    f"its options are {', '.join(known)}" if known else f"{rule.code} has no options"
+                )
+                self._say("LINT102", f"rule '{rule.name}' has no option '{name}'", path, hint)
+            elif not _fits(option, value):
+                self._wrong(path, f"is not {_KINDS[type(option.default)]}", f"the default is {toml(option.default)}")
+            else:
+                yield name, value
+
+    def _wrong(self, path: tuple[str, ...], what: str, hint: str, *, shown: object = None) -> None:
+        value = "" if shown is None else f": '{shown}'"
+        self._say("LINT103", f"'{path[-1]}' {what}{value}", path, hint)
+
+    def _say(self, code: str, message: str, path: tuple[str, ...], hint: str, *, mark: str | None = None) -> None:
+        span = _locate(self._source, (*self._prefix, *path), mark)
+        self.found.append(Diagnostic(code, message, span, hint=hint, source=self._source))
+
+
+def _fits(option: Option, value: object) -> bool:
+    kind = type(option.default)
+    if kind is float:
+        return isinstance(value, (int, float)) and not isinstance(value, bool)
+    if kind is list:
+        return isinstance(value, list) and all(isinstance(each, str) for each in value)
+    return isinstance(value, kind) and isinstance(value, bool) == (kind is bool)
+
+
+def _written(key: str) -> str:
+    return key if re.fullmatch(r"[\w-]+", key) else f'"{key}"'
+
+
+def _locate(source: SourceText, path: tuple[str, ...], mark: str | None) -> Span:
+    """The place of a key, or of a text in its value; tomllib keeps no places, so the text is searched."""
+    tables: list[tuple[tuple[str, ...], int, int]] = []
+    headers = list(_HEADER.finditer(source.text))
+    ends = [header.start() for header in headers] + [len(source.text)]
+    tables.append(((), 0, ends[0]))
+    tables += [(_keys(header[1]), header.start(1), end) for header, end in zip(headers, ends[1:], strict=True)]
+    for name, start, end in sorted(tables, key=lambda table: -len(table[0])):
+        rest = path[len(name) :]
+        if name != path[: len(name)]:
+            continue
+        if not rest:
+            last = source.text.rindex(path[-1], start, source.text.index("]", start))
+            return source.span(last, last + len(path[-1]))
+        found = _find_key(source.text, start, end, rest)
+        if found is None:
+            continue
+        if mark is not None and mark != path[-1]:
+            quoted = re.compile(rf"""["']({re.escape(mark)})["']""").search(source.text, found[1], end)
+            if quoted:
+                return source.span(*quoted.span(1))
+        return source.span(*found)
+    return source.span(0)
+
+
+def _find_key(text: str, start: int, end: int, keys: tuple[str, ...]) -> tuple[int, int] | None:
+    """A key of a table, written alone, dotted, or in inline tables."""
+    at, span = start, None
+    for index, key in enumerate(keys):
+        before = r"[.{,=][ \t]*\{?" if index else "^"
+        pattern = re.compile(rf"""{before}[ \t]*(["']?)({re.escape(key)})\1(?=[ \t]*[=.])""", re.MULTILINE)
+        found = pattern.search(text, at, end)
+        if found is None:
+            return None
+        span = found.span(2)
+        at = found.end(2)
+    return span
+
+
+def _keys(header: str) -> tuple[str, ...]:
+    return tuple(match[2] or match[3] for match in re.finditer(r"""(["'])(.*?)\1|([\w-]+)""", header))

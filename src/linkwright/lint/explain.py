@@ -1,0 +1,101 @@
+"""The page of every diagnostic code: of a rule its docstring, of others a section of ``pages/``.
+
+A file of ``pages/`` holds the codes of one room, ``## CODE: title`` and the text below.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from functools import cache
+from inspect import cleandoc
+from pathlib import Path
+
+from linkwright.diagnostics import nearest
+from linkwright.lint.registry import all_rules, find_rule
+from linkwright.lint.rule import OptionValue, Rule
+
+PAGES = Path(__file__).parent / "pages"
+_SECTION = re.compile(r"^## ([A-Z]+[0-9]{3}): (.+?)\n(.*?)(?=^## [A-Z]+[0-9]{3}: |\Z)", re.MULTILINE | re.DOTALL)
+
+
+@dataclass(frozen=True, slots=True)
+class Page:
+    """What there is to say about a code.
+
+    Attributes:
+        code: of the diagnostic.
+        title: what it reports, one line without a full stop.
+        text: the rest, in Markdown.
+        name: of the rule; empty for a diagnostic that is not a rule's.
+    """
+
+    code: str
+    title: str
+    text: str
+    name: str = ""
+
+    def __str__(self) -> str:
+        """The page as Markdown."""
+        head = f"# {self.code}: {self.name}\n\n{self.title}." if self.name else f"# {self.code}: {self.title}"
+        return f"{head}\n\n{self.text}".rstrip() + "\n"
+
+
+def find_page(code_or_name: str) -> Page | None:
+    """The page of a code or the name of a rule, in any case; None where there is none."""
+    rule = find_rule(code_or_name)
+    return rule_page(rule) if rule else room_pages().get(code_or_name.strip().upper())
+
+
+def rule_page(rule: Rule) -> Page:
+    """The page of a rule: its docstring, how it is switched, and its options."""
+    title, _, text = cleandoc(rule.__doc__ or "").partition("\n")
+    lines = [f"Severity: {rule.severity.value}. {_state(rule)}", "", text.strip()]
+    if rule.options:
+        lines += ["", "## Options", ""]
+        lines += [f"- `{option.name}` (default `{toml(option.default)}`): {option.meaning}" for option in rule.options]
+        lines += ["", "```toml", f"[options.{rule.name}]"]
+        lines += [f"{option.name} = {toml(option.default)}" for option in rule.options]
+        lines += ["```"]
+    return Page(rule.code, title.rstrip("."), "\n".join(lines), rule.name)
+
+
+@cache
+def room_pages() -> dict[str, Page]:
+    """The pages of the diagnostics that are not rules': code -> page."""
+    pages = {}
+    for file in sorted(PAGES.glob("*.md")):
+        for code, title, text in _SECTION.findall(file.read_text(encoding="utf-8")):
+            pages[code] = Page(code, title.strip(), text.strip())
+    return pages
+
+
+def known_codes() -> tuple[str, ...]:
+    """All codes that have a page."""
+    return (*(rule.code for rule in all_rules()), *room_pages())
+
+
+def nearest_codes(word: str) -> list[str]:
+    """Codes and rule names like a word that is neither."""
+    upper = word.upper()
+    names = [rule.name for rule in all_rules()]
+    codes = known_codes()
+    same_room = [code for code in codes if code[:-1] == upper[:-1]] if upper[-1:].isdigit() else []
+    return list(dict.fromkeys([*nearest(word, names), *nearest(upper, codes), *same_room[:3]]))[:4]
+
+
+def toml(value: OptionValue) -> str:
+    """An option's value as TOML has it."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, str):
+        return f'"{value}"'
+    if isinstance(value, list):
+        return f"[{', '.join(toml(each) for each in value)}]"
+    return repr(value)
+
+
+def _state(rule: Rule) -> str:
+    if rule.default:
+        return "On by default."
+    return f'Off by default; `extend-select = ["{rule.code}"]` switches it on.'

@@ -1,0 +1,179 @@
+"""Changes to source files that mend a finding, and the edits that rules need most.
+
+An edit replaces a range of characters of one file. Everything else, formatting and comments included, stays as it is.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from linkwright.xmltree import Element
+from linkwright.xmltree.positions import attribute_name_range, attribute_value_range
+
+_TAG_NAME = re.compile(r"<[^\s/>]+")
+_START_TAG_REST = re.compile(r"""(?:[^"'>]|"[^"]*"|'[^']*')*>""")
+_MARKUP = re.compile(r"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>|</[^>]*>|<", re.DOTALL)
+_UNSAFE = {"&": "&amp;", "<": "&lt;", '"': "&quot;"}
+
+
+@dataclass(frozen=True, slots=True)
+class Edit:
+    """One replacement.
+
+    Attributes:
+        source_file: path of the file, as its `SourceText` is named.
+        start: character offset of the first character replaced.
+        end: character offset after the last one.
+        replacement: what is put there, as it is written in the file.
+    """
+
+    source_file: str
+    start: int
+    end: int
+    replacement: str
+
+
+@dataclass(frozen=True, slots=True)
+class Fix:
+    """Edits that belong together.
+
+    Attributes:
+        edits: they must not overlap.
+        safe: whether the fix cannot change what the author meant; an unsafe one is applied only when asked for.
+    """
+
+    edits: tuple[Edit, ...]
+    safe: bool = True
+
+
+def replace_value(element: Element, attribute: str, value: str, *, safe: bool = True) -> Fix | None:
+    """Give an attribute another value; None where the value is not written in the file literally (an expression)."""
+    edit = value_edit(element, attribute, value)
+    return None if edit is None else Fix((edit,), safe)
+
+
+def rename_attribute(element: Element, old: str, new: str, *, safe: bool = True) -> Fix | None:
+    """Give an attribute another name; None where it is not written in the file."""
+    source = element.source
+    if source is None or new in element.attributes:
+        return None
+    found = attribute_name_range(source.text, element.offset, old)
+    return None if found is None else Fix((Edit(source.name, *found, new),), safe)
+
+
+def remove_attribute(element: Element, attribute: str, *, safe: bool = True) -> Fix | None:
+    """Take an attribute out, with the blank before it; None where it is not written in the file."""
+    source = element.source
+    if source is None:
+        return None
+    name = attribute_name_range(source.text, element.offset, attribute)
+    value = attribute_value_range(source.text, element.offset, attribute)
+    if name is None or value is None:
+        return None
+    start = len(source.text[: name[0]].rstrip())
+    return Fix((Edit(source.name, start, value[1] + 1, ""),), safe)
+
+
+def add_attribute(element: Element, attribute: str, value: str, *, safe: bool = True) -> Fix | None:
+    """Write an attribute behind those there are; None where the element is not written in a file."""
+    source = element.source
+    opened = _opened(element)
+    if source is None or opened is None or attribute in element.attributes:
+        return None
+    at = opened[1]
+    return Fix((Edit(source.name, at, at, f' {attribute}="{escaped(value)}"'),), safe)
+
+
+def rename_element(element: Element, tag: str, *, safe: bool = True) -> Fix | None:
+    """Give an element another name, in its start tag and its end tag."""
+    source = element.source
+    found = element_range(element)
+    if source is None or found is None:
+        return None
+    edits = [Edit(source.name, element.offset + 1, element.offset + 1 + len(element.tag), tag)]
+    closing = re.compile(rf"</({re.escape(element.tag)})\s*>$").search(source.text[slice(*found)])
+    if closing:
+        edits.append(Edit(source.name, found[0] + closing.start(1), found[0] + closing.end(1), tag))
+    return Fix(tuple(edits), safe)
+
+
+def remove_element(element: Element, *, safe: bool = True) -> Fix | None:
+    """Take an element out with all it holds, and with its line where nothing else stands there."""
+    source = element.source
+    found = element_range(element)
+    if source is None or found is None:
+        return None
+    text, (start, end) = source.text, found
+    line_start = text.rfind("\n", 0, start) + 1
+    line_end = text.find("\n", end)
+    line_end = len(text) if line_end < 0 else line_end + 1
+    if not text[line_start:start].strip() and not text[end:line_end].strip():
+        start, end = line_start, line_end
+    return Fix((Edit(source.name, start, end, ""),), safe)
+
+
+def value_edit(element: Element, attribute: str, value: str) -> Edit | None:
+    """The edit that gives an attribute another value; None where the value is not written literally."""
+    source = element.source
+    if source is None or not is_literal(element, attribute):
+        return None
+    found = attribute_value_range(source.text, element.offset, attribute)
+    return None if found is None else Edit(source.name, *found, escaped(value))
+
+
+def is_literal(element: Element, attribute: str) -> bool:
+    """Whether an attribute's value is written in the file as it is, not as an expression of xacro."""
+    source = element.source
+    if source is None or attribute not in element.attributes:
+        return False
+    found = attribute_value_range(source.text, element.offset, attribute)
+    if found is None:
+        return False
+    written = source.text[slice(*found)]
+    return "$" not in written and "&" not in written and written.split() == element.attributes[attribute].split()
+
+
+def element_range(element: Element) -> tuple[int, int] | None:
+    """Character offsets of an element in its file, from its ``<`` to behind its last ``>``; None for a made one."""
+    source = element.source
+    opened = _opened(element)
+    if source is None or opened is None:
+        return None
+    text = source.text
+    end, is_empty = opened[2], opened[3]
+    depth = 0 if is_empty else 1
+    while depth:
+        found = _MARKUP.search(text, end)
+        if found is None:
+            return None
+        end = found.end()
+        if found[0] == "<":
+            rest = _START_TAG_REST.match(text, end)
+            if rest is None:
+                return None
+            end = rest.end()
+            depth += not rest[0].endswith("/>")
+        elif found[0].startswith("</"):
+            depth -= 1
+    return element.offset, end
+
+
+def escaped(value: str) -> str:
+    """A value as it is written between double quotes."""
+    return "".join(_UNSAFE.get(character, character) for character in value)
+
+
+def _opened(element: Element) -> tuple[int, int, int, bool] | None:
+    """Offsets of a start tag: its ``<``, where an attribute can be added, its end; and whether it is the whole."""
+    source = element.source
+    if source is None:
+        return None
+    text = source.text
+    name = _TAG_NAME.match(text, element.offset)
+    rest = name and _START_TAG_REST.match(text, name.end())
+    if not name or not rest or name[0] != f"<{element.tag}":
+        return None
+    is_empty = rest[0].endswith("/>")
+    inside = text[: rest.end() - (2 if is_empty else 1)]
+    return element.offset, max(len(inside.rstrip()), name.end()), rest.end(), is_empty

@@ -1,0 +1,66 @@
+"""What a ``package.xml`` says (REP 149), with the places of what it says."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+from linkwright.xmltree import Document, Element
+
+DEPENDENCIES = frozenset(
+    {
+        *("depend", "build_depend", "build_export_depend", "exec_depend", "run_depend", "buildtool_depend"),
+        *("buildtool_export_depend", "test_depend", "doc_depend"),
+    }
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Dependency:
+    """A dependency on another package or a system key."""
+
+    name: str
+    tag: str
+    element: Element
+
+
+class Manifest:
+    """A parsed ``package.xml``."""
+
+    def __init__(self, document: Document) -> None:
+        self.document = document
+
+    @property
+    def root(self) -> Element:
+        """The ``<package>`` element."""
+        return self.document.root
+
+    def text(self, tag: str) -> str | None:
+        """What stands in the first element of a tag, without blanks around it and with single ones inside; or None."""
+        element = self.root.first(tag)
+        return None if element is None else " ".join(element.text().split())
+
+    @property
+    def name(self) -> str | None:
+        """The name of the package, or None where the file gives none."""
+        return self.text("name") or None
+
+    @property
+    def build_type(self) -> str | None:
+        """What ``<build_type>`` says, or None."""
+        export = self.root.first("export")
+        element = None if export is None else export.first("build_type")
+        return None if element is None else element.text().strip()
+
+    @cached_property
+    def dependencies(self) -> tuple[Dependency, ...]:
+        """All dependencies in the order of the text, those in groups left out."""
+        return tuple(
+            Dependency(element.text().strip(), element.tag, element)
+            for element in self.root.elements()
+            if element.tag in DEPENDENCIES
+        )
+
+    def declares(self, package: str) -> bool:
+        """Whether the file names a package, as this one or as a dependency of any kind."""
+        return package == self.name or any(dependency.name == package for dependency in self.dependencies)

@@ -1,0 +1,110 @@
+"""The mesh files that a description names, found and read once for all rules."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.urdf import Collision, Link, Mesh, Visual
+from linkwright.xmltree import Element
+
+if TYPE_CHECKING:
+    from linkwright.inertia import MeshLibrary, TriangleMesh
+    from linkwright.lint.subject import Subject
+
+
+@dataclass(frozen=True, slots=True)
+class MeshUse:
+    """A place where a link uses a mesh.
+
+    Attributes:
+        link: the link.
+        shape: its visual or collision.
+        mesh: the URI and scale.
+        element: the ``<mesh>`` element.
+    """
+
+    link: Link
+    shape: Visual | Collision
+    mesh: Mesh
+    element: Element
+
+    @property
+    def kind(self) -> str:
+        """``visual`` or ``collision``."""
+        return "visual" if isinstance(self.shape, Visual) else "collision"
+
+
+class MeshFacts:
+    """What is known of the meshes of one description.
+
+    Nothing is looked up before a rule asks for it. A URI that leads nowhere gives no path, and a file that cannot be
+    read no triangles; the rules about files tell of them, all others leave such a mesh alone.
+    """
+
+    def __init__(self, subject: Subject) -> None:
+        self._subject = subject
+
+    @cached_property
+    def uses(self) -> tuple[MeshUse, ...]:
+        """Every use of a mesh, in the order of the links, visuals before collisions."""
+        return tuple(self._all_uses())
+
+    @cached_property
+    def files(self) -> tuple[tuple[MeshUse, Path], ...]:
+        """The uses whose URI leads somewhere, with the path; whether there is a file is not asked."""
+        found = ((use, self.path(use)) for use in self.uses)
+        return tuple((use, path) for use, path in found if path is not None)
+
+    def path(self, use: MeshUse) -> Path | None:
+        """The file that a mesh's URI means, or None."""
+        try:
+            return self._library.locate(use.mesh.filename, use.element).absolute()
+        except LinkwrightError:
+            return None
+
+    def problem(self, use: MeshUse) -> LinkwrightError | None:
+        """Why the file of a use cannot be read, if it is there and cannot."""
+        try:
+            self._library.load(use.mesh, use.element)
+        except LinkwrightError as error:
+            return error
+        return None
+
+    def triangles(self, shape: Visual | Collision) -> TriangleMesh | None:
+        """The triangles of a shape's mesh, scaled, in the shape's frame; None where it cannot be read or is no mesh."""
+        if not isinstance(shape.geometry, Mesh):
+            return None
+        try:
+            return self._library.load(shape.geometry, shape.element)
+        except LinkwrightError:
+            return None
+
+    @cached_property
+    def _library(self) -> MeshLibrary:
+        from linkwright.inertia import MeshLibrary  # not above: a robot without meshes is checked without numpy
+
+        return MeshLibrary(self._subject.finder, self._subject.path.absolute().parent)
+
+    def _all_uses(self) -> Iterator[MeshUse]:
+        for link in self._subject.links:
+            shapes: list[Visual | Collision] = [*link.visuals, *link.collisions]
+            for shape in shapes:
+                element = shape_element(shape)
+                if isinstance(shape.geometry, Mesh) and element is not None:
+                    yield MeshUse(link, shape, shape.geometry, element)
+
+
+def shape_element(shape: Visual | Collision) -> Element | None:
+    """The ``<box>``, ``<mesh>`` and so on of a visual or collision."""
+    geometry = shape.element.first("geometry") if shape.element is not None else None
+    return next(geometry.elements(), None) if geometry is not None else None
+
+
+def material_element(shape: Visual) -> Element | None:
+    """The ``<material>`` of a visual."""
+    return shape.element.first("material") if shape.element is not None else None

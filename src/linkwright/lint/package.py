@@ -1,0 +1,148 @@
+"""The ROS package around a description: its files, and what they say about one another."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping
+from functools import cached_property
+from pathlib import Path
+
+from linkwright.diagnostics import LinkwrightError, SourceText
+from linkwright.lint.cmake_reader import CMakeFile, read_cmake
+from linkwright.lint.launch_reader import LaunchFile, is_launch_file, read_launch_file
+from linkwright.lint.manifest_reader import Manifest
+from linkwright.lint.setup_reader import SetupFile, read_setup
+from linkwright.workspace.sources import SKIPPED_FOLDERS
+from linkwright.xmltree import Document, parse_file
+from linkwright.xmltree.decoding import decode
+from linkwright.xmltree.reader import read_bytes
+
+MANIFEST = "package.xml"
+_MOST_FILES = 20_000
+_DESCRIPTIONS = (".xacro", ".urdf")
+
+
+def find_package(path: Path) -> PackageContext | None:
+    """The package that a file or folder lies in: the nearest folder upwards with a ``package.xml``; or None."""
+    path = path.absolute()
+    for folder in (path, *path.parents):
+        if (folder / MANIFEST).is_file():
+            return PackageContext(folder)
+    return None
+
+
+class PackageContext:
+    """A ROS package. Files are read when somebody asks, and nothing in them is run.
+
+    Attributes:
+        folder: the folder with the ``package.xml``, absolute.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder.absolute()
+
+    @cached_property
+    def _manifest(self) -> Manifest | LinkwrightError:
+        try:
+            return Manifest(parse_file(self.folder / MANIFEST))
+        except LinkwrightError as error:
+            return error
+
+    @property
+    def manifest(self) -> Manifest | None:
+        """Its ``package.xml``; None where that is not XML."""
+        return self._manifest if isinstance(self._manifest, Manifest) else None
+
+    @property
+    def manifest_error(self) -> LinkwrightError | None:
+        """What is wrong with the XML of its ``package.xml``, or None."""
+        return self._manifest if isinstance(self._manifest, LinkwrightError) else None
+
+    @property
+    def name(self) -> str:
+        """The name of the package; that of the folder where the manifest does not tell."""
+        return (self.manifest and self.manifest.name) or self.folder.name
+
+    @cached_property
+    def files(self) -> tuple[str, ...]:
+        """All files, as paths below the folder with slashes, sorted; hidden ones and build products left out."""
+        return tuple(sorted(self._walk()))
+
+    @cached_property
+    def folders(self) -> frozenset[str]:
+        """All folders that hold a file, directly or deeper, as paths below the package."""
+        found: set[str] = set()
+        for file in self.files:
+            parts = file.split("/")[:-1]
+            found.update("/".join(parts[:count]) for count in range(1, len(parts) + 1))
+        return frozenset(found)
+
+    def has(self, path: str) -> bool:
+        """Whether a file or folder exists, by its path below the package."""
+        return (self.folder / path).exists()
+
+    def text(self, path: str) -> SourceText | None:
+        """The text of a file of the package, or None where there is none or it cannot be read."""
+        full = str(self.folder / path)
+        try:
+            return SourceText(full, decode(read_bytes(full), full))
+        except LinkwrightError:
+            return None
+
+    @cached_property
+    def setup(self) -> SetupFile | None:
+        """Its ``setup.py``, or None."""
+        source = self.text("setup.py")
+        return None if source is None else read_setup(source)
+
+    @cached_property
+    def cmake(self) -> CMakeFile | None:
+        """Its ``CMakeLists.txt``, or None."""
+        source = self.text("CMakeLists.txt")
+        return None if source is None else read_cmake(source)
+
+    @cached_property
+    def launch_files(self) -> Mapping[str, LaunchFile]:
+        """Its Python launch files: path below the package -> what it says."""
+        found = {}
+        for file in self.files:
+            if is_launch_file(file):
+                source = self.text(file)
+                if source is not None:
+                    found[file] = read_launch_file(source, file)
+        return found
+
+    @cached_property
+    def descriptions(self) -> Mapping[Path, Document]:
+        """Its URDF and xacro files as they are written: path -> document; those that are no XML are left out."""
+        from linkwright.xacro import sources
+
+        found: dict[Path, Document] = {}
+        for file in self.files:
+            if file.endswith(_DESCRIPTIONS):
+                path = self.folder / file
+                try:
+                    found[path] = sources.read(str(path))
+                except LinkwrightError:
+                    continue
+        return found
+
+    def _walk(self) -> Iterator[str]:
+        count = 0
+        for top, folders, files in os.walk(self.folder):
+            inside = Path(top) != self.folder
+            folders[:] = [
+                name
+                for name in sorted(folders)
+                if not name.startswith(".")
+                and name not in SKIPPED_FOLDERS
+                and not (Path(top) / name / MANIFEST).is_file()
+            ]
+            relative = Path(top).relative_to(self.folder).as_posix()
+            for name in files:
+                if name.startswith(".") or name.endswith(".pyc"):
+                    continue
+                count += 1
+                if count > _MOST_FILES:
+                    return
+                yield f"{relative}/{name}" if inside else name

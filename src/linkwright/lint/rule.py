@@ -1,0 +1,108 @@
+"""What a lint rule is."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from enum import Enum
+from typing import TYPE_CHECKING, ClassVar
+
+from linkwright.diagnostics import Diagnostic, Note, Severity, SourceText, Span
+from linkwright.lint.finding import Finding
+from linkwright.lint.fix import Fix
+from linkwright.xmltree import Element
+
+if TYPE_CHECKING:
+    from linkwright.lint.subject import Subject
+
+OptionValue = bool | int | float | str | list[str]
+"""What an option of a rule may be, as TOML has it."""
+
+
+class Scope(Enum):
+    """What a rule looks at."""
+
+    DESCRIPTION = "description"
+    """One robot description; the rule runs once for each."""
+    PACKAGE = "package"
+    """The ROS package around it; the rule runs once for a package, however many descriptions it has."""
+    COMMENTS = "comments"
+    """The comments that suppress findings; the engine reports for the rule, which is not run."""
+
+
+@dataclass(frozen=True, slots=True)
+class Option:
+    """A setting of a rule, written in ``[options.RULE-NAME]`` of the configuration.
+
+    Attributes:
+        name: in kebab-case.
+        default: the value in force when nobody sets it; another value must be of its type.
+        meaning: one phrase for the documentation, with the unit.
+    """
+
+    name: str
+    default: OptionValue
+    meaning: str
+
+
+class Rule:
+    """A lint rule: one small subclass for each; its docstring is its page in the documentation.
+
+    The first line of the docstring says what the rule reports. Then come ``## Why``, ``## Example`` and
+    ``## Use instead``.
+
+    Attributes:
+        code: ``LW`` and three digits, never reused for another meaning.
+        name: in kebab-case; a name may be used wherever a code may.
+        severity: of its findings, where a finding does not say otherwise.
+        default: whether the rule is on when nobody selects it; pedantic rules are not.
+        scope: what it looks at.
+        options: its settings.
+        replaces: codes of findings that one of this rule stands for, where both are at one place.
+    """
+
+    code: ClassVar[str]
+    name: ClassVar[str]
+    severity: ClassVar[Severity] = Severity.WARNING
+    default: ClassVar[bool] = True
+    scope: ClassVar[Scope] = Scope.DESCRIPTION
+    options: ClassVar[tuple[Option, ...]] = ()
+    replaces: ClassVar[tuple[str, ...]] = ()
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """What the rule finds; it never raises for what the description says."""
+        raise NotImplementedError(f"{self.code} cannot check {subject.path}")
+
+    def report(
+        self,
+        message: str,
+        element: Element | None = None,
+        attribute: str | None = None,
+        *,
+        span: Span | None = None,
+        source: SourceText | None = None,
+        notes: Iterable[Note] = (),
+        hint: str | None = None,
+        fix: Fix | None = None,
+        severity: Severity | None = None,
+    ) -> Finding:
+        """A finding of this rule.
+
+        Args:
+            message: one sentence without a full stop at its end, naming the thing as the user wrote it.
+            element: what it is about; it gives the place, and the macro calls and includes that led there.
+            attribute: the attribute of the element whose value is the place.
+            span: the place, where it is not that of an element or attribute.
+            source: the text that `span` is in, for the excerpt.
+            notes: facts behind it, with their places.
+            hint: how to mend it.
+            fix: what would mend it.
+            severity: where it is not the rule's.
+        """
+        if element is not None:
+            if span is None:
+                span = element.attribute_span(attribute) if attribute else element.span()
+            source = source or element.source
+        return Finding(
+            self.code, message, span, severity or self.severity, tuple(notes), hint, source, fix=fix, element=element
+        )

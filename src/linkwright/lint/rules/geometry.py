@@ -1,0 +1,239 @@
+"""Rules about simple shapes and where they stand."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from linkwright.diagnostics import Diagnostic, Note
+from linkwright.lint.meshes import shape_element
+from linkwright.lint.rule import Option, Rule
+from linkwright.lint.subject import Subject
+from linkwright.urdf import Box, Collision, Geometry, Inertial, Link, Mesh, Sphere, Visual
+from linkwright.urdf.schema import GEOMETRY
+
+
+def shapes_of(subject: Subject) -> Iterator[tuple[Link, Visual | Collision]]:
+    """Every visual and collision with its link."""
+    for link in subject.links:
+        yield from ((link, visual) for visual in link.visuals)
+        yield from ((link, collision) for collision in link.collisions)
+
+
+def kind_of(shape: Visual | Collision) -> str:
+    """``visual`` or ``collision``."""
+    return "visual" if isinstance(shape, Visual) else "collision"
+
+
+def sizes_of(geometry: Geometry) -> tuple[tuple[str, float], ...]:
+    """The lengths of a simple shape in m, each with its attribute; none for a mesh."""
+    if isinstance(geometry, Mesh):
+        return ()
+    if isinstance(geometry, Box):
+        return tuple(("size", edge) for edge in geometry.size)
+    if isinstance(geometry, Sphere):
+        return (("radius", geometry.radius),)
+    return ("radius", geometry.radius), ("length", geometry.length)
+
+
+class NonPositiveSize(Rule):
+    """A shape with a size of zero or less.
+
+    ## Why
+
+    urdfdom before URDF 1.2 reads any number. RViz then shows nothing or a shape turned inside out, and physics engines
+    stop with an assertion.
+
+    ## Example
+
+    ```xml
+    <box size="0.4 -0.3 0.1"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <box size="0.4 0.3 0.1"/>
+    ```
+    """
+
+    code = "LW401"
+    name = "size-not-positive"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        for link, shape in shapes_of(subject):
+            bad = next(((name, size) for name, size in sizes_of(shape.geometry) if size <= 0), None)
+            if bad is not None:
+                name, size = bad
+                what = type(shape.geometry).__name__.lower()
+                yield self.report(
+                    f"'{name}' of the {kind_of(shape)} {what} of link '{link.name}' is "
+                    f"{'zero' if size == 0 else 'negative'}",
+                    shape_element(shape),
+                    name,
+                    hint="sizes are in metres and above zero",
+                )
+
+
+class HugeSize(Rule):
+    """A shape of more than a hundred metres.
+
+    ## Why
+
+    URDF is in metres. A box of 400 is a box of 400 mm in a file that came from CAD.
+
+    ## Example
+
+    ```xml
+    <box size="400 300 100"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <box size="0.4 0.3 0.1"/>
+    ```
+    """
+
+    code = "LW402"
+    name = "size-huge"
+    options = (Option("largest", 100.0, "largest size of a shape, in m"),)
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        largest = subject.option(self, "largest", float)
+        for link, shape in shapes_of(subject):
+            name, size = max(sizes_of(shape.geometry), key=lambda each: each[1], default=("", 0.0))
+            if size > largest:
+                what = type(shape.geometry).__name__.lower()
+                yield self.report(
+                    f"the {kind_of(shape)} {what} of link '{link.name}' is {size:g} m large",
+                    shape_element(shape),
+                    name,
+                    hint=f"lengths are in metres; if this is in millimetres, write {size / 1000:g}",
+                )
+
+
+class TinySize(Rule):
+    """A shape of less than a tenth of a millimetre in every direction.
+
+    ## Why
+
+    Nobody sees it, and contacts with it are noise. It is a placeholder, which better is no shape at all, or a length
+    divided by a thousand twice.
+
+    ## Example
+
+    ```xml
+    <sphere radius="0.00002"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <sphere radius="0.02"/>
+    ```
+    """
+
+    code = "LW403"
+    name = "size-tiny"
+    options = (Option("smallest", 1e-4, "smallest size of a shape, in m"),)
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        smallest = subject.option(self, "smallest", float)
+        for link, shape in shapes_of(subject):
+            sizes = sizes_of(shape.geometry)
+            if sizes and all(0 < size < smallest for _, size in sizes):
+                what = type(shape.geometry).__name__.lower()
+                yield self.report(
+                    f"the {kind_of(shape)} {what} of link '{link.name}' is smaller than {smallest * 1000:g} mm",
+                    shape_element(shape),
+                    sizes[0][0],
+                    hint="lengths are in metres; leave the shape out where none is meant",
+                )
+
+
+class SeveralShapes(Rule):
+    """More than one shape in a `<geometry>`.
+
+    ## Why
+
+    Only the first one is read; the others are ignored without a word.
+
+    ## Example
+
+    ```xml
+    <geometry>
+      <box size="0.4 0.3 0.1"/>
+      <cylinder radius="0.1" length="0.05"/>
+    </geometry>
+    ```
+
+    ## Use instead
+
+    A `<visual>` or `<collision>` for each shape: a link may have as many as it needs.
+    """
+
+    code = "LW404"
+    name = "geometry-several-shapes"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        for link in subject.elements("link"):
+            for shape in link.elements():
+                geometry = shape.first("geometry") if shape.tag in ("visual", "collision") else None
+                inside = geometry.elements() if geometry is not None else ()
+                found = [element for element in inside if GEOMETRY.child(element.tag)]
+                for extra in found[1:]:
+                    yield self.report(
+                        f"<{extra.tag}> is the second shape in a <geometry> of link "
+                        f"'{link.attributes.get('name', '')}' and is ignored",
+                        extra,
+                        notes=[Note(f"only this <{found[0].tag}> is read", found[0].span())],
+                        hint=f"give it a <{shape.tag}> of its own",
+                    )
+
+
+class ShapeFar(Rule):
+    """A shape or a centre of mass more than twenty metres from its link's frame.
+
+    ## Why
+
+    URDF is in metres; an origin in the hundreds is one in millimetres.
+
+    ## Example
+
+    ```xml
+    <visual>
+      <origin xyz="0 0 150"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <visual>
+      <origin xyz="0 0 0.15"/>
+    ```
+    """
+
+    code = "LW405"
+    name = "shape-far"
+    options = (Option("largest", 20.0, "largest distance along an axis, in m"),)
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        largest = subject.option(self, "largest", float)
+        for link in subject.links:
+            parts: list[Visual | Collision | Inertial] = [*link.visuals, *link.collisions]
+            parts += [link.inertial] if link.inertial is not None else []
+            for part in parts:
+                reach = max(map(abs, part.origin.xyz))
+                if reach > largest and part.element is not None:
+                    small = " ".join(f"{number / 1000:g}" for number in part.origin.xyz)
+                    yield self.report(
+                        f"<{part.element.tag}> of link '{link.name}' is {reach:g} m away from the link",
+                        part.element.first("origin") or part.element,
+                        "xyz",
+                        hint=f"lengths are in metres; if this is in millimetres, write '{small}'",
+                    )

@@ -1,0 +1,216 @@
+"""Rules about collision shapes beside the visuals of the same link."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from linkwright.diagnostics import Diagnostic, Note, Severity, Span
+from linkwright.lint.rule import Option, Rule
+from linkwright.lint.subject import Subject
+from linkwright.urdf import Collision, Visual
+from linkwright.xmltree import Element
+
+if TYPE_CHECKING:
+    from linkwright.lint.bodies import Bounds
+
+
+_WORLD = frozenset(("world", "map", "odom"))
+"""Links that are the surroundings: what is fixed to them does not move."""
+
+
+_MARKER = 0.01
+"""Shapes smaller than this, in m, are markers; nothing is concluded from them."""
+
+
+class MissingCollision(Rule):
+    """A moving part that is seen but has no collision shape, while the other parts have.
+
+    ## Why
+
+    Planners and simulators let everything pass through it. Parts that fixed joints make one count together, so a
+    camera on an arm needs none of its own. The rule speaks only where at least half of the moving parts have one.
+
+    ## Example
+
+    ```xml
+    <link name="left_wheel">
+      <visual>...</visual>
+    </link>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <link name="left_wheel">
+      <visual>...</visual>
+      <collision>
+        <geometry><cylinder radius="0.06" length="0.025"/></geometry>
+      </collision>
+    </link>
+    ```
+    """
+
+    code = "LW410"
+    name = "collision-missing"
+    severity = Severity.INFO
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        bodies = subject.bodies
+        movable = [body for body in bodies.all if _WORLD.isdisjoint(body.links)]
+        seen = [body for body in movable if any(link.visuals for link in bodies.members(body))]
+        lacking = [body for body in seen if not any(_has_collision(link.element) for link in bodies.members(body))]
+        if 2 * len(lacking) > len(seen):
+            return
+        for body in lacking:
+            link = next(link for link in bodies.members(body) if link.visuals)
+            yield self.report(
+                f"link '{link.name}' is seen but has no collision shape, while other links have",
+                link.element,
+                "name",
+                hint="add a <collision>, best with a simple shape around it",
+            )
+
+
+class MissingVisual(Rule):
+    """A link with a collision shape that nobody sees.
+
+    ## Why
+
+    A robot that bumps into things with parts that RViz does not show is hard to understand. It is right for safety
+    zones; for all else the visual was forgotten.
+
+    ## Example
+
+    ```xml
+    <link name="bumper">
+      <collision>...</collision>
+    </link>
+    ```
+
+    ## Use instead
+
+    A `<visual>` with the same geometry.
+    """
+
+    code = "LW411"
+    name = "visual-missing"
+    default = False
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        for link in subject.links:
+            if link.collisions and not link.visuals and link.element and link.element.first("visual") is None:
+                yield self.report(
+                    f"link '{link.name}' has a collision shape and no visual",
+                    link.element,
+                    "name",
+                    hint="add a <visual> with the same geometry, if it is to be seen",
+                )
+
+
+class CollisionApart(Rule):
+    """Collision shapes that do not even touch the box around the visuals.
+
+    ## Why
+
+    What the robot hits is then somewhere else than what it shows. Mostly the `<origin>` was given to one of the two
+    only.
+
+    ## Example
+
+    ```xml
+    <visual>
+      <origin xyz="0 0 0.5"/>
+      <geometry><box size="0.2 0.2 0.2"/></geometry>
+    </visual>
+    <collision>
+      <geometry><box size="0.2 0.2 0.2"/></geometry>
+    </collision>
+    ```
+
+    ## Use instead
+
+    The same `<origin>` in both.
+    """
+
+    code = "LW412"
+    name = "collision-apart"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        for link in subject.links:
+            seen, felt = _bounds(subject, link.visuals), _bounds(subject, link.collisions)
+            if seen is None or felt is None or min(seen.diagonal, felt.diagonal) < _MARKER:
+                continue
+            gap = seen.gap(felt)
+            if gap > 0.25 * min(seen.diagonal, felt.diagonal) and gap > 1e-3:
+                yield self.report(
+                    f"the collision shapes of link '{link.name}' are {gap * 100:.3g} cm away from its visuals",
+                    link.collisions[0].element,
+                    notes=[Note("the first visual is here", _place(link.visuals[0]))],
+                    hint="give both the same <origin>",
+                )
+
+
+class CollisionSize(Rule):
+    """Collision shapes many times larger or smaller than the visuals.
+
+    ## Why
+
+    One of the two lacks the `scale`, or a digit. The robot stops metres before a wall, or runs half into it.
+
+    ## Example
+
+    ```xml
+    <visual>
+      <geometry><mesh filename="package://arm/meshes/base.stl" scale="0.001 0.001 0.001"/></geometry>
+    </visual>
+    <collision>
+      <geometry><mesh filename="package://arm/meshes/base.stl"/></geometry>
+    </collision>
+    ```
+
+    ## Use instead
+
+    The same `scale` in both.
+    """
+
+    code = "LW413"
+    name = "collision-size-differs"
+    options = (Option("factor", 10.0, "how many times larger or smaller is reported"),)
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        factor = subject.option(self, "factor", float)
+        for link in subject.links:
+            seen, felt = _bounds(subject, link.visuals), _bounds(subject, link.collisions)
+            if seen is None or felt is None or min(seen.diagonal, felt.diagonal) < _MARKER:
+                continue
+            ratio = felt.diagonal / seen.diagonal
+            if not 1 / factor <= ratio <= factor:
+                times = f"{ratio:.3g} times larger" if ratio > 1 else f"{1 / ratio:.3g} times smaller"
+                yield self.report(
+                    f"the collision shapes of link '{link.name}' are {times} than its visuals",
+                    link.collisions[0].element,
+                    notes=[Note("the first visual is here", _place(link.visuals[0]))],
+                    hint="check the sizes, and the 'scale' of meshes",
+                )
+
+
+def _bounds(subject: Subject, shapes: Iterable[Visual | Collision]) -> Bounds | None:
+    """The box around shapes in the link frame; None without any, or when one cannot be measured."""
+    from linkwright.lint.bodies import union
+
+    found = [subject.bodies.shape_bounds(shape) for shape in shapes]
+    known = [bounds for bounds in found if bounds is not None]
+    return union(known) if len(known) == len(found) else None
+
+
+def _has_collision(element: Element | None) -> bool:
+    return element is not None and element.first("collision") is not None
+
+
+def _place(shape: Visual) -> Span | None:
+    return shape.element.span() if shape.element is not None else None

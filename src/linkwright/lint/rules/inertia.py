@@ -1,0 +1,307 @@
+"""Rules about masses: which links have one, and whether it can be."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from linkwright.diagnostics import Diagnostic, Note, Severity, Span
+from linkwright.lint.rule import Option, Rule
+from linkwright.lint.subject import Subject
+from linkwright.urdf import Inertial, Link
+from linkwright.xmltree import Element
+
+_SIMULATION = ("gazebo", "ros2_control", "transmission")
+"""Elements in ``<robot>`` that say that the description is made for more than looking at it."""
+
+
+def part(inertial: Inertial, tag: str) -> Element | None:
+    """A child of an ``<inertial>``, or the element itself where it lacks the child."""
+    element = inertial.element
+    return (element.first(tag) or element) if element is not None else None
+
+
+def links_with_inertial(subject: Subject) -> Iterable[tuple[Link, Inertial]]:
+    """The links that have an ``<inertial>``, with it."""
+    for link in subject.links:
+        if link.inertial is not None:
+            yield link, link.inertial
+
+
+class MissingInertial(Rule):
+    """A moving link without `<inertial>`, where others have one or the robot is made for simulation.
+
+    ## Why
+
+    Gazebo drops a link without mass, together with the joint that moves it, and dynamics libraries give it none. A
+    link fixed to another one needs no inertia of its own, because simulators merge the two; so the rule looks at
+    links that move as one.
+
+    ## Example
+
+    ```xml
+    <link name="arm"/>
+    <joint name="shoulder" type="revolute">
+      <parent link="base_link"/>
+      <child link="arm"/>
+      ...
+    </joint>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <link name="arm">
+      <inertial>
+        <origin xyz="0 0 0.2" rpy="0 0 0"/>
+        <mass value="1.2"/>
+        <inertia ixx="0.016" ixy="0" ixz="0" iyy="0.016" iyz="0" izz="0.001"/>
+      </inertial>
+      ...
+    </link>
+    ```
+
+    `linkwright inertia FILE` works the numbers out from the link's shapes; with `--write` it puts them in.
+    """
+
+    code = "LW301"
+    name = "inertial-missing"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        robot = subject.robot
+        if robot is None:
+            return
+        some = any(link.inertial for link in robot.links.values())
+        if not some and not any(element.tag in _SIMULATION for element in subject.elements()):
+            return
+        why = "others have one" if some else "the robot is made for simulation"
+        for body in subject.bodies.all:
+            links = subject.bodies.members(body)
+            if body.joint is None or any(link.inertial for link in links):
+                continue
+            if any(_is_broken(link) for link in links):
+                continue  # it is there and cannot be read, and that was said
+            element = links[0].element
+            rest = [f"'{link.name}'" for link in links[1:4]]
+            notes = [Note(f"nor have the links fixed to it: {', '.join(rest)}")] if rest else []
+            notes.insert(0, Note(f"joint '{body.joint.name}' moves it", _span(body.joint.element)))
+            yield self.report(
+                f"moving link '{links[0].name}' has no <inertial>, while {why}",
+                element,
+                "name",
+                notes=notes,
+                hint="`linkwright inertia` computes it from the link's shapes",
+            )
+
+
+class ZeroMass(Rule):
+    """A body with a mass of zero.
+
+    ## Why
+
+    Nothing moves a body without mass the way physics would: simulators refuse it or drop the link. A link that is only
+    a frame and is fixed to one with a mass may have none, and is not reported.
+
+    ## Example
+
+    ```xml
+    <mass value="0"/>
+    ```
+
+    ## Use instead
+
+    The mass in kilograms; or no `<inertial>` at all on a link that is fixed to another one.
+    """
+
+    code = "LW302"
+    name = "mass-zero"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        for link, inertial in links_with_inertial(subject):
+            if inertial.mass == 0 and not _is_frame(subject, link):
+                yield self.report(
+                    f"the mass of link '{link.name}' is zero",
+                    part(inertial, "mass"),
+                    "value",
+                    hint="give its mass in kg, or leave <inertial> out where the link is only a frame",
+                )
+
+
+class NegativeMass(Rule):
+    """A mass below zero.
+
+    ## Why
+
+    There is no such mass. urdfdom reads it without a word, and the simulation flies apart.
+
+    ## Example
+
+    ```xml
+    <mass value="-1.5"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <mass value="1.5"/>
+    ```
+    """
+
+    code = "LW303"
+    name = "mass-negative"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        for link, inertial in links_with_inertial(subject):
+            if inertial.mass < 0:
+                yield self.report(
+                    f"the mass of link '{link.name}' is negative: {inertial.mass:g} kg",
+                    part(inertial, "mass"),
+                    "value",
+                    hint="masses are in kg and positive",
+                )
+
+
+class TinyMass(Rule):
+    """A moving body of hardly any mass.
+
+    ## Why
+
+    Solvers divide by masses. A joint that carries a milligram under one that carries kilograms makes a simulation
+    jitter or explode. Such masses come from placeholders, or from numbers in tonnes.
+
+    ## Example
+
+    ```xml
+    <mass value="1e-9"/>
+    ```
+
+    ## Use instead
+
+    The mass of the part; for an auxiliary link of a joint with several axes at least a thousandth of what it carries.
+    """
+
+    code = "LW304"
+    name = "mass-tiny"
+    options = (Option("smallest", 1e-6, "smallest mass of a moving body, in kg"),)
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        smallest = subject.option(self, "smallest", float)
+        for body in subject.bodies.all:
+            masses = [(link, link.inertial) for link in subject.bodies.members(body) if link.inertial is not None]
+            total = sum(inertial.mass for _, inertial in masses)
+            if body.joint is None or not 0 < total < smallest:
+                continue
+            link, inertial = masses[0]
+            yield self.report(
+                f"the mass of moving link '{link.name}' is tiny: {total:g} kg",
+                part(inertial, "mass"),
+                "value",
+                hint="masses are in kg; a moving link needs one that a solver can work with",
+            )
+
+
+class HugeMass(Rule):
+    """A mass that no robot's link has.
+
+    ## Why
+
+    A hundred tonnes in one link are a mass in grams, or a slipped decimal point.
+
+    ## Example
+
+    ```xml
+    <mass value="250000"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <mass value="250"/>
+    ```
+    """
+
+    code = "LW305"
+    name = "mass-huge"
+    options = (Option("largest", 1e5, "largest mass of a link, in kg"),)
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        largest = subject.option(self, "largest", float)
+        for link, inertial in links_with_inertial(subject):
+            if inertial.mass > largest:
+                yield self.report(
+                    f"the mass of link '{link.name}' is {inertial.mass:g} kg",
+                    part(inertial, "mass"),
+                    "value",
+                    hint=f"masses are in kg; if this is in grams, write {inertial.mass / 1000:g}",
+                )
+
+
+class RootInertia(Rule):
+    """An inertia on the root link, which KDL does not take.
+
+    ## Why
+
+    robot_state_publisher, MoveIt and everything else that uses kdl_parser warns of it at every start: KDL's root
+    segment has no inertia, so the one in the file is left out. An empty root link, such as `base_footprint`, above it
+    makes all well.
+
+    ## Example
+
+    ```xml
+    <link name="base_link">
+      <inertial>...</inertial>
+    </link>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <link name="base_footprint"/>
+    <joint name="base_joint" type="fixed">
+      <parent link="base_footprint"/>
+      <child link="base_link"/>
+    </joint>
+    <link name="base_link">
+      <inertial>...</inertial>
+    </link>
+    ```
+    """
+
+    code = "LW306"
+    name = "inertia-on-root"
+    severity = Severity.INFO
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        robot = subject.robot
+        inertial = robot.links[robot.root].inertial if robot is not None and robot.root in robot.links else None
+        if robot is not None and inertial is not None and len(robot.links) > 1:
+            yield self.report(
+                f"root link '{robot.root}' has an inertia, which KDL ignores with a warning",
+                inertial.element,
+                hint="put an empty link above it with a fixed joint, such as 'base_footprint'",
+            )
+
+
+def _is_frame(subject: Subject, link: Link) -> bool:
+    """Whether a link without mass is part of a body that has one, or a root that has nothing else either."""
+    body = subject.bodies.of(link.name)
+    if body is None:
+        return False
+    members = subject.bodies.members(body)
+    if any(member.inertial is not None and member.inertial.mass > 0 for member in members):
+        return True
+    return body.joint is None and not any(member.visuals or member.collisions for member in members)
+
+
+def _is_broken(link: Link) -> bool:
+    """Whether a link has an ``<inertial>`` that could not be read."""
+    return link.element is not None and link.element.first("inertial") is not None and link.inertial is None
+
+
+def _span(element: Element | None) -> Span | None:
+    return element.span() if element is not None else None

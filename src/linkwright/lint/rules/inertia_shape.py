@@ -1,0 +1,380 @@
+"""Rules about mass properties against the shapes of a link.
+
+A link's body may be larger than the link: what is fixed to it counts. Where a mesh cannot be read, nothing is said.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING
+
+from linkwright.diagnostics import Diagnostic, Note
+from linkwright.lint.rule import Option, Rule
+from linkwright.lint.rules.inertia import links_with_inertial, part
+from linkwright.lint.rules.inertia_tensor import flaw_of
+from linkwright.lint.subject import Subject
+from linkwright.urdf import Inertial, Link
+
+if TYPE_CHECKING:
+    from linkwright.lint.bodies import Bounds
+
+_UNITS = ((1e3, "g m2"), (1e4, "kg cm2"), (1e6, "kg mm2"), (1e9, "g mm2"))
+"""What a kg m2 is in other units, which may have been written instead."""
+
+_BEYOND_BELIEF = 20.0
+"""From this distance on, in m, `shape-far` tells of an origin."""
+
+_MARKER = 0.01
+"""A body smaller than this, in m, is a marker; nothing is concluded from its shapes."""
+
+_NEGLIGIBLE = 0.01
+"""A mass of less than this part of its body's is a placeholder that changes nothing."""
+
+_ALMOST_NOTHING = 1e-3
+"""Differences smaller than this, in m, are none."""
+
+
+def measured(subject: Subject) -> Iterator[tuple[Link, Inertial, Bounds]]:
+    """The links whose mass counts in a body that can be measured, with the box around the body in the link frame."""
+    for link, inertial in links_with_inertial(subject):
+        body = subject.bodies.of(link.name)
+        if body is None or inertial.mass <= 0 or not (link.visuals or link.collisions):
+            continue
+        if inertial.mass < _NEGLIGIBLE * subject.bodies.mass(body):
+            continue
+        bounds = subject.bodies.body_bounds(link)
+        if bounds is not None and bounds.diagonal > _MARKER:
+            yield link, inertial, bounds
+
+
+class DensityTooHigh(Rule):
+    """A mass that no material packs into the link's shapes.
+
+    ## Why
+
+    Osmium, the densest there is, has 22 600 kg/m3. A link that would be denser has a mass in grams, or shapes in
+    other units than metres. Meshes count with the whole box around them, so nothing real is reported.
+
+    ## Example
+
+    A wheel of 6 cm radius and 2 cm width with
+
+    ```xml
+    <mass value="300"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <mass value="0.3"/>
+    ```
+    """
+
+    code = "LW320"
+    name = "density-too-high"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        from linkwright.inertia.validity import HEAVIEST_DENSITY
+
+        for link, inertial, bounds in measured(subject):
+            volume = subject.bodies.volume(link)
+            if volume is None or bounds.size.min() < _ALMOST_NOTHING / 10:
+                continue  # a sheet: its thickness is not meant
+            body = subject.bodies.of(link.name)
+            if body is not None and len(body.links) > 1:
+                volume = max(volume, float(bounds.size.prod()))
+            if volume > 0 and inertial.mass / volume > HEAVIEST_DENSITY:
+                yield self.report(
+                    f"link '{link.name}' would have a density of {_thousands(inertial.mass / volume)} kg/m3",
+                    part(inertial, "mass"),
+                    "value",
+                    notes=[Note(f"{inertial.mass:g} kg in {_volume(volume)}; osmium has 22 600 kg/m3")],
+                    hint="masses are in kg and lengths in m",
+                )
+
+
+class DensityTooLow(Rule):
+    """A mass so small that the body would float in air.
+
+    ## Why
+
+    Air has 1.2 kg/m3. A solid lighter than that is a mass in tonnes, or shapes in millimetres or centimetres. Links
+    that fixed joints connect are weighed together.
+
+    ## Example
+
+    A body of 1 m x 1 m x 0.5 m with
+
+    ```xml
+    <mass value="0.012"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <mass value="12"/>
+    ```
+    """
+
+    code = "LW321"
+    name = "density-too-low"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        from linkwright.inertia.validity import LIGHTEST_DENSITY
+        from linkwright.urdf import Mesh
+
+        for link, inertial, _ in measured(subject):
+            body = subject.bodies.of(link.name)
+            shapes = link.collisions or link.visuals
+            if body is None or any(isinstance(shape.geometry, Mesh) for shape in shapes):
+                continue  # a frame of rods fills little of its box
+            volume, mass = subject.bodies.volume(link), subject.bodies.mass(body)
+            if volume is not None and 0 < mass < LIGHTEST_DENSITY * volume:
+                yield self.report(
+                    f"link '{link.name}' would have a density of {mass / volume:.2g} kg/m3, less than air",
+                    part(inertial, "mass"),
+                    "value",
+                    notes=[Note(f"{mass:g} kg in {_volume(volume)}")],
+                    hint="masses are in kg and lengths in m",
+                )
+
+
+class CenterOutside(Rule):
+    """A centre of mass far outside the link's shapes.
+
+    ## Why
+
+    The centre of mass lies within the hull of a body. One that lies outside makes the robot tip over or swing for no
+    visible reason. Often the `<origin>` of `<inertial>` is in millimetres, or in the frame of another link.
+
+    ## Example
+
+    ```xml
+    <inertial>
+      <origin xyz="0 0 150"/>
+      ...
+    ```
+
+    ## Use instead
+
+    ```xml
+    <inertial>
+      <origin xyz="0 0 0.150"/>
+      ...
+    ```
+    """
+
+    code = "LW322"
+    name = "center-of-mass-outside"
+    options = (Option("margin", 0.25, "how far outside it may lie, as a part of the diagonal of the shapes' box"),)
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        import numpy as np
+
+        from linkwright.inertia.validity import distance_outside
+
+        margin = subject.option(self, "margin", float)
+        for link, inertial, bounds in measured(subject):
+            center = np.asarray(inertial.origin.xyz, dtype=np.float64)
+            if np.abs(center).max() > _BEYOND_BELIEF:
+                continue
+            distance = distance_outside(center, bounds.low, bounds.high)
+            if distance > max(margin * bounds.diagonal, _ALMOST_NOTHING):
+                scaled = distance_outside(center / 1000, bounds.low, bounds.high) == 0
+                yield self.report(
+                    f"the centre of mass of link '{link.name}' lies {_length(distance)} outside its shapes",
+                    part(inertial, "origin"),
+                    "xyz",
+                    notes=[_extent(bounds)],
+                    hint="lengths are in metres; this looks like millimetres" if scaled and distance > 1 else _COMPUTE,
+                )
+
+
+class CenterForgotten(Rule):
+    """An `<inertial>` without `<origin>` on a link whose shapes lie to one side of its frame.
+
+    ## Why
+
+    Without `<origin>` the centre of mass is at the origin of the link frame, which is in the joint. For an arm that
+    starts there and reaches out, that is at one end. The shape was moved, the mass was forgotten.
+
+    ## Example
+
+    ```xml
+    <link name="upper_arm">
+      <visual>
+        <origin xyz="0 0 0.25"/>
+        <geometry><cylinder radius="0.03" length="0.5"/></geometry>
+      </visual>
+      <inertial>
+        <mass value="1"/>
+        ...
+    ```
+
+    ## Use instead
+
+    ```xml
+      <inertial>
+        <origin xyz="0 0 0.25"/>
+        <mass value="1"/>
+        ...
+    ```
+    """
+
+    code = "LW323"
+    name = "center-of-mass-forgotten"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        for link, inertial, bounds in measured(subject):
+            element = inertial.element
+            if element is None or element.first("origin") is not None:
+                continue
+            body = subject.bodies.of(link.name)
+            if body is None or len(body.links) > 1:
+                continue
+            # Beyond 0.45 of an edge from the middle of the box: at its side, or outside.
+            offset = abs(bounds.center) - 0.45 * bounds.size
+            if offset.max() > _ALMOST_NOTHING:
+                x, y, z = (round(float(part), 4) + 0.0 for part in bounds.center)
+                yield self.report(
+                    f"<inertial> of link '{link.name}' has no <origin>, but its shapes lie to one side",
+                    element,
+                    notes=[_extent(bounds)],
+                    hint=f'add <origin xyz="{x:g} {y:g} {z:g}"/>, if that is where its mass is',
+                )
+
+
+class InertiaTooLarge(Rule):
+    """Moments of inertia that a mass within the link's shapes cannot have.
+
+    ## Why
+
+    With all of its mass in the farthest corner of its shapes a body would have the largest moment there is. A larger
+    one is in other units, as when CAD programs give kg mm2 or g mm2, or it is about another point than the centre of
+    mass, or made up. The robot then turns as if in honey.
+
+    ## Example
+
+    ```xml
+    <mass value="0.3"/>
+    <inertia ixx="540" ixy="0" ixz="0" iyy="540" iyz="0" izz="1000"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <inertia ixx="0.00054" ixy="0" ixz="0" iyy="0.00054" iyz="0" izz="0.001"/>
+    ```
+    """
+
+    code = "LW324"
+    name = "inertia-too-large"
+    options = (Option("factor", 2.0, "how many times the largest possible moment is reported"),)
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        import numpy as np
+
+        from linkwright.inertia.validity import largest_moment_within
+
+        factor = subject.option(self, "factor", float)
+        for link, inertial, bounds in measured(subject):
+            largest = max(inertial.ixx, inertial.iyy, inertial.izz)
+            center = np.clip(np.asarray(inertial.origin.xyz, dtype=np.float64), bounds.low, bounds.high)
+            limit = largest_moment_within(center, bounds.low, bounds.high, inertial.mass)
+            if largest > factor * limit:
+                usual = _uniform(bounds, inertial.mass)
+                name = max(("ixx", "iyy", "izz"), key=lambda each: getattr(inertial, each))
+                yield self.report(
+                    f"the inertia of link '{link.name}' is too large for its shapes: {largest:g} kg m2",
+                    part(inertial, "inertia"),
+                    name,
+                    notes=[Note(f"{inertial.mass:g} kg within them have at most {limit:.2g} kg m2")],
+                    hint=_unit_hint(largest / usual) or _COMPUTE,
+                )
+
+
+class InertiaTooSmall(Rule):
+    """Moments of inertia hundreds of times smaller than the link's shapes suggest.
+
+    ## Why
+
+    All of the mass would have to sit in a small part of the link. More often the tensor was computed for a smaller
+    mass, or with a size in other units.
+
+    ## Example
+
+    A body of 0.5 m x 0.4 m x 0.2 m with
+
+    ```xml
+    <mass value="10"/>
+    <inertia ixx="0.0001" ixy="0" ixz="0" iyy="0.0001" iyz="0" izz="0.0001"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <inertia ixx="0.167" ixy="0" ixz="0" iyy="0.242" iyz="0" izz="0.342"/>
+    ```
+    """
+
+    code = "LW325"
+    name = "inertia-too-small"
+    options = (Option("factor", 200.0, "how many times smaller than that of a solid box is reported"),)
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        factor = subject.option(self, "factor", float)
+        for link, inertial, _ in measured(subject):
+            bounds = subject.bodies.link_bounds(link)
+            largest = max(inertial.ixx, inertial.iyy, inertial.izz)
+            flaw = flaw_of(inertial)
+            if bounds is None or largest <= 0 or (flaw is not None and flaw.kind != "triangle"):
+                continue
+            usual = _uniform(bounds, inertial.mass)
+            if largest * factor < usual:
+                yield self.report(
+                    f"the inertia of link '{link.name}' is {_thousands(usual / largest)} times smaller than that of a "
+                    "solid of its size",
+                    part(inertial, "inertia"),
+                    notes=[Note(f"{inertial.mass:g} kg spread over its box have about {usual:.2g} kg m2")],
+                    hint=_COMPUTE,
+                )
+
+
+_COMPUTE = "`linkwright inertia` computes it from the link's shapes"
+
+
+def _uniform(bounds: Bounds, mass: float) -> float:
+    """The largest moment of a solid box of this mass about its middle, in kg m2."""
+    squares = sorted(float(edge) ** 2 for edge in bounds.size)
+    return mass * (squares[1] + squares[2]) / 12
+
+
+def _unit_hint(ratio: float) -> str | None:
+    """A hint when a value is as many times too large as another unit would make it, within a factor of 8."""
+    factor, unit = min(_UNITS, key=lambda each: max(each[0] / ratio, ratio / each[0]))
+    if max(factor / ratio, ratio / factor) > 8:
+        return None
+    return f"it looks as if it were in {unit}: divide it by {factor:.0f}"
+
+
+def _extent(bounds: Bounds) -> Note:
+    low, high = (" ".join(f"{part:.3g}" for part in corner) for corner in (bounds.low, bounds.high))
+    return Note(f"they reach from {low} to {high} in the link frame")
+
+
+def _length(metres: float) -> str:
+    return f"{metres:.3g} m" if metres >= 1 else f"{metres * 100:.3g} cm"
+
+
+def _volume(cubic_metres: float) -> str:
+    return f"{cubic_metres:.3g} m3" if cubic_metres >= 0.1 else f"{cubic_metres * 1e6:.3g} cm3"
+
+
+def _thousands(number: float) -> str:
+    return f"{number:,.0f}".replace(",", " ")

@@ -1,0 +1,283 @@
+"""Rules about the axes, types and frames of joints."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from math import radians, sqrt
+
+from linkwright.diagnostics import Diagnostic, Severity
+from linkwright.lint.fix import add_attribute, remove_element, replace_value
+from linkwright.lint.rule import Option, Rule
+from linkwright.lint.subject import Subject
+from linkwright.lint.walk import joints, parts, shown, values
+from linkwright.urdf.values import plain
+
+_MOVING = ("revolute", "continuous", "prismatic", "planar")
+_TOLERANCE = 1e-3
+
+
+class AxisZero(Rule):
+    """A moving joint whose axis is 0 0 0.
+
+    ## Why
+
+    It has no direction to move in. urdfdom reads it; robot_state_publisher then does not move the joint, simulators
+    refuse the model or produce NaN. `<axis/>` without `xyz` is 0 0 0 too, not the default 1 0 0.
+
+    ## Example
+
+    ```xml
+    <axis xyz="0 0 0"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <axis xyz="0 0 1"/>
+    ```
+    """
+
+    code = "LW220"
+    name = "axis-zero"
+    severity = Severity.ERROR
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every moving joint with an ``<axis>`` of no length."""
+        for joint, _, axis in parts(subject, "axis"):
+            if joint.type not in _MOVING:
+                continue
+            if "xyz" not in axis.attributes:
+                yield self.report(
+                    f"<axis> of {joint.type} joint '{joint.name}' has no 'xyz', which makes it 0 0 0",
+                    axis,
+                    hint='add xyz="0 0 1", or remove <axis> for 1 0 0',
+                    fix=add_attribute(axis, "xyz", "1 0 0", safe=False),
+                )
+            elif values(axis, "xyz") == (0, 0, 0):
+                yield self.report(
+                    f"the axis of {joint.type} joint '{joint.name}' is 0 0 0",
+                    axis,
+                    "xyz",
+                    hint="give the direction it moves in, such as 0 0 1",
+                )
+
+
+class AxisNotUnit(Rule):
+    """A moving joint whose axis is not of length 1.
+
+    ## Why
+
+    The axis is a direction. Some consumers normalise it, others take its length as a factor: urdfdom hands it on as it
+    is written, and code that turns by `angle * axis` then turns too far.
+
+    ## Example
+
+    ```xml
+    <axis xyz="1 1 0"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <axis xyz="0.707107 0.707107 0"/>
+    ```
+
+    `linkwright check --fix` writes it.
+    """
+
+    code = "LW221"
+    name = "axis-not-unit"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every moving joint whose axis is longer or shorter than 1 by more than rounding explains."""
+        for joint, _, axis in parts(subject, "axis"):
+            direction = values(axis, "xyz")
+            if joint.type not in _MOVING or len(direction) != 3 or not any(direction):
+                continue
+            length = sqrt(sum(part * part for part in direction))
+            if abs(length - 1) <= _TOLERANCE:
+                continue
+            unit = " ".join(_component(part / length) for part in direction)
+            yield self.report(
+                f"the axis of joint '{joint.name}' is not of length 1 but {shown(length)}: "
+                f"'{axis.attributes['xyz'].strip()}'",
+                axis,
+                "xyz",
+                hint=f"write {unit}",
+                fix=replace_value(axis, "xyz", unit),
+            )
+
+
+class AxisImplicit(Rule):
+    """A moving joint without `<axis>`.
+
+    ## Why
+
+    It moves about (or along) x, which few joints do. Whoever forgets the axis sees a wheel that turns about the
+    direction of travel.
+
+    ## Example
+
+    ```xml
+    <joint name="wheel_joint" type="continuous">
+      <parent link="base_link"/>
+      <child link="wheel"/>
+    </joint>
+    ```
+
+    ## Use instead
+
+    ```xml
+      <axis xyz="0 1 0"/>
+    ```
+
+    Write `<axis xyz="1 0 0"/>` where x is meant.
+    """
+
+    code = "LW222"
+    name = "axis-implicit"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every joint that moves along one axis and does not name it."""
+        for joint, element in joints(subject):
+            if joint.type in ("revolute", "continuous", "prismatic") and element.first("axis") is None:
+                verb = "slides along" if joint.type == "prismatic" else "turns about"
+                yield self.report(
+                    f"{joint.type} joint '{joint.name}' has no <axis>, so it {verb} x",
+                    element,
+                    hint='add <axis xyz="0 0 1"/>, or <axis xyz="1 0 0"/> if x is meant',
+                )
+
+
+class AxisOnFixed(Rule):
+    """A fixed or floating joint with an `<axis>`.
+
+    ## Why
+
+    It is not even read. It is harmless and often written by macros, so the rule is off by default.
+
+    ## Example
+
+    ```xml
+    <joint name="camera_joint" type="fixed">
+      <axis xyz="0 0 1"/>
+    ```
+
+    ## Use instead
+
+    Remove the `<axis>`, or give the joint the type it was written for.
+    """
+
+    code = "LW223"
+    name = "axis-on-fixed"
+    default = False
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every axis that is not read."""
+        for joint, _, axis in parts(subject, "axis"):
+            if joint.type in ("fixed", "floating"):
+                yield self.report(
+                    f"{joint.type} joint '{joint.name}' has an <axis>, which is not read",
+                    axis,
+                    hint="remove it, or give the joint the type it was written for",
+                    fix=remove_element(axis),
+                )
+
+
+class AxisTilted(Rule):
+    """A joint axis that is almost, but not quite, along x, y or z.
+
+    ## Why
+
+    `0 0.01 1` and `1 6.1e-17 0` come from exporters that rotate numerically. The joint then moves in a plane that is
+    slightly off, and inverse kinematics that needs parallel axes finds no solution.
+
+    ## Example
+
+    ```xml
+    <axis xyz="0 0.0005 1"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <axis xyz="0 0 1"/>
+    ```
+    """
+
+    code = "LW224"
+    name = "axis-tilted"
+    severity = Severity.INFO
+    options = (Option("largest-tilt", 0.1, "the largest tilt, in degrees, that is taken for an accident"),)
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every axis within a small angle of a coordinate axis, without being one."""
+        largest = radians(subject.option(self, "largest-tilt", float))
+        for joint, _, axis in parts(subject, "axis"):
+            direction = values(axis, "xyz")
+            if joint.type not in _MOVING or len(direction) != 3 or not any(direction):
+                continue
+            main = max(range(3), key=lambda index, found=direction: abs(found[index]))  # type: ignore[misc]
+            rest = sqrt(sum(part * part for index, part in enumerate(direction) if index != main))
+            tilt = rest / abs(direction[main])
+            if not 0 < tilt <= largest:
+                continue
+            straight = " ".join(plain(float(round(part)) + 0.0) for part in _snapped(direction, main))
+            yield self.report(
+                f"the axis of joint '{joint.name}' is almost {straight}: '{axis.attributes['xyz'].strip()}'",
+                axis,
+                "xyz",
+                hint=f"write {straight}",
+                fix=replace_value(axis, "xyz", straight, safe=False),
+            )
+
+
+class JointNotPublished(Rule):
+    """A joint of a type that robot_state_publisher does not move.
+
+    ## Why
+
+    robot_state_publisher leaves a floating joint out, so nothing connects its two frames unless another node does. A
+    planar joint it treats as fixed.
+
+    ## Example
+
+    ```xml
+    <joint name="world_joint" type="floating">
+    ```
+
+    ## Use instead
+
+    Let the node that knows the pose (odometry, localisation, simulator) broadcast the transform and leave the joint
+    out of the description, or build a planar motion from two prismatic joints and a continuous one.
+    """
+
+    code = "LW225"
+    name = "joint-not-published"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every floating and planar joint."""
+        for joint, element in joints(subject):
+            if joint.type == "floating":
+                yield self.report(
+                    f"robot_state_publisher publishes nothing for floating joint '{joint.name}': no transform connects "
+                    f"'{joint.parent}' and '{joint.child}'",
+                    element,
+                    "type",
+                    hint="another node must broadcast this transform",
+                )
+            elif joint.type == "planar":
+                yield self.report(
+                    f"robot_state_publisher treats planar joint '{joint.name}' as fixed",
+                    element,
+                    "type",
+                    hint="build the motion from two prismatic joints and a continuous one",
+                )
+
+
+def _component(part: float) -> str:
+    return plain(float(f"{part:.6g}") + 0.0)
+
+
+def _snapped(direction: tuple[float, ...], main: int) -> list[float]:
+    return [(1.0 if part > 0 else -1.0) if index == main else 0.0 for index, part in enumerate(direction)]

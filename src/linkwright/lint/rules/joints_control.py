@@ -1,0 +1,262 @@
+"""Rules about the parts of joints that controllers read: safety limits, dynamics, calibration."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from math import inf
+
+from linkwright.diagnostics import Diagnostic, Severity
+from linkwright.lint.fix import Fix, remove_element, value_edit
+from linkwright.lint.rule import Rule
+from linkwright.lint.subject import Subject
+from linkwright.lint.walk import parts, shown, value
+from linkwright.urdf import Joint
+from linkwright.xmltree import Element
+
+_SLACK = 1e-6
+
+
+class SoftLimitsOutside(Rule):
+    """A joint whose soft limits lie outside its limits.
+
+    ## Why
+
+    A safety controller begins to act at the soft limits, to stop the joint before the limits. Outside of them it never
+    acts.
+
+    ## Example
+
+    ```xml
+    <limit lower="-1" upper="1" effort="10" velocity="1"/>
+    <safety_controller soft_lower_limit="-2" soft_upper_limit="2" k_position="20" k_velocity="10"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <safety_controller soft_lower_limit="-0.9" soft_upper_limit="0.9" k_position="20" k_velocity="10"/>
+    ```
+    """
+
+    code = "LW240"
+    name = "soft-limits-outside"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every soft limit that lies beyond the limit on its side."""
+        for joint, _, safety in parts(subject, "safety_controller"):
+            if joint.type not in ("revolute", "prismatic") or joint.limit is None or joint.safety is None:
+                continue
+            lower, upper = joint.limit.lower, joint.limit.upper
+            if not lower < upper:
+                continue
+            if "soft_lower_limit" in safety.attributes and joint.safety.soft_lower_limit < lower - _SLACK:
+                yield self._outside(joint, safety, "soft_lower_limit", joint.safety.soft_lower_limit, "lower", lower)
+            if "soft_upper_limit" in safety.attributes and joint.safety.soft_upper_limit > upper + _SLACK:
+                yield self._outside(joint, safety, "soft_upper_limit", joint.safety.soft_upper_limit, "upper", upper)
+
+    def _outside(self, joint: Joint, safety: Element, name: str, soft: float, end: str, limit: float) -> Diagnostic:
+        side = "below" if end == "lower" else "above"
+        return self.report(
+            f"'{name}' of joint '{joint.name}' is {side} its limit: {shown(soft)}, where '{end}' is {shown(limit)}",
+            safety,
+            name,
+            hint=f"it acts before the limit: {'more' if end == 'lower' else 'less'} than {shown(limit)}",
+        )
+
+
+class SoftLimitsInverted(Rule):
+    """A joint whose lower soft limit is not below its upper one.
+
+    ## Why
+
+    There is no position at which the safety controller leaves the joint alone.
+
+    ## Example
+
+    ```xml
+    <safety_controller soft_lower_limit="1" soft_upper_limit="-1" k_position="20" k_velocity="10"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <safety_controller soft_lower_limit="-1" soft_upper_limit="1" k_position="20" k_velocity="10"/>
+    ```
+    """
+
+    code = "LW241"
+    name = "soft-limits-inverted"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every pair of soft limits without a range between them; none given is 0 and 0, which means no soft limits."""
+        for joint, _, safety in parts(subject, "safety_controller"):
+            soft = joint.safety
+            if soft is None or soft.soft_lower_limit == soft.soft_upper_limit == 0:
+                continue
+            if soft.soft_lower_limit >= soft.soft_upper_limit:
+                edits = [
+                    value_edit(safety, "soft_lower_limit", safety.attributes.get("soft_upper_limit", "0")),
+                    value_edit(safety, "soft_upper_limit", safety.attributes.get("soft_lower_limit", "0")),
+                ]
+                whole = tuple(edit for edit in edits if edit is not None)
+                yield self.report(
+                    f"the soft limits of joint '{joint.name}' leave no range: {shown(soft.soft_lower_limit)} to "
+                    f"{shown(soft.soft_upper_limit)}",
+                    safety,
+                    "soft_lower_limit",
+                    hint="exchange them" if soft.soft_lower_limit > soft.soft_upper_limit else "give a range",
+                    fix=Fix(whole, safe=False) if len(whole) == 2 else None,
+                )
+
+
+class SafetyGainNegative(Rule):
+    """A safety controller with a negative gain.
+
+    ## Why
+
+    A negative gain drives the joint towards the limit that it should keep away from.
+
+    ## Example
+
+    ```xml
+    <safety_controller k_velocity="-10" k_position="20"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <safety_controller k_velocity="10" k_position="20"/>
+    ```
+    """
+
+    code = "LW242"
+    name = "safety-gain-negative"
+    severity = Severity.ERROR
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every gain below 0."""
+        for joint, _, safety in parts(subject, "safety_controller"):
+            for name in ("k_velocity", "k_position"):
+                gain = value(safety, name)
+                if gain is not None and gain < 0:
+                    yield self.report(
+                        f"'{name}' of joint '{joint.name}' is negative: {shown(gain)}",
+                        safety,
+                        name,
+                        hint=f"it drives the joint towards its limit: write {shown(-gain)}",
+                    )
+
+
+class DynamicsNegative(Rule):
+    """A joint with negative damping or friction.
+
+    ## Why
+
+    It feeds energy into the joint: a simulation runs away, or the simulator refuses the model.
+
+    ## Example
+
+    ```xml
+    <dynamics damping="-0.1" friction="0.2"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <dynamics damping="0.1" friction="0.2"/>
+    ```
+    """
+
+    code = "LW243"
+    name = "dynamics-negative"
+    severity = Severity.ERROR
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every damping and friction below 0."""
+        for joint, _, dynamics in parts(subject, "dynamics"):
+            for name in ("damping", "friction"):
+                size = value(dynamics, name)
+                if size is not None and size < 0:
+                    edit = value_edit(dynamics, name, dynamics.attributes[name].strip().lstrip("-"))
+                    yield self.report(
+                        f"'{name}' of joint '{joint.name}' is negative: {shown(size)}",
+                        dynamics,
+                        name,
+                        hint=f"it feeds energy into the joint: write {shown(-size)}",
+                        fix=Fix((edit,), safe=False) if edit else None,
+                    )
+
+
+class DynamicsOnFixed(Rule):
+    """A fixed joint with `<dynamics>`.
+
+    ## Why
+
+    It does not move, so nothing damps it. Macros write it for every joint; the rule is off by default.
+
+    ## Example
+
+    ```xml
+    <joint name="camera_joint" type="fixed">
+      <dynamics damping="0.1"/>
+    ```
+
+    ## Use instead
+
+    Remove `<dynamics>`.
+    """
+
+    code = "LW244"
+    name = "dynamics-on-fixed"
+    default = False
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every fixed joint with dynamics."""
+        for joint, _, dynamics in parts(subject, "dynamics"):
+            if joint.type == "fixed":
+                yield self.report(
+                    f"fixed joint '{joint.name}' has <dynamics>",
+                    dynamics,
+                    hint="remove it",
+                    fix=remove_element(dynamics),
+                )
+
+
+class CalibrationOutside(Rule):
+    """A calibration position outside the joint's limits.
+
+    ## Why
+
+    The joint can never reach the place where its reference signal changes, so a calibration never ends.
+
+    ## Example
+
+    ```xml
+    <calibration rising="2"/>
+    <limit lower="-1" upper="1" effort="10" velocity="1"/>
+    ```
+
+    ## Use instead
+
+    Give the position of the reference mark, in rad or m, within the limits.
+    """
+
+    code = "LW245"
+    name = "calibration-outside"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every reference position of a bounded joint that it cannot reach."""
+        for joint, _, calibration in parts(subject, "calibration"):
+            lower, upper = (joint.limit.lower, joint.limit.upper) if joint.limit else (-inf, inf)
+            if joint.type not in ("revolute", "prismatic") or not lower < upper:
+                continue
+            for name in ("rising", "falling"):
+                place = value(calibration, name)
+                if place is not None and not lower - _SLACK <= place <= upper + _SLACK:
+                    yield self.report(
+                        f"'{name}' of joint '{joint.name}' is outside its limits: {shown(place)}, where it goes from "
+                        f"{shown(lower)} to {shown(upper)}",
+                        calibration,
+                        name,
+                        hint="give a position that the joint can reach",
+                    )

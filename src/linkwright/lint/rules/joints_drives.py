@@ -1,0 +1,198 @@
+"""Rules about what drives joints: greatest effort and velocity."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from math import degrees, radians
+
+from linkwright.diagnostics import Diagnostic, Severity
+from linkwright.lint.fix import Fix, value_edit
+from linkwright.lint.rule import Rule
+from linkwright.lint.subject import Subject
+from linkwright.lint.walk import BOUNDED, limits, parts, shown, value
+
+
+class _Zero(Rule):
+    """A joint whose `effort` or `velocity` is zero; the base of the rules about one of them."""
+
+    attribute: str
+    consequence: str
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        springs = {
+            element.attributes.get("reference")
+            for element in subject.elements("gazebo")
+            if element.first("springStiffness") is not None
+        }
+        for joint, limit in limits(subject, *BOUNDED, "continuous"):
+            if joint.mimic is None and joint.name not in springs and value(limit, self.attribute) == 0:
+                yield self.report(
+                    f"'{self.attribute}' in <limit> of joint '{joint.name}' is 0: {self.consequence}",
+                    limit,
+                    self.attribute,
+                    hint="give what the motor can do",
+                )
+
+
+class EffortZero(_Zero):
+    """A moving joint whose greatest effort is 0.
+
+    ## Why
+
+    Simulators and controllers take it at its word: the joint has no torque, so it hangs or does not move. A joint that
+    mimics another, or that Gazebo moves by a spring, is left alone.
+
+    ## Example
+
+    ```xml
+    <limit lower="-1" upper="1" effort="0" velocity="1"/>
+    ```
+
+    ## Use instead
+
+    Write the greatest torque (N m) or force (N) of the drive.
+    """
+
+    code = "LW205"
+    name = "effort-zero"
+    attribute = "effort"
+    consequence = "simulators give it no torque or force"
+
+
+class VelocityZero(_Zero):
+    """A moving joint whose greatest velocity is 0.
+
+    ## Why
+
+    It may not move at all. MoveIt cannot time a trajectory through it and controllers hold it still. A joint that
+    mimics another, or that Gazebo moves by a spring, is left alone.
+
+    ## Example
+
+    ```xml
+    <limit lower="-1" upper="1" effort="10" velocity="0"/>
+    ```
+
+    ## Use instead
+
+    Write the greatest speed of the joint in rad/s or m/s.
+    """
+
+    code = "LW206"
+    name = "velocity-zero"
+    attribute = "velocity"
+    consequence = "planners and controllers hold it still"
+
+
+class _Negative(Rule):
+    """A joint whose `effort` or `velocity` is negative; the base of the rules about one of them."""
+
+    attribute: str
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        if subject.robot is not None and subject.robot.version >= (1, 2):
+            return  # the reader reports it
+        for joint, _, limit in parts(subject, "limit"):
+            size = value(limit, self.attribute)
+            if size is not None and size < 0:
+                edit = value_edit(limit, self.attribute, limit.attributes[self.attribute].strip().lstrip("-"))
+                yield self.report(
+                    f"'{self.attribute}' in <limit> of joint '{joint.name}' is negative: {shown(size)}",
+                    limit,
+                    self.attribute,
+                    hint=f"it holds in both directions: give its size, {shown(-size)}",
+                    fix=Fix((edit,), safe=False) if edit else None,
+                )
+
+
+class EffortNegative(_Negative):
+    """A joint whose greatest effort is negative.
+
+    ## Why
+
+    `effort` is a size that holds in both directions. A negative one leaves no admissible effort at all; what a
+    simulator makes of it is its own affair.
+
+    ## Example
+
+    ```xml
+    <limit lower="-1" upper="1" effort="-10" velocity="1"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <limit lower="-1" upper="1" effort="10" velocity="1"/>
+    ```
+    """
+
+    code = "LW207"
+    name = "effort-negative"
+    attribute = "effort"
+    severity = Severity.ERROR
+
+
+class VelocityNegative(_Negative):
+    """A joint whose greatest velocity is negative.
+
+    ## Why
+
+    `velocity` is a size that holds in both directions; a negative one leaves no admissible speed. MoveIt refuses to
+    time trajectories with it.
+
+    ## Example
+
+    ```xml
+    <limit lower="-1" upper="1" effort="10" velocity="-2"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <limit lower="-1" upper="1" effort="10" velocity="2"/>
+    ```
+    """
+
+    code = "LW208"
+    name = "velocity-negative"
+    attribute = "velocity"
+    severity = Severity.ERROR
+
+
+class VelocityInDegrees(Rule):
+    """A revolute joint with a greatest velocity that can only be in degrees per second.
+
+    ## Why
+
+    Speeds are in rad/s. 180 rad/s are 1700 revolutions a minute; the joint of an arm that is planned with it tears
+    along as fast as the controller lets it.
+
+    ## Example
+
+    ```xml
+    <limit lower="-3" upper="3" effort="50" velocity="180"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <limit lower="-3" upper="3" effort="50" velocity="3.14159"/>
+    ```
+    """
+
+    code = "LW214"
+    name = "velocity-in-degrees"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every revolute joint whose velocity is a round number from 45 to 720; such motors drive no such joints."""
+        for joint, limit in limits(subject, "revolute"):
+            speed = value(limit, "velocity")
+            if speed is None or not 45 <= speed <= 720 or speed % 15 != 0:
+                continue
+            yield self.report(
+                f"'velocity' in <limit> of revolute joint '{joint.name}' looks like degrees per second: {shown(speed)}",
+                limit,
+                "velocity",
+                hint=f"speeds are in rad/s: {shown(radians(speed))}; "
+                f"{shown(speed)} rad/s are {shown(degrees(speed) / 6)} revolutions a minute",
+            )

@@ -1,0 +1,323 @@
+"""Rules about joints that follow others (``<mimic>``)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from math import inf
+
+from linkwright.diagnostics import Diagnostic, Note, Severity
+from linkwright.lint.fix import remove_element
+from linkwright.lint.rule import Rule
+from linkwright.lint.subject import Subject
+from linkwright.lint.walk import joints, shown, value
+from linkwright.urdf import Joint
+from linkwright.xmltree import Element
+
+_TURNING = ("revolute", "continuous")
+_SLIDING = ("prismatic",)
+_SLACK = 1e-3
+"""Part of the follower's range by which it may pass its limits: rounded factors are no mistake."""
+
+
+def _followers(subject: Subject) -> Iterator[tuple[Joint, Element]]:
+    """The joints that follow another, with their ``<mimic>``."""
+    for joint, element in joints(subject):
+        mimic = element.first("mimic")
+        if joint.mimic is not None and mimic is not None:
+            yield joint, mimic
+
+
+def _pairs(subject: Subject) -> Iterator[tuple[Joint, Joint, Element]]:
+    """Follower, leader and ``<mimic>`` of those whose leader exists and is another joint."""
+    by_name = {joint.name: joint for joint in subject.joints}
+    for joint, mimic in _followers(subject):
+        leader = by_name.get(mimic.attributes["joint"])
+        if leader is not None and leader.name != joint.name:
+            yield joint, leader, mimic
+
+
+class MimicOnFixed(Rule):
+    """A fixed joint with a `<mimic>`.
+
+    ## Why
+
+    It does not move, whatever it follows. Usually the type was changed and the rest forgotten.
+
+    ## Example
+
+    ```xml
+    <joint name="right_finger_joint" type="fixed">
+      <mimic joint="left_finger_joint"/>
+    ```
+
+    ## Use instead
+
+    Remove `<mimic>`, or give the joint the type of the one it follows.
+    """
+
+    code = "LW230"
+    name = "mimic-on-fixed"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every fixed joint that is to follow another."""
+        for joint, mimic in _followers(subject):
+            if joint.type == "fixed":
+                yield self.report(
+                    f"fixed joint '{joint.name}' cannot follow '{mimic.attributes['joint']}'",
+                    mimic,
+                    hint="remove <mimic>, or give the joint the type of the one it follows",
+                    fix=remove_element(mimic, safe=False),
+                )
+
+
+class MimicOfFixed(Rule):
+    """A joint that mimics a fixed joint.
+
+    ## Why
+
+    The joint it follows has no position, so it never moves; simulators refuse such a constraint.
+
+    ## Example
+
+    ```xml
+    <mimic joint="palm_joint"/>   <!-- which is fixed -->
+    ```
+
+    ## Use instead
+
+    Name the joint that moves, or make this one fixed too.
+    """
+
+    code = "LW231"
+    name = "mimic-of-fixed"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every follower of a joint that stands still."""
+        for joint, leader, mimic in _pairs(subject):
+            if leader.type == "fixed" and joint.type != "fixed":
+                yield self.report(
+                    f"joint '{joint.name}' follows '{leader.name}', which is fixed",
+                    mimic,
+                    "joint",
+                    hint="name a joint that moves",
+                    notes=_here(leader),
+                )
+
+
+class MimicStandsStill(Rule):
+    """A joint that mimics another with multiplier 0.
+
+    ## Why
+
+    It stays at its offset, whatever the other does. A fixed joint says so and costs nothing.
+
+    ## Example
+
+    ```xml
+    <mimic joint="left_finger_joint" multiplier="0"/>
+    ```
+
+    ## Use instead
+
+    Give the factor, or make the joint fixed.
+    """
+
+    code = "LW232"
+    name = "mimic-stands-still"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every follower with a factor of 0."""
+        for joint, mimic in _followers(subject):
+            if value(mimic, "multiplier") == 0:
+                yield self.report(
+                    f"joint '{joint.name}' follows '{mimic.attributes['joint']}' with multiplier 0 and never moves",
+                    mimic,
+                    "multiplier",
+                    hint="give the factor, or make the joint fixed",
+                )
+
+
+class MimicBeyondLimits(Rule):
+    """A joint that mimics another further than its own limits allow.
+
+    ## Why
+
+    Nothing stops the follower at its limits when the other joint goes on: RViz shows it beyond them, a simulator jams
+    both joints.
+
+    ## Example
+
+    ```xml
+    <joint name="finger_tip" type="revolute">
+      <limit lower="0" upper="0.5" effort="1" velocity="1"/>
+      <mimic joint="finger" multiplier="2"/>   <!-- which goes from 0 to 1 -->
+    ```
+
+    ## Use instead
+
+    Make the limits those of the other joint, times the multiplier, plus the offset; for a negative multiplier they
+    change places.
+    """
+
+    code = "LW233"
+    name = "mimic-beyond-limits"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every bounded follower whose leader takes it out of its range."""
+        for joint, leader, mimic in _pairs(subject):
+            own, followed = _range(joint), _range(leader)
+            if own is None or followed is None or joint.mimic is None:
+                continue
+            factor, offset = joint.mimic.multiplier, joint.mimic.offset
+            ends = sorted(end * factor + offset for end in followed)
+            slack = _SLACK * max(own[1] - own[0], 1e-6)
+            if ends[0] >= own[0] - slack and ends[1] <= own[1] + slack:
+                continue
+            reach = f"{shown(ends[0])} to {shown(ends[1])}"
+            yield self.report(
+                f"following '{leader.name}', joint '{joint.name}' goes from {reach}, beyond its limits "
+                f"{shown(own[0])} to {shown(own[1])}",
+                mimic,
+                hint=f'its limits would have to be lower="{shown(ends[0])}" upper="{shown(ends[1])}"',
+                notes=_here(leader),
+            )
+
+
+class MimicChain(Rule):
+    """A joint that mimics a joint which itself mimics another.
+
+    ## Why
+
+    joint_state_publisher follows the chain; robot_state_publisher, given only the first joint's position, moves the
+    second and not the third, and simulators and ros2_control refuse it.
+
+    ## Example
+
+    ```xml
+    <joint name="tip" type="revolute"><mimic joint="middle"/> ...
+    <joint name="middle" type="revolute"><mimic joint="base"/> ...
+    ```
+
+    ## Use instead
+
+    Let every follower name the joint that moves by itself, with the multipliers multiplied.
+    """
+
+    code = "LW234"
+    name = "mimic-chain"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every follower of a follower; circles the URDF reader reports."""
+        by_name = {joint.name: joint for joint in subject.joints}
+        for joint, leader, mimic in _pairs(subject):
+            if leader.mimic is None or joint.mimic is None:
+                continue
+            first = by_name.get(leader.mimic.joint)
+            if first is None or first.mimic is not None:
+                continue  # unknown, or further up a chain: said there, or a circle
+            factor = joint.mimic.multiplier * leader.mimic.multiplier
+            offset = joint.mimic.multiplier * leader.mimic.offset + joint.mimic.offset
+            yield self.report(
+                f"joint '{joint.name}' follows '{leader.name}', which itself follows '{first.name}'",
+                mimic,
+                "joint",
+                hint=f'write <mimic joint="{first.name}" multiplier="{shown(factor)}" offset="{shown(offset)}"/>',
+                notes=_here(leader),
+            )
+
+
+class MimicOtherKind(Rule):
+    """A sliding joint that mimics a turning one, or the other way round, without a multiplier.
+
+    ## Why
+
+    Without a multiplier one radian becomes one metre. A rack that follows its pinion needs the pinion's radius.
+
+    ## Example
+
+    ```xml
+    <joint name="rack" type="prismatic">
+      <mimic joint="pinion"/>   <!-- which turns -->
+    ```
+
+    ## Use instead
+
+    ```xml
+      <mimic joint="pinion" multiplier="0.02"/>
+    ```
+    """
+
+    code = "LW235"
+    name = "mimic-other-kind"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every follower of another kind with multiplier 1."""
+        for joint, leader, mimic in _pairs(subject):
+            turns = joint.type in _TURNING and leader.type in _SLIDING
+            slides = joint.type in _SLIDING and leader.type in _TURNING
+            if (turns or slides) and joint.mimic is not None and abs(joint.mimic.multiplier) == 1:
+                units = "radian for every metre" if turns else "metre for every radian"
+                yield self.report(
+                    f"{joint.type} joint '{joint.name}' follows {leader.type} joint '{leader.name}' by one {units}",
+                    mimic,
+                    "multiplier" if "multiplier" in mimic.attributes else "joint",
+                    hint='add multiplier="...", such as the radius of the wheel between them',
+                    notes=_here(leader),
+                )
+
+
+class MimicDrivenByControl(Rule):
+    """A joint that mimics another and has a command interface of its own in `<ros2_control>`.
+
+    ## Why
+
+    Two masters: the hardware or simulator is told to follow the other joint and to obey the commands. ros2_control
+    refuses such a joint when it loads the description.
+
+    ## Example
+
+    ```xml
+    <joint name="right_finger_joint">   <!-- which mimics the left one -->
+      <command_interface name="position"/>
+      <state_interface name="position"/>
+    </joint>
+    ```
+
+    ## Use instead
+
+    Leave `<command_interface>` out for the joint that follows.
+    """
+
+    code = "LW236"
+    name = "mimic-commanded"
+    severity = Severity.WARNING
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every command interface of a follower."""
+        followers = {joint.name: joint for joint, _ in _followers(subject)}
+        for system in subject.elements("ros2_control"):
+            for entry in system.elements("joint"):
+                joint = followers.get(entry.attributes.get("name", ""))
+                command = entry.first("command_interface")
+                if joint is None or joint.mimic is None or command is None:
+                    continue
+                if entry.attributes.get("mimic") == "false":
+                    continue
+                yield self.report(
+                    f"joint '{joint.name}' follows '{joint.mimic.joint}' and is commanded by <ros2_control> as well",
+                    command,
+                    hint='remove <command_interface>, or write <joint name="..." mimic="false"> there',
+                    notes=_here(joint),
+                )
+
+
+def _range(joint: Joint) -> tuple[float, float] | None:
+    """The positions a joint may take, in rad or m; None for one without bounds or without a sensible range."""
+    if joint.type not in ("revolute", "prismatic") or joint.limit is None:
+        return None
+    lower, upper = joint.limit.lower, joint.limit.upper
+    return (lower, upper) if -inf < lower < upper < inf else None
+
+
+def _here(joint: Joint) -> tuple[Note, ...]:
+    return (Note(f"joint '{joint.name}' is defined here", joint.element.span()),) if joint.element else ()

@@ -1,0 +1,287 @@
+"""Rules about the bounds of joints: positions, effort and velocity."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from linkwright.diagnostics import Diagnostic, Severity
+from linkwright.lint.fix import Fix, remove_element, value_edit
+from linkwright.lint.rule import Rule
+from linkwright.lint.subject import Subject
+from linkwright.lint.walk import BOUNDED, UNBOUNDED, bounds, limits, shown
+
+
+class LimitInverted(Rule):
+    """A joint whose lower limit is above its upper limit.
+
+    ## Why
+
+    There is no position between them. urdfdom reads it without a word below URDF 1.2. Then planners refuse every
+    configuration, simulators take one of the bounds or none, and sliders have no range.
+
+    ## Example
+
+    ```xml
+    <limit lower="1.5" upper="-1.5" effort="10" velocity="1"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <limit lower="-1.5" upper="1.5" effort="10" velocity="1"/>
+    ```
+    """
+
+    code = "LW201"
+    name = "limit-inverted"
+    severity = Severity.ERROR
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every bounded joint whose lower limit is above the upper one; URDF 1.2 files the reader checks."""
+        if subject.robot is not None and subject.robot.version >= (1, 2):
+            return
+        for joint, limit in limits(subject, *BOUNDED):
+            ends = bounds(limit)
+            if ends is None or ends[0] <= ends[1]:
+                continue
+            edits = [
+                value_edit(limit, "lower", limit.attributes.get("upper", "0")),
+                value_edit(limit, "upper", limit.attributes.get("lower", "0")),
+            ]
+            whole = [edit for edit in edits if edit is not None]
+            yield self.report(
+                f"'lower' in <limit> of joint '{joint.name}' is above 'upper': {shown(ends[0])} > {shown(ends[1])}",
+                limit,
+                "lower" if "lower" in limit.attributes else "upper",
+                hint=f'write lower="{shown(ends[1])}" upper="{shown(ends[0])}"',
+                fix=Fix(tuple(whole), safe=False) if len(whole) == 2 else None,
+            )
+
+
+class LimitEmpty(Rule):
+    """A moving joint whose lower and upper limits are the same.
+
+    ## Why
+
+    It cannot move. joint_state_publisher_gui gives it no slider and planners treat it as fixed, with the cost of a
+    joint that moves.
+
+    ## Example
+
+    ```xml
+    <joint name="elbow" type="revolute">
+      <limit lower="0" upper="0" effort="10" velocity="1"/>
+    ```
+
+    ## Use instead
+
+    Give the range the joint has, or make it `type="fixed"` and remove `<limit>` and `<axis>`.
+    """
+
+    code = "LW202"
+    name = "limit-empty"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every bounded joint that says the same bound twice."""
+        for joint, limit in limits(subject, *BOUNDED):
+            ends = bounds(limit)
+            said = "lower" in limit.attributes or "upper" in limit.attributes
+            if ends is not None and said and ends[0] == ends[1]:
+                yield self.report(
+                    f"{joint.type} joint '{joint.name}' cannot move: 'lower' and 'upper' are both {shown(ends[0])}",
+                    limit,
+                    "lower" if "lower" in limit.attributes else "upper",
+                    hint="give the range it has, or make the joint 'fixed'",
+                )
+
+
+class LimitBoundsMissing(Rule):
+    """A revolute or prismatic joint whose `<limit>` says neither `lower` nor `upper`.
+
+    ## Why
+
+    An absent bound is 0, so the joint cannot leave 0. In RViz its slider has no range.
+
+    ## Example
+
+    ```xml
+    <joint name="elbow" type="revolute">
+      <limit effort="10" velocity="1"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+      <limit lower="-1.57" upper="1.57" effort="10" velocity="1"/>
+    ```
+
+    A joint that turns without bounds has `type="continuous"`.
+    """
+
+    code = "LW203"
+    name = "limit-bounds-missing"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every bounded joint without bounds; in URDF 1.2 files the reader reports them."""
+        if subject.robot is not None and subject.robot.version >= (1, 2):
+            return
+        for joint, limit in limits(subject, *BOUNDED):
+            if "lower" not in limit.attributes and "upper" not in limit.attributes:
+                unit = "rad" if joint.type == "revolute" else "m"
+                hint = f'add lower="..." upper="..." ({unit})'
+                if joint.type == "revolute":
+                    hint += "; a joint that turns without bounds is 'continuous'"
+                yield self.report(
+                    f"<limit> of {joint.type} joint '{joint.name}' has no 'lower' and 'upper', so it cannot leave 0",
+                    limit,
+                    hint=hint,
+                )
+
+
+class LimitOneBound(Rule):
+    """A revolute or prismatic joint whose `<limit>` says only one of `lower` and `upper`.
+
+    ## Why
+
+    The other one is 0, which a reader of the file does not see. It is off by default: grippers are often written so.
+
+    ## Example
+
+    ```xml
+    <limit upper="0.04" effort="10" velocity="1"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <limit lower="0" upper="0.04" effort="10" velocity="1"/>
+    ```
+    """
+
+    code = "LW204"
+    name = "limit-one-bound"
+    default = False
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every bounded joint that gives one bound."""
+        from linkwright.lint.fix import add_attribute
+
+        for joint, limit in limits(subject, *BOUNDED):
+            missing = [name for name in ("lower", "upper") if name not in limit.attributes]
+            if len(missing) == 1:
+                yield self.report(
+                    f"<limit> of {joint.type} joint '{joint.name}' has no '{missing[0]}', which then is 0",
+                    limit,
+                    hint=f'add {missing[0]}="0" if that is meant',
+                    fix=add_attribute(limit, missing[0], "0"),
+                )
+
+
+class LimitOnContinuous(Rule):
+    """A continuous joint with position limits, which nothing observes.
+
+    ## Why
+
+    A continuous joint turns without bounds: urdfdom reads the limits and every consumer ignores them. Whoever wrote
+    them believes that the joint stops there.
+
+    ## Example
+
+    ```xml
+    <joint name="pan" type="continuous">
+      <limit lower="-1.57" upper="1.57" effort="10" velocity="1"/>
+    ```
+
+    ## Use instead
+
+    Make the joint `type="revolute"`, or remove `lower` and `upper`. Bounds far out, such as `-1e16`, are left alone.
+    """
+
+    code = "LW209"
+    name = "limit-on-continuous"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every continuous joint with a range that somebody may rely on."""
+        for joint, limit in limits(subject, "continuous"):
+            ends = bounds(limit)
+            if ends is None or ends[0] == ends[1] or max(abs(ends[0]), abs(ends[1])) > UNBOUNDED:
+                continue
+            yield self.report(
+                f"continuous joint '{joint.name}' has limits from {shown(ends[0])} to {shown(ends[1])}, which nothing "
+                "observes",
+                limit,
+                "lower" if "lower" in limit.attributes else "upper",
+                hint="make it 'revolute' if it stops there, or remove 'lower' and 'upper'",
+            )
+
+
+class LimitOnFixed(Rule):
+    """A fixed joint with a `<limit>`.
+
+    ## Why
+
+    It does not move, so nothing observes the limit; often the type is a leftover from trying something out. A limit
+    that a xacro macro writes for every joint type is harmless, so the rule is off by default.
+
+    ## Example
+
+    ```xml
+    <joint name="camera_joint" type="fixed">
+      <limit lower="-1" upper="1" effort="10" velocity="1"/>
+    ```
+
+    ## Use instead
+
+    Remove the `<limit>`, or give the joint the type it was written for.
+    """
+
+    code = "LW210"
+    name = "limit-on-fixed"
+    default = False
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every fixed joint with a limit."""
+        for joint, limit in limits(subject, "fixed"):
+            yield self.report(
+                f"fixed joint '{joint.name}' has a <limit>",
+                limit,
+                hint="remove it, or give the joint the type it was written for",
+                fix=remove_element(limit),
+            )
+
+
+class ZeroOutsideLimits(Rule):
+    """A joint that cannot be at 0, where most tools start.
+
+    ## Why
+
+    RViz and joint_state_publisher show such a joint at the middle of its range, simulators start it at 0 and push it
+    into its range with a jolt. It is no mistake, so the rule is off by default.
+
+    ## Example
+
+    ```xml
+    <limit lower="0.5" upper="2" effort="10" velocity="1"/>
+    ```
+
+    ## Use instead
+
+    Turn the joint's `<origin>` so that 0 is a position of rest, or give simulators an initial position.
+    """
+
+    code = "LW215"
+    name = "zero-outside-limits"
+    severity = Severity.INFO
+    default = False
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every bounded joint whose range does not hold 0."""
+        for joint, limit in limits(subject, *BOUNDED):
+            ends = bounds(limit)
+            if ends is not None and ends[0] < ends[1] and (ends[0] > 0 or ends[1] < 0):
+                yield self.report(
+                    f"joint '{joint.name}' cannot be at 0: it goes from {shown(ends[0])} to {shown(ends[1])}",
+                    limit,
+                    "lower" if ends[0] > 0 else "upper",
+                    hint="move its <origin> so that 0 lies in the range",
+                )

@@ -1,0 +1,215 @@
+"""Rules about where joints stand: distances and angles of ``<origin>``."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from math import pi, radians, sqrt
+
+from linkwright.diagnostics import Diagnostic, Severity
+from linkwright.lint.fix import Fix, value_edit
+from linkwright.lint.rule import Option, Rule
+from linkwright.lint.subject import Subject
+from linkwright.lint.walk import joints, parts, shown, values
+from linkwright.urdf.values import looks_like_degrees
+from linkwright.xmltree import Element
+
+
+class OriginFar(Rule):
+    """A joint whose origin is so far away that it can only be in millimetres.
+
+    ## Why
+
+    Lengths are in metres. An arm whose elbow is 400 m from its shoulder was exported in millimetres; RViz shows nothing
+    where the robot should be.
+
+    ## Example
+
+    ```xml
+    <origin xyz="0 0 400" rpy="0 0 0"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <origin xyz="0 0 0.4" rpy="0 0 0"/>
+    ```
+    """
+
+    code = "LW226"
+    name = "origin-far"
+    options = (Option("farthest", 20.0, "the farthest distance in m that is still believed"),)
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every joint whose frame is beyond belief in metres."""
+        farthest = subject.option(self, "farthest", float)
+        for joint, _, origin in parts(subject, "origin"):
+            xyz = values(origin, "xyz")
+            if len(xyz) != 3:
+                continue
+            distance = sqrt(sum(part * part for part in xyz))
+            if distance > farthest:
+                metres = " ".join(shown(part / 1000) for part in xyz)
+                yield self.report(
+                    f"joint '{joint.name}' is {shown(distance)} m from the frame of '{joint.parent}'",
+                    origin,
+                    "xyz",
+                    hint=f"if it is in millimetres, write {metres}",
+                )
+
+
+class AngleInDegrees(Rule):
+    """An `rpy` angle of more than two turns that is no whole multiple of 5.
+
+    ## Why
+
+    Angles are in radians; 22.5 rad are three and a half turns. Whole multiples of 5 the URDF reader reports (URDF190).
+
+    ## Example
+
+    ```xml
+    <origin xyz="0 0 0" rpy="0 0 22.5"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <origin xyz="0 0 0" rpy="0 0 0.392699"/>
+    ```
+
+    In xacro, `${radians(22.5)}`.
+    """
+
+    code = "LW227"
+    name = "angle-in-degrees"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every origin of joints, visuals, collisions and inertias that turns further than anybody means."""
+        for owner, origin in _origins(subject):
+            rpy = values(origin, "rpy")
+            if len(rpy) == 3 and not looks_like_degrees(*rpy) and 4 * pi < max(map(abs, rpy)) <= 360:
+                yield self.report(
+                    f"'rpy' in <origin> of {owner} turns by more than two turns: '{origin.attributes['rpy'].strip()}'",
+                    origin,
+                    "rpy",
+                    hint=f"if it is in degrees, write {' '.join(shown(radians(angle)) for angle in rpy)}",
+                )
+
+
+class AngleRounded(Rule):
+    """An `rpy` angle that is pi or a simple part of it, rounded to few digits.
+
+    ## Why
+
+    `1.57` is off by 0.046 degrees: half a millimetre at the end of an arm of 70 cm, and frames that should be parallel
+    are not. It is seldom worth a warning, so the rule is off by default.
+
+    ## Example
+
+    ```xml
+    <origin rpy="0 0 1.57"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <origin rpy="0 0 1.5707963267948966"/>
+    ```
+
+    In xacro, `${pi/2}`.
+    """
+
+    code = "LW228"
+    name = "angle-rounded"
+    severity = Severity.INFO
+    default = False
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every angle within a few thousandths of a simple part of pi, but not closer than six digits."""
+        for owner, origin in _origins(subject):
+            written = origin.attributes.get("rpy", "").split()
+            if len(values(origin, "rpy")) != 3 or len(written) != 3:
+                continue
+            exact = [_exact(word) for word in written]
+            if any(exact):
+                better = " ".join(new or old for new, old in zip(exact, written, strict=True))
+                edit = value_edit(origin, "rpy", better)
+                yield self.report(
+                    f"'rpy' in <origin> of {owner} rounds a part of pi: '{' '.join(written)}'",
+                    origin,
+                    "rpy",
+                    hint=f"write {better}",
+                    fix=Fix((edit,), safe=False) if edit else None,
+                )
+
+
+class OriginMissing(Rule):
+    """A joint without `<origin>` between two links that both have geometry.
+
+    ## Why
+
+    The two frames coincide, so the shapes of both links lie inside each other. Sometimes that is meant, so the rule is
+    off by default.
+
+    ## Example
+
+    ```xml
+    <joint name="camera_joint" type="fixed">
+      <parent link="base_link"/>
+      <child link="camera_link"/>
+    </joint>
+    ```
+
+    ## Use instead
+
+    ```xml
+      <origin xyz="0.1 0 0.2" rpy="0 0 0"/>
+    ```
+    """
+
+    code = "LW229"
+    name = "origin-missing"
+    severity = Severity.INFO
+    default = False
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every joint without an origin between two links with visuals."""
+        solid = {link.name for link in subject.links if link.visuals}
+        for joint, element in joints(subject):
+            if element.first("origin") is None and {joint.parent, joint.child} <= solid:
+                yield self.report(
+                    f"joint '{joint.name}' has no <origin>: '{joint.child}' stands in the same place as "
+                    f"'{joint.parent}'",
+                    element,
+                    hint='add <origin xyz="..." rpy="..."/>, with zeros if that is meant',
+                )
+
+
+_PARTS_OF_PI = (1.0, 1 / 2, 1 / 3, 2 / 3, 1 / 4, 3 / 4, 3 / 2, 2.0)
+
+
+_DECIMAL = re.compile(r"[+-]?[0-9]+\.[0-9]{2,5}").fullmatch
+
+
+def _exact(word: str) -> str | None:
+    """The part of pi that a rounded number stands for, with its sign; None where it stands for itself."""
+    if not _DECIMAL(word):
+        return None
+    angle = float(word)
+    digits = len(word.partition(".")[2])
+    for part in _PARTS_OF_PI:
+        if abs(abs(angle) - part * pi) <= 10.0**-digits:
+            return repr(part * pi if angle > 0 else -part * pi)
+    return None
+
+
+def _origins(subject: Subject) -> Iterator[tuple[str, Element]]:
+    for joint, _, origin in parts(subject, "origin"):
+        yield f"joint '{joint.name}'", origin
+    for link in subject.links:
+        if link.element is None:
+            continue
+        for part in link.element.elements():
+            origin_of_part = part.first("origin") if part.tag in ("inertial", "visual", "collision") else None
+            if origin_of_part is not None:
+                yield f"<{part.tag}> of link '{link.name}'", origin_of_part

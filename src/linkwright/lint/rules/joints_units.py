@@ -1,0 +1,137 @@
+"""Rules about bounds of joints in the wrong unit, or so far out that they are none."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from math import pi, radians
+
+from linkwright.diagnostics import Diagnostic, Severity
+from linkwright.lint.rule import Option, Rule
+from linkwright.lint.subject import Subject
+from linkwright.lint.walk import UNBOUNDED, bounds, limits, shown, value
+from linkwright.urdf.values import looks_like_degrees
+
+
+class LimitInDegrees(Rule):
+    """A revolute joint with a limit so large that it can only be an angle in degrees.
+
+    ## Why
+
+    Angles are in radians. 170.5 rad are 27 turns: sliders become useless, and planners search a space that does not
+    exist. Whole multiples of 5 the URDF reader reports (URDF190).
+
+    ## Example
+
+    ```xml
+    <limit lower="-170.5" upper="170.5" effort="10" velocity="1"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <limit lower="-2.97579" upper="2.97579" effort="10" velocity="1"/>
+    ```
+
+    In xacro, `${radians(170.5)}`.
+    """
+
+    code = "LW211"
+    name = "limit-in-degrees"
+    options = (Option("most-turns", 3.0, "how many turns to either side are still believed"),)
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every limit of a revolute joint that is beyond belief in radians and plausible in degrees."""
+        most = subject.option(self, "most-turns", float) * 2 * pi
+        for joint, limit in limits(subject, "revolute"):
+            ends = bounds(limit)
+            if ends is None or max(map(abs, ends)) > 360 or looks_like_degrees(*ends):
+                continue
+            for name, angle in zip(("lower", "upper"), ends, strict=True):
+                if abs(angle) > most:
+                    yield self.report(
+                        f"'{name}' in <limit> of joint '{joint.name}' is {shown(abs(angle) / (2 * pi))} turns: "
+                        f"{shown(angle)} rad",
+                        limit,
+                        name,
+                        hint=f"if it is in degrees, write {shown(radians(angle))}",
+                    )
+
+
+class LimitEndless(Rule):
+    """A revolute joint with limits so far out that it may as well be continuous.
+
+    ## Why
+
+    With a range of thousands of turns sliders and planners sample positions that nobody means, and numbers lose
+    precision. `continuous` says what is meant.
+
+    ## Example
+
+    ```xml
+    <joint name="wheel_joint" type="revolute">
+      <limit lower="-100000" upper="100000" effort="10" velocity="1"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <joint name="wheel_joint" type="continuous">
+      <limit effort="10" velocity="1"/>
+    ```
+    """
+
+    code = "LW212"
+    name = "limit-endless"
+    severity = Severity.INFO
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every revolute joint with both bounds beyond a thousand radians."""
+        for joint, limit in limits(subject, "revolute"):
+            ends = bounds(limit)
+            if ends is not None and ends[0] <= -UNBOUNDED and ends[1] >= UNBOUNDED:
+                yield self.report(
+                    f"revolute joint '{joint.name}' turns from {shown(ends[0])} to {shown(ends[1])} rad",
+                    limit,
+                    "lower",
+                    hint="make it 'continuous', without 'lower' and 'upper'",
+                )
+
+
+class LimitInMillimetres(Rule):
+    """A prismatic joint with a limit so large that it can only be in millimetres.
+
+    ## Why
+
+    Lengths are in metres. A slide of 120 m is a slide of 120 mm that was copied from a data sheet.
+
+    ## Example
+
+    ```xml
+    <joint name="lift" type="prismatic">
+      <limit lower="0" upper="120" effort="100" velocity="0.2"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+      <limit lower="0" upper="0.12" effort="100" velocity="0.2"/>
+    ```
+    """
+
+    code = "LW213"
+    name = "limit-in-millimetres"
+    options = (Option("longest", 20.0, "the longest way in m to either side that is still believed"),)
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every limit of a prismatic joint that is beyond belief in metres."""
+        longest = subject.option(self, "longest", float)
+        for joint, limit in limits(subject, "prismatic"):
+            for name in ("lower", "upper"):
+                way = value(limit, name)
+                if way is not None and longest < abs(way) <= 10 * UNBOUNDED:
+                    yield self.report(
+                        f"'{name}' in <limit> of prismatic joint '{joint.name}' is {shown(way)} m",
+                        limit,
+                        name,
+                        hint=f"if it is in millimetres, write {shown(way / 1000)}",
+                    )

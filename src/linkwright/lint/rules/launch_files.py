@@ -1,0 +1,192 @@
+"""Python launch files: what they name and whether it is there. They are read, never run."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from linkwright.diagnostics import Diagnostic, Severity, nearest
+from linkwright.lint.launch_reader import FUNCTION, LaunchFile, SharedFile
+from linkwright.lint.package import PackageContext
+from linkwright.lint.rule import Rule, Scope
+from linkwright.lint.rules.package_install import matching
+from linkwright.lint.rules.package_manifest import PackageRule
+from linkwright.lint.subject import Subject
+
+_FILE = re.compile(r"[^/]*\.[A-Za-z0-9]{1,8}$")
+
+
+class LaunchRule(PackageRule):
+    """A rule about one launch file."""
+
+    def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
+        """What the rule finds in a package."""
+        for file in package.launch_files.values():
+            yield from self.check_launch(file)
+
+    def check_launch(self, file: LaunchFile) -> Iterator[Diagnostic]:
+        """What the rule finds in a launch file."""
+        raise NotImplementedError
+
+
+class LaunchSyntaxError(LaunchRule):
+    """A launch file is not Python.
+
+    ## Why
+
+    It cannot be launched.
+
+    ## Example
+
+    ```python
+    return LaunchDescription([
+        robot_state_publisher
+        rviz,
+    ])
+    ```
+
+    ## Use instead
+
+    ```python
+    return LaunchDescription([
+        robot_state_publisher,
+        rviz,
+    ])
+    ```
+    """
+
+    code = "LW840"
+    name = "launch-syntax-error"
+    severity = Severity.ERROR
+
+    def check_launch(self, file: LaunchFile) -> Iterator[Diagnostic]:
+        """What the rule finds in a launch file."""
+        if file.error is not None:
+            message = f"the launch file '{file.path}' is not Python: {file.error.message}"
+            yield self.report(message, span=file.error.span, source=file.source)
+
+
+class LaunchFunctionMissing(LaunchRule):
+    """A launch file does not define ``generate_launch_description``.
+
+    ## Why
+
+    `ros2 launch` calls this function and nothing else.
+
+    ## Example
+
+    ```python
+    def generate_launch_desciption():
+        return LaunchDescription([])
+    ```
+
+    ## Use instead
+
+    ```python
+    def generate_launch_description():
+        return LaunchDescription([])
+    ```
+    """
+
+    code = "LW841"
+    name = "launch-function-missing"
+    severity = Severity.ERROR
+
+    def check_launch(self, file: LaunchFile) -> Iterator[Diagnostic]:
+        """What the rule finds in a launch file."""
+        if file.python is None or file.has_function:
+            return
+        functions = re.findall(r"^def\s+(\w+)", file.source.text, re.MULTILINE)
+        like = next(iter(nearest(FUNCTION, functions, 1)), None)
+        hint = f"'{like}' is misspelt" if like else f"define {FUNCTION}(), which returns a LaunchDescription"
+        span = file.source.span(0)
+        if like:
+            at = file.source.text.index(like)
+            span = file.source.span(at, at + len(like))
+        message = f"the launch file '{file.path}' does not define {FUNCTION}()"
+        yield self.report(message, span=span, source=file.source, hint=hint)
+
+
+class LaunchedFileMissing(Rule):
+    """A launch file names a file of a package that does not exist there.
+
+    ## Why
+
+    The launch fails, or the node starts without what it was to read.
+
+    ## Example
+
+    ```python
+    model = get_package_share_path('my_robot_description') / 'urdf/mbot.urdf'
+    ```
+
+    in a package whose file is called `urdf/mbot_base.urdf`.
+
+    ## Use instead
+
+    ```python
+    model = get_package_share_path('my_robot_description') / 'urdf/mbot_base.urdf'
+    ```
+    """
+
+    code = "LW842"
+    name = "launched-file-missing"
+    scope = Scope.PACKAGE
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        package = subject.package
+        if package is None:
+            return
+        for file in package.launch_files.values():
+            for shared in file.paths:
+                yield from self._of_path(shared, file, package, subject)
+
+    def _of_path(
+        self, shared: SharedFile, file: LaunchFile, package: PackageContext, subject: Subject
+    ) -> Iterator[Diagnostic]:
+        if not _FILE.search(shared.path) or "*" in shared.path:
+            return
+        own = shared.package == package.name
+        share = package.folder if own else subject.finder.find(shared.package)
+        if share is None or (share / shared.path).exists() or (own and _is_installed_as(package, shared)):
+            return
+        name = shared.path.rpartition("/")[2]
+        if not own and share.parent.name != "share":
+            return  # the sources of another package, which may install its files elsewhere
+        if own and any(other.rpartition("/")[2] == name for other in package.files) and _may_move(package):
+            return
+        message = f"the package '{shared.package}' has no file '{shared.path}'"
+        yield self.report(message, span=shared.span, source=file.source, hint=_like(package, shared) if own else None)
+
+
+def _is_installed_as(package: PackageContext, shared: SharedFile) -> bool:
+    """Whether ``setup.py`` installs some file of the package at that path."""
+    folder, _, name = shared.path.rpartition("/")
+    setup = package.setup
+    if setup is None:
+        return False
+    destination = f"share/{package.name}/{folder}".rstrip("/")
+    return any(
+        item.destination is not None
+        and item.destination.rstrip("/") == destination
+        and any(file.rpartition("/")[2] == name for file in matching(package, item))
+        for item in setup.installed
+    )
+
+
+def _may_move(package: PackageContext) -> bool:
+    """Whether files may be installed in other folders than those they lie in."""
+    setup = package.setup
+    if setup is not None:
+        return not setup.is_complete or any(item.destination is None for item in setup.installed)
+    return True
+
+
+def _like(package: PackageContext, shared: SharedFile) -> str | None:
+    name = shared.path.rpartition("/")[2]
+    same = [file for file in package.files if file.rpartition("/")[2] == name]
+    if same:
+        return f"there is '{same[0]}'"
+    like = nearest(shared.path, package.files, 1)
+    return f"did you mean '{like[0]}'?" if like else None

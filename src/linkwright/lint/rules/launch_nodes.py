@@ -1,0 +1,258 @@
+"""What launch files start: packages and executables, and whether ``package.xml`` knows of them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from linkwright.diagnostics import Diagnostic, Note, nearest
+from linkwright.lint.fix import Edit, Fix, element_range
+from linkwright.lint.launch_reader import LaunchFile
+from linkwright.lint.manifest_reader import Manifest
+from linkwright.lint.package import PackageContext
+from linkwright.lint.rule import Rule, Scope
+from linkwright.lint.rules.package_manifest import PackageRule
+from linkwright.lint.rules.package_python import is_ament_python
+from linkwright.lint.subject import Subject
+
+EXECUTABLES: dict[str, frozenset[str]] = {
+    "joint_state_publisher": frozenset({"joint_state_publisher"}),
+    "joint_state_publisher_gui": frozenset({"joint_state_publisher_gui"}),
+    "robot_state_publisher": frozenset({"robot_state_publisher"}),
+    "rviz2": frozenset({"rviz2"}),
+    "xacro": frozenset({"xacro"}),
+    "tf2_ros": frozenset({"static_transform_publisher", "tf2_echo", "tf2_monitor", "buffer_server"}),
+    "controller_manager": frozenset({"ros2_control_node", "spawner", "unspawner", "hardware_spawner"}),
+}
+"""The executables of well-known packages; packages whose executables change between releases are left out."""
+
+WELL_KNOWN = frozenset(
+    {
+        *EXECUTABLES,
+        *(
+            "slam_toolbox",
+            "twist_mux",
+            "gazebo_ros",
+            "ros_gz_sim",
+            "ros_gz_bridge",
+            "ros_ign_gazebo",
+            "ros_ign_bridge",
+            "nav2_bringup",
+        ),
+        *("robot_localization", "teleop_twist_joy", "teleop_twist_keyboard", "joy", "moveit_ros_move_group"),
+        *("diff_drive_controller", "joint_state_broadcaster", "launch_ros", "rqt_gui", "image_transport"),
+    }
+)
+_PYTHON_PACKAGES = frozenset({"launch", "launch_ros", "ament_index_python", "launch_xml", "launch_yaml", "xacro"})
+_IMPLIED = {"launch": "launch_ros", "ament_index_python": "launch_ros"}
+"""Packages that come with another one."""
+
+
+class LaunchedPackageUnknown(Rule):
+    """A launch file starts a node of a package whose name looks misspelt.
+
+    ## Why
+
+    The launch fails: the package is not found.
+
+    ## Example
+
+    ```python
+    Node(package='robot_state_publsher', executable='robot_state_publisher')
+    ```
+
+    ## Use instead
+
+    ```python
+    Node(package='robot_state_publisher', executable='robot_state_publisher')
+    ```
+    """
+
+    code = "LW843"
+    name = "launched-package-unknown"
+    scope = Scope.PACKAGE
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        package = subject.package
+        if package is None:
+            return
+        for file in package.launch_files.values():
+            for place in [*(node.package for node in file.nodes), *file.shares]:
+                like = None if place is None else _meant(place.text, package, subject)
+                if place is not None and like is not None:
+                    message = f"there is no package '{place.text}'"
+                    yield self.report(message, span=place.span, source=file.source, hint=f"did you mean '{like}'?")
+
+
+class LaunchedExecutableUnknown(PackageRule):
+    """A launch file starts an executable that its package does not have.
+
+    ## Why
+
+    The launch fails: the executable is not found in the folder of the package.
+
+    ## Example
+
+    ```python
+    Node(package='rviz2', executable='rviz')
+    ```
+
+    ## Use instead
+
+    ```python
+    Node(package='rviz2', executable='rviz2')
+    ```
+    """
+
+    code = "LW844"
+    name = "launched-executable-unknown"
+
+    def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
+        """What the rule finds in a package."""
+        for file in package.launch_files.values():
+            yield from self._of_file(file, package)
+
+    def _of_file(self, file: LaunchFile, package: PackageContext) -> Iterator[Diagnostic]:
+        for node in file.nodes:
+            if node.package is None or node.executable is None:
+                continue
+            name, executable = node.package.text, node.executable.text.removesuffix(".py")
+            known = EXECUTABLES.get(name) if name != package.name else _own_executables(package)
+            if known is None or executable in known or node.executable.text in known:
+                continue
+            like = next(iter(nearest(executable, known, 1)), None)
+            if like:
+                hint = f"did you mean '{like}'?"
+            else:
+                hint = f"it has {', '.join(sorted(known))}" if known else "it has none"
+            message = f"the package '{name}' has no executable '{node.executable.text}'"
+            yield self.report(message, span=node.executable.span, source=file.source, hint=hint)
+
+
+class UndeclaredLaunchDependency(Rule):
+    """Launch files use packages that ``package.xml`` does not depend on.
+
+    ## Why
+
+    rosdep installs what `package.xml` names. On a machine where nobody installed the others by hand, the launch fails.
+
+    ## Example
+
+    ```python
+    Node(package='joint_state_publisher_gui', executable='joint_state_publisher_gui')
+    ```
+
+    and no mention of it in `package.xml`.
+
+    ## Use instead
+
+    ```xml
+    <exec_depend>joint_state_publisher_gui</exec_depend>
+    ```
+    """
+
+    code = "LW848"
+    name = "undeclared-launch-dependency"
+    scope = Scope.PACKAGE
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        package = subject.package
+        manifest = None if package is None else package.manifest
+        if package is None or manifest is None or manifest.root.tag != "package":
+            return
+        if any("$" in each.name for each in manifest.dependencies):
+            return
+        missing = {
+            name: note
+            for name, note in _used_packages(package).items()
+            if not manifest.declares(name) and _meant(name, package, subject) is None
+        }
+        for name, bringer in _IMPLIED.items():
+            if name in missing and manifest.declares(bringer):
+                del missing[name]
+        if not missing:
+            return
+        names = sorted(missing)
+        listed = ", ".join(f"'{name}'" for name in names)
+        verb = "this package" if len(names) == 1 else "these packages"
+        message = f"launch files use {verb} that package.xml does not depend on: {listed}"
+        what = f"<exec_depend>{names[0]}</exec_depend>" if len(names) == 1 else "an <exec_depend> for each"
+        hint = f"add {what}"
+        fix = _declare(manifest, names)
+        yield self.report(message, manifest.root, notes=[missing[name] for name in names], hint=hint, fix=fix)
+
+
+def _used_packages(package: PackageContext) -> dict[str, Note]:
+    """Name -> note with the first place, of the packages that launch files use."""
+    found: dict[str, Note] = {}
+    for file in package.launch_files.values():
+        for name, span in file.imports:
+            if name in _PYTHON_PACKAGES:
+                found.setdefault(name, Note(f"'{name}' is imported here", span))
+        for node in file.nodes:
+            if node.package is not None:
+                found.setdefault(node.package.text, Note(f"'{node.package.text}' is started here", node.package.span))
+        for share in file.shares:
+            found.setdefault(share.text, Note(f"'{share.text}' is looked for here", share.span))
+        for match in re.finditer(r"""Command\(\s*\[?\s*["']xacro\b""", file.source.text):
+            span = file.source.span(match.end() - len("xacro"), match.end())
+            found.setdefault("xacro", Note("'xacro' is run here", span))
+    found.pop(package.name, None)
+    return {name: note for name, note in found.items() if re.fullmatch(r"[a-zA-Z]\w*", name)}
+
+
+def _declare(manifest: Manifest, names: list[str]) -> Fix | None:
+    """Lines behind the last dependency that is not for tests alone, indented as that one is."""
+    source = manifest.document.source
+    if source is None or not manifest.dependencies:
+        return None
+    run_time = [each for each in manifest.dependencies if each.tag not in ("test_depend", "doc_depend")]
+    last = (run_time or manifest.dependencies)[-1].element
+    found = element_range(last)
+    if found is None:
+        return None
+    line = source.text.rfind("\n", 0, last.offset) + 1
+    indent = source.text[line : last.offset]
+    if indent.strip():
+        return None
+    text = "".join(f"\n{indent}<exec_depend>{name}</exec_depend>" for name in names)
+    return Fix((Edit(source.name, found[1], found[1], text),))
+
+
+def _own_executables(package: PackageContext) -> frozenset[str] | None:
+    """The executables of a package, or None where they cannot all be told."""
+    setup, cmake = package.setup, package.cmake
+    if cmake is not None:
+        return None  # targets are made in many ways
+    if (
+        setup is None
+        or not setup.entry_points_complete
+        or not is_ament_python(package)
+        or "scripts=" in setup.source.text
+    ):
+        return None
+    return frozenset(entry.executable for entry in setup.entry_points)
+
+
+def _is_known(name: str, package: PackageContext, subject: Subject) -> bool:
+    manifest = package.manifest
+    return name == package.name or (manifest is not None and manifest.declares(name)) or bool(subject.finder.find(name))
+
+
+def _meant(name: str, package: PackageContext, subject: Subject) -> str | None:
+    """The package that is meant by a name that is not known and looks misspelt; else None."""
+    if not name or name in WELL_KNOWN or _is_known(name, package, subject):
+        return None
+    like = next(iter(nearest(name, [*WELL_KNOWN, package.name], 1)), None)
+    return like if like is not None and _is_slip(name, like) else None
+
+
+def _is_slip(name: str, like: str) -> bool:
+    """Whether one name is the other with a letter or two wrong."""
+    if abs(len(name) - len(like)) > 2 or min(len(name), len(like)) < 5:
+        return False
+    from difflib import SequenceMatcher
+
+    return SequenceMatcher(None, name, like).ratio() > 0.9

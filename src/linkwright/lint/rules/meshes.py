@@ -1,0 +1,403 @@
+"""Rules about what is in mesh files, and how large it comes out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from math import isclose
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from linkwright.diagnostics import Diagnostic, Note, Severity
+from linkwright.lint.fix import Fix, add_attribute, replace_value
+from linkwright.lint.meshes import MeshUse
+from linkwright.lint.rule import Option, Rule
+from linkwright.lint.subject import Subject
+
+if TYPE_CHECKING:
+    from linkwright.inertia import TriangleMesh
+
+
+def loaded(subject: Subject, kind: str | None = None) -> Iterator[tuple[MeshUse, TriangleMesh]]:
+    """The uses of meshes that can be read, with the scaled triangles; of one kind of shape or of both."""
+    for use in subject.meshes.uses:
+        if kind is None or use.kind == kind:
+            mesh = subject.meshes.triangles(use.shape)
+            if mesh is not None:
+                yield use, mesh
+
+
+def file_name(use: MeshUse) -> str:
+    """The last part of a mesh's address."""
+    return use.mesh.filename.rpartition("/")[2]
+
+
+_POWERS = (10.0, 100.0, 1000.0, 10_000.0)
+
+
+class ZeroScale(Rule):
+    """A mesh scale with a zero in it.
+
+    ## Why
+
+    It flattens the mesh to nothing. urdfdom takes it without a word.
+
+    ## Example
+
+    ```xml
+    <mesh filename="package://arm/meshes/base.stl" scale="1 1 0"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <mesh filename="package://arm/meshes/base.stl" scale="1 1 1"/>
+    ```
+    """
+
+    code = "LW430"
+    name = "mesh-scale-zero"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        for use in subject.meshes.uses:
+            if 0 in use.mesh.scale:
+                yield self.report(
+                    f"the scale of the {use.kind} mesh '{file_name(use)}' of link '{use.link.name}' has a zero",
+                    use.element,
+                    "scale",
+                    hint="give three factors, such as '1 1 1', or '0.001 0.001 0.001' for a mesh in millimetres",
+                )
+
+
+class NegativeScale(Rule):
+    """A collision mesh that is mirrored by a negative scale.
+
+    ## Why
+
+    Mirroring turns the triangles inside out. Renderers cope with it; physics engines let things sink in or push them
+    out at the wrong side.
+
+    ## Example
+
+    ```xml
+    <collision>
+      <geometry><mesh filename="package://arm/meshes/finger.stl" scale="1 -1 1"/></geometry>
+    </collision>
+    ```
+
+    ## Use instead
+
+    A mesh file that is mirrored itself, or simple shapes.
+    """
+
+    code = "LW431"
+    name = "mesh-scale-negative"
+    severity = Severity.INFO
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        for use in subject.meshes.uses:
+            x, y, z = use.mesh.scale
+            if use.kind == "collision" and x * y * z < 0:
+                yield self.report(
+                    f"the collision mesh '{file_name(use)}' of link '{use.link.name}' is mirrored, which turns its "
+                    "triangles inside out",
+                    use.element,
+                    "scale",
+                    hint="export a mirrored mesh for collisions",
+                )
+
+
+class UnevenScale(Rule):
+    """A mesh scaled by factors along its axes that differ by a power of ten.
+
+    ## Why
+
+    A unit conversion has three equal factors. Where one is ten or a thousand times another, a digit slipped; a mesh that
+    is stretched by other amounts is taken as meant.
+
+    ## Example
+
+    ```xml
+    <mesh filename="package://arm/meshes/base.stl" scale="0.001 0.01 0.001"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <mesh filename="package://arm/meshes/base.stl" scale="0.001 0.001 0.001"/>
+    ```
+    """
+
+    code = "LW432"
+    name = "mesh-scale-uneven"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        for use in subject.meshes.uses:
+            factors = sorted(map(abs, use.mesh.scale))
+            if factors[0] > 0 and any(isclose(factors[2] / factors[0], power, rel_tol=0.01) for power in _POWERS):
+                yield self.report(
+                    f"the scale of the {use.kind} mesh '{file_name(use)}' of link '{use.link.name}' differs "
+                    f"{factors[2] / factors[0]:.3g} times between axes",
+                    use.element,
+                    "scale",
+                    hint="for another unit all three factors are the same",
+                )
+
+
+class Millimetres(Rule):
+    """A mesh that comes out larger than a house.
+
+    ## Why
+
+    STL and OBJ have no unit, and CAD programs write millimetres. URDF takes the numbers as metres, so the part is a
+    thousand times too large, and the camera of RViz is inside it: one sees nothing.
+
+    ## Example
+
+    ```xml
+    <mesh filename="package://arm/meshes/base.stl"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <mesh filename="package://arm/meshes/base.stl" scale="0.001 0.001 0.001"/>
+    ```
+    """
+
+    code = "LW433"
+    name = "mesh-in-millimetres"
+    options = (Option("largest", 50.0, "largest edge of the box around a mesh, in m"),)
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        largest = subject.option(self, "largest", float)
+        for use, mesh in loaded(subject):
+            low, high = mesh.bounds
+            edge = float((high - low).max())
+            if edge > largest:
+                scale = " ".join(f"{factor * 0.001:g}" for factor in use.mesh.scale)
+                yield self.report(
+                    f"the {use.kind} mesh '{file_name(use)}' of link '{use.link.name}' is {edge:.4g} m large",
+                    use.element,
+                    "filename",
+                    hint=f'if the file is in millimetres, write scale="{scale}"',
+                    fix=_scale_fix(use, scale),
+                )
+
+
+class TooSmall(Rule):
+    """A mesh that comes out smaller than a millimetre.
+
+    ## Why
+
+    A mesh in metres was scaled by a thousandth as if it were in millimetres; what is left is a speck.
+
+    ## Example
+
+    ```xml
+    <mesh filename="package://arm/meshes/base.dae" scale="0.001 0.001 0.001"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <mesh filename="package://arm/meshes/base.dae"/>
+    ```
+
+    COLLADA files say their unit themselves, and it is applied.
+    """
+
+    code = "LW434"
+    name = "mesh-too-small"
+    options = (Option("smallest", 1e-3, "smallest size of the box around a mesh, in m"),)
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        smallest = subject.option(self, "smallest", float)
+        for use, mesh in loaded(subject):
+            low, high = mesh.bounds
+            edge = float((high - low).max())
+            if edge < smallest and all(use.mesh.scale):
+                shrunk = max(map(abs, use.mesh.scale)) < 0.1
+                scale = " ".join(f"{factor * 1000:g}" for factor in use.mesh.scale)
+                yield self.report(
+                    f"the {use.kind} mesh '{file_name(use)}' of link '{use.link.name}' is {edge * 1000:.3g} mm large",
+                    use.element,
+                    "scale" if "scale" in use.element.attributes else "filename",
+                    hint="the file is in metres already: leave 'scale' out" if shrunk else f'write scale="{scale}"',
+                    fix=_scale_fix(use, scale),
+                )
+
+
+class HeavyCollision(Rule):
+    """A collision mesh with too many triangles.
+
+    ## Why
+
+    Every step of a simulation and every pose that a planner tries goes through them. Collision shapes of a few hundred
+    triangles, or a few boxes and cylinders, find the same contacts in a hundredth of the time.
+
+    ## Example
+
+    A `<collision>` with a mesh of 80 000 triangles straight from CAD.
+
+    ## Use instead
+
+    Its convex hull, a decimated copy, or simple shapes.
+    """
+
+    code = "LW435"
+    name = "collision-mesh-heavy"
+    options = (Option("triangles", 20_000, "most triangles of a collision mesh"),)
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        most = subject.option(self, "triangles", int)
+        told: set[Path] = set()
+        for use, mesh in loaded(subject, "collision"):
+            path = subject.meshes.path(use)
+            count = len(mesh.faces)
+            if count > most and path is not None and path not in told:
+                told.add(path)
+                yield self.report(
+                    f"the collision mesh '{file_name(use)}' of link '{use.link.name}' has {_thousands(count)} "
+                    "triangles",
+                    use.element,
+                    "filename",
+                    hint="use its convex hull, a decimated copy, or simple shapes",
+                )
+
+
+class VisualAsCollision(Rule):
+    """A collision that uses the very mesh of the visual, and that is not a light one.
+
+    ## Why
+
+    What looks good has more triangles than contacts need, and is often not closed.
+
+    ## Example
+
+    ```xml
+    <visual><geometry><mesh filename="package://arm/meshes/base.dae"/></geometry></visual>
+    <collision><geometry><mesh filename="package://arm/meshes/base.dae"/></geometry></collision>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <collision><geometry><mesh filename="package://arm/meshes/collision/base.stl"/></geometry></collision>
+    ```
+    """
+
+    code = "LW436"
+    name = "collision-uses-visual-mesh"
+    default = False
+    options = (Option("triangles", 2000, "triangles from which on a shared mesh is reported"),)
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        most = subject.option(self, "triangles", int)
+        seen = {(use.link.name, path) for use, path in subject.meshes.files if use.kind == "visual"}
+        for use, mesh in loaded(subject, "collision"):
+            if (use.link.name, subject.meshes.path(use)) in seen and len(mesh.faces) > most:
+                yield self.report(
+                    f"the collision of link '{use.link.name}' uses the mesh of its visual, '{file_name(use)}', with "
+                    f"{_thousands(len(mesh.faces))} triangles",
+                    use.element,
+                    "filename",
+                    hint="make a lighter mesh for collisions, or use simple shapes",
+                )
+
+
+class OpenMesh(Rule):
+    """A collision mesh that is not watertight.
+
+    ## Why
+
+    Through a hole there is no inside: volumes and inertia computed from it are wrong, and some engines push bodies
+    out at the wrong side. Others take its convex hull, which is then larger than it looks.
+
+    ## Example
+
+    A scan, or a shell exported without its back.
+
+    ## Use instead
+
+    A closed mesh, its convex hull, or simple shapes.
+    """
+
+    code = "LW437"
+    name = "collision-mesh-open"
+    severity = Severity.INFO
+    default = False
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        told: set[Path] = set()
+        for use, mesh in loaded(subject, "collision"):
+            path = subject.meshes.path(use)
+            if path is not None and path not in told and not mesh.is_watertight:
+                told.add(path)
+                yield self.report(
+                    f"the collision mesh '{file_name(use)}' of link '{use.link.name}' is not watertight",
+                    use.element,
+                    "filename",
+                    hint="close its holes, or use its convex hull",
+                )
+
+
+class ScalesDiffer(Rule):
+    """One mesh file in two very different scales.
+
+    ## Why
+
+    The same file has the same unit everywhere. Where one place scales it by a thousandth and another does not, one of
+    them is wrong.
+
+    ## Example
+
+    ```xml
+    <visual><geometry><mesh filename="package://a/meshes/b.stl" scale="0.001 0.001 0.001"/></geometry></visual>
+    <collision><geometry><mesh filename="package://a/meshes/b.stl"/></geometry></collision>
+    ```
+
+    ## Use instead
+
+    The same `scale` in both.
+    """
+
+    code = "LW438"
+    name = "mesh-scales-differ"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        first: dict[str, MeshUse] = {}
+        for use in subject.meshes.uses:
+            if 0 in use.mesh.scale:
+                continue
+            other = first.setdefault(use.mesh.filename, use)
+            ratio = max(map(abs, use.mesh.scale)) / max(map(abs, other.mesh.scale))
+            if not 1 / 99 < ratio < 99:
+                yield self.report(
+                    f"the mesh '{file_name(use)}' of link '{use.link.name}' is scaled "
+                    f"{max(ratio, 1 / ratio):.4g} times {'larger' if ratio > 1 else 'smaller'} than elsewhere",
+                    use.element,
+                    "scale",
+                    notes=[
+                        Note(f"in link '{other.link.name}' it is scaled here", other.element.attribute_span("scale"))
+                    ],
+                    hint="a file has one unit: give it the same scale everywhere",
+                )
+
+
+def _scale_fix(use: MeshUse, scale: str) -> Fix | None:
+    if "scale" in use.element.attributes:
+        return replace_value(use.element, "scale", scale, safe=False)
+    return add_attribute(use.element, "scale", scale, safe=False)
+
+
+def _thousands(number: int) -> str:
+    return f"{number:,}".replace(",", " ")

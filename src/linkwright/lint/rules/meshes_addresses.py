@@ -1,0 +1,301 @@
+"""Rules about the addresses of mesh files as they are written; whether there is a file is asked elsewhere."""
+
+from __future__ import annotations
+
+import os.path
+import re
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+from linkwright.diagnostics import Diagnostic, did_you_mean, display_path
+from linkwright.lint.fix import replace_value
+from linkwright.lint.rule import Rule
+from linkwright.lint.subject import Subject
+from linkwright.workspace import enclosing_package
+from linkwright.xmltree import Element
+from linkwright.xmltree.positions import attribute_value_range
+
+_SCHEME = re.compile(r"([A-Za-z][A-Za-z0-9+.-]+):")
+HOME = re.compile(r"(?:file://(?:localhost)?)?(/home/[^/]+|/Users/[^/]+|/root|[A-Za-z]:[\\/]Users[\\/][^\\/]+)[\\/]")
+KNOWN = (".stl", ".stlb", ".dae", ".obj", ".glb", ".gltf", ".ply", ".fbx", ".3ds", ".mesh")
+"""What RViz reads."""
+
+
+def written(element: Element, attribute: str) -> str:
+    """An attribute's value as it stands in the file, expressions of xacro unevaluated."""
+    source = element.source
+    found = attribute_value_range(source.text, element.offset, attribute) if source is not None else None
+    return source.text[slice(*found)] if source is not None and found is not None else ""
+
+
+def is_portable(uri: str) -> bool:
+    """Whether an address is of the form that ROS tools resolve: a scheme, or an absolute path."""
+    return bool(_SCHEME.match(uri)) or Path(uri).is_absolute()
+
+
+class MalformedUri(Rule):
+    """A mesh address that no tool understands.
+
+    ## Why
+
+    RViz and Gazebo take `package://PACKAGE/PATH` and `file:///PATH`. Anything else ends in an empty place where the
+    part should be.
+
+    ## Example
+
+    ```xml
+    <mesh filename="package:/my_robot_description/meshes/base.stl"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <mesh filename="package://my_robot_description/meshes/base.stl"/>
+    ```
+    """
+
+    code = "LW420"
+    name = "mesh-uri-malformed"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        for use in subject.meshes.uses:
+            uri = use.mesh.filename
+            problem, better = malformed(uri)
+            if problem:
+                yield self.report(
+                    f"the mesh address '{uri}' {problem}",
+                    use.element,
+                    "filename",
+                    hint=f"write '{better}'" if better else "write package://PACKAGE/PATH",
+                    fix=replace_value(use.element, "filename", better) if better else None,
+                )
+
+
+class RelativePath(Rule):
+    """A mesh address that is a relative path.
+
+    ## Why
+
+    What it is relative to is up to the tool: the folder of the URDF for some, the current folder for others. RViz
+    gets the description as a text from a topic, knows no folder, and shows nothing.
+
+    ## Example
+
+    ```xml
+    <mesh filename="../meshes/base.stl"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <mesh filename="package://my_robot_description/meshes/base.stl"/>
+    ```
+    """
+
+    code = "LW421"
+    name = "mesh-path-relative"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        for use in subject.meshes.uses:
+            uri = use.mesh.filename
+            if not uri.strip() or is_portable(uri) or "\\" in uri:
+                continue
+            better = _as_package_uri(subject.meshes.path(use))
+            yield self.report(
+                f"the mesh path '{uri}' is relative, which RViz cannot resolve",
+                use.element,
+                "filename",
+                hint=f"write '{better or 'package://PACKAGE/PATH'}'",
+                fix=replace_value(use.element, "filename", better, safe=False) if better else None,
+            )
+
+
+class HomePath(Rule):
+    """A mesh address with the home folder of one computer in it.
+
+    ## Why
+
+    On every other computer, and in every container, there is no such folder. Only what is written in the file counts:
+    `file://$(find PACKAGE)/...` is found wherever the package is.
+
+    ## Example
+
+    ```xml
+    <mesh filename="file:///home/ada/ros2_ws/src/arm/meshes/base.stl"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <mesh filename="package://arm/meshes/base.stl"/>
+    ```
+    """
+
+    code = "LW422"
+    name = "mesh-path-home"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        for use in subject.meshes.uses:
+            home = HOME.match(written(use.element, "filename"))
+            if home is not None:
+                path = subject.meshes.path(use)
+                better = _as_package_uri(path) or _in_known_package(subject, path)
+                yield self.report(
+                    f"the mesh address holds a folder of one computer, '{home[1]}'",
+                    use.element,
+                    "filename",
+                    hint=f"write '{better or 'package://PACKAGE/PATH'}'",
+                    fix=replace_value(use.element, "filename", better, safe=False) if better else None,
+                )
+
+
+class UnknownEnding(Rule):
+    """A mesh file of a format that robot tools do not read.
+
+    ## Why
+
+    RViz and Gazebo read STL, COLLADA, OBJ and glTF; files of CAD programs have to be exported.
+
+    ## Example
+
+    ```xml
+    <mesh filename="package://my_robot_description/meshes/base.step"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <mesh filename="package://my_robot_description/meshes/base.stl"/>
+    ```
+    """
+
+    code = "LW426"
+    name = "mesh-format-unknown"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        for use in subject.meshes.uses:
+            name = use.mesh.filename.rpartition("/")[2]
+            ending = Path(name).suffix
+            if not name or ending.lower() in KNOWN or malformed(use.mesh.filename)[0]:
+                continue
+            what = f"ends in '{ending}', a format" if ending else "has no ending that tells a format"
+            yield self.report(
+                f"the mesh file '{name}' {what} that robot tools do not read"
+                if ending
+                else f"the mesh file '{name}' {what}",
+                use.element,
+                "filename",
+                hint="export it as STL, COLLADA (.dae), OBJ or glTF (.glb)",
+            )
+
+
+class AwkwardName(Rule):
+    """A mesh address with blanks or letters beyond ASCII.
+
+    ## Why
+
+    RViz fetches meshes through a library for web addresses, where a blank is not allowed, and non-ASCII letters are
+    compared byte by byte, so the same name typed on a Mac is another one on Linux.
+
+    ## Example
+
+    ```xml
+    <mesh filename="package://my_robot_description/meshes/left arm.stl"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <mesh filename="package://my_robot_description/meshes/left_arm.stl"/>
+    ```
+    """
+
+    code = "LW427"
+    name = "mesh-name-awkward"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        for use in subject.meshes.uses:
+            uri = use.mesh.filename
+            name = uri.partition("://")[2].partition("/")[2] if uri.startswith("package://") else uri.rpartition("/")[2]
+            if uri.strip() and (" " in name or not name.isascii()):
+                what = "a blank" if " " in name else "letters beyond ASCII"
+                yield self.report(
+                    f"the mesh address '{uri}' has {what}",
+                    use.element,
+                    "filename",
+                    hint="rename the file with letters, digits and underscores",
+                )
+
+
+def malformed(uri: str) -> tuple[str | None, str | None]:
+    """What is wrong with an address, as the end of a sentence, and a better one where it can be told."""
+    if not uri.strip():
+        return "is empty", None
+    if "\\" in uri:
+        better = uri.replace("\\", "/")
+        return "has backslashes", better if malformed(better)[0] is None else None
+    if uri != uri.strip():
+        return "has blanks around it", uri.strip()
+    match = _SCHEME.match(uri)
+    if match is None:
+        return None, None
+    scheme, rest = match[1], uri[match.end() :]
+    if scheme in ("package", "model") and not rest.startswith("//"):
+        return "lacks a slash", f"{scheme}://{rest.lstrip('/')}"
+    if scheme == "package":
+        package, _, path = rest[2:].partition("/")
+        if not package:
+            path = path.lstrip("/")
+            return "names no package", f"package://{path}" if path.count("/") > 1 else None
+        return (None, None) if path.strip("/") else ("names no file", None)
+    if scheme == "file":
+        if rest.startswith(("///", "//localhost/")):
+            return None, None
+        return "has no absolute path", f"file:///{rest.lstrip('/')}" if not rest.startswith("//") else None
+    if scheme.lower() in ("package", "file"):
+        return "has its scheme in capitals", f"{scheme.lower()}:{rest}"
+    if scheme in ("model", "http", "https"):
+        return None, None
+    return f"has the unknown scheme '{scheme}'", None
+
+
+def _as_package_uri(path: Path | None) -> str | None:
+    """The ``package://`` address of a file that exists."""
+    if path is None or not path.is_file():
+        return None
+    resolved = Path(normal(path))
+    package = enclosing_package(resolved.parent)
+    return None if package is None else f"package://{package[0]}/{resolved.relative_to(package[1]).as_posix()}"
+
+
+def _in_known_package(subject: Subject, path: Path | None) -> str | None:
+    """The ``package://`` address of a file of another computer, whose path goes through a package that is here too."""
+    names = path.parts if path is not None else ()
+    for index in range(len(names) - 2, 0, -1):
+        share = subject.finder.find(names[index])
+        rest = names[index + 1 :]
+        if share is not None and share.joinpath(*rest).is_file():
+            return f"package://{names[index]}/{'/'.join(rest)}"
+    return None
+
+
+def file_hint(path: Path, endings: Sequence[str]) -> str:
+    """What there is in place of a missing file: files with one of the endings, all in small letters."""
+    try:
+        names = sorted(each.name for each in path.parent.iterdir() if each.suffix.lower() in endings)
+    except OSError:
+        return f"there is no folder '{display_path(path.parent)}'"
+    near = did_you_mean(path.name, names)
+    if near or not names:
+        return near or "put the file there, or correct the address"
+    return f"there are: {', '.join(names[:8])}{', ...' if len(names) > 8 else ''}"
+
+
+def normal(path: Path) -> str:
+    """A path without ``..`` and ``.``; links in it are kept."""
+    return os.path.normpath(path)

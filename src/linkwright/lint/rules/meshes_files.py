@@ -1,0 +1,306 @@
+"""Rules about mesh files: whether there is one where the address leads, and whether it is one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, display_path
+from linkwright.lint.fix import replace_value
+from linkwright.lint.meshes import MeshUse
+from linkwright.lint.rule import Rule
+from linkwright.lint.rules.meshes_addresses import HOME, KNOWN, file_hint, malformed, normal, written
+from linkwright.lint.subject import Subject
+from linkwright.workspace import PackageNotFoundError, enclosing_package
+
+_LFS = b"version https://git-lfs"
+
+
+def case_twin(path: Path) -> Path | None:
+    """The file that is meant when a path does not exist as it is written, but with other capitals does."""
+    current = Path(path.anchor)
+    changed = False
+    for name in path.relative_to(path.anchor).parts:
+        if not (current / name).exists() or not _is_listed(current, name):
+            try:
+                twin = next((each for each in current.iterdir() if each.name.casefold() == name.casefold()), None)
+            except OSError:
+                return None
+            if twin is None:
+                return None
+            changed = changed or twin.name != name
+            name = twin.name
+        current /= name
+    return current if changed else None
+
+
+def _is_listed(folder: Path, name: str) -> bool:
+    """Whether a folder has an entry of exactly this name; a disk that ignores case finds others too."""
+    if (folder / name.swapcase()).exists() and name.swapcase() != name:
+        try:
+            return any(each.name == name for each in folder.iterdir())
+        except OSError:
+            return True
+    return True
+
+
+class UnknownPackage(Rule):
+    """A mesh address that names a package that is not found.
+
+    ## Why
+
+    Without the package there is no mesh. Either its name is misspelt, or the workspace that holds it is not there or
+    not sourced.
+
+    ## Example
+
+    ```xml
+    <mesh filename="package://my_robot_descripton/meshes/base.stl"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <mesh filename="package://my_robot_description/meshes/base.stl"/>
+    ```
+    """
+
+    code = "LW423"
+    name = "mesh-package-unknown"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        told: dict[str, list[MeshUse]] = {}
+        hints: dict[str, str | None] = {}
+        for use in subject.meshes.uses:
+            if not use.mesh.filename.startswith("package://") or malformed(use.mesh.filename)[0]:
+                continue
+            package = use.mesh.filename[len("package://") :].partition("/")[0]
+            if package in told:
+                told[package].append(use)
+                continue
+            try:
+                subject.finder.resolve(use.mesh.filename)
+            except PackageNotFoundError as error:
+                told[package] = [use]
+                hints[package] = error.diagnostics[0].hint
+            except LinkwrightError:
+                continue
+        for package, uses in told.items():
+            more = f", which {len(uses)} mesh addresses name" if len(uses) > 1 else ""
+            yield self.report(
+                f"package '{package}' is not found{more}", uses[0].element, "filename", hint=hints[package]
+            )
+
+
+class MissingFile(Rule):
+    """A mesh address that leads to no file.
+
+    ## Why
+
+    The part is not shown, and not hit by anything. Where a whole folder of meshes is missing, one finding stands for
+    all of them.
+
+    ## Example
+
+    ```xml
+    <mesh filename="package://my_robot_description/meshes/bsae.stl"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <mesh filename="package://my_robot_description/meshes/base.stl"/>
+    ```
+    """
+
+    code = "LW424"
+    name = "mesh-missing"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        missing: dict[Path, list[tuple[MeshUse, Path]]] = {}
+        for use, path in subject.meshes.files:
+            if malformed(use.mesh.filename)[0] or HOME.match(written(use.element, "filename")):
+                continue  # that is said already
+            if path.is_file() or case_twin(path) is not None:
+                continue
+            missing.setdefault(_last_folder(path), []).append((use, path))
+        for folder, uses in missing.items():
+            files = dict.fromkeys(path for _, path in uses)
+            first, path = uses[0]
+            if len(files) > 1 and not path.parent.exists():
+                gone = path.relative_to(folder).parts[0]
+                yield self.report(
+                    f"{len(files)} mesh files are missing: there is no folder '{display_path(folder / gone)}'",
+                    first.element,
+                    "filename",
+                    notes=[Note(f"the first is '{first.mesh.filename}'")],
+                    hint="are they in another repository, or fetched by the build?",
+                )
+                continue
+            told = set()
+            for use, path in uses:
+                if path in told:
+                    continue
+                told.add(path)
+                yield self.report(
+                    f"there is no mesh file '{use.mesh.filename}'",
+                    use.element,
+                    "filename",
+                    notes=[Note(f"it would be {display_path(path)}")],
+                    hint=file_hint(path, KNOWN),
+                )
+
+
+class WrongCase(Rule):
+    """A mesh address that has other capitals than the file.
+
+    ## Why
+
+    macOS and Windows find the file all the same, Linux does not: it works for the author and fails on the robot.
+
+    ## Example
+
+    ```xml
+    <mesh filename="package://my_robot_description/meshes/Base.STL"/>
+    ```
+
+    for the file `meshes/base.stl`.
+
+    ## Use instead
+
+    ```xml
+    <mesh filename="package://my_robot_description/meshes/base.stl"/>
+    ```
+    """
+
+    code = "LW425"
+    name = "mesh-case-differs"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        for use, path in subject.meshes.files:
+            twin = case_twin(path)
+            if twin is None or not twin.is_file():
+                continue
+            better = _with_case(use.mesh.filename, twin)
+            yield self.report(
+                f"the mesh file is '{twin.name}', in other capitals than '{path.name}'"
+                if twin.name != path.name
+                else f"a folder of the mesh file '{path.name}' has other capitals",
+                use.element,
+                "filename",
+                hint=f"write '{better}'",
+                fix=replace_value(use.element, "filename", better),
+            )
+
+
+class OutsidePackage(Rule):
+    """A mesh that lies outside of every package, while the description lies in one.
+
+    ## Why
+
+    What is not in a package is not installed, so after `colcon build` and on another computer the mesh is gone.
+
+    ## Example
+
+    ```xml
+    <mesh filename="package://my_robot_description/../meshes/base.stl"/>
+    ```
+
+    ## Use instead
+
+    The file in a folder of the package that is installed, and
+
+    ```xml
+    <mesh filename="package://my_robot_description/meshes/base.stl"/>
+    ```
+    """
+
+    code = "LW428"
+    name = "mesh-outside-package"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        if enclosing_package(subject.path.absolute().parent) is None:
+            return
+        for use, path in subject.meshes.files:
+            uri = use.mesh.filename
+            if HOME.match(written(use.element, "filename")):
+                continue  # that is said already
+            resolved = Path(normal(path))
+            left = None
+            if uri.startswith("package://"):
+                package = uri[len("package://") :].partition("/")[0]
+                share = subject.finder.find(package)
+                if share is not None and not resolved.is_relative_to(normal(share)):
+                    left = f"leaves package '{package}'"
+            elif resolved.is_file() and enclosing_package(resolved.parent) is None:
+                left = "is in no package"
+            if left:
+                yield self.report(
+                    f"the mesh '{uri}' {left}",
+                    use.element,
+                    "filename",
+                    notes=[Note(f"it is {display_path(resolved)}")],
+                    hint="move it into a folder of the package that is installed",
+                )
+
+
+class UnreadableMesh(Rule):
+    """A mesh file that cannot be read.
+
+    ## Why
+
+    It is empty, cut short, or not what its ending says. Where the repository keeps meshes with Git LFS, the file may be
+    a pointer to the mesh, a text of three lines.
+
+    ## Example
+
+    A `base.stl` that begins with `version https://git-lfs.github.com/spec/v1`.
+
+    ## Use instead
+
+    Fetch it with `git lfs pull`, or export it again.
+    """
+
+    code = "LW429"
+    name = "mesh-unreadable"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        told = set()
+        for use, path in subject.meshes.files:
+            if path in told or not path.is_file():
+                continue
+            told.add(path)
+            problem = subject.meshes.problem(use)
+            if problem is None or problem.diagnostics[0].code != "INR103":
+                continue
+            found = problem.diagnostics[0]
+            hint = "it is a pointer of Git LFS: run `git lfs pull`" if _is_lfs_pointer(path) else found.hint
+            yield self.report(found.message, use.element, "filename", hint=hint)
+
+
+def _with_case(uri: str, twin: Path) -> str:
+    """An address with the end of its path in the capitals of a file."""
+    parts = uri.split("/")
+    for back, name in enumerate(reversed(twin.parts), start=1):
+        if back >= len(parts) or parts[-back].casefold() != name.casefold():
+            break
+        parts[-back] = name
+    return "/".join(parts)
+
+
+def _last_folder(path: Path) -> Path:
+    """The deepest folder on the way to a file that is there."""
+    return next((folder for folder in path.parents if folder.is_dir()), Path(path.anchor))
+
+
+def _is_lfs_pointer(path: Path) -> bool:
+    try:
+        with path.open("rb") as file:
+            return file.read(len(_LFS)) == _LFS
+    except OSError:
+        return False

@@ -1,0 +1,378 @@
+"""Frames that have names and meanings of their own: REP 103, 105 and 120."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from math import radians
+
+from linkwright.diagnostics import Diagnostic, Note, Severity
+from linkwright.lint.frames import Matrix, angle_between, rotation
+from linkwright.lint.rule import Rule
+from linkwright.lint.subject import Subject
+from linkwright.urdf import Box, Geometry, Mesh
+
+_OPTICAL = re.compile(r"(?P<stem>.*?)_?optical(_(frame|link|joint))?$")
+_OPTICAL_ROTATION: Matrix = ((0.0, 0.0, 1.0), (-1.0, 0.0, 0.0), (0.0, -1.0, 0.0))
+_CAMERA = re.compile("cam|rgb|depth|colou?r|infra|stereo|eye|kinect|realsense|zed|oak|sensor|image", re.IGNORECASE)
+_TOLERANCE = radians(2.0)
+_TINY = 0.05
+_HUMANOID = ("base_link", "torso", "l_wrist", "r_wrist", "l_gripper", "r_gripper", "l_sole", "r_sole", "gaze")
+
+
+class BaseLinkMissing(Rule):
+    """A robot on wheels has no link ``base_link``.
+
+    ## Why
+
+    REP 105 calls the frame that is fixed to a mobile robot `base_link`. Navigation, localisation and teleoperation look
+    for it under that name.
+
+    ## Example
+
+    ```xml
+    <link name="chassis"/>
+    <joint name="left_wheel_joint" type="continuous">
+    ```
+
+    ## Use instead
+
+    ```xml
+    <link name="base_link"/>
+    ```
+    """
+
+    code = "LW620"
+    name = "base-link-missing"
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        robot = subject.robot
+        if robot is None or any(
+            re.search(r"(^|[_/])base_?(link|footprint)", name, re.IGNORECASE) for name in robot.links
+        ):
+            return
+        wheels = [
+            joint for joint in robot.joints.values() if joint.type == "continuous" and "wheel" in joint.name.lower()
+        ]
+        root = robot.links[robot.root]
+        if len(wheels) < 2 or root.element is None:
+            return
+        notes = [
+            Note(f"'{joint.name}' is a wheel", joint.element.span() if joint.element else None) for joint in wheels[:2]
+        ]
+        message = "this robot on wheels has no link 'base_link', which REP 105 asks for"
+        yield self.report(message, root.element, "name", notes=notes, hint=f"call '{root.name}' base_link, or add one")
+
+
+class BaseLinkNotAtTheTop(Rule):
+    """``base_link`` has a parent other than ``base_footprint`` or a world.
+
+    ## Why
+
+    REP 105 has `odom` as the parent of `base_link`. A frame has one parent, so a link of the robot above it either
+    takes that place or is cut off. Pedantic: where the odometry is given for the root of the tree, all works.
+
+    ## Example
+
+    ```xml
+    <joint name="base_joint" type="fixed">
+      <parent link="chassis"/>
+      <child link="base_link"/>
+    </joint>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <joint name="chassis_joint" type="fixed">
+      <parent link="base_link"/>
+      <child link="chassis"/>
+    </joint>
+    ```
+    """
+
+    code = "LW621"
+    name = "base-link-not-at-the-top"
+    default = False
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        if subject.robot is None:
+            return
+        for joint in subject.robot.joints.values():
+            if joint.child != "base_link" or joint.element is None:
+                continue
+            if not re.search("footprint|world|map|odom|dummy|stand|pedestal|table|mount", joint.parent):
+                message = f"'base_link' hangs from '{joint.parent}'; REP 105 has it as the topmost link of a robot"
+                yield self.report(message, joint.element, hint="exchange parent and child, and invert the origin")
+
+
+class FootprintBelowBase(Rule):
+    """``base_footprint`` hangs from ``base_link``.
+
+    ## Why
+
+    `base_footprint` is where the robot stands, and its height and tilt over the ground are the transform from there to
+    `base_link` (REP 120). Pedantic: the other order is in use, and works where nothing gives odometry for
+    `base_footprint`.
+
+    ## Example
+
+    ```xml
+    <joint name="footprint_joint" type="fixed">
+      <parent link="base_link"/>
+      <child link="base_footprint"/>
+    </joint>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <joint name="base_joint" type="fixed">
+      <parent link="base_footprint"/>
+      <child link="base_link"/>
+    </joint>
+    ```
+    """
+
+    code = "LW622"
+    name = "footprint-below-base"
+    default = False
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        if subject.robot is None:
+            return
+        for joint in subject.robot.joints.values():
+            upside_down = joint.child.endswith("base_footprint") and joint.parent.endswith("base_link")
+            if upside_down and joint.element is not None:
+                message = f"'{joint.child}' hangs from '{joint.parent}'; REP 120 has it the other way round"
+                yield self.report(message, joint.element, hint="exchange parent and child, and invert the origin")
+
+
+class FootprintHasBody(Rule):
+    """``base_footprint`` has a collision shape or a mass.
+
+    ## Why
+
+    `base_footprint` is a place on the ground, not a thing. A body there rubs on the floor of a simulation, and its mass
+    is counted twice.
+
+    ## Example
+
+    ```xml
+    <link name="base_footprint">
+      <collision><geometry><box size="0.3 0.3 0.1"/></geometry></collision>
+    </link>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <link name="base_footprint"/>
+    ```
+    """
+
+    code = "LW623"
+    name = "footprint-has-body"
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        for link in subject.links:
+            if not link.name.endswith("base_footprint") or link.element is None:
+                continue
+            solid = next((each for each in link.collisions if not _is_tiny(each.geometry)), None)
+            part = None if solid is None else solid.element
+            is_root = (
+                subject.robot is None or subject.robot.root == link.name
+            )  # the mass of a root has a rule of its own
+            if part is None and not is_root and link.inertial is not None and link.inertial.mass > 0.1:
+                part = link.element.first("inertial")
+            if part is not None:
+                message = f"'{link.name}' is a place on the ground, and has a <{part.tag}>"
+                yield self.report(message, part, hint="move it to the link of the body, such as 'base_link'")
+
+
+class FixedFrameInRobot(Rule):
+    """A link is called ``map`` or ``odom``.
+
+    ## Why
+
+    REP 105 gives these names to frames that localisation and odometry publish. A frame has one parent: with the link in
+    the description and a node that publishes the same frame, transforms jump between the two.
+
+    ## Example
+
+    ```xml
+    <link name="odom"/>
+    <joint name="odom_joint" type="fixed">
+    ```
+
+    ## Use instead
+
+    Leave the link out. Where a frame without odometry is wanted, publish it with static_transform_publisher.
+    """
+
+    code = "LW624"
+    name = "fixed-frame-in-robot"
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        for link in subject.links:
+            if link.name.rpartition("/")[2] in ("map", "odom") and link.element is not None:
+                message = f"'{link.name}' is the name of a frame that localisation publishes (REP 105), not of a link"
+                yield self.report(message, link.element, "name", hint="leave it to localisation and odometry")
+
+
+class OpticalFrameRotation(Rule):
+    """An optical frame is not rotated against its camera as REP 103 says.
+
+    ## Why
+
+    A camera's own frame has x forward and z up; its optical frame has z forward and y down, as images are defined.
+    Point clouds and detections come in the optical frame and lie on their side where the rotation is missing.
+
+    ## Example
+
+    ```xml
+    <joint name="camera_optical_joint" type="fixed">
+      <parent link="camera_link"/>
+      <child link="camera_optical_frame"/>
+    </joint>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <joint name="camera_optical_joint" type="fixed">
+      <origin xyz="0 0 0" rpy="-1.5708 0 -1.5708"/>
+      <parent link="camera_link"/>
+      <child link="camera_optical_frame"/>
+    </joint>
+    ```
+    """
+
+    code = "LW630"
+    name = "optical-frame-rotation"
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        robot = subject.robot
+        if robot is None:
+            return
+        for joint in robot.joints.values():
+            match = _OPTICAL.fullmatch(joint.child)
+            if match is None or joint.type != "fixed" or joint.element is None:
+                continue
+            parent = joint.parent
+            if "optical" in parent or not _same_camera(match["stem"], parent):
+                continue
+            turned = rotation(joint.origin)
+            if angle_between(turned, _OPTICAL_ROTATION) <= _TOLERANCE or not _is_slip(turned):
+                continue
+            rpy = " ".join(f"{angle:g}" for angle in joint.origin.rpy)
+            message = (
+                f"'{joint.child}' is turned against '{parent}' by rpy '{rpy}', not as REP 103 says of optical frames"
+            )
+            origin = joint.element.first("origin")
+            attribute = "rpy" if origin is not None and "rpy" in origin.attributes else None
+            element = origin if origin is not None else joint.element
+            hint = 'write rpy="-1.5708 0 -1.5708" (in xacro rpy="${-pi/2} 0 ${-pi/2}"): z forward, y down'
+            yield self.report(message, element, attribute, hint=hint)
+
+
+def _is_tiny(shape: Geometry) -> bool:
+    """Whether a shape is a mark for a place: some simulators want one on every link."""
+    if isinstance(shape, Box):
+        return max(shape.size) <= _TINY
+    return not isinstance(shape, Mesh) and 2.0 * shape.radius <= _TINY
+
+
+def _same_camera(stem: str, parent: str) -> bool:
+    """Whether a parent link is the camera's own frame, which has x forward: its name says so."""
+    base = re.sub(r"_(link|frame)$", "", parent)
+    return bool(stem) and (base == stem or (stem.startswith(f"{base}_") and bool(_CAMERA.search(base))))
+
+
+def _is_slip(turned: Matrix) -> bool:
+    """Whether a rotation is by right angles: a camera that looks elsewhere has other angles."""
+    return all(min(abs(value), abs(abs(value) - 1.0)) < 0.02 for row in turned for value in row)
+
+
+class CameraWithoutOpticalFrame(Rule):
+    """A camera in Gazebo has no optical frame.
+
+    ## Why
+
+    Images and point clouds say in which frame they are, and REP 103 wants that to be one with z forward. Pedantic: a
+    camera that is only looked at needs none.
+
+    ## Example
+
+    ```xml
+    <gazebo reference="camera_link">
+      <sensor name="camera" type="camera"/>
+    </gazebo>
+    ```
+
+    ## Use instead
+
+    Add a link `camera_optical_frame` with a fixed joint that has `rpy="-1.5708 0 -1.5708"`, and name it in the sensor.
+    """
+
+    code = "LW631"
+    name = "camera-without-optical-frame"
+    default = False
+    severity = Severity.INFO
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        if any("optical" in link.name for link in subject.links):
+            return
+        for element in subject.elements("gazebo"):
+            for sensor in element.elements("sensor"):
+                if re.search("camera|depth|rgbd", sensor.attributes.get("type", "")):
+                    reference = element.attributes.get("reference", "")
+                    message = f"the camera on '{reference}' has no optical frame"
+                    hint = 'add a link with a fixed joint of rpy="-1.5708 0 -1.5708" below it'
+                    yield self.report(message, sensor, hint=hint)
+
+
+class HumanoidFrames(Rule):
+    """A humanoid robot lacks frames that REP 120 names.
+
+    ## Why
+
+    REP 120 gives humanoids a common set of frames, so that walking and grasping software finds wrists and soles by
+    name. Pedantic: few robots follow it.
+
+    ## Example
+
+    ```xml
+    <link name="LeftFoot"/>
+    <link name="RightFoot"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <link name="l_sole"/>
+    <link name="r_sole"/>
+    ```
+    """
+
+    code = "LW632"
+    name = "humanoid-frames"
+    default = False
+    severity = Severity.INFO
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        names = {link.name.lower() for link in subject.links}
+        has_feet = sum(bool(re.search(r"(foot|ankle|sole)(?!print)", name)) for name in names) >= 2
+        has_hands = sum(bool(re.search("hand|wrist|gripper", name)) for name in names) >= 2
+        missing = [name for name in _HUMANOID if name not in names]
+        if has_feet and has_hands and missing:
+            listed = ", ".join(f"'{name}'" for name in missing)
+            yield self.report(f"this humanoid robot lacks frames that REP 120 names: {listed}", subject.root, "name")

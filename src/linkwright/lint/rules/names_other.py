@@ -1,0 +1,86 @@
+"""Names that joints share with links, and that of the robot."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from linkwright.diagnostics import Diagnostic, Note
+from linkwright.lint.fix import replace_value
+from linkwright.lint.rule import Rule
+from linkwright.lint.rules.names_text import named
+from linkwright.lint.subject import Subject
+
+
+class JointNameIsLinkName(Rule):
+    """A joint and a link have the same name.
+
+    ## Why
+
+    URDF keeps the two apart, but SDF, into which Gazebo turns it, does not: it wants different names for all parts of a
+    model, and Gazebo refuses or renames what is called alike.
+
+    ## Example
+
+    ```xml
+    <link name="left_wheel"/>
+    <joint name="left_wheel" type="continuous">
+    ```
+
+    ## Use instead
+
+    ```xml
+    <link name="left_wheel_link"/>
+    <joint name="left_wheel_joint" type="continuous">
+    ```
+    """
+
+    code = "LW609"
+    name = "joint-name-is-link-name"
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        links = {name: element for kind, name, element in named(subject) if kind == "link"}
+        for kind, name, element in named(subject):
+            if kind == "joint" and name in links:
+                note = Note("the link is defined here", links[name].attribute_span("name"))
+                hint = f"call the joint '{name.removesuffix('_link')}_joint'"
+                message = f"a joint and a link are both called '{name}', which SDF does not allow"
+                yield self.report(message, element, "name", notes=[note], hint=hint)
+
+
+class RobotNameUnusual(Rule):
+    """The name of the robot has blanks or other characters that names of ROS do not have.
+
+    ## Why
+
+    Tools make file names, namespaces and parameter names of it: MoveIt's assistant a package, Gazebo a model. Pedantic:
+    nothing in ROS looks names of robots up.
+
+    ## Example
+
+    ```xml
+    <robot name="My Robot (v2)">
+    ```
+
+    ## Use instead
+
+    ```xml
+    <robot name="my_robot_v2">
+    ```
+    """
+
+    code = "LW610"
+    name = "robot-name-unusual"
+    default = False
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        name = subject.root.attributes.get("name", "")
+        if not name or re.fullmatch(r"[A-Za-z0-9_\-]+", name):
+            return
+        better = re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_")
+        hint = f"such as '{better}'" if better else "use letters a to z, digits and underscores"
+        fix = replace_value(subject.root, "name", better, safe=False) if better else None
+        message = f"the name of the robot '{name}' has characters that names in ROS do not have"
+        yield self.report(message, subject.root, "name", hint=hint, fix=fix)

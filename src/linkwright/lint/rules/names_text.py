@@ -1,0 +1,297 @@
+"""How links and joints are named: characters, case, blanks and repetitions."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from linkwright.diagnostics import Diagnostic, Note, Severity
+from linkwright.lint.rule import Rule
+from linkwright.lint.subject import Subject
+from linkwright.xmltree import Element
+
+_USUAL = re.compile(r"[A-Za-z0-9_./\- ]*")
+_DOUBLED = re.compile(r"(?:^|.*[_-])(link|joint|frame)[_-]\1$", re.IGNORECASE)
+
+
+def named(subject: Subject) -> Iterator[tuple[str, str, Element]]:
+    """Kind, name and element of every link and joint that has a name, in file order."""
+    for kind in ("link", "joint"):
+        for element in subject.elements(kind):
+            name = element.attributes.get("name", "")
+            if name:
+                yield kind, name, element
+
+
+class NameEdgeBlank(Rule):
+    """The name of a link or joint begins or ends with a blank.
+
+    ## Why
+
+    The blank belongs to the name. A parent, a transform lookup or a joint state that says the name without it means
+    another one, and the difference cannot be seen.
+
+    ## Example
+
+    ```xml
+    <link name="base_link "/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <link name="base_link"/>
+    ```
+    """
+
+    code = "LW601"
+    name = "name-edge-blank"
+    severity = Severity.ERROR
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        for kind, name, element in named(subject):
+            if name != name.strip():
+                message = f"the name of the {kind} '{name}' begins or ends with a blank"
+                yield self.report(message, element, "name", hint=f"write '{name.strip()}' wherever it is meant")
+
+
+class NameBlank(Rule):
+    """A blank stands inside the name of a link or joint.
+
+    ## Why
+
+    Names become names of frames, parameters and topics, and words on command lines. Those take blanks badly or not
+    at all.
+
+    ## Example
+
+    ```xml
+    <link name="left wheel"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <link name="left_wheel"/>
+    ```
+    """
+
+    code = "LW602"
+    name = "name-blank"
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        for kind, name, element in named(subject):
+            inner = name.strip()
+            if re.search(r"\s", inner):
+                hint = f"write '{re.sub(chr(92) + 's+', '_', inner)}' wherever it is meant"
+                yield self.report(f"the name of the {kind} '{name}' has a blank in it", element, "name", hint=hint)
+
+
+class NameLeadingSlash(Rule):
+    """The name of a link begins with a slash.
+
+    ## Why
+
+    tf2, the transform library of ROS 2, refuses names of frames that begin with a slash, so this link can never be
+    looked up. The slash was customary with the first tf.
+
+    ## Example
+
+    ```xml
+    <link name="/base_link"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <link name="base_link"/>
+    ```
+
+    To tell several robots apart, give robot_state_publisher its parameter `frame_prefix`.
+    """
+
+    code = "LW603"
+    name = "name-leading-slash"
+    severity = Severity.ERROR
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        for kind, name, element in named(subject):
+            if kind == "link" and name.startswith("/"):
+                message = f"the name of the link '{name}' begins with a slash, which tf2 refuses"
+                yield self.report(message, element, "name", hint=f"write '{name.lstrip('/')}' wherever it is meant")
+
+
+class NameNotAscii(Rule):
+    """A letter outside ASCII stands in the name of a link or joint.
+
+    ## Why
+
+    Names of topics and parameters in ROS 2 are ASCII, and letters that look alike but differ (a Cyrillic `a`, a full
+    width underscore) make names that nobody can type.
+
+    ## Example
+
+    ```xml
+    <link name="räder_link"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <link name="wheels_link"/>
+    ```
+    """
+
+    code = "LW604"
+    name = "name-not-ascii"
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        for kind, name, element in named(subject):
+            strange = sorted({character for character in name if not character.isascii()})
+            if strange:
+                listed = ", ".join(f"'{character}' (U+{ord(character):04X})" for character in strange)
+                message = f"the name of the {kind} '{name}' has letters outside ASCII: {listed}"
+                yield self.report(message, element, "name", hint="use letters a to z, digits and underscores")
+
+
+class NameUnusualCharacter(Rule):
+    """A character that is neither letter, digit, underscore, dash, dot nor slash stands in a name.
+
+    ## Why
+
+    Brackets, quotes, colons and their like have a meaning on command lines, in YAML and in the names of topics and
+    parameters. A name with them works in one tool and fails in the next.
+
+    ## Example
+
+    ```xml
+    <joint name="wheel(left)" type="continuous"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <joint name="left_wheel_joint" type="continuous"/>
+    ```
+    """
+
+    code = "LW605"
+    name = "name-unusual-character"
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        for kind, name, element in named(subject):
+            strange = sorted({sign for sign in name if sign.isascii() and not _USUAL.fullmatch(sign)})
+            if strange and "${" not in name and "$(" not in name and not any(sign.isspace() for sign in strange):
+                message = f"the name of the {kind} '{name}' has unusual characters in it: {' '.join(strange)}"
+                yield self.report(message, element, "name", hint="use letters a to z, digits and underscores")
+
+
+class NameUpperCase(Rule):
+    """The name of a link or joint has upper case letters or dashes in it.
+
+    ## Why
+
+    REP 144 asks for lower case and underscores in the names of packages, and REP 103, 105 and 120 name all their
+    frames that way. Names in one style need no looking up. Pedantic: many arms carry the names that their makers gave
+    the axes.
+
+    ## Example
+
+    ```xml
+    <link name="LeftWheel"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <link name="left_wheel"/>
+    ```
+    """
+
+    code = "LW606"
+    name = "name-upper-case"
+    default = False
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        for kind, name, element in named(subject):
+            if name != name.lower() or "-" in name:
+                snake = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).replace("-", "_").lower()
+                message = f"the name of the {kind} '{name}' is not in lower case with underscores"
+                yield self.report(message, element, "name", hint=f"the usual form is '{snake}'")
+
+
+class NamesDifferInCase(Rule):
+    """Two links or two joints have names that differ in upper and lower case alone.
+
+    ## Why
+
+    They are two names to ROS and one to a reader, so one of them is used where the other is meant. Gazebo and mesh
+    files on Windows and macOS take them for one.
+
+    ## Example
+
+    ```xml
+    <link name="camera_link"/>
+    <link name="Camera_link"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <link name="front_camera_link"/>
+    <link name="rear_camera_link"/>
+    ```
+    """
+
+    code = "LW607"
+    name = "names-differ-in-case"
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        first: dict[tuple[str, str], tuple[str, Element]] = {}
+        for kind, name, element in named(subject):
+            other, where = first.setdefault((kind, name.casefold()), (name, element))
+            if other != name:
+                message = f"the {kind}s '{other}' and '{name}' differ in upper and lower case alone"
+                note = Note(f"'{other}' is defined here", where.attribute_span("name"))
+                yield self.report(message, element, "name", notes=[note], hint="give one of them another name")
+
+
+class NameSuffixDoubled(Rule):
+    """The name of a link or joint ends with the same word twice, such as ``_link_link``.
+
+    ## Why
+
+    It happens when a macro appends `_link` to a parameter that has it already. The name works, and everybody who writes
+    it from memory writes another one.
+
+    ## Example
+
+    ```xml
+    <xacro:camera name="camera_link"/>  <!-- the macro writes <link name="${name}_link"> -->
+    ```
+
+    ## Use instead
+
+    ```xml
+    <xacro:camera name="camera"/>
+    ```
+    """
+
+    code = "LW608"
+    name = "name-suffix-doubled"
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        for kind, name, element in named(subject):
+            match = _DOUBLED.fullmatch(name)
+            if match:
+                message = f"the name of the {kind} '{name}' ends with '{match[1]}' twice"
+                shorter = name[: -len(match[1]) - 1]
+                yield self.report(message, element, "name", hint=f"'{shorter}' says the same")

@@ -1,0 +1,348 @@
+"""Wheels: whether what they are called, where they are and how they turn agree.
+
+A wheel is known by its name alone: the word "wheel" in the name of the joint or the link below it, without a word that
+tells of a steering or suspension joint. All places are those with every joint at zero, in the frame of ``base_link``
+(or the root), in which REP 103 has x forward and y to the left.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from math import cos, radians
+from typing import NamedTuple
+
+from linkwright.diagnostics import Diagnostic, Note, Span
+from linkwright.lint.frames import Placement, dot, length, placement, placements, subtracted, turned
+from linkwright.lint.rule import Rule
+from linkwright.lint.subject import Subject
+from linkwright.urdf import Collision, Cylinder, Joint, Link, Robot, Vector3, Visual
+
+_NO_WHEEL = re.compile(
+    r"steer|swivel|knuckle|suspension|caster|castor|drop|arm|hub|axle|mount|fork|plate|holder|base|shaft|rocker|bogie"
+    r"|pivot|roller|turn|rotate|yaw|slipping|cover|support|bracket|motor|encoder|arch|guard",
+    re.IGNORECASE,
+)
+_SIDES = {"left": "right", "l": "r", "lhs": "rhs"}
+_APART = 1e-3
+_AXIS_TOLERANCE = cos(radians(10.0))
+
+
+class Wheel(NamedTuple):
+    """A joint that turns a wheel: with its link, its frame and its axis in the base frame."""
+
+    joint: Joint
+    link: Link
+    frame: Placement
+    axis: Vector3
+
+
+def wheels(robot: Robot) -> Iterator[Wheel]:
+    """The wheels of a robot that turn freely, in file order."""
+    frames = placements(robot)
+    base = frames.get("base_link", frames[robot.root])
+    for joint in robot.joints.values():
+        if joint.type == "continuous" and is_wheel(joint) and joint.child in frames:
+            frame = frames[joint.child].seen_from(base)
+            axis = turned(frame.rotation, joint.axis)
+            size = length(axis)
+            if size > 0:
+                unit = (axis[0] / size, axis[1] / size, axis[2] / size)
+                yield Wheel(joint, robot.links[joint.child], frame, unit)
+
+
+def is_wheel(joint: Joint) -> bool:
+    """Whether a joint is that of a wheel, by the names."""
+    names = f"{joint.name} {joint.child}"
+    return "wheel" in names.lower() and not _NO_WHEEL.search(names)
+
+
+def words(name: str) -> list[str]:
+    """The words of a name in lower case; ``leftWheel_joint`` has three."""
+    return [word.lower() for word in re.findall(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|\d+", name)]
+
+
+def pairs(found: list[Wheel]) -> Iterator[tuple[Wheel, Wheel]]:
+    """Left and right wheels whose names differ in nothing but the side."""
+    by_words = {tuple(words(wheel.joint.name)): wheel for wheel in found}
+    for wheel in found:
+        own = words(wheel.joint.name)
+        sides = [index for index, word in enumerate(own) if word in _SIDES]
+        if len(sides) != 1:
+            continue
+        other = [*own]
+        other[sides[0]] = _SIDES[own[sides[0]]]
+        match = by_words.get(tuple(other))
+        if match is not None:
+            yield wheel, match
+
+
+class WheelSide(Rule):
+    """Of two wheels the one called left is on the right.
+
+    ## Why
+
+    REP 103 has x forward and y to the left, so the left wheel has the larger y. With the names exchanged a controller
+    for differential drive turns the robot the wrong way round.
+
+    ## Example
+
+    ```xml
+    <joint name="left_wheel_joint" type="continuous">
+      <origin xyz="0 -0.19 0"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <joint name="left_wheel_joint" type="continuous">
+      <origin xyz="0 0.19 0"/>
+    ```
+    """
+
+    code = "LW640"
+    name = "wheel-side"
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        if subject.robot is None:
+            return
+        for left, right in pairs(list(wheels(subject.robot))):
+            gap = subtracted(left.frame.position, right.frame.position)
+            if gap[1] < -_APART and abs(gap[1]) > abs(gap[0]) and left.joint.element is not None:
+                note = Note(f"'{right.joint.name}' is at y = {right.frame.position[1]:g}", _place(right.joint))
+                message = (
+                    f"'{left.joint.name}' is on the right of '{right.joint.name}', at y = {left.frame.position[1]:g}"
+                )
+                hint = "REP 103: x is forward and y to the left; exchange the names or the signs of y"
+                yield self.report(message, left.joint.element, notes=[note], hint=hint)
+
+
+class WheelHasLimits(Rule):
+    """The joint of a wheel is revolute or prismatic, not continuous.
+
+    ## Why
+
+    A revolute joint stops at its limits, so the wheel turns once and stands. A wheel turns without end, which is what
+    `continuous` means.
+
+    ## Example
+
+    ```xml
+    <joint name="left_wheel_joint" type="revolute">
+      <limit lower="-3.14" upper="3.14" effort="10" velocity="20"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <joint name="left_wheel_joint" type="continuous">
+      <limit effort="10" velocity="20"/>
+    ```
+    """
+
+    code = "LW641"
+    name = "wheel-has-limits"
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        robot = subject.robot
+        if robot is None:
+            return
+        turning = {joint.parent for joint in robot.joints.values() if joint.type == "continuous"}
+        for joint in robot.joints.values():
+            if joint.type not in ("revolute", "prismatic") or not is_wheel(joint) or joint.child in turning:
+                continue
+            if "wheel" not in joint.child.lower() or joint.element is None or _is_wide(joint):
+                continue
+            message = f"the wheel on joint '{joint.name}' cannot turn freely: the joint is {joint.type}"
+            yield self.report(message, joint.element, "type", hint='write type="continuous"')
+
+
+class WheelAxis(Rule):
+    """A wheel does not turn about the axis of its cylinder.
+
+    ## Why
+
+    The cylinder of URDF stands along z, so a wheel's shape is turned by a right angle against the link, and the axis of
+    the joint has to be that of the turned cylinder. Otherwise the wheel tumbles instead of rolling.
+
+    ## Example
+
+    ```xml
+    <joint name="left_wheel_joint" type="continuous">
+      <axis xyz="0 0 1"/>
+    </joint>
+    <link name="left_wheel_link">
+      <visual>
+        <origin rpy="1.5708 0 0"/>
+        <geometry><cylinder radius="0.06" length="0.025"/></geometry>
+      </visual>
+    </link>
+    ```
+
+    ## Use instead
+
+    ```xml
+      <axis xyz="0 1 0"/>
+    ```
+    """
+
+    code = "LW642"
+    name = "wheel-axis"
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        if subject.robot is None:
+            return
+        for wheel in wheels(subject.robot):
+            discs = list(_disc_axes(wheel.link))
+            axis = wheel.joint.axis
+            size = length(axis)
+            if not discs or size == 0 or wheel.joint.element is None:
+                continue
+            if any(abs(dot(disc, axis)) / size >= _AXIS_TOLERANCE for disc in discs):
+                continue
+            shown = _rounded(discs[0])
+            element = wheel.joint.element.first("axis")
+            written = " ".join(f"{value:g}" for value in axis)
+            message = f"the wheel '{wheel.link.name}' turns about '{written}', and its cylinder lies along '{shown}'"
+            attribute = "xyz" if element is not None else None
+            hint = f'write <axis xyz="{shown}"/>, or turn the cylinder'
+            yield self.report(message, element if element is not None else wheel.joint.element, attribute, hint=hint)
+
+
+class WheelsTurnAgainst(Rule):
+    """The axes of a left and a right wheel point in opposite directions.
+
+    ## Why
+
+    Equal velocities then turn the wheels against each other, and a controller for differential drive makes the robot
+    spin where it should go straight. Pedantic: some makers mirror a wheel with its frame and negate its velocity.
+
+    ## Example
+
+    ```xml
+    <joint name="right_wheel_joint" type="continuous">
+      <axis xyz="0 -1 0"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <joint name="right_wheel_joint" type="continuous">
+      <axis xyz="0 1 0"/>
+    ```
+    """
+
+    code = "LW643"
+    name = "wheels-turn-against"
+    default = False
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        if subject.robot is None:
+            return
+        for left, right in pairs(list(wheels(subject.robot))):
+            if dot(left.axis, right.axis) < -_AXIS_TOLERANCE and right.joint.element is not None:
+                note = Note(f"'{left.joint.name}' turns the other way", _place(left.joint))
+                message = f"'{right.joint.name}' turns against '{left.joint.name}' for velocities of one sign"
+                hint = "point both axes to the left, +y, so that positive velocities drive forward"
+                yield self.report(message, right.joint.element, notes=[note], hint=hint)
+
+
+class WheelsNotMirrored(Rule):
+    """A left and a right wheel are not each other's mirror image.
+
+    ## Why
+
+    A robot that is meant symmetric and has one wheel a little off drives in circles in simulation. Pedantic: robots
+    need not be symmetric.
+
+    ## Example
+
+    ```xml
+    <joint name="left_wheel_joint" ...><origin xyz="0 0.19 0"/>
+    <joint name="right_wheel_joint" ...><origin xyz="0 -0.17 0"/>
+    ```
+
+    ## Use instead
+
+    A macro with a parameter for the side: `<origin xyz="0 ${side*wheel_y} 0"/>`.
+    """
+
+    code = "LW644"
+    name = "wheels-not-mirrored"
+    default = False
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        if subject.robot is None:
+            return
+        for left, right in pairs(list(wheels(subject.robot))):
+            (lx, ly, lz), (rx, ry, rz) = left.frame.position, right.frame.position
+            if max(abs(lx - rx), abs(ly + ry), abs(lz - rz)) > _APART and right.joint.element is not None:
+                note = Note(f"'{left.joint.name}' is at {lx:.4g} {ly:.4g} {lz:.4g}", _place(left.joint))
+                message = f"'{right.joint.name}', at {rx:.4g} {ry:.4g} {rz:.4g}, does not mirror '{left.joint.name}'"
+                yield self.report(message, right.joint.element, notes=[note])
+
+
+class WheelsTurnBackward(Rule):
+    """The axes of a left and a right wheel both point to the right.
+
+    ## Why
+
+    By the right hand rule a wheel that turns about +y, to the left, rolls forward. With both axes the other way round a
+    positive velocity drives backward. Pedantic: a controller may be told so.
+
+    ## Example
+
+    ```xml
+    <axis xyz="0 -1 0"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <axis xyz="0 1 0"/>
+    ```
+    """
+
+    code = "LW645"
+    name = "wheels-turn-backward"
+    default = False
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        if subject.robot is None:
+            return
+        for left, right in pairs(list(wheels(subject.robot))):
+            if max(left.axis[1], right.axis[1]) < -_AXIS_TOLERANCE and left.joint.element is not None:
+                message = f"positive velocities of '{left.joint.name}' and '{right.joint.name}' drive backward"
+                element = left.joint.element.first("axis")
+                hint = "point both axes to the left, +y in the base frame"
+                yield self.report(message, element if element is not None else left.joint.element, hint=hint)
+
+
+def _disc_axes(link: Link) -> Iterator[Vector3]:
+    """The axes, in the link's frame, of the flat cylinders of a link."""
+    parts: tuple[Visual | Collision, ...] = (*link.collisions, *link.visuals)
+    for part in parts:
+        shape = part.geometry
+        if isinstance(shape, Cylinder) and 0 < shape.length < 1.5 * shape.radius:
+            yield turned(placement(part.origin).rotation, (0.0, 0.0, 1.0))
+
+
+def _is_wide(joint: Joint) -> bool:
+    """Whether the limits leave room for many turns."""
+    return joint.limit is not None and joint.limit.upper - joint.limit.lower > 1000.0
+
+
+def _rounded(axis: Vector3) -> str:
+    """A direction as it is written, with its largest part positive: a wheel's axis has no front."""
+    sign = 1.0 if max(axis, key=abs) > 0 else -1.0
+    return " ".join(f"{round(sign * value, 3) + 0.0:g}" for value in axis)
+
+
+def _place(joint: Joint) -> Span | None:
+    return joint.element.span() if joint.element is not None else None

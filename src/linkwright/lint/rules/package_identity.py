@@ -1,0 +1,223 @@
+"""What a package is called, and who it belongs to."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from linkwright.diagnostics import Diagnostic, Note, Severity
+from linkwright.lint.manifest_reader import Manifest
+from linkwright.lint.package import PackageContext
+from linkwright.lint.rules.package_manifest import ManifestRule, PackageRule
+from linkwright.workspace.naming import check_package_name, is_email
+
+_PLACEHOLDER = re.compile(
+    r"\btodo\b|\bfixme\b|\bchangeme\b|your[ _-]?(name|package|description)|package description here", re.IGNORECASE
+)
+_PLACEHOLDER_EMAIL = re.compile(
+    r"@(todo\.todo|example\.(com|org|net)|todo\.com|email\.com|domain\.(com|tld))$|^(you|user|your\.?(name|email)|me)@",
+    re.IGNORECASE,
+)
+
+
+class PackageNameDiffers(PackageRule):
+    """``setup.py`` or ``CMakeLists.txt`` gives the package another name than ``package.xml``.
+
+    ## Why
+
+    With two names the build stops, or installs under one name what is looked for under the other. It happens when a
+    package is copied and renamed.
+
+    ## Example
+
+    ```xml
+    <name>my_robot_description</name>
+    ```
+
+    and in `setup.py`
+
+    ```python
+    package_name = 'robot_description'
+    ```
+
+    ## Use instead
+
+    ```python
+    package_name = 'my_robot_description'
+    ```
+    """
+
+    code = "LW804"
+    name = "package-name-differs"
+    severity = Severity.ERROR
+
+    def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
+        """What the rule finds in a package."""
+        manifest = package.manifest
+        if manifest is None:
+            return
+        name = manifest.name
+        element = manifest.root.first("name")
+        if name is None or element is None:
+            return
+        note = Note(f"package.xml says '{name}'", element.span())
+        setup, cmake = package.setup, package.cmake
+        if setup is not None and setup.name is not None and setup.name[0].replace("-", "_") != name.replace("-", "_"):
+            message = f"setup.py calls the package '{setup.name[0]}', package.xml '{name}'"
+            yield self.report(message, span=setup.name[1], source=setup.source, notes=[note], hint=f"write '{name}'")
+        if cmake is not None and cmake.project is not None and cmake.is_ament:
+            project = cmake.project
+            if "$" not in project.text and project.text != name:
+                message = f"CMakeLists.txt calls the project '{project.text}', package.xml the package '{name}'"
+                span = cmake.span(project)
+                yield self.report(message, span=span, source=cmake.source, notes=[note], hint=f"write project({name})")
+
+
+class PackageName(ManifestRule):
+    """The name of a package is none that ROS accepts, or not as REP 144 wants it.
+
+    ## Why
+
+    Python cannot import a package whose name has a dash, CMake makes no target of one with a blank, and REP 144 asks
+    for lower case, digits and underscores.
+
+    ## Example
+
+    ```xml
+    <name>My-Robot</name>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <name>my_robot</name>
+    ```
+    """
+
+    code = "LW805"
+    name = "package-name"
+
+    def check_manifest(self, manifest: Manifest) -> Iterator[Diagnostic]:
+        """What the rule finds in a manifest."""
+        name, element = manifest.name, manifest.root.first("name")
+        if name is None or element is None:
+            return
+        for found in check_package_name(name):
+            yield self.report(found.message, element, hint=found.hint, severity=found.severity)
+
+
+class FolderNameDiffers(PackageRule):
+    """The folder of a package is not called like the package.
+
+    ## Why
+
+    Who reads `package://my_robot_description/...` looks for a folder of that name. Pedantic: nothing needs it.
+
+    ## Example
+
+    A package `my_robot_description` in the folder `description`.
+
+    ## Use instead
+
+    Rename the folder, or leave it where a repository is one package.
+    """
+
+    code = "LW806"
+    name = "folder-name-differs"
+    default = False
+    severity = Severity.INFO
+
+    def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
+        """What the rule finds in a package."""
+        manifest = package.manifest
+        if manifest is None:
+            return
+        element = manifest.root.first("name")
+        if manifest.name is not None and element is not None and manifest.name != package.folder.name:
+            message = f"the package '{manifest.name}' lies in a folder called '{package.folder.name}'"
+            yield self.report(message, element)
+
+
+class MaintainerEmail(ManifestRule):
+    """A maintainer's e-mail address is none that colcon accepts.
+
+    ## Why
+
+    colcon reads `package.xml` through catkin_pkg, which refuses addresses such as `me@localhost` or `a@b.c`. The
+    package is built all the same, but without its environment hooks: after `source install/setup.bash` ROS does not
+    find it.
+
+    ## Example
+
+    ```xml
+    <maintainer email="lee@b.c">Lee</maintainer>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <maintainer email="lee@example.org">Lee</maintainer>
+    ```
+    """
+
+    code = "LW807"
+    name = "maintainer-email"
+    severity = Severity.ERROR
+
+    def check_manifest(self, manifest: Manifest) -> Iterator[Diagnostic]:
+        """What the rule finds in a manifest."""
+        for element in manifest.root.elements("maintainer"):
+            email = element.attributes.get("email")
+            who = " ".join(element.text().split())
+            if email is None:
+                yield self.report(f"the maintainer '{who}' has no e-mail address", element, hint='add email="..."')
+            elif not is_email(email):
+                message = f"'{email}' is not an e-mail address that colcon accepts"
+                hint = "write it as name@example.org, in ASCII letters"
+                yield self.report(message, element, "email", hint=hint)
+
+
+class ManifestPlaceholder(ManifestRule):
+    """``package.xml`` still has what ``ros2 pkg create`` filled in.
+
+    ## Why
+
+    The description, licence and maintainer are what others see of the package. Without a licence nobody may use it.
+
+    ## Example
+
+    ```xml
+    <description>TODO: Package description</description>
+    <maintainer email="lee@todo.todo">lee</maintainer>
+    <license>TODO: License declaration</license>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <description>The four models of my robot, and launch files that show them.</description>
+    <maintainer email="lee@my-lab.org">Lee</maintainer>
+    <license>Apache-2.0</license>
+    ```
+    """
+
+    code = "LW808"
+    name = "manifest-placeholder"
+    severity = Severity.INFO
+
+    def check_manifest(self, manifest: Manifest) -> Iterator[Diagnostic]:
+        """What the rule finds in a manifest."""
+        for tag in ("description", "license", "maintainer", "author"):
+            for element in manifest.root.elements(tag):
+                text = " ".join(element.text().split())
+                email = element.attributes.get("email", "")
+                if tag in ("maintainer", "author") and _PLACEHOLDER_EMAIL.search(email):
+                    yield self.report(f"the e-mail address '{email}' is a placeholder", element, "email")
+                elif _PLACEHOLDER.search(text):
+                    yield self.report(f"<{tag}> is a placeholder: '{text}'", element, hint=_advice(tag))
+
+
+def _advice(tag: str) -> str:
+    if tag == "license":
+        return "name it by its SPDX identifier, such as Apache-2.0, MIT or BSD-3-Clause"
+    return "say in a sentence what the package is for" if tag == "description" else "write your name"

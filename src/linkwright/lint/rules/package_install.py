@@ -1,0 +1,260 @@
+"""Whether ``setup.py`` and ``CMakeLists.txt`` install what the package has, and have what they install.
+
+Where a build file works out what it installs (a loop, a function), the rules about what is missing say nothing.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from glob import glob
+
+from linkwright.diagnostics import Diagnostic, Severity, nearest
+from linkwright.lint.cmake_reader import CMakeFile
+from linkwright.lint.package import PackageContext
+from linkwright.lint.rules.package_manifest import PackageRule
+from linkwright.lint.setup_reader import Installed, SetupFile
+
+_SHARED = re.compile(
+    r".*\.(urdf|xacro|sdf|world|rviz|stl|dae|obj|glb|gltf|launch\.py|launch\.xml|launch\.yaml|srdf|yaml)$",
+    re.IGNORECASE,
+)
+_NOT_SHARED = re.compile(r"(^|/)(test|tests|docs?|scripts?|\w*_py|src|include|resource|ci|docker)(/|$)")
+
+
+class PatternMatchesNothing(PackageRule):
+    """A pattern in the ``data_files`` of ``setup.py`` matches no file.
+
+    ## Why
+
+    `glob` says nothing when it finds nothing, so the files that were meant are missing after the build: a launch file
+    or an include then fails with "no such file". A misspelt folder is the usual cause.
+
+    ## Example
+
+    ```python
+    (os.path.join('share', package_name, 'urdf/sensors'), glob('urdf/sensors/*.*')),
+    ```
+
+    in a package whose folder is called `urdf/sensor`.
+
+    ## Use instead
+
+    ```python
+    (os.path.join('share', package_name, 'urdf/sensor'), glob('urdf/sensor/*.*')),
+    ```
+    """
+
+    code = "LW821"
+    name = "pattern-matches-nothing"
+
+    def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
+        """What the rule finds in a package."""
+        setup = package.setup
+        if setup is None:
+            return
+        for item in setup.installed:
+            if not item.is_pattern or matching(package, item):
+                continue
+            folder = item.text.rpartition("/")[0]
+            like = near_folder(package, folder)
+            if like:
+                hint: str | None = f"did you mean the folder '{like}'?"
+            elif folder and package.has(folder):
+                hint = f"there are other files in '{folder}'" if folder in package.folders else f"'{folder}' is empty"
+            else:
+                hint = f"there is no folder '{folder}'" if folder else None
+            severity = self.severity if like or (folder and package.has(folder)) else Severity.INFO
+            message = f"the pattern '{item.text}' in setup.py matches no file"
+            yield self.report(message, span=item.span, source=setup.source, hint=hint, severity=severity)
+
+
+class FolderNotInstalled(PackageRule):
+    """A folder with launch files, descriptions or meshes is not installed.
+
+    ## Why
+
+    ROS looks in the share folder of the installed package, not in the sources. What is not installed is not there when
+    the launch file or the description asks for it.
+
+    ## Example
+
+    ```python
+    data_files=[
+        ('share/' + package_name + '/launch', glob('launch/*.launch.py')),
+    ],
+    ```
+
+    in a package with a folder `meshes`.
+
+    ## Use instead
+
+    ```python
+        ('share/' + package_name + '/launch', glob('launch/*.launch.py')),
+        ('share/' + package_name + '/meshes', glob('meshes/*')),
+    ```
+
+    or, in `CMakeLists.txt`, `install(DIRECTORY launch meshes DESTINATION share/${PROJECT_NAME})`.
+    """
+
+    code = "LW822"
+    name = "folder-not-installed"
+
+    def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
+        """What the rule finds in a package."""
+        if package.setup is not None and package.cmake is None:
+            yield from self._by_setup(package, package.setup)
+        elif package.cmake is not None and package.setup is None:
+            yield from self._by_cmake(package, package.cmake)
+
+    def _by_setup(self, package: PackageContext, setup: SetupFile) -> Iterator[Diagnostic]:
+        if not setup.call or not setup.is_complete:
+            return
+        files = {file for item in setup.installed for file in matching(package, item)}
+        installed = {file.rpartition("/")[0] for file in files}
+        empty = [item for item in setup.installed if item.is_pattern and not matching(package, item)]
+        meant = {near_folder(package, item.text.rpartition("/")[0]) for item in empty}  # LW821 tells of these
+        for folder in shared_folders(package):
+            if folder not in installed and folder not in meant:
+                message = f"setup.py does not install the folder '{folder}'"
+                hint = f"add ('share/{package.name}/{folder}', glob('{folder}/*')) to data_files"
+                yield self.report(message, span=setup.data_files_span, source=setup.source, hint=hint)
+
+    def _by_cmake(self, package: PackageContext, cmake: CMakeFile) -> Iterator[Diagnostic]:
+        if not cmake.is_complete or not cmake.is_ament:
+            return
+        for folder in shared_folders(package):
+            covered = any(_covers(item.text, folder) for item in cmake.directories)
+            if not covered and not any(item.text.startswith(f"{folder}/") for item in cmake.files):
+                message = f"CMakeLists.txt does not install the folder '{folder}'"
+                hint = f"add install(DIRECTORY {folder} DESTINATION share/${{PROJECT_NAME}})"
+                span = cmake.span(cmake.project) if cmake.project else None
+                yield self.report(message, span=span, source=cmake.source, hint=hint)
+
+
+class FileNotInstalled(PackageRule):
+    """A folder is installed by a pattern that leaves a description or launch file out.
+
+    ## Why
+
+    The file works from the sources and is missing after the build.
+
+    ## Example
+
+    ```python
+    ('share/' + package_name + '/urdf', glob('urdf/*.urdf')),
+    ```
+
+    in a package with `urdf/robot.xacro`.
+
+    ## Use instead
+
+    ```python
+    ('share/' + package_name + '/urdf', glob('urdf/*')),
+    ```
+    """
+
+    code = "LW823"
+    name = "file-not-installed"
+
+    def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
+        """What the rule finds in a package."""
+        setup = package.setup
+        if setup is None or package.cmake is not None or not setup.is_complete:
+            return
+        places: dict[str, Installed] = {}
+        files: set[str] = set()
+        for item in setup.installed:
+            for file in matching(package, item):
+                files.add(file)
+                if item.is_pattern:
+                    places.setdefault(file.rpartition("/")[0], item)
+        for file in package.files:
+            folder = file.rpartition("/")[0]
+            pattern = places.get(folder)
+            if folder and pattern is not None and file not in files and _is_shared(file):
+                message = f"setup.py installs '{pattern.text}', which leaves out '{file}'"
+                yield self.report(message, span=pattern.span, source=setup.source, hint=f"such as glob('{folder}/*')")
+
+
+class InstalledFileMissing(PackageRule):
+    """``setup.py`` or ``CMakeLists.txt`` installs a file or folder that does not exist.
+
+    ## Why
+
+    The build stops there.
+
+    ## Example
+
+    ```cmake
+    install(DIRECTORY launch meshs DESTINATION share/${PROJECT_NAME})
+    ```
+
+    ## Use instead
+
+    ```cmake
+    install(DIRECTORY launch meshes DESTINATION share/${PROJECT_NAME})
+    ```
+    """
+
+    code = "LW824"
+    name = "installed-file-missing"
+    severity = Severity.ERROR
+
+    def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
+        """What the rule finds in a package."""
+        setup, cmake = package.setup, package.cmake
+        if setup is not None:
+            for item in setup.installed:
+                if item.is_pattern or package.has(item.text) or item.text == f"resource/{package.name}":
+                    continue
+                message = f"setup.py installs '{item.text}', which does not exist"
+                yield self.report(message, span=item.span, source=setup.source, hint=near_file(package, item.text))
+        if cmake is not None:
+            for each in (*cmake.directories, *cmake.files):
+                text = each.text.rstrip("/")
+                if text and not text.startswith("/") and "<" not in text and not package.has(text):
+                    message = f"CMakeLists.txt installs '{each.text}', which does not exist"
+                    like = near_folder(package, text)
+                    hint = f"did you mean '{like}'?" if like else near_file(package, text)
+                    yield self.report(message, span=cmake.span(each), source=cmake.source, hint=hint)
+
+
+def matching(package: PackageContext, item: Installed) -> list[str]:
+    """The files of a package that an item of ``data_files`` means, as paths below the package."""
+    if not item.is_pattern:
+        return [item.text] if package.has(item.text) else []
+    # Not Path.glob, whose rules for hidden files and "**" are others than those of the glob that setup.py calls.
+    found = glob(item.text, root_dir=package.folder, recursive=item.recursive)  # noqa: PTH207
+    return [name.replace("\\", "/") for name in found if (package.folder / name).is_file()]
+
+
+def shared_folders(package: PackageContext) -> list[str]:
+    """The folders that directly hold files which belong into the share folder, sorted."""
+    return sorted({file.rpartition("/")[0] for file in package.files if "/" in file and _is_shared(file)})
+
+
+def near_folder(package: PackageContext, folder: str) -> str | None:
+    """The folder of the package that is most like a name, or None."""
+    if not folder or package.has(folder):
+        return None
+    parent = folder.rpartition("/")[0]
+    beside = [each for each in package.folders if each.rpartition("/")[0] == parent]
+    return next(iter(nearest(folder, beside, 1)), None)
+
+
+def _is_shared(file: str) -> bool:
+    return bool(_SHARED.match(file)) and not _NOT_SHARED.search(file)
+
+
+def _covers(directory: str, folder: str) -> bool:
+    directory = directory.rstrip("/")
+    return directory in ("", ".") or folder == directory or folder.startswith(f"{directory}/")
+
+
+def near_file(package: PackageContext, path: str) -> str | None:
+    """A hint that names the file beside a path whose name is most like it, or None."""
+    folder = path.rpartition("/")[0]
+    beside = [file for file in package.files if file.rpartition("/")[0] == folder]
+    like = next(iter(nearest(path, beside, 1)), None)
+    return f"did you mean '{like}'?" if like else None

@@ -1,0 +1,294 @@
+"""What is wrong with a ``package.xml``, and where it disagrees with the files beside it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from linkwright.diagnostics import Diagnostic, Note, Severity
+from linkwright.lint.fix import remove_element
+from linkwright.lint.manifest_reader import Dependency, Manifest
+from linkwright.lint.package import PackageContext
+from linkwright.lint.rule import Rule, Scope
+from linkwright.lint.subject import Subject
+
+_REQUIRED = ("name", "version", "description", "maintainer", "license")
+_DOUBLED_BY_DEPEND = frozenset({"build_depend", "build_export_depend", "exec_depend"})
+_BUILD_FILES = {
+    "ament_python": "setup.py",
+    "ament_cmake": "CMakeLists.txt",
+    "cmake": "CMakeLists.txt",
+    "catkin": "CMakeLists.txt",
+}
+
+
+class PackageRule(Rule):
+    """A rule about a package; it has nothing to say where a description lies in none."""
+
+    scope = Scope.PACKAGE
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        package = subject.package
+        if package is not None:
+            yield from self.check_package(package)
+
+    def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
+        """What the rule finds in a package."""
+        raise NotImplementedError
+
+
+class ManifestRule(PackageRule):
+    """A rule about a ``package.xml`` that is XML."""
+
+    def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
+        """What the rule finds in a package."""
+        if package.manifest is not None:
+            yield from self.check_manifest(package.manifest)
+
+    def check_manifest(self, manifest: Manifest) -> Iterator[Diagnostic]:
+        """What the rule finds in a manifest."""
+        raise NotImplementedError
+
+
+class ManifestMalformed(PackageRule):
+    """``package.xml`` is not well-formed XML.
+
+    ## Why
+
+    colcon and rosdep do not see the package at all, and say little about it.
+
+    ## Example
+
+    ```xml
+    <package format="3">
+      <name>my_robot_description</nmae>
+    ```
+
+    ## Use instead
+
+    ```xml
+      <name>my_robot_description</name>
+    ```
+    """
+
+    code = "LW801"
+    name = "manifest-malformed"
+    severity = Severity.ERROR
+
+    def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
+        """What the rule finds in a package."""
+        error = package.manifest_error
+        if error is not None:
+            found = error.diagnostics[0]
+            yield self.report(
+                f"package.xml cannot be read: {found.message}",
+                span=found.span,
+                source=found.source,
+                notes=found.notes,
+                hint=found.hint,
+            )
+
+
+class ManifestIncomplete(ManifestRule):
+    """``package.xml`` lacks an element that every package must have.
+
+    ## Why
+
+    REP 149 asks for name, version, description, maintainer and licence. colcon leaves a package without a name out, and
+    tools for releasing refuse one without the others.
+
+    ## Example
+
+    ```xml
+    <package format="3">
+      <name>my_robot_description</name>
+      <version>0.1.0</version>
+    </package>
+    ```
+
+    ## Use instead
+
+    ```xml
+      <description>My robot.</description>
+      <maintainer email="me@example.org">Me</maintainer>
+      <license>Apache-2.0</license>
+    ```
+    """
+
+    code = "LW802"
+    name = "manifest-incomplete"
+    severity = Severity.ERROR
+
+    def check_manifest(self, manifest: Manifest) -> Iterator[Diagnostic]:
+        """What the rule finds in a manifest."""
+        root = manifest.root
+        if root.tag != "package":
+            yield self.report(f"the root of package.xml is <{root.tag}>, not <package>", root)
+            return
+        missing = [tag for tag in _REQUIRED if root.first(tag) is None]
+        if missing:
+            listed = " and ".join(f"<{tag}>" for tag in missing)
+            yield self.report(f"package.xml lacks {listed}", root, hint=f"add {listed}")
+        for tag in _REQUIRED:
+            element = root.first(tag)
+            if element is not None and not element.text().strip() and next(element.elements(), None) is None:
+                yield self.report(f"<{tag}> of package.xml is empty", element)
+
+
+class ManifestVersion(ManifestRule):
+    """The version of a package is not three numbers.
+
+    ## Why
+
+    REP 149 wants MAJOR.MINOR.PATCH. colcon refuses a package with another form.
+
+    ## Example
+
+    ```xml
+    <version>1.0</version>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <version>1.0.0</version>
+    ```
+    """
+
+    code = "LW803"
+    name = "manifest-version"
+    severity = Severity.ERROR
+
+    def check_manifest(self, manifest: Manifest) -> Iterator[Diagnostic]:
+        """What the rule finds in a manifest."""
+        version, element = manifest.text("version"), manifest.root.first("version")
+        if version and element is not None and not re.fullmatch(r"\d+\.\d+\.\d+", version):
+            yield self.report(
+                f"the version '{version}' is not three numbers with dots between", element, hint="such as 1.0.0"
+            )
+
+
+class DependencyRepeated(ManifestRule):
+    """A dependency is named twice for the same time.
+
+    ## Why
+
+    catkin_pkg, through which colcon reads the file, complains of it at every build. `<depend>` stands for
+    `<build_depend>`, `<build_export_depend>` and `<exec_depend>` together.
+
+    ## Example
+
+    ```xml
+    <depend>xacro</depend>
+    <exec_depend>xacro</exec_depend>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <depend>xacro</depend>
+    ```
+    """
+
+    code = "LW809"
+    name = "dependency-repeated"
+
+    def check_manifest(self, manifest: Manifest) -> Iterator[Diagnostic]:
+        """What the rule finds in a manifest."""
+        generic = {each.name: each for each in reversed(manifest.dependencies) if each.tag == "depend"}
+        seen: dict[tuple[str, str], Dependency] = {}
+        for each in manifest.dependencies:
+            first = seen.setdefault((each.name, each.tag), each)
+            if each.tag in _DOUBLED_BY_DEPEND and first is each:
+                first = generic.get(each.name, each)
+            if first is not each and _same_condition(first.element.attributes, each.element.attributes):
+                note = Note(f"<{first.tag}> is here", first.element.span())
+                message = f"the dependency on '{each.name}' is named again"
+                fix = remove_element(each.element)
+                yield self.report(message, each.element, notes=[note], hint="remove it", fix=fix)
+
+
+class DependencyOnItself(ManifestRule):
+    """A package depends on itself.
+
+    ## Why
+
+    colcon cannot put the packages in an order and refuses to build.
+
+    ## Example
+
+    ```xml
+    <name>my_robot_description</name>
+    <exec_depend>my_robot_description</exec_depend>
+    ```
+
+    ## Use instead
+
+    Remove the dependency.
+    """
+
+    code = "LW810"
+    name = "dependency-on-itself"
+    severity = Severity.ERROR
+
+    def check_manifest(self, manifest: Manifest) -> Iterator[Diagnostic]:
+        """What the rule finds in a manifest."""
+        for each in manifest.dependencies:
+            if each.name == manifest.name:
+                message = f"the package '{each.name}' depends on itself"
+                yield self.report(message, each.element, hint="remove it", fix=remove_element(each.element))
+
+
+class BuildTypeDiffers(PackageRule):
+    """The build type in ``package.xml`` is not that of the build file.
+
+    ## Why
+
+    colcon goes by `<build_type>`. With `ament_cmake` it looks for a `CMakeLists.txt`, with `ament_python` for a
+    `setup.py`; without a build type it takes the package for one of ROS 1.
+
+    ## Example
+
+    ```xml
+    <export>
+      <build_type>ament_cmake</build_type>
+    </export>
+    ```
+
+    in a package that has a `setup.py` and no `CMakeLists.txt`.
+
+    ## Use instead
+
+    ```xml
+      <build_type>ament_python</build_type>
+    ```
+    """
+
+    code = "LW811"
+    name = "build-type-differs"
+    severity = Severity.ERROR
+
+    def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
+        """What the rule finds in a package."""
+        manifest = package.manifest
+        if manifest is None:
+            return
+        has = {name: package.has(name) for name in ("setup.py", "CMakeLists.txt")}
+        if has["setup.py"] == has["CMakeLists.txt"]:
+            return
+        build_type = manifest.build_type
+        wanted = _BUILD_FILES.get(build_type or "catkin")
+        if wanted is None or has[wanted]:
+            return
+        right = "ament_python" if has["setup.py"] else "ament_cmake"
+        there = "setup.py" if has["setup.py"] else "CMakeLists.txt"
+        export = manifest.root.first("export")
+        element = (export and export.first("build_type")) or export or manifest.root
+        said = f"is '{build_type}'" if build_type else "is not given, which means catkin"
+        message = f"the build type {said}, and the package has a {there}"
+        yield self.report(message, element, hint=f"write <build_type>{right}</build_type> in <export>")
+
+
+def _same_condition(first: dict[str, str], second: dict[str, str]) -> bool:
+    return first.get("condition") == second.get("condition")

@@ -1,0 +1,277 @@
+"""Packages built by setuptools: the marker, the Python package, executables and ``setup.cfg``."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from linkwright.diagnostics import Diagnostic, Severity
+from linkwright.lint.package import PackageContext
+from linkwright.lint.rules.package_install import near_file
+from linkwright.lint.rules.package_manifest import PackageRule
+
+_MARKERS = "share/ament_index/resource_index/packages"
+
+
+class SetupSyntaxError(PackageRule):
+    """``setup.py`` is not Python.
+
+    ## Why
+
+    The package cannot be built.
+
+    ## Example
+
+    ```python
+    setup(
+        name='my_robot_description'
+        version='0.1.0',
+    ```
+
+    ## Use instead
+
+    ```python
+    setup(
+        name='my_robot_description',
+        version='0.1.0',
+    ```
+    """
+
+    code = "LW820"
+    name = "setup-syntax-error"
+    severity = Severity.ERROR
+
+    def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
+        """What the rule finds in a package."""
+        setup = package.setup
+        if setup is not None and setup.error is not None:
+            message = f"setup.py is not Python: {setup.error.message}"
+            yield self.report(message, span=setup.error.span, source=setup.source)
+
+
+class MarkerMissing(PackageRule):
+    """The empty file ``resource/NAME`` that marks a Python package for ROS is missing.
+
+    ## Why
+
+    `setup.py` installs it into the index of packages. Without the file the build stops; and without the entry `ros2
+    run` and `ros2 launch` do not find the package.
+
+    ## Example
+
+    A package `my_robot_description` built by `ament_python`, with the file `resource/robot_description`.
+
+    ## Use instead
+
+    An empty file `resource/my_robot_description`.
+    """
+
+    code = "LW825"
+    name = "marker-missing"
+    severity = Severity.ERROR
+
+    def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
+        """What the rule finds in a package."""
+        setup = package.setup
+        if setup is None or not is_ament_python(package):
+            return
+        marker = f"resource/{package.name}"
+        wants = next((item for item in setup.installed if item.text == marker), None)
+        if wants is None or package.has(marker):
+            return
+        others = [file for file in package.files if file.startswith("resource/")]
+        hint = f"rename '{others[0]}'" if len(others) == 1 else f"make an empty file '{marker}'"
+        message = f"setup.py installs the marker '{marker}', which does not exist"
+        yield self.report(message, span=wants.span, source=setup.source, hint=hint)
+
+
+class MarkerNotInstalled(PackageRule):
+    """``setup.py`` does not install the marker or the ``package.xml`` of the package.
+
+    ## Why
+
+    ROS 2 finds an installed package by a file of its name in the index, and tools read its `package.xml` from the share
+    folder. colcon adds both for now, with a warning that it will not always do so.
+
+    ## Example
+
+    ```python
+    data_files=[
+        ('share/' + package_name + '/launch', glob('launch/*.launch.py')),
+    ],
+    ```
+
+    ## Use instead
+
+    ```python
+    data_files=[
+        ('share/ament_index/resource_index/packages', ['resource/' + package_name]),
+        ('share/' + package_name, ['package.xml']),
+        ('share/' + package_name + '/launch', glob('launch/*.launch.py')),
+    ],
+    ```
+    """
+
+    code = "LW826"
+    name = "marker-not-installed"
+
+    def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
+        """What the rule finds in a package."""
+        setup = package.setup
+        if setup is None or not setup.call or not setup.is_complete or not is_ament_python(package):
+            return
+        marked = any(item.destination == _MARKERS or item.text.startswith("resource/") for item in setup.installed)
+        if not marked:
+            message = f"setup.py does not install the marker of the package '{package.name}'"
+            hint = f"add ('{_MARKERS}', ['resource/{package.name}']) to data_files"
+            yield self.report(message, span=setup.data_files_span, source=setup.source, hint=hint)
+        if not any(item.text == "package.xml" for item in setup.installed):
+            message = "setup.py does not install package.xml"
+            hint = f"add ('share/{package.name}', ['package.xml']) to data_files"
+            yield self.report(message, span=setup.data_files_span, source=setup.source, hint=hint)
+
+
+class EntryPointMissing(PackageRule):
+    """An executable in ``setup.py`` names a module or function that does not exist.
+
+    ## Why
+
+    The build says nothing; `ros2 run` fails with an import error.
+
+    ## Example
+
+    ```python
+    entry_points={'console_scripts': ['driver = my_robot.drivr:main']},
+    ```
+
+    ## Use instead
+
+    ```python
+    entry_points={'console_scripts': ['driver = my_robot.driver:main']},
+    ```
+    """
+
+    code = "LW827"
+    name = "entry-point-missing"
+    severity = Severity.ERROR
+
+    def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
+        """What the rule finds in a package."""
+        setup = package.setup
+        if setup is None:
+            return
+        for entry in setup.entry_points:
+            top = entry.module.partition(".")[0]
+            if not package.has(top):
+                continue  # a module from elsewhere, or from another folder
+            path = entry.module.replace(".", "/")
+            file = next((name for name in (f"{path}.py", f"{path}/__init__.py") if package.has(name)), None)
+            if file is None:
+                message = f"the executable '{entry.executable}' runs '{entry.module}', which does not exist"
+                yield self.report(message, span=entry.span, source=setup.source, hint=near_file(package, f"{path}.py"))
+            elif entry.function is not None and not _defines(package, file, entry.function.partition(".")[0]):
+                message = f"the executable '{entry.executable}' runs '{entry.function}', which '{file}' does not define"
+                hint = f"define {entry.function}() in it"
+                yield self.report(message, span=entry.span, source=setup.source, hint=hint)
+
+
+class PythonPackageMissing(PackageRule):
+    """``setup.py`` names a Python package that has no folder.
+
+    ## Why
+
+    The build stops with "package directory does not exist". A package that holds descriptions alone needs its Python
+    folder too, with an empty `__init__.py`.
+
+    ## Example
+
+    ```python
+    packages=['my_robot_description'],
+    ```
+
+    in a package without a folder `my_robot_description`.
+
+    ## Use instead
+
+    An empty file `my_robot_description/__init__.py`; or `packages=find_packages(exclude=['test'])`.
+    """
+
+    code = "LW828"
+    name = "python-package-missing"
+    severity = Severity.ERROR
+
+    def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
+        """What the rule finds in a package."""
+        setup = package.setup
+        if setup is None or setup.packages is None or "package_dir" in setup.source.text:
+            return
+        for name, span in setup.packages:
+            path = name.replace(".", "/")
+            if name and not package.has(path):
+                message = f"setup.py names the Python package '{name}', which has no folder"
+                yield self.report(
+                    message, span=span, source=setup.source, hint=f"add an empty file '{path}/__init__.py'"
+                )
+
+
+class SetupCfgDiffers(PackageRule):
+    """``setup.cfg`` does not put the executables where ``ros2 run`` looks for them.
+
+    ## Why
+
+    Setuptools puts executables into `bin`. `ros2 run` and launch files look in `lib/NAME`, and report that the
+    executable is not found.
+
+    ## Example
+
+    A package with `console_scripts` and without a `setup.cfg`.
+
+    ## Use instead
+
+    ```ini
+    [develop]
+    script_dir=$base/lib/my_robot
+    [install]
+    install_scripts=$base/lib/my_robot
+    ```
+    """
+
+    code = "LW829"
+    name = "setup-cfg-differs"
+
+    def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
+        """What the rule finds in a package."""
+        setup = package.setup
+        if setup is None or not setup.entry_points or not is_ament_python(package):
+            return
+        wanted = f"$base/lib/{package.name}"
+        source = package.text("setup.cfg")
+        if source is None:
+            message = "without a setup.cfg, ros2 run does not find the executables of this package"
+            hint = f"write one with install_scripts={wanted} in [install]"
+            yield self.report(message, span=setup.entry_points[0].span, source=setup.source, hint=hint)
+            return
+        for match in re.finditer(r"^(script_dir|install_scripts)[ \t]*=[ \t]*(\S+)[ \t]*$", source.text, re.MULTILINE):
+            if match[2] != wanted:
+                span = source.span(*match.span(2))
+                message = f"setup.cfg puts executables into '{match[2]}', where ros2 run does not look"
+                yield self.report(message, span=span, source=source, hint=f"write {match[1]}={wanted}")
+
+
+def is_ament_python(package: PackageContext) -> bool:
+    """Whether colcon builds the package with setuptools for ROS 2."""
+    return package.manifest is not None and package.manifest.build_type == "ament_python"
+
+
+def _defines(package: PackageContext, file: str, name: str) -> bool:
+    source = package.text(file)
+    if source is None:
+        return True
+    name = re.escape(name)
+    patterns = (
+        rf"(async def|def|class)\s+{name}\b",
+        rf"{name}\s*[:=]",
+        rf"\s*(from|import)\b.*\b{name}\b",
+        "from.*import [*(]",
+    )
+    return bool(re.search(rf"^({'|'.join(patterns)})", source.text, re.MULTILINE)) or "__getattr__" in source.text

@@ -1,0 +1,211 @@
+"""Rules about standing: wheels on the ground, and the centre of mass above them.
+
+Everything is at rest, with all joints at zero. Wheels and casters are known by their names, and where they touch the
+ground by their cylinders and spheres; where one has only a mesh, nothing is said.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from math import hypot, sqrt
+from typing import NamedTuple
+
+from linkwright.diagnostics import Diagnostic, Note, Span
+from linkwright.lint.frames import placement, placements
+from linkwright.lint.rule import Option, Rule
+from linkwright.lint.rules.names_wheels import wheels
+from linkwright.lint.subject import Subject
+from linkwright.urdf import Cylinder, Link, Robot, Sphere, Vector3
+
+_CASTER = re.compile(r"cast(?:e|o)r|ball_?wheel", re.IGNORECASE)
+_LEVEL = 0.2
+"""The sine up to which a wheel's axis counts as level."""
+
+Point = tuple[float, float]
+
+
+class Contact(NamedTuple):
+    """Where a wheel or caster touches the ground.
+
+    Attributes:
+        link: its link.
+        place: its lowest point in the frame of the base, in m.
+        is_wheel: whether it is a wheel; else a caster.
+    """
+
+    link: Link
+    place: Vector3
+    is_wheel: bool
+
+
+def contacts(robot: Robot) -> list[Contact] | None:
+    """Where a robot stands on the ground; None when one of its wheels cannot be measured."""
+    frames = placements(robot)
+    base = frames.get("base_link", frames[robot.root])
+    driven = {wheel.link.name for wheel in wheels(robot)}
+    found = []
+    for name, link in robot.links.items():
+        is_wheel = name in driven
+        if name not in frames or not (is_wheel or (_CASTER.search(name) and (link.visuals or link.collisions))):
+            continue
+        lowest = None
+        for shape in link.collisions or link.visuals:
+            place = placement(shape.origin).inside(frames[name]).seen_from(base)
+            x, y, z = place.position
+            depth = _depth(shape.geometry, place.rotation[2][2])
+            if depth is not None and (lowest is None or z - depth < lowest[2]):
+                lowest = (x, y, z - depth)
+        if lowest is None:
+            return None
+        found.append(Contact(link, lowest, is_wheel))
+    return found
+
+
+class WheelsNotLevel(Rule):
+    """Wheels or casters that do not reach the ground on which the others stand.
+
+    ## Why
+
+    A driven wheel in the air turns without moving the robot, and a robot that stands on two wheels and one corner of
+    its body turns in circles. The lowest points of all wheels and casters lie in one plane, unless something springs.
+
+    ## Example
+
+    A left wheel of 6 cm radius at `xyz="0 0.2 -0.05"` and a right one at `xyz="0 -0.2 -0.03"`.
+
+    ## Use instead
+
+    The same height for both, and a caster whose lowest point is at that of the wheels.
+    """
+
+    code = "LW390"
+    name = "wheels-not-level"
+    options = (Option("tolerance", 0.01, "how far above the ground a wheel may be, in m"),)
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        robot = subject.robot
+        found = contacts(robot) if robot is not None else None
+        if found is None or sum(contact.is_wheel for contact in found) < 2:
+            return
+        tolerance = subject.option(self, "tolerance", float)
+        driven = [contact for contact in found if contact.is_wheel]
+        ground = min(contact.place[2] for contact in driven)
+        for contact in found:
+            gap = contact.place[2] - ground
+            if abs(gap) > tolerance:
+                lowest = min(driven, key=lambda each: each.place[2]).link
+                where = "above" if gap > 0 else "below"
+                yield self.report(
+                    f"'{contact.link.name}' ends {abs(gap) * 1000:.3g} mm {where} the ground '{lowest.name}' is on",
+                    contact.link.element,
+                    "name",
+                    notes=[Note(f"'{lowest.name}' is defined here", _place(lowest))],
+                    hint="check the heights of their joints, and the radii",
+                )
+
+
+class CenterBeyondWheels(Rule):
+    """A centre of mass that is not above the area between the wheels and casters.
+
+    ## Why
+
+    The robot tips over as soon as the simulation starts. Only robots with three contacts or more are looked at, since
+    one with two wheels may be made to balance.
+
+    ## Example
+
+    Two wheels at x = 0, a caster at x = 0.2, and a battery of 10 kg at x = -0.3.
+
+    ## Use instead
+
+    A caster on the side where the mass is.
+    """
+
+    code = "LW391"
+    name = "center-of-mass-beyond-wheels"
+    options = (Option("margin", 0.01, "how far outside it may be, in m"),)
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        robot = subject.robot
+        found = contacts(robot) if robot is not None else None
+        if robot is None or found is None or len(found) < 3:
+            return
+        corners = _hull([contact.place[:2] for contact in found])
+        center = _center_of_mass(robot)
+        if len(corners) < 3 or center is None:
+            return
+        distance = _distance_outside(center, corners)
+        if distance > subject.option(self, "margin", float):
+            holder = max(
+                (link for link in robot.links.values() if link.inertial is not None),
+                key=lambda link: link.inertial.mass if link.inertial is not None else 0.0,
+            )
+            yield self.report(
+                f"the centre of mass of the robot is {distance * 100:.3g} cm beyond its wheels, so it tips over",
+                holder.element,
+                "name",
+                notes=[
+                    Note(f"it is at x = {center[0]:.3g} m, y = {center[1]:.3g} m"),
+                    Note(f"'{holder.name}' is the heaviest link"),
+                ],
+                hint="check the origins of the heavy links' <inertial>, and where the casters are",
+            )
+
+
+def _depth(shape: object, upward: float) -> float | None:
+    """How far a shape reaches below its middle, whose z axis has this part upward; None where it is no wheel."""
+    if isinstance(shape, Sphere):
+        return shape.radius
+    if isinstance(shape, Cylinder) and abs(upward) < _LEVEL:
+        return shape.radius * sqrt(1 - upward * upward) + shape.length / 2 * abs(upward)
+    return None
+
+
+def _center_of_mass(robot: Robot) -> Point | None:
+    """Where the robot's weight acts, x and y in the frame of the base; None without masses."""
+    frames = placements(robot)
+    base = frames.get("base_link", frames[robot.root])
+    total = x = y = 0.0
+    for name, link in robot.links.items():
+        if link.inertial is not None and link.inertial.mass > 0 and name in frames:
+            place = frames[name].seen_from(base).point(link.inertial.origin.xyz)
+            total += link.inertial.mass
+            x += link.inertial.mass * place[0]
+            y += link.inertial.mass * place[1]
+    return (x / total, y / total) if total > 0 else None
+
+
+def _hull(points: Sequence[Point]) -> list[Point]:
+    """The corners around points, counter-clockwise (Andrew's monotone chain); fewer than three for a line."""
+    ordered = sorted(set(points))
+
+    def half(sequence: Iterable[Point]) -> list[Point]:
+        chain: list[Point] = []
+        for point in sequence:
+            while len(chain) > 1 and _turn(chain[-2], chain[-1], point) <= 1e-9:
+                chain.pop()
+            chain.append(point)
+        return chain[:-1]
+
+    return half(ordered) + half(reversed(ordered))
+
+
+def _turn(a: Point, b: Point, c: Point) -> float:
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+
+
+def _distance_outside(point: Point, corners: Sequence[Point]) -> float:
+    """How far a point lies outside a convex polygon, measured from the line of the edge it is beyond most."""
+    farthest = 0.0
+    for start, end in zip(corners, [*corners[1:], corners[0]], strict=True):
+        edge = hypot(end[0] - start[0], end[1] - start[1])
+        if edge > 0:
+            farthest = max(farthest, -_turn(start, end, point) / edge)
+    return farthest
+
+
+def _place(link: Link) -> Span | None:
+    return link.element.span() if link.element is not None else None

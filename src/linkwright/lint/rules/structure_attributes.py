@@ -1,0 +1,98 @@
+"""Rules about attributes that nobody reads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from linkwright.diagnostics import Diagnostic, Severity
+from linkwright.lint.fix import rename_attribute
+from linkwright.lint.rule import Rule
+from linkwright.lint.subject import Subject
+from linkwright.lint.unread import (
+    EXTENSION_ATTRIBUTES,
+    attribute_name_span,
+    meant_attribute,
+    told_by_reader,
+    unknown_attributes,
+)
+
+
+class MisspeltAttribute(Rule):
+    """An attribute that is almost one that URDF knows.
+
+    ## Why
+
+    urdfdom passes over every attribute it does not know, without a word: `<limit loewr="-1" .../>` leaves the lower
+    limit at 0, `<origin rpw="0 0 1"/>` does not turn anything.
+
+    ## Example
+
+    ```xml
+    <origin xyz="0 0 1" rpw="0 0 1.57"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <origin xyz="0 0 1" rpy="0 0 1.57"/>
+    ```
+    """
+
+    code = "LW106"
+    name = "misspelt-attribute"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every attribute nobody reads whose name is near one that is not given."""
+        told = told_by_reader(subject)
+        for place, attribute in unknown_attributes(subject):
+            meant = meant_attribute(place, attribute)
+            if meant is None or f"'{attribute}'" in told.get(place.element.span(), ""):
+                continue
+            span = attribute_name_span(place.element, attribute)
+            yield self.report(
+                f"'{attribute}' in {place} is not read",
+                place.element,
+                span=span,
+                hint=f"did you mean '{meant}'?",
+                fix=rename_attribute(place.element, attribute, meant, safe=False),
+            )
+
+
+class UnknownAttribute(Rule):
+    """An attribute that URDF does not know.
+
+    ## Why
+
+    urdfdom passes over it. Either it is meant for another tool, or the author expects something that does not happen.
+    Attributes with a prefix and well-known ones of other tools are left alone.
+
+    ## Example
+
+    ```xml
+    <axis xyz="0 0 1" rpy="0 0 0"/>
+    ```
+
+    ## Use instead
+
+    Remove it.
+    """
+
+    code = "LW108"
+    name = "unknown-attribute"
+    severity = Severity.INFO
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every attribute nobody reads that is like nothing the element has."""
+        told = told_by_reader(subject)
+        for place, attribute in unknown_attributes(subject):
+            if attribute in EXTENSION_ATTRIBUTES or meant_attribute(place, attribute) is not None:
+                continue
+            if f"'{attribute}'" in told.get(place.element.span(), ""):
+                continue
+            known = ", ".join(f"'{rule.name}'" for rule in place.rule.attributes)
+            yield self.report(
+                f"'{attribute}' in {place} is not read",
+                place.element,
+                span=attribute_name_span(place.element, attribute),
+                hint=f"what is read here: {known}" if known else f"<{place.rule.tag}> has no attributes",
+            )

@@ -1,0 +1,190 @@
+"""Rules about elements that nobody reads: misspelt, in the wrong place, unknown."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from linkwright.diagnostics import Diagnostic, Severity
+from linkwright.lint.fix import rename_element
+from linkwright.lint.rule import Rule
+from linkwright.lint.subject import Subject
+from linkwright.lint.unread import (
+    HOMES,
+    INNER_EXTENSIONS,
+    inside,
+    is_misspelt,
+    meant_element,
+    told_by_reader,
+    unknown_children,
+)
+from linkwright.lint.walk import known_elements
+from linkwright.urdf import schema
+
+
+class MisspeltElement(Rule):
+    """An element that is almost one that URDF knows.
+
+    ## Why
+
+    urdfdom passes over every element it does not know, without a word: `<inertail>` leaves the link without inertia.
+
+    ## Example
+
+    ```xml
+    <link name="arm">
+      <inertail> ... </inertail>
+    </link>
+    ```
+
+    ## Use instead
+
+    ```xml
+      <inertial> ... </inertial>
+    ```
+    """
+
+    code = "LW104"
+    name = "misspelt-element"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every element nobody reads whose name is near one that could stand there."""
+        told = told_by_reader(subject)
+        for place, child in unknown_children(subject):
+            meant = meant_element(place.rule, child)
+            if meant is None or child.span() in told:
+                continue
+            yield self.report(
+                f"<{child.tag}> in {inside(place)} is not read",
+                child,
+                hint=f"did you mean <{meant}>?",
+                fix=rename_element(child, meant, safe=False) if is_misspelt(child.tag, meant) else None,
+            )
+
+
+class MisplacedElement(Rule):
+    """An element of URDF in a place where it is not read.
+
+    ## Why
+
+    An `<origin>` inside `<geometry>` does not move the shape, a `<mass>` directly in a link gives it no mass: urdfdom
+    passes over them without a word.
+
+    ## Example
+
+    ```xml
+    <visual>
+      <geometry>
+        <box size="1 1 1"/>
+        <origin xyz="0 0 0.5"/>
+      </geometry>
+    </visual>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <visual>
+      <origin xyz="0 0 0.5"/>
+      <geometry><box size="1 1 1"/></geometry>
+    </visual>
+    ```
+    """
+
+    code = "LW105"
+    name = "misplaced-element"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every element that is known elsewhere; a material in a collision has a rule of its own."""
+        told = told_by_reader(subject)
+        for place, child in unknown_children(subject):
+            homes = HOMES.get(child.tag, ())
+            if not homes or child.span() in told or (place.rule.tag, child.tag) == ("collision", "material"):
+                continue
+            around = place.parent.tag if place.parent is not None else ""
+            listed = " or ".join(f"<{home}>" for home in ((around,) if around in homes else homes))
+            yield self.report(
+                f"<{child.tag}> in {inside(place)} is not read",
+                child,
+                hint=f"it belongs directly in {listed}",
+            )
+
+
+class UnknownElement(Rule):
+    """An element inside a link or joint that URDF does not know.
+
+    ## Why
+
+    urdfdom passes over it. Either it is meant for another tool, or the author expects something that does not happen.
+    Elements directly in `<robot>` and well-known ones of other tools are left alone.
+
+    ## Example
+
+    ```xml
+    <link name="arm">
+      <weight>3</weight>
+    </link>
+    ```
+
+    ## Use instead
+
+    Remove it, or move it into a `<gazebo reference="arm">` where a simulator is to read it.
+    """
+
+    code = "LW107"
+    name = "unknown-element"
+    severity = Severity.INFO
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every element nobody reads that is like nothing URDF has."""
+        told = told_by_reader(subject)
+        for place, child in unknown_children(subject):
+            if place.rule is schema.ROBOT or child.tag in INNER_EXTENSIONS or child.tag in HOMES:
+                continue
+            if meant_element(place.rule, child) is None and child.span() not in told:
+                known = ", ".join(f"<{rule.tag}>" for rule in place.rule.children)
+                yield self.report(
+                    f"<{child.tag}> in {inside(place)} is not read",
+                    child,
+                    hint=f"what is read here: {known}" if known else f"<{place.rule.tag}> holds no elements",
+                )
+
+
+class MaterialInCollision(Rule):
+    """A `<collision>` with a `<material>`.
+
+    ## Why
+
+    Collision shapes have no colour: the material is not read, and a material that is defined only there does not exist
+    for anybody else. It is harmless where a macro writes one body for both, so the rule is off by default.
+
+    ## Example
+
+    ```xml
+    <collision>
+      <geometry><box size="1 1 1"/></geometry>
+      <material name="red"/>
+    </collision>
+    ```
+
+    ## Use instead
+
+    Write the `<material>` in the `<visual>`.
+    """
+
+    code = "LW110"
+    name = "material-in-collision"
+    default = False
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every material of a collision."""
+        from linkwright.lint.fix import remove_element
+
+        for place in known_elements(subject):
+            if place.rule.tag == "collision":
+                for material in place.element.elements("material"):
+                    yield self.report(
+                        f"<material> in {place} is not read",
+                        material,
+                        hint="write it in the <visual>",
+                        fix=remove_element(material),
+                    )

@@ -1,0 +1,80 @@
+"""Rules about names inside the elements that URDF readers pass on."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from linkwright.diagnostics import Diagnostic
+from linkwright.lint.extension_names import ATTRIBUTES, CHILDREN
+from linkwright.lint.fix import rename_attribute, rename_element
+from linkwright.lint.rule import Rule
+from linkwright.lint.subject import Subject
+from linkwright.lint.unread import attribute_name_span, close_name
+from linkwright.xmltree import Element
+
+
+class MisspeltExtension(Rule):
+    """A misspelt element or attribute inside `<gazebo>`, `<transmission>` or `<ros2_control>`.
+
+    ## Why
+
+    URDF readers pass these parts on, and those who read them pass over what they do not know: a
+    `<command_interfce>` is an interface that no controller can claim.
+
+    ## Example
+
+    ```xml
+    <ros2_control name="arm" type="system">
+      <joint name="elbow">
+        <command_interfce name="position"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+        <command_interface name="position"/>
+    ```
+    """
+
+    code = "LW109"
+    name = "misspelt-extension"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every element and attribute there whose name is near a known one."""
+        for top in subject.elements():
+            if top.tag not in CHILDREN:
+                continue
+            waiting = [(top, top.tag)]
+            while waiting:
+                element, path = waiting.pop()
+                yield from self._attributes(element, path)
+                for child in element.elements():
+                    known = CHILDREN.get(path)
+                    if known is None:
+                        continue
+                    if child.tag not in known:
+                        yield from self._element(child, element, known)
+                    waiting.append((child, f"{path}/{child.tag}"))
+
+    def _element(self, child: Element, parent: Element, known: tuple[str, ...]) -> Iterator[Diagnostic]:
+        near = close_name(child.tag, known)
+        if near:
+            yield self.report(
+                f"<{child.tag}> in <{parent.tag}> is not known to any reader of <{parent.tag}>",
+                child,
+                hint=f"did you mean <{near}>?",
+                fix=rename_element(child, near, safe=False),
+            )
+
+    def _attributes(self, element: Element, path: str) -> Iterator[Diagnostic]:
+        known = ATTRIBUTES.get(path, ())
+        for attribute in element.attributes:
+            near = close_name(attribute, [name for name in known if name not in element.attributes])
+            if attribute not in known and near:
+                yield self.report(
+                    f"'{attribute}' in <{element.tag}> is not read",
+                    element,
+                    span=attribute_name_span(element, attribute),
+                    hint=f"did you mean '{near}'?",
+                    fix=rename_attribute(element, attribute, near, safe=False),
+                )

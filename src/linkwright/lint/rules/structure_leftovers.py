@@ -1,0 +1,136 @@
+"""Rules about what is left over: expressions nobody evaluates, texts, names and materials without use."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import PurePath
+
+from linkwright.diagnostics import Diagnostic, Severity
+from linkwright.lint.rule import Rule
+from linkwright.lint.subject import Subject
+from linkwright.lint.walk import known_elements
+from linkwright.urdf import schema
+from linkwright.xmltree import Text
+
+
+class XacroInUrdf(Rule):
+    """An expression of xacro in an attribute of plain URDF.
+
+    ## Why
+
+    Nobody evaluates it: the mesh is looked for in a folder with the name `$(find my_robot)`.
+
+    ## Example
+
+    ```xml
+    <robot name="r">
+      ...
+      <mesh filename="file://$(find my_robot)/meshes/arm.stl"/>
+    ```
+
+    ## Use instead
+
+    Give the file the ending `.urdf.xacro`, declare `xmlns:xacro="http://www.ros.org/wiki/xacro"` on `<robot>`, and
+    expand it.
+    """
+
+    code = "LW114"
+    name = "xacro-in-urdf"
+    severity = Severity.ERROR
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every address with an expression; of numbers the reader says it."""
+        if subject.expansion is not None:
+            return
+        for place in known_elements(subject):
+            for attribute, written in place.element.attributes.items():
+                rule = place.rule.attribute(attribute)
+                if rule is None or rule.kind is not schema.Kind.TEXT or attribute in ("name", "link"):
+                    continue  # names have a rule of their own
+                if "${" in written or "$(" in written:
+                    yield self.report(
+                        f"nobody evaluates '{written}' in a file that is not xacro",
+                        place.element,
+                        attribute,
+                        hint='declare xmlns:xacro="http://www.ros.org/wiki/xacro" on <robot> and call the file '
+                        f"{PurePath(subject.path).stem}.urdf.xacro",
+                    )
+
+
+class StrayText(Rule):
+    """Text in an element that holds none.
+
+    ## Why
+
+    URDF says everything in attributes; a text such as `<mass>3</mass>` or a forgotten `-->` is not read.
+
+    ## Example
+
+    ```xml
+    <link name="arm"> 3 kg
+      <visual> ...
+    ```
+
+    ## Use instead
+
+    Make it a comment, `<!-- 3 kg -->`, or remove it.
+    """
+
+    code = "LW116"
+    name = "stray-text"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every text with something in it; where a value is missing besides, the reader says it."""
+        told = {found.span for found in subject.reading.diagnostics}
+        for place in known_elements(subject):
+            if place.element.span() in told:
+                continue
+            for child in place.element.children:
+                if not isinstance(child, Text) or not child.data.strip():
+                    continue
+                text = " ".join(child.data.split())
+                text = text if len(text) <= 40 else f"{text[:40]}..."
+                span = None
+                if child.source is not None:
+                    start = child.offset + len(child.data) - len(child.data.lstrip())
+                    span = child.source.span(start, start + len(child.data.strip().partition("\n")[0]))
+                yield self.report(
+                    f"the text '{text}' in {place if place.owner else '<robot>'} is not read",
+                    place.element,
+                    span=span,
+                    source=child.source,
+                    hint=f"make it a comment: <!-- {text} -->" if "--" not in text else "remove it",
+                )
+
+
+class EmptyName(Rule):
+    """A link, joint or robot with an empty name.
+
+    ## Why
+
+    urdfdom takes it, and then the frame has no name: TF refuses frames without one, and joint states cannot be matched.
+
+    ## Example
+
+    ```xml
+    <link name=""/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <link name="base_link"/>
+    ```
+    """
+
+    code = "LW117"
+    name = "empty-name"
+    severity = Severity.ERROR
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every name without a letter."""
+        named = [element for element in subject.elements() if element.tag in ("link", "joint")]
+        for element in [subject.root, *named]:
+            name = element.attributes.get("name")
+            if name is not None and not name.strip():
+                yield self.report(f"the name of a <{element.tag}> is empty", element, "name", hint="give it a name")

@@ -1,0 +1,354 @@
+"""Rules about references from ``<gazebo>``, ``<transmission>`` and ``<ros2_control>`` to links and joints."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from linkwright.diagnostics import Diagnostic, Note, Severity, did_you_mean, nearest
+from linkwright.lint.extension_names import INTERFACES
+from linkwright.lint.fix import replace_value
+from linkwright.lint.rule import Rule
+from linkwright.lint.subject import Subject
+from linkwright.lint.unread import close_name
+from linkwright.xmltree import Element
+
+
+def _names(subject: Subject, tag: str) -> set[str]:
+    return {element.attributes.get("name", "") for element in subject.elements(tag)}
+
+
+def _control_joints(subject: Subject) -> Iterator[tuple[Element, Element]]:
+    """The joints of every ``<ros2_control>``, each with that."""
+    for system in subject.elements("ros2_control"):
+        for joint in system.elements("joint"):
+            yield system, joint
+
+
+class GazeboReferenceUnknown(Rule):
+    """A `<gazebo reference="...">` that names neither a link nor a joint.
+
+    ## Why
+
+    Gazebo drops what is in it without a word: the wheel has no friction, the camera no sensor.
+
+    ## Example
+
+    ```xml
+    <gazebo reference="camera">   <!-- the link is called camera_link -->
+    ```
+
+    ## Use instead
+
+    ```xml
+    <gazebo reference="camera_link">
+    ```
+    """
+
+    code = "LW120"
+    name = "gazebo-reference-unknown"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every reference to nothing."""
+        known = _names(subject, "link") | _names(subject, "joint")
+        for element in subject.elements("gazebo"):
+            name = element.attributes.get("reference")
+            if name and name not in known:
+                near = nearest(name, known, limit=1)
+                yield self.report(
+                    f"<gazebo> refers to '{name}', which is neither a link nor a joint",
+                    element,
+                    "reference",
+                    hint=did_you_mean(name, known) or "give the name of a link or joint",
+                    fix=replace_value(element, "reference", near[0], safe=False) if near else None,
+                )
+
+
+class TransmissionJointUnknown(Rule):
+    """A `<transmission>` of a joint that does not exist.
+
+    ## Why
+
+    Whoever reads the transmission stops with an error, or leaves the joint without a drive.
+
+    ## Example
+
+    ```xml
+    <transmission name="elbow_transmission">
+      <joint name="elbw_joint"> ...
+    ```
+
+    ## Use instead
+
+    Give the name of the joint as the description has it.
+    """
+
+    code = "LW121"
+    name = "transmission-joint-unknown"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every transmission of a joint that is not there, in ``<ros2_control>`` as well."""
+        known = _names(subject, "joint")
+        tops = list(subject.elements("transmission"))
+        tops += [inner for system in subject.elements("ros2_control") for inner in system.elements("transmission")]
+        for transmission in tops:
+            for joint in transmission.elements("joint"):
+                name = joint.attributes.get("name")
+                if name and name not in known:
+                    yield self.report(
+                        f"<transmission> is of joint '{name}', which does not exist",
+                        joint,
+                        "name",
+                        hint=did_you_mean(name, known) or "give the name of a joint",
+                    )
+
+
+class ControlJointUnknown(Rule):
+    """A `<ros2_control>` with a joint that does not exist.
+
+    ## Why
+
+    The hardware offers interfaces for a joint that the robot does not have: its state is published, no frame moves,
+    and gz_ros2_control skips the joint.
+
+    ## Example
+
+    ```xml
+    <ros2_control name="arm" type="system">
+      <joint name="elbw_joint">
+    ```
+
+    ## Use instead
+
+    Give the name of the joint as the description has it.
+    """
+
+    code = "LW122"
+    name = "control-joint-unknown"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every joint of ros2_control that the robot does not have."""
+        known = _names(subject, "joint")
+        if not known:
+            return  # a description of the hardware alone
+        for _, joint in _control_joints(subject):
+            name = joint.attributes.get("name")
+            if name and name not in known:
+                near = nearest(name, known, limit=1)
+                yield self.report(
+                    f"<ros2_control> has joint '{name}', which the robot does not have",
+                    joint,
+                    "name",
+                    hint=did_you_mean(name, known) or f'add <joint name="{name}" ...> to the robot',
+                    fix=replace_value(joint, "name", near[0], safe=False) if near else None,
+                )
+
+
+class ControlInterfaceMisspelt(Rule):
+    """An interface in `<ros2_control>` whose name is almost that of a standard one.
+
+    ## Why
+
+    Interfaces are matched by their names: a controller that asks for `elbow/position` does not find `elbow/positon` and
+    is not activated.
+
+    ## Example
+
+    ```xml
+    <command_interface name="positon"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <command_interface name="position"/>
+    ```
+    """
+
+    code = "LW123"
+    name = "control-interface-misspelt"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every interface of a joint that is near a standard name without being it."""
+        for _, joint in _control_joints(subject):
+            for interface in joint.elements():
+                if interface.tag not in ("command_interface", "state_interface"):
+                    continue
+                name = interface.attributes.get("name", "")
+                near = nearest(name, INTERFACES, limit=1)
+                if name and near and name not in INTERFACES and abs(len(name) - len(near[0])) <= 2:
+                    yield self.report(
+                        f"no controller asks for an interface '{name}'",
+                        interface,
+                        "name",
+                        hint=f"did you mean '{near[0]}'?",
+                        fix=replace_value(interface, "name", near[0], safe=False),
+                    )
+
+
+class ControlPluginMissing(Rule):
+    """A `<ros2_control>` that names no hardware plugin.
+
+    ## Why
+
+    The controller manager has nothing to load and stops with an error.
+
+    ## Example
+
+    ```xml
+    <ros2_control name="arm" type="system">
+      <joint name="elbow_joint"> ...
+    ```
+
+    ## Use instead
+
+    ```xml
+    <ros2_control name="arm" type="system">
+      <hardware>
+        <plugin>mock_components/GenericSystem</plugin>
+      </hardware>
+    ```
+    """
+
+    code = "LW124"
+    name = "control-plugin-missing"
+    severity = Severity.ERROR
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every ros2_control without a plugin."""
+        for system in subject.elements("ros2_control"):
+            hardware = system.first("hardware")
+            if hardware is None and any(close_name(child.tag, ["hardware"]) for child in system.elements()):
+                continue  # misspelt, which another rule says
+            plugin = hardware.first("plugin") if hardware is not None else None
+            if plugin is None or not plugin.text().strip():
+                missing = "<hardware>" if hardware is None else "<plugin>"
+                yield self.report(
+                    f"<ros2_control> '{system.attributes.get('name', '')}' has no {missing}",
+                    plugin or hardware or system,
+                    hint="add <hardware><plugin>PACKAGE/CLASS</plugin></hardware>, "
+                    "such as mock_components/GenericSystem",
+                )
+
+
+class ControlJointRepeated(Rule):
+    """A joint twice in one `<ros2_control>`.
+
+    ## Why
+
+    Both entries offer interfaces of the same names, which the resource manager refuses.
+
+    ## Example
+
+    ```xml
+    <ros2_control name="arm" type="system">
+      <joint name="elbow_joint"> ... </joint>
+      <joint name="elbow_joint"> ... </joint>
+    ```
+
+    ## Use instead
+
+    Write all interfaces of a joint in one `<joint>`.
+    """
+
+    code = "LW125"
+    name = "control-joint-repeated"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every joint after the first of its name."""
+        for system in subject.elements("ros2_control"):
+            first: dict[str, Element] = {}
+            for joint in system.elements("joint"):
+                name = joint.attributes.get("name", "")
+                before = first.setdefault(name, joint)
+                if name and before is not joint:
+                    yield self.report(
+                        f"joint '{name}' is in this <ros2_control> twice",
+                        joint,
+                        "name",
+                        hint="write all its interfaces in one <joint>",
+                        notes=(Note("first here", before.span()),),
+                    )
+
+
+class ControlOfFixedJoint(Rule):
+    """A command interface for a fixed joint.
+
+    ## Why
+
+    The joint does not move, whatever is commanded. Usually the type was changed for a test.
+
+    ## Example
+
+    ```xml
+    <joint name="camera_joint">   <!-- type="fixed" in the robot -->
+      <command_interface name="position"/>
+    ```
+
+    ## Use instead
+
+    Remove the joint from `<ros2_control>`, or give it a type that moves.
+    """
+
+    code = "LW126"
+    name = "control-of-fixed-joint"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every command interface of a joint that stands still."""
+        fixed = {joint.name: joint for joint in subject.joints if joint.type == "fixed"}
+        for _, entry in _control_joints(subject):
+            joint = fixed.get(entry.attributes.get("name", ""))
+            command = entry.first("command_interface")
+            if joint is None or command is None or joint.element is None:
+                continue
+            if joint.element.attributes.get("type") != "fixed":
+                continue  # a type that is none, which the reader reports
+            yield self.report(
+                f"<ros2_control> commands joint '{joint.name}', which is fixed",
+                command,
+                hint="remove it, or give the joint a type that moves",
+                notes=(Note(f"joint '{joint.name}' is defined here", joint.element.span()),),
+            )
+
+
+class TransmissionIgnored(Rule):
+    """A `<transmission>` directly in `<robot>`, which nothing in ROS 2 reads.
+
+    ## Why
+
+    It is the form of ROS 1. ros2_control and its Gazebo plugins read joints, interfaces and transmissions inside
+    `<ros2_control>` only.
+
+    ## Example
+
+    ```xml
+    <transmission name="elbow_transmission">
+      <type>transmission_interface/SimpleTransmission</type> ...
+    ```
+
+    ## Use instead
+
+    ```xml
+    <ros2_control name="arm" type="system">
+      <hardware><plugin>mock_components/GenericSystem</plugin></hardware>
+      <joint name="elbow_joint">
+        <command_interface name="position"/>
+        <state_interface name="position"/>
+      </joint>
+    </ros2_control>
+    ```
+    """
+
+    code = "LW127"
+    name = "transmission-ignored"
+    severity = Severity.INFO
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """The first transmission of the form of ROS 1."""
+        found = list(subject.elements("transmission"))
+        if found:
+            count = f" (and {len(found) - 1} more)" if len(found) > 1 else ""
+            yield self.report(
+                f"nothing in ROS 2 reads <transmission> directly in <robot>{count}",
+                found[0],
+                hint="write <ros2_control> with the joints and their interfaces",
+            )

@@ -1,0 +1,196 @@
+"""Rules about the whole: the tree of links, what is said twice, what is left over."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable
+
+from linkwright.diagnostics import Diagnostic, Note, Severity
+from linkwright.lint.fix import remove_element
+from linkwright.lint.rule import Rule
+from linkwright.lint.subject import Subject
+from linkwright.lint.walk import known_elements
+from linkwright.urdf import schema
+from linkwright.xmltree import Element
+
+
+class NothingToSee(Rule):
+    """A robot of several links without a single shape.
+
+    ## Why
+
+    RViz and simulators show nothing. Usually an include or a macro call is missing, or a condition is false.
+
+    ## Example
+
+    ```xml
+    <robot name="r">
+      <link name="base_link"/>
+      <link name="arm_link"/> ...
+    ```
+
+    ## Use instead
+
+    Give the links a `<visual>`. If the description is only for frames, ignore the rule in its file.
+    """
+
+    code = "LW102"
+    name = "nothing-to-see"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """A robot whose links have neither visual nor collision."""
+        robot = subject.robot
+        if robot is None or len(robot.links) < 2:
+            return
+        if not any(link.visuals or link.collisions for link in robot.links.values()) and not any(
+            link.element is not None and (link.element.first("visual") or link.element.first("collision"))
+            for link in robot.links.values()
+        ):
+            yield self.report(
+                f"none of the {len(robot.links)} links of robot '{robot.name}' has a shape",
+                subject.root,
+                hint="give the links a <visual>",
+            )
+
+
+class DisconnectedPart(Rule):
+    """A part of the robot that no joint connects to the rest.
+
+    ## Why
+
+    A description is one tree. urdfdom refuses several roots and names two of them (URDF152); this rule names every
+    part, what is in it, and the joint that would connect it.
+
+    ## Example
+
+    ```xml
+    <link name="base_link"/>
+    <link name="camera_link"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <joint name="camera_joint" type="fixed">
+      <parent link="base_link"/>
+      <child link="camera_link"/>
+    </joint>
+    ```
+    """
+
+    code = "LW103"
+    name = "disconnected-part"
+    severity = Severity.ERROR
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every part but the one with the most links, at its topmost link."""
+        links = {link.name: link for link in subject.links if link.name}
+        joints = [joint for joint in subject.joints if joint.parent in links and joint.child in links]
+        above = {joint.child: joint.parent for joint in joints}
+        roots = [name for name in links if name not in above]
+        if len(roots) < 2 or len(links) > 100_000:
+            return
+        sizes = Counter(root for name in links if (root := _root_of(name, above)) is not None)
+        main = max(roots, key=lambda root: (sizes[root], -roots.index(root)))
+        for root in roots:
+            element = links[root].element
+            if root == main or element is None:
+                continue
+            below = sizes[root] - 1
+            what = f"link '{root}'" + (f" and the {below} below it" if below else "")
+            verb = "are" if below else "is"
+            yield self.report(
+                f"{what} {verb} not connected to '{main}'",
+                element,
+                hint=f'add <joint name="{root}_joint" type="fixed"><parent link="{main}"/><child link="{root}"/>'
+                f"</joint>, with the parent it hangs from",
+            )
+
+
+class RepeatedElement(Rule):
+    """An element twice in a place where only the first counts.
+
+    ## Why
+
+    urdfdom reads the first `<origin>`, `<geometry>`, `<limit>`, ... of its parent and passes over the others. A change
+    made in the second one changes nothing.
+
+    ## Example
+
+    ```xml
+    <visual>
+      <origin xyz="0 0 0"/>
+      <origin xyz="0 0 0.5"/>
+    ```
+
+    ## Use instead
+
+    Keep the one that is meant.
+    """
+
+    code = "LW111"
+    name = "repeated-element"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """Every element after the first of its tag, where one is read."""
+        for place in known_elements(subject):
+            first: dict[str, Element] = {}
+            for child in place.element.elements():
+                rule = place.rule.child(child.tag)
+                if rule is None or rule.many or place.rule is schema.GEOMETRY:
+                    continue
+                before = first.setdefault(child.tag, child)
+                if before is not child:
+                    yield self.report(
+                        f"{place} has more than one <{child.tag}>; only the first is read",
+                        child,
+                        hint="keep the one that is meant",
+                        notes=(Note("this one is read", before.span()),),
+                        fix=remove_element(child, safe=False),
+                    )
+
+
+class NewerVersion(Rule):
+    """A description of a URDF version that the robot software in use refuses.
+
+    ## Why
+
+    Versions 1.1 and 1.2 are read from urdfdom 5.1 on. The urdfdom of ROS 2 Jazzy and older reads 1.0 only and refuses
+    the whole model.
+
+    ## Example
+
+    ```xml
+    <robot name="r" version="1.2">
+    ```
+
+    ## Use instead
+
+    Write `version="1.0"`, or leave it out, until all who read the description are newer. Ignore the rule when they are.
+    """
+
+    code = "LW113"
+    name = "newer-version"
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """A description of a version above 1.0."""
+        robot = subject.robot
+        if robot is not None and robot.version > (1, 0):
+            written = ".".join(map(str, robot.version))
+            yield self.report(
+                f"URDF version '{written}' is refused by the urdfdom of ROS 2 Jazzy and older",
+                subject.root,
+                "version",
+                hint='write version="1.0" where nothing newer is used',
+            )
+
+
+def _root_of(name: str, above: dict[str, str]) -> str | None:
+    """The topmost link above one; None where the joints go in a circle."""
+    steps = 0
+    while name in above:
+        name = above[name]
+        steps += 1
+        if steps > len(above):
+            return None
+    return name

@@ -1,0 +1,58 @@
+"""Rules about the comments that suppress findings; the engine, which knows what they did, reports them."""
+
+from __future__ import annotations
+
+from linkwright.lint.rule import Rule, Scope
+
+
+class UnusedSuppression(Rule):
+    """A suppressing comment that suppresses nothing.
+
+    ## Why
+
+    The finding it was written for is gone, or never was there. Left in the file it hides the next finding of this
+    code without anybody having decided so.
+
+    ## Example
+
+    ```xml
+    <!-- linkwright: ignore LW203 -->
+    <limit lower="-1" upper="1" effort="10" velocity="2"/>
+    ```
+
+    ## Use instead
+
+    Remove the comment; `linkwright check --select LW001 --fix FILE` does.
+    """
+
+    code = "LW001"
+    name = "unused-suppression"
+    default = False
+    scope = Scope.COMMENTS
+
+
+class UnknownSuppression(Rule):
+    """A suppressing comment that names no rule.
+
+    ## Why
+
+    It suppresses nothing, so the finding it was written for is still reported.
+
+    ## Example
+
+    ```xml
+    <!-- linkwright: ignore limit-invertd -->
+    ```
+
+    ## Use instead
+
+    ```xml
+    <!-- linkwright: ignore limit-inverted -->
+    ```
+
+    A code (`LW201`), the beginning of one (`LW2`) and the name of a rule will do.
+    """
+
+    code = "LW002"
+    name = "unknown-suppression"
+    scope = Scope.COMMENTS

@@ -1,0 +1,170 @@
+"""Expressions in xacro files: deprecated functions, constant conditions, arguments that nothing declares."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from linkwright.diagnostics import Diagnostic
+from linkwright.lint.fix import Edit, Fix
+from linkwright.lint.rule import Rule
+from linkwright.lint.subject import Subject
+from linkwright.lint.xacro_facts import xacro_facts
+from linkwright.lint.xacro_names import DEPRECATED, is_constant
+from linkwright.xacro.faults import attribute_part
+from linkwright.xmltree import Element
+from linkwright.xmltree.positions import attribute_value_range, raw_offset
+
+
+class DeprecatedFunction(Rule):
+    """A function of xacro is called by its bare name, which is deprecated.
+
+    ## Why
+
+    `load_yaml`, `abs_filename`, `dotify`, `sorted` and `range` have moved into the groups `xacro` and `python`. By
+    their bare names every expansion warns, and a coming xacro may not know them.
+
+    ## Example
+
+    ```xml
+    <xacro:property name="config" value="${load_yaml('wheels.yaml')}"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <xacro:property name="config" value="${xacro.load_yaml('wheels.yaml')}"/>
+    ```
+    """
+
+    code = "LW714"
+    name = "deprecated-function"
+    replaces = ("XAC507",)
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        if subject.expansion is None:
+            return
+        facts = xacro_facts(subject)
+        taken = {definition.name for file in facts.files.values() for definition in file.properties}
+        for file in facts.files.values():
+            for use in file.uses:
+                if use.attribute is None or use.attribute == "params":
+                    continue
+                for call in use.found.bare_calls:
+                    if call.name not in taken:
+                        yield self._found(use.element, use.attribute, call.name, call.offset)
+
+    def _found(self, element: Element, attribute: str, name: str, at: int) -> Diagnostic:
+        better = DEPRECATED[name]
+        span = attribute_part(element, attribute, at, at + len(name))
+        source = element.source
+        fix = None
+        if source is not None:
+            written = attribute_value_range(source.text, element.offset, attribute)
+            if written is not None:
+                start = raw_offset(source.text, *written, at)
+                if source.text.startswith(name, start):
+                    fix = Fix((Edit(source.name, start, start, better.removesuffix(name)),))
+        message = f"calling '{name}' by its bare name is deprecated"
+        return self.report(message, element, attribute, span=span, hint=f"write {better}", fix=fix)
+
+
+class ConstantCondition(Rule):
+    """The condition of ``xacro:if`` or ``xacro:unless`` is always the same.
+
+    ## Why
+
+    What is inside is always there or never. A condition written as a constant is left from a trial, and hides what
+    the robot is made of.
+
+    ## Example
+
+    ```xml
+    <xacro:if value="false">
+      <xacro:include filename="lidar.xacro"/>
+    </xacro:if>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <xacro:arg name="use_lidar" default="false"/>
+    <xacro:if value="$(arg use_lidar)">
+      <xacro:include filename="lidar.xacro"/>
+    </xacro:if>
+    ```
+    """
+
+    code = "LW715"
+    name = "constant-condition"
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        if subject.expansion is None:
+            return
+        for file in xacro_facts(subject).own.values():
+            for element in elements_below(file.document.root):
+                if element.tag not in ("xacro:if", "xacro:unless"):
+                    continue
+                value = element.attributes.get("value", "")
+                if value and is_constant(value):
+                    message = f"the condition of '{element.tag}' is always '{value}'"
+                    hint = "make it an argument, or remove the tag with what is never there"
+                    yield self.report(message, element, "value", hint=hint)
+
+
+class UndeclaredArgument(Rule):
+    """An argument is used, in a branch that was not taken, and nothing declares it.
+
+    ## Why
+
+    The expansion fails as soon as the branch is taken. Pedantic: the argument may be meant to be given always.
+
+    ## Example
+
+    ```xml
+    <xacro:arg name="gripper" default="false"/>
+    <xacro:if value="$(arg gripper)">
+      <xacro:gripper type="$(arg gripper_type)"/>
+    </xacro:if>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <xacro:arg name="gripper" default="false"/>
+    <xacro:arg name="gripper_type" default="parallel"/>
+    ```
+    """
+
+    code = "LW716"
+    name = "undeclared-argument"
+    default = False
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        expansion = subject.expansion
+        if expansion is None:
+            return
+        facts = xacro_facts(subject)
+        if facts.is_library:
+            return
+        known = set(expansion.arguments)
+        known |= {definition.name for file in facts.files.values() for definition in file.arguments}
+        if any("$" in name for name in known):
+            return
+        for file in facts.own.values():
+            for use in file.uses:
+                text = use.element.attributes.get(use.attribute, "") if use.attribute else ""
+                for name in sorted(use.found.arguments - known):
+                    if f"$(arg {name})" in text:
+                        message = f"nothing declares the argument '{name}', which a branch not taken uses"
+                        hint = f'declare it: <xacro:arg name="{name}" default="..."/>'
+                        yield self.report(message, use.element, use.attribute, hint=hint)
+
+
+def elements_below(root: Element) -> Iterator[Element]:
+    """All elements inside an element, in document order."""
+    for element in root.elements():
+        yield element
+        yield from elements_below(element)

@@ -1,0 +1,420 @@
+"""Tags of xacro: prefixes, namespaces, includes, packages and recursion."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+from linkwright.diagnostics import Diagnostic, Note, Severity
+from linkwright.lint.fix import Fix, add_attribute, rename_element, replace_value
+from linkwright.lint.rule import Rule
+from linkwright.lint.subject import Subject
+from linkwright.lint.xacro_facts import Definition, FileFacts, xacro_facts
+from linkwright.xacro.faults import attribute_part
+from linkwright.xmltree import Element
+
+ADDRESS = "http://www.ros.org/wiki/xacro"
+_OLD_ADDRESSES = re.compile(r"https?://(www\.)?ros\.org/(wiki/xacro|xacro)/?(#interface)?")
+_NEEDED = {
+    "property": ("name",),
+    "include": ("filename",),
+    "macro": ("name",),
+    "arg": ("name",),
+    "if": ("value",),
+    "unless": ("value",),
+    "insert_block": ("name",),
+}
+_FOREIGN = frozenset({"gazebo", "plugin", "ros2_control", "sensor", "world", "sdf", "transmission"})
+_ABSOLUTE = re.compile(r"(/|~|file:///|[A-Za-z]:[\\/])")
+
+
+class XacroPrefixMissing(Rule):
+    """A tag of xacro is written without the prefix ``xacro:``.
+
+    ## Why
+
+    Without the prefix it is an ordinary element, which comes out as it is and which readers of URDF ignore. Until ROS
+    Melodic xacro accepted such tags, and old descriptions have them.
+
+    ## Example
+
+    ```xml
+    <property name="wheel_radius" value="0.06"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <xacro:property name="wheel_radius" value="0.06"/>
+    ```
+    """
+
+    code = "LW720"
+    name = "xacro-prefix-missing"
+    severity = Severity.ERROR
+    replaces = ("LW104", "LW105", "LW107")
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        documents = subject.sources.values()
+        for document in documents:
+            root = document.root
+            if root.tag != "robot":
+                continue
+            for element in _described(root):
+                needed = _NEEDED.get(element.tag)
+                if needed is None or not all(name in element.attributes for name in needed):
+                    continue
+                message = f"<{element.tag}> without the prefix 'xacro:' means nothing"
+                hint = f"write <xacro:{element.tag} ...>"
+                fix = rename_element(element, f"xacro:{element.tag}", safe=False)
+                if "xmlns:xacro" not in root.attributes:
+                    hint += f', and declare the prefix on the root: xmlns:xacro="{ADDRESS}"'
+                    declared = add_attribute(root, "xmlns:xacro", ADDRESS)
+                    if fix is not None and declared is not None:
+                        fix = Fix((*declared.edits, *fix.edits), safe=False)
+                yield self.report(message, element, hint=hint, fix=fix)
+
+
+class XacroNamespaceMissing(Rule):
+    """A file is written in xacro and does not declare it.
+
+    ## Why
+
+    Without `xmlns:xacro` on its root a file is plain URDF for every tool that does not go by the ending of its name: it
+    is not expanded, and its expressions are taken for names and numbers.
+
+    ## Example
+
+    ```xml
+    <robot name="r">
+      <link name="${'base'}_link"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
+    ```
+    """
+
+    code = "LW721"
+    name = "xacro-namespace-missing"
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        if subject.expansion is None:
+            return
+        file = xacro_facts(subject).main
+        root = file.document.root
+        if "xmlns:xacro" in root.attributes or not file.uses:
+            return
+        if any(_NEEDED.get(element.tag) for element in _described(root)):
+            return  # the prefix is missing too, and that was said
+        message = "this file has expressions of xacro and does not declare the prefix 'xacro'"
+        fix = add_attribute(root, "xmlns:xacro", ADDRESS)
+        yield self.report(message, root, hint=f'write <{root.tag} ... xmlns:xacro="{ADDRESS}">', fix=fix)
+
+
+class XacroNamespaceAddress(Rule):
+    """The prefix ``xacro`` is declared with another address than that of ROS.
+
+    ## Why
+
+    xacro goes by the prefix alone and takes any address, but editors that check the file go by the address. Pedantic.
+
+    ## Example
+
+    ```xml
+    <robot name="r" xmlns:xacro="http://ros.org/wiki/xacro">
+    ```
+
+    ## Use instead
+
+    ```xml
+    <robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
+    ```
+    """
+
+    code = "LW722"
+    name = "xacro-namespace-address"
+    default = False
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        for document in subject.sources.values():
+            root = document.root
+            address = root.attributes.get("xmlns:xacro", ADDRESS)
+            if address == ADDRESS:
+                continue
+            what = "an old address" if _OLD_ADDRESSES.fullmatch(address) else "an address that is not ROS's"
+            fix = replace_value(root, "xmlns:xacro", ADDRESS)
+            hint = f'write xmlns:xacro="{ADDRESS}"'
+            yield self.report(f"the prefix 'xacro' is declared with {what}", root, "xmlns:xacro", hint=hint, fix=fix)
+
+
+class IncludeAbsolutePath(Rule):
+    """An include names its file by an absolute path.
+
+    ## Why
+
+    The path exists on one machine. On every other one, in a container and after the build the expansion fails.
+
+    ## Example
+
+    ```xml
+    <xacro:include filename="/home/me/ws/src/my_robot/urdf/wheel.xacro"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <xacro:include filename="$(find my_robot)/urdf/wheel.xacro"/>
+    ```
+
+    or, for a file beside the including one, `filename="wheel.xacro"`.
+    """
+
+    code = "LW723"
+    name = "include-absolute-path"
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        if subject.expansion is None:
+            return
+        for file in xacro_facts(subject).own.values():
+            for include in file.includes:
+                if _ABSOLUTE.match(include.name):
+                    message = f"the included file '{include.name}' is named by an absolute path"
+                    hint = "name it relative to this file, or with $(find PACKAGE)"
+                    yield self.report(message, include.element, "filename", hint=hint)
+
+
+class IncludeOutsidePackage(Rule):
+    """An include names its file by a path that leaves the package.
+
+    ## Why
+
+    The file is found from the sources, where the packages lie side by side. Installed, each package has its own folder,
+    and the path leads nowhere.
+
+    ## Example
+
+    ```xml
+    <xacro:include filename="../../other_package/urdf/wheel.xacro"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <xacro:include filename="$(find other_package)/urdf/wheel.xacro"/>
+    ```
+    """
+
+    code = "LW728"
+    name = "include-outside-package"
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        package = subject.package
+        if package is None or subject.expansion is None:
+            return
+        for path, file in xacro_facts(subject).own.items():
+            folder = path.absolute().parent
+            if not folder.is_relative_to(package.folder):
+                continue
+            for include in file.includes:
+                if include.name.startswith("../") and "$" not in include.name:
+                    target = Path(os.path.normpath(folder / include.name))
+                    if not target.is_relative_to(package.folder):
+                        message = f"'{include.name}' lies outside the package '{package.name}'"
+                        hint = "name it with $(find PACKAGE)/..."
+                        yield self.report(message, include.element, "filename", hint=hint)
+
+
+class UndeclaredPackage(Rule):
+    """``$(find ...)`` names a package that ``package.xml`` does not depend on.
+
+    ## Why
+
+    rosdep and colcon know of dependencies from `package.xml` alone: on a fresh machine the package is not installed,
+    and the expansion fails.
+
+    ## Example
+
+    ```xml
+    <xacro:include filename="$(find realsense2_description)/urdf/_d435.urdf.xacro"/>
+    ```
+
+    ## Use instead
+
+    Add to `package.xml`:
+
+    ```xml
+    <exec_depend>realsense2_description</exec_depend>
+    ```
+    """
+
+    code = "LW724"
+    name = "undeclared-package"
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        package = subject.package
+        if subject.expansion is None or package is None or package.manifest is None:
+            return
+        said: set[str] = set()
+        for file in xacro_facts(subject).own.values():
+            for use in file.uses:
+                for name, at in use.found.packages:
+                    if name in said or package.manifest.declares(name) or use.attribute is None:
+                        continue
+                    said.add(name)
+                    span = attribute_part(use.element, use.attribute, at, at + len(name))
+                    message = (
+                        f"the package '{name}' is used here, and the package.xml of '{package.name}' does not name it"
+                    )
+                    hint = f"add <exec_depend>{name}</exec_depend> to package.xml"
+                    yield self.report(message, use.element, use.attribute, span=span, hint=hint)
+
+
+class RecursiveMacro(Rule):
+    """A macro calls itself without a condition.
+
+    ## Why
+
+    Once called, it never ends, and xacro gives up when the calls are nested too deeply.
+
+    ## Example
+
+    ```xml
+    <xacro:macro name="chain" params="count">
+      <link name="link_${count}"/>
+      <xacro:chain count="${count - 1}"/>
+    </xacro:macro>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <xacro:macro name="chain" params="count">
+      <link name="link_${count}"/>
+      <xacro:if value="${count > 0}">
+        <xacro:chain count="${count - 1}"/>
+      </xacro:if>
+    </xacro:macro>
+    ```
+    """
+
+    code = "LW725"
+    name = "recursive-macro"
+    severity = Severity.ERROR
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        if subject.expansion is None:
+            return
+        for file in xacro_facts(subject).own.values():
+            for macro in file.macros:
+                call = _unconditional_call(macro, file)
+                if call is not None:
+                    note = Note(f"the macro '{macro.name}' is defined here", macro.element.span())
+                    message = f"the macro '{macro.name}' calls itself without a condition, so a call never ends"
+                    hint = "put the call into xacro:if or xacro:unless"
+                    yield self.report(message, call.element, notes=[note], hint=hint)
+
+
+class IncludeOfItself(Rule):
+    """A file includes itself, directly or through others.
+
+    ## Why
+
+    xacro has no guard against it: without a condition that ends it, the expansion goes in circles until the calls are
+    nested too deeply.
+
+    ## Example
+
+    ```xml
+    <!-- wheel.xacro -->
+    <xacro:include filename="wheel.xacro"/>
+    ```
+
+    ## Use instead
+
+    Move what both files need into a third one, which includes neither.
+    """
+
+    code = "LW726"
+    name = "include-of-itself"
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        if subject.expansion is None:
+            return
+        facts = xacro_facts(subject)
+        for path, file in facts.own.items():
+            for include in file.includes:
+                target = include.name.replace("\\", "/")
+                if "$" not in target and (path.parent / target).absolute() == path.absolute():
+                    message = f"'{path.name}' includes itself"
+                    yield self.report(message, include.element, "filename", hint="remove the include")
+
+
+class MacroDefinedTwice(Rule):
+    """A macro is defined again in the same file, with another body.
+
+    ## Why
+
+    The second definition silently takes the place of the first. Calls before it and calls after it make different
+    things.
+
+    ## Example
+
+    ```xml
+    <xacro:macro name="wheel" params="prefix">...</xacro:macro>
+    <xacro:macro name="wheel" params="prefix radius">...</xacro:macro>
+    ```
+
+    ## Use instead
+
+    Give the macros two names, or remove the one that is not meant.
+    """
+
+    code = "LW727"
+    name = "macro-defined-twice"
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        if subject.expansion is None:
+            return
+        for file in xacro_facts(subject).own.values():
+            first: dict[tuple[str, int], Definition] = {}
+            for macro in file.macros:
+                if macro.is_conditional or not macro.name:
+                    continue
+                earlier = first.setdefault((macro.name, id(macro.parents[-1])), macro)
+                if earlier is not macro:
+                    note = Note("it is defined first here", earlier.element.attribute_span("name"))
+                    message = f"the macro '{macro.name}' is defined twice in this file"
+                    yield self.report(message, macro.element, "name", notes=[note], hint="rename or remove one of them")
+
+
+def _unconditional_call(macro: Definition, file: FileFacts) -> Definition | None:
+    for call in file.calls:
+        if call.name != macro.name or macro.element not in call.parents or call.element.tag != f"xacro:{macro.name}":
+            continue
+        inside = call.parents[call.parents.index(macro.element) + 1 :]
+        if not any(parent.tag.startswith("xacro:") for parent in inside):
+            return call
+    return None
+
+
+def _described(root: Element) -> Iterator[Element]:
+    """The elements of a description, those of simulators and plugins left out."""
+    for element in root.elements():
+        if element.tag in _FOREIGN:
+            continue
+        yield element
+        yield from _described(element)

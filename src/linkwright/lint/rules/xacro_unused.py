@@ -1,0 +1,356 @@
+"""Definitions in xacro files that nothing uses.
+
+A name counts as used when any file of the description, or any other description file of the package, mentions it
+anywhere; where a name may be put together from values, the rules say nothing. Files that only define things for others
+to include are never reported on for that.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from linkwright.diagnostics import Diagnostic
+from linkwright.lint.fix import remove_element
+from linkwright.lint.rule import Rule
+from linkwright.lint.subject import Subject
+from linkwright.lint.xacro_facts import Definition, FileFacts, XacroFacts, parameter_span, xacro_facts
+from linkwright.xmltree import Element
+
+
+class UnusedProperty(Rule):
+    """A property that nothing uses.
+
+    ## Why
+
+    Whoever changes its value expects the robot to change. Often the place where it belongs has the number written out.
+
+    Only properties of the checked file and those inside macros are looked at: a file of properties for several robots
+    holds more than one of them needs.
+
+    ## Example
+
+    ```xml
+    <xacro:property name="wheel_radius" value="0.06"/>
+    <cylinder radius="0.06" length="0.02"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <xacro:property name="wheel_radius" value="0.06"/>
+    <cylinder radius="${wheel_radius}" length="0.02"/>
+    ```
+    """
+
+    code = "LW701"
+    name = "unused-property"
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        if subject.expansion is None:
+            return
+        facts = xacro_facts(subject)
+        if facts.is_open or facts.is_library:
+            return
+        for file in facts.own.values():
+            for definition in file.properties:
+                name, element = definition.name, definition.element
+                if "$" in name or not name or name in facts.names or _is_remove(element):
+                    continue
+                if file is not facts.main and (definition.macro is None or "scope" in element.attributes):
+                    continue
+                yield self.report(
+                    f"nothing uses the property '{name}'",
+                    element,
+                    "name",
+                    hint=_hint(name, facts.names),
+                    fix=remove_element(element, safe=False),
+                )
+
+
+class UnusedArgument(Rule):
+    """An argument of a file that nothing uses.
+
+    ## Why
+
+    Whoever gives it a value, on the command line or in a launch file, waits in vain for something to change.
+
+    ## Example
+
+    ```xml
+    <xacro:arg name="use_lidar" default="true"/>
+    <xacro:include filename="lidar.xacro"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <xacro:arg name="use_lidar" default="true"/>
+    <xacro:if value="$(arg use_lidar)">
+      <xacro:include filename="lidar.xacro"/>
+    </xacro:if>
+    ```
+    """
+
+    code = "LW702"
+    name = "unused-argument"
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        if subject.expansion is None:
+            return
+        facts = xacro_facts(subject)
+        if facts.arguments_open:
+            return
+        for file in facts.own.values():
+            for definition in file.arguments:
+                name = definition.name
+                if name and "$" not in name and name not in facts.used_arguments and _is_first(definition, file):
+                    yield self.report(
+                        f"nothing uses the argument '{name}'",
+                        definition.element,
+                        "name",
+                        hint=_hint(name, facts.used_arguments, "$(arg ...)"),
+                        fix=remove_element(definition.element, safe=False),
+                    )
+
+
+class UnusedMacro(Rule):
+    """A macro that nothing calls.
+
+    ## Why
+
+    Its content is missing in the robot. Either the call was forgotten, or the macro is left from a time when there was
+    one.
+
+    Only macros of the checked file are looked at, and only where it makes a robot itself: files of macros for others
+    are there to be chosen from.
+
+    ## Example
+
+    ```xml
+    <xacro:macro name="caster" params="side">
+      ...
+    </xacro:macro>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <xacro:macro name="caster" params="side">
+      ...
+    </xacro:macro>
+    <xacro:caster side="1"/>
+    ```
+    """
+
+    code = "LW703"
+    name = "unused-macro"
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        if subject.expansion is None:
+            return
+        facts = xacro_facts(subject)
+        if facts.is_library or facts.calls_open:
+            return
+        for definition in facts.main.macros:
+            if definition.name and definition.name not in facts.called:
+                yield self.report(
+                    f"nothing calls the macro '{definition.name}'",
+                    definition.element,
+                    "name",
+                    hint=_hint(definition.name, facts.called, f"<xacro:{definition.name} .../>"),
+                    fix=remove_element(definition.element, safe=False),
+                )
+
+
+class UnusedInclude(Rule):
+    """An include of a file that contributes nothing.
+
+    ## Why
+
+    The file neither puts anything into the robot nor defines anything that the description uses. Every expansion reads
+    it, and a reader looks into it for what it is there for.
+
+    ## Example
+
+    ```xml
+    <xacro:include filename="laser.xacro"/>  <!-- defines the macro laser, which nothing calls -->
+    ```
+
+    ## Use instead
+
+    Call what the file defines, or remove the include.
+    """
+
+    code = "LW704"
+    name = "unused-include"
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        if subject.expansion is None:
+            return
+        facts = xacro_facts(subject)
+        if facts.is_library or any(file.is_open or file.calls_open for file in facts.files.values()):
+            return
+        paths = _included_paths(facts)
+        for file in facts.own.values():
+            for include in file.includes:
+                path = paths.get(id(include.element))
+                if path is not None and not _contributes(path, facts, paths):
+                    yield self.report(
+                        f"nothing in '{Path(path).name}' is used",
+                        include.element,
+                        "filename",
+                        hint="use what it defines, or remove the include",
+                        fix=remove_element(include.element, safe=False),
+                    )
+
+
+class UnusedMacroParameter(Rule):
+    """A parameter of a macro that its body does not use.
+
+    ## Why
+
+    Every call has to give it a value, and no value makes a difference. Where a parameter is meant for a macro that is
+    called inside, it has to be handed on.
+
+    ## Example
+
+    ```xml
+    <xacro:macro name="wheel" params="prefix radius">
+      <link name="${prefix}_wheel">
+        <visual><geometry><cylinder radius="0.06" length="0.02"/></geometry></visual>
+      </link>
+    </xacro:macro>
+    ```
+
+    ## Use instead
+
+    ```xml
+        <visual><geometry><cylinder radius="${radius}" length="0.02"/></geometry></visual>
+    ```
+    """
+
+    code = "LW705"
+    name = "unused-macro-parameter"
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        if subject.expansion is None:
+            return
+        facts = xacro_facts(subject)
+        if facts.calls_open:
+            return  # macros that are called by a value of their name must all take the same parameters
+        for file in facts.own.values():
+            for macro in file.macros:
+                yield from self._of_macro(macro, file, facts)
+
+    def _of_macro(self, macro: Definition, file: FileFacts, facts: XacroFacts) -> Iterator[Diagnostic]:
+        used, blocks, is_open = _used_inside(macro.element, file)
+        calls_others = any(macro.element in call.parents for call in file.calls)
+        for parameter in file.parameters(macro.element):
+            name = parameter.name.lstrip("*")
+            if parameter.is_block:
+                is_used = name in blocks or (calls_others and any(name in each.blocks for each in facts.files.values()))
+            else:
+                # What a macro calls sees the properties of the macro, so a name that is used elsewhere may be this one.
+                is_used = name in used or is_open or (calls_others and (name in facts.names or facts.is_open))
+                is_used = is_used or (bool(blocks) and name in facts.names)
+            if name and not is_used and name.isidentifier():
+                span = parameter_span(macro.element, parameter)
+                what = "block" if parameter.is_block else "parameter"
+                message = f"the macro '{macro.name}' does not use its {what} '{name}'"
+                yield self.report(
+                    message, macro.element, "params", span=span, hint="use it, or take it out of the calls too"
+                )
+
+
+def _used_inside(macro: Element, file: FileFacts) -> tuple[set[str], set[str], bool]:
+    """Names and blocks that a macro's body mentions, and whether it may mention others."""
+    names: set[str] = set()
+    is_open = False
+    for use in file.uses:
+        if macro in use.parents or (use.element is macro and use.attribute == "params"):
+            names |= use.found.names
+            is_open = is_open or use.found.is_open or bool(use.found.pasted)
+    blocks: set[str] = set()
+    stack = [macro]
+    while stack:
+        element = stack.pop()
+        if element.tag == "xacro:insert_block":
+            blocks.add(element.attributes.get("name", ""))
+        if element.tag == "xacro:call" or element.tag == "xacro:element":
+            is_open = True
+        if element.tag == "xacro:macro" and element is not macro:
+            names |= {parameter.name for parameter in file.parameters(element) if parameter.forward}
+        stack.extend(element.elements())
+    return names, blocks, is_open
+
+
+def _is_remove(element: Element) -> bool:
+    return "remove" in element.attributes
+
+
+def _is_first(definition: Definition, file: FileFacts) -> bool:
+    first = next(each for each in file.arguments if each.name == definition.name)
+    return first is definition
+
+
+def _hint(name: str, used: frozenset[str], form: str = "${...}") -> str:
+    from linkwright.diagnostics import nearest
+
+    close = [each for each in nearest(name, used, 1) if len(each) > 3 and abs(len(each) - len(name)) < 2]
+    if close:
+        return f"'{close[0]}' is used: is that this one? Otherwise remove it"
+    return f"use it with {form}, or remove it"
+
+
+def _included_paths(facts: XacroFacts) -> dict[int, Path]:
+    """For each include with a file name that is known without evaluating much: the file that was read for it."""
+    found: dict[int, Path] = {}
+    by_name: dict[str, list[Path]] = {}
+    for path in facts.files:
+        by_name.setdefault(path.name, []).append(path)
+    for file in facts.files.values():
+        for include in file.includes:
+            name = include.name.replace("\\", "/").rpartition("/")[2]
+            matching = by_name.get(name, [])
+            if len(matching) == 1 and "ns" not in include.element.attributes:
+                found[id(include.element)] = matching[0]
+    return found
+
+
+def _contributes(path: Path, facts: XacroFacts, paths: dict[int, Path]) -> bool:
+    """Whether a file, or one that it includes, puts anything into the robot or defines anything used outside."""
+    inside: dict[Path, FileFacts] = {}
+    waiting = [path]
+    while waiting:
+        current = waiting.pop()
+        if current in inside:
+            continue
+        file = facts.files.get(current)
+        if file is None:
+            return True
+        inside[current] = file
+        for include in file.includes:
+            nested = paths.get(id(include.element))
+            if nested is None:
+                return True
+            waiting.append(nested)
+    outside = [file for other, file in facts.files.items() if other not in inside]
+    names = {name for file in outside for name in file.names | file.blocks}
+    called = {name for file in outside for name in file.called}
+    arguments = {name for file in facts.files.values() for name in file.used_arguments}
+    for file in inside.values():
+        if file.has_content or file.is_open or any(call.macro is None for call in file.calls):
+            return True
+        if any(definition.name in names or "$" in definition.name for definition in file.properties):
+            return True
+        if any(definition.name in called for definition in file.macros):
+            return True
+        if any(definition.name in arguments for definition in file.arguments):
+            return True
+    return False

@@ -1,0 +1,263 @@
+"""Values in xacro files that are not what they look like."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import pairwise
+
+from linkwright.diagnostics import Diagnostic, Note, Span
+from linkwright.lint.rule import Rule
+from linkwright.lint.subject import Subject
+from linkwright.lint.xacro_facts import Definition, FileFacts, XacroFacts, is_global, parameter_span, xacro_facts
+from linkwright.lint.xacro_names import DEPRECATED
+from linkwright.xacro.literals import literal
+from linkwright.xmltree import Element
+
+_NAMES = frozenset({"name", "link", "joint", "reference", "filename", "joint1", "joint2", "frame", "parent", "child"})
+
+
+class LiteralChangesType(Rule):
+    """A value that xacro turns into a number or a truth value before it becomes part of a name.
+
+    ## Why
+
+    xacro makes numbers and truth values of the values of properties and parameters that look like ones: `007` becomes 7
+    and `true` becomes True. In a sum that is wanted; in the name of a link it is not.
+
+    ## Example
+
+    ```xml
+    <xacro:wheel id="01"/>  <!-- the macro writes <link name="wheel_${id}"/>: the link is called wheel_1 -->
+    ```
+
+    ## Use instead
+
+    ```xml
+    <xacro:wheel id="'01'"/>
+    ```
+
+    Quotes keep the value of a parameter as it is. The value of a property needs two pairs: `value="''01''"`.
+    """
+
+    code = "LW710"
+    name = "literal-changes-type"
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        if subject.expansion is None:
+            return
+        facts = xacro_facts(subject)
+        for file in facts.own.values():
+            for call in file.calls:
+                yield from self._of_call(call, facts)
+            for definition in file.properties:
+                value = definition.element.attributes.get("value")
+                if value is not None and _changes(value):
+                    use = _use_in_name(definition.name, facts, None)
+                    if use is not None:
+                        yield self._found(definition.element, "value", definition.name, value, use, quotes="''")
+
+    def _of_call(self, call: Definition, facts: XacroFacts) -> Iterator[Diagnostic]:
+        macros = [
+            (file, macro)
+            for file in facts.files.values()
+            for macro in file.macros
+            if macro.name == call.name.rpartition(".")[2]
+        ]
+        if len(macros) != 1:
+            return
+        _, macro = macros[0]
+        for name, value in call.element.attributes.items():
+            if _changes(value):
+                use = _use_in_name(name, facts, macro.element)
+                if use is not None:
+                    yield self._found(call.element, name, name, value, use, quotes="'")
+
+    def _found(
+        self, element: Element, attribute: str, name: str, value: str, use: tuple[Element, str], quotes: str
+    ) -> Diagnostic:
+        changed = literal(value)
+        note = Note(f"'{name}' becomes part of a name here", use[0].attribute_span(use[1]))
+        message = f"xacro takes '{value}' for {_kind(changed)} and writes '{changed}' into a name"
+        hint = f'write {attribute}="{quotes}{value}{quotes}" to keep it as it is'
+        return self.report(message, element, attribute, notes=[note], hint=hint)
+
+
+class PropertyDefinedTwice(Rule):
+    """A property gets another value before anything used the first one.
+
+    ## Why
+
+    The first value has no effect. Whoever finds and changes it wonders why the robot stays the same.
+
+    ## Example
+
+    ```xml
+    <xacro:property name="wheel_radius" value="0.06"/>
+    <xacro:property name="wheel_width" value="0.02"/>
+    <xacro:property name="wheel_radius" value="0.08"/>
+    ```
+
+    ## Use instead
+
+    Keep one of the definitions. Where the first is meant as a default, write it last, with `default`:
+
+    ```xml
+    <xacro:property name="wheel_radius" default="0.06"/>
+    ```
+    """
+
+    code = "LW711"
+    name = "property-defined-twice"
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        if subject.expansion is None:
+            return
+        facts = xacro_facts(subject)
+        for file in facts.own.values():
+            groups: dict[tuple[str, int], list[Definition]] = {}
+            for definition in file.properties:
+                if definition.name and "$" not in definition.name and "value" in definition.element.attributes:
+                    groups.setdefault((definition.name, id(definition.parents[-1])), []).append(definition)
+            for definitions in groups.values():
+                for first, second in pairwise(definitions):
+                    if self._is_lost(first, second, file, facts):
+                        note = Note(
+                            f"the value '{first.element.attributes['value']}' given here has no effect",
+                            first.element.attribute_span("value"),
+                        )
+                        message = f"the property '{first.name}' gets another value before anything used the first"
+                        yield self.report(message, second.element, "value", notes=[note], hint="keep one of the two")
+
+    def _is_lost(self, first: Definition, second: Definition, file: FileFacts, facts: XacroFacts) -> bool:
+        one, other = first.element.attributes, second.element.attributes
+        if one["value"] == other["value"] or one.get("scope") != other.get("scope"):
+            return False
+        name = first.name
+        for use in file.uses:
+            if first.order < use.order <= second.order and (name in use.found.names or use.found.is_open):
+                return False
+        between = [
+            each for each in (*file.calls, *file.includes) if first.order < each.order < second.order
+        ]  # what they hold may use it
+        return not between or not (facts.is_open or name in facts.names)
+
+
+class ShadowedProperty(Rule):
+    """A parameter or property inside a macro hides a property of the file.
+
+    ## Why
+
+    Inside the macro the name means something else than around it, and a macro that is called there sees the inner one:
+    scopes in xacro follow the calls. Pedantic: parameters are often called like the property that is handed to them.
+
+    ## Example
+
+    ```xml
+    <xacro:property name="radius" value="0.2"/>
+    <xacro:macro name="wheel" params="prefix radius">
+    ```
+
+    ## Use instead
+
+    ```xml
+    <xacro:property name="base_radius" value="0.2"/>
+    <xacro:macro name="wheel" params="prefix radius">
+    ```
+    """
+
+    code = "LW712"
+    name = "shadowed-property"
+    default = False
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        if subject.expansion is None:
+            return
+        facts = xacro_facts(subject)
+        outer: dict[str, Definition] = {}
+        for file in facts.files.values():
+            for definition in file.properties:
+                if definition.macro is None and "$" not in definition.name:
+                    outer.setdefault(definition.name, definition)
+        for file in facts.own.values():
+            for macro in file.macros:
+                for parameter in file.parameters(macro.element):
+                    if parameter.name in outer and not parameter.forward:
+                        span = parameter_span(macro.element, parameter)
+                        what = f"the parameter '{parameter.name}' of the macro '{macro.name}'"
+                        yield self._found(macro.element, span, what, outer[parameter.name])
+            for inner in file.properties:
+                if inner.macro is not None and inner.name in outer and "scope" not in inner.element.attributes:
+                    span = inner.element.attribute_span("name")
+                    yield self._found(inner.element, span, f"the property '{inner.name}'", outer[inner.name])
+
+    def _found(self, element: Element, span: Span | None, what: str, outer: Definition) -> Diagnostic:
+        note = Note("the outer one is defined here", outer.element.attribute_span("name"))
+        return self.report(f"{what} hides a property of the same name", element, span=span, notes=[note])
+
+
+class ParameterHidesGlobal(Rule):
+    """A parameter of a macro hides a name that xacro provides, such as ``pi`` or ``e``.
+
+    ## Why
+
+    Inside the macro the name no longer means the constant or function, and expressions that use it as such give wrong
+    numbers without any error. Pedantic: calls of the macro are warned of anyway.
+
+    ## Example
+
+    ```xml
+    <xacro:macro name="pillar" params="name pi">
+    ```
+
+    ## Use instead
+
+    ```xml
+    <xacro:macro name="pillar" params="name pillar_index">
+    ```
+    """
+
+    code = "LW713"
+    name = "parameter-hides-global"
+    default = False
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """What the rule finds."""
+        if subject.expansion is None:
+            return
+        for file in xacro_facts(subject).own.values():
+            for macro in file.macros:
+                for parameter in file.parameters(macro.element):
+                    if is_global(parameter.name) or parameter.name in DEPRECATED:
+                        message = (
+                            f"the parameter '{parameter.name}' of the macro '{macro.name}' hides a name of xacro's"
+                        )
+                        span = parameter_span(macro.element, parameter)
+                        hint = "give the parameter another name"
+                        yield self.report(message, macro.element, "params", span=span, hint=hint)
+
+
+def _changes(value: str) -> bool:
+    """Whether the literal rule changes what is written for a value."""
+    return "$" not in value and "'" not in value and str(literal(value)) != value
+
+
+def _kind(value: object) -> str:
+    return "a truth value" if isinstance(value, bool) else "a number"
+
+
+def _use_in_name(name: str, facts: XacroFacts, macro: Element | None) -> tuple[Element, str] | None:
+    """Where ``${name}`` becomes part of an attribute that holds a name: inside a macro, or outside all that hide it."""
+    for file in facts.files.values():
+        for use in file.uses:
+            if use.attribute not in _NAMES or use.element.tag.startswith("xacro:") or name not in use.found.names:
+                continue
+            if f"${{{name}}}" not in use.element.attributes[use.attribute].replace(" ", ""):
+                continue
+            around = [parent for parent in use.parents if parent.tag == "xacro:macro"]
+            hidden = any(name in {each.name for each in file.parameters(each_macro)} for each_macro in around)
+            if (macro is not None and macro in around) or (macro is None and not hidden):
+                return use.element, use.attribute
+    return None

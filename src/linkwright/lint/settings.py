@@ -1,0 +1,84 @@
+"""Which rules run, how severe their findings are, and the rules' options."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from fnmatch import fnmatchcase
+from pathlib import Path
+
+from linkwright.diagnostics import Severity
+from linkwright.lint.rule import OptionValue, Rule
+from linkwright.lint.selectors import specificity
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """The settings of a check. Selectors are codes, beginnings of codes, or ``ALL``.
+
+    Where several selectors mean a code, the one that says most of it decides; of two alike, the one that ignores.
+
+    Attributes:
+        select: what to report; None means every rule that is on by default and all warnings of the reader.
+        extend_select: what to report besides.
+        ignore: what not to report.
+        severity: selector -> severity of the findings it means.
+        per_file_ignores: pairs of a pattern of paths and the selectors not to report in files that match it.
+        options: rule name -> option -> value.
+        folder: what the patterns of paths are relative to; None where there is no configuration file.
+    """
+
+    select: tuple[str, ...] | None = None
+    extend_select: tuple[str, ...] = ()
+    ignore: tuple[str, ...] = ()
+    severity: Mapping[str, Severity] = field(default_factory=dict)
+    per_file_ignores: tuple[tuple[str, tuple[str, ...]], ...] = ()
+    options: Mapping[str, Mapping[str, OptionValue]] = field(default_factory=dict)
+    folder: Path | None = None
+
+    def runs(self, rule: Rule) -> bool:
+        """Whether a rule is to run at all."""
+        return self.selects(rule.code, default=rule.default)
+
+    def selects(self, code: str, *, default: bool = True) -> bool:
+        """Whether findings of a code are reported.
+
+        Args:
+            code: of the finding.
+            default: whether they are when nobody says anything about them.
+        """
+        wanted = specificity(self.extend_select, code)
+        if self.select is not None:
+            wanted = max(wanted, specificity(self.select, code))
+        elif default and not wanted:
+            wanted = 1
+        return wanted > specificity(self.ignore, code)
+
+    def ignores(self, code: str, file: str) -> bool:
+        """Whether findings of a code are not reported in one file."""
+        if not self.per_file_ignores:
+            return False
+        path = Path(file).absolute()
+        if self.folder is not None and path.is_relative_to(self.folder):
+            path = path.relative_to(self.folder)
+        return any(
+            specificity(selectors, code)
+            for pattern, selectors in self.per_file_ignores
+            if fnmatchcase(path.as_posix(), pattern) or fnmatchcase(path.name, pattern)
+        )
+
+    def severity_of(self, code: str, otherwise: Severity) -> Severity:
+        """How severe findings of a code are."""
+        best, severity = 0, otherwise
+        for selector, wanted in self.severity.items():
+            closeness = specificity([selector], code)
+            if closeness > best:
+                best, severity = closeness, wanted
+        return severity
+
+    def with_words(self, select: tuple[str, ...] | None, ignore: tuple[str, ...]) -> Settings:
+        """These settings with what the command line says: its selection replaces, what it ignores is added."""
+        changed = replace(self, ignore=(*self.ignore, *ignore))
+        if select is not None:
+            changed = replace(changed, select=select, extend_select=(), ignore=ignore)
+        return changed

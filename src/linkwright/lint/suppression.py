@@ -1,0 +1,225 @@
+"""Suppression by comments in the files.
+
+``<!-- linkwright: ignore LW204 limit-inverted (reason) -->`` on a line of its own holds for the element that follows
+and all in it; behind or before something on its line, for that line. ``ignore-file`` holds for the file it is in. In
+files that are not XML the comment begins with ``#``. Without codes it means everything.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, SourceText
+from linkwright.lint.finding import Finding
+from linkwright.lint.fix import Edit, Fix, element_range
+from linkwright.lint.registry import find_rule
+from linkwright.lint.selectors import canonical, is_selector, matches, selector_hint
+from linkwright.lint.settings import Settings
+from linkwright.lint.subject import Subject
+from linkwright.xmltree import Element
+from linkwright.xmltree.decoding import decode
+from linkwright.xmltree.reader import read_bytes
+
+UNUSED = "LW001"
+UNKNOWN = "LW002"
+
+_WORDS = r"linkwright:[ \t]*(?P<verb>ignore(?:-file)?)(?![\w-])(?P<selectors>[^()#]*?)(?:\([^)]*\)\s*)?"
+_IN_XML = re.compile(rf"<!--\s*{_WORDS}-->", re.DOTALL)
+_IN_TEXT = re.compile(rf"#[ \t]*{_WORDS}$", re.MULTILINE)
+_NEXT = re.compile(r"<!--.*?-->|<\?.*?\?>|<!\[CDATA\[.*?\]\]>|<(?P<tag>[^\s/>!?]+)|</", re.DOTALL)
+_SELECTOR = re.compile(r"[^\s,]+")
+
+
+@dataclass(slots=True)
+class Directive:
+    """One comment that suppresses.
+
+    Attributes:
+        source: the text it stands in.
+        start: character offset of the comment.
+        end: character offset behind it.
+        selectors: what it suppresses, each with its offset; none means everything.
+        ranges: the character offsets it holds for; None means the whole file.
+        used: the selectors that suppressed something.
+    """
+
+    source: SourceText
+    start: int
+    end: int
+    selectors: tuple[tuple[str, int], ...]
+    ranges: tuple[tuple[int, int], ...] | None
+    used: set[str] = field(default_factory=set)
+
+    def suppresses(self, code: str, offset: int) -> bool:
+        """Whether it suppresses a finding of a code at a place; it remembers that it did."""
+        if self.ranges is not None and not any(start <= offset < end for start, end in self.ranges):
+            return False
+        if not self.selectors:
+            self.used.add("")
+            return True
+        meant = [selector for selector, _ in self.selectors if matches([canonical(selector)], code)]
+        self.used.update(meant)
+        return bool(meant)
+
+
+class Suppressions:
+    """The suppressing comments of all files that a check meets.
+
+    Args:
+        subject: what is checked; the comments of all its files are read.
+        settings: they say whether unused and unknown suppressions are reported.
+    """
+
+    def __init__(self, subject: Subject, settings: Settings) -> None:
+        self._settings = settings
+        self._directives: dict[str, list[Directive]] = {}
+        for path, document in subject.sources.items():
+            if document.source is not None:
+                self._directives[str(path)] = list(directives(document.source))
+
+    def apply(self, diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
+        """The diagnostics that no comment suppresses, and what is wrong with the comments."""
+        kept = [diagnostic for diagnostic in diagnostics if not self._suppresses(diagnostic)]
+        return [*kept, *self._unknown(), *self._unused()]
+
+    def _suppresses(self, diagnostic: Diagnostic) -> bool:
+        if not isinstance(diagnostic, Finding) and diagnostic.severity is Severity.ERROR:
+            return False  # without it nothing would tell why there is no robot
+        return any(
+            directive.suppresses(diagnostic.code, offset)
+            for file, offset in _places(diagnostic)
+            for directive in self._of(file)
+        )
+
+    def _of(self, file: str) -> list[Directive]:
+        if file not in self._directives:
+            try:
+                text = decode(read_bytes(file), file)
+            except LinkwrightError:
+                text = ""
+            self._directives[file] = list(directives(SourceText(file, text)))
+        return self._directives[file]
+
+    def _all(self) -> Iterator[Directive]:
+        for found in self._directives.values():
+            yield from found
+
+    def _unknown(self) -> Iterator[Diagnostic]:
+        rule = find_rule(UNKNOWN)
+        if rule is None or not self._settings.runs(rule):
+            return
+        for directive in self._all():
+            for selector, offset in directive.selectors:
+                if is_selector(selector):
+                    continue
+                yield rule.report(
+                    f"there is no rule '{selector}' to ignore",
+                    span=directive.source.span(offset, offset + len(selector)),
+                    source=directive.source,
+                    hint=selector_hint(selector),
+                    severity=self._settings.severity_of(UNKNOWN, rule.severity),
+                )
+
+    def _unused(self) -> Iterator[Diagnostic]:
+        rule = find_rule(UNUSED)
+        if rule is None or not self._settings.runs(rule):
+            return
+        for directive in self._all():
+            words = [word for word, _ in directive.selectors if is_selector(word)] or [""]
+            unused = [word for word in words if word not in directive.used]
+            if not unused or (directive.selectors and words == [""]):
+                continue
+            what = ", ".join(f"'{word}'" for word in unused if word) or "anything"
+            fix = None
+            if len(unused) == max(len(directive.selectors), 1):
+                fix = Fix((_removal(directive),))
+            yield rule.report(
+                f"this comment is to ignore {what}, of which there is nothing here",
+                span=directive.source.span(directive.start, directive.end),
+                source=directive.source,
+                hint="remove it" if fix else f"remove {what} from it",
+                fix=fix,
+                severity=self._settings.severity_of(UNUSED, rule.severity),
+            )
+
+
+def directives(source: SourceText) -> Iterator[Directive]:
+    """The suppressing comments of a text, in order."""
+    text = source.text
+    if "linkwright:" not in text:
+        return
+    is_xml = text.lstrip("\ufeff \t\r\n").startswith("<")
+    for match in (_IN_XML if is_xml else _IN_TEXT).finditer(text):
+        words = tuple(
+            (word[0], match.start("selectors") + word.start()) for word in _SELECTOR.finditer(match["selectors"])
+        )
+        ranges = None if match["verb"] == "ignore-file" else _ranges(text, match.start(), match.end(), is_xml)
+        yield Directive(source, match.start(), match.end(), words, ranges)
+
+
+def _ranges(text: str, start: int, end: int, is_xml: bool) -> tuple[tuple[int, int], ...]:
+    line_start = text.rfind("\n", 0, start) + 1
+    line_end = text.find("\n", end)
+    line_end = len(text) if line_end < 0 else line_end + 1
+    before, after = text[line_start:start].strip(), text[end:line_end].strip()
+    line = (line_start, line_end)
+    if before or not is_xml:
+        return (line,) if before else (_following_line(text, line_end),)
+    following = _following_element(text, end)
+    if following is None:
+        return (line,) if after else ()
+    return (line, following) if after else (following,)
+
+
+def _following_line(text: str, start: int) -> tuple[int, int]:
+    end = text.find("\n", start)
+    return start, len(text) if end < 0 else end + 1
+
+
+def _following_element(text: str, end: int) -> tuple[int, int] | None:
+    match = _NEXT.search(text, end)
+    while match is not None and match["tag"] is None and match[0] != "</":
+        match = _NEXT.search(text, match.end())
+    if match is None or match["tag"] is None:
+        return None
+    return element_range(Element(match["tag"], source=SourceText("", text), offset=match.start()))
+
+
+def _places(diagnostic: Diagnostic) -> Iterator[tuple[str, int]]:
+    """Where a finding stands: its place, and those of the macro calls and includes that led there."""
+    if diagnostic.span is not None:
+        if diagnostic.source is not None and diagnostic.source.name == diagnostic.span.file:
+            source = diagnostic.source
+        else:
+            source = _source(diagnostic.span.file)
+        yield diagnostic.span.file, source.offset(diagnostic.span.line, diagnostic.span.column)
+    if not isinstance(diagnostic, Finding) or diagnostic.element is None or diagnostic.element.origin is None:
+        return
+    from linkwright.xacro.origin import Frame, frames
+
+    innermost = diagnostic.element.origin
+    for frame in frames(innermost if isinstance(innermost, Frame) else None):
+        if frame.site.source is not None:
+            yield frame.site.source.name, frame.site.offset
+
+
+def _source(file: str) -> SourceText:
+    try:
+        return SourceText(file, Path(file).read_text(encoding="utf-8", errors="replace"))
+    except OSError:
+        return SourceText(file, "")
+
+
+def _removal(directive: Directive) -> Edit:
+    text, start, end = directive.source.text, directive.start, directive.end
+    line_start = text.rfind("\n", 0, start) + 1
+    line_end = text.find("\n", end)
+    line_end = len(text) if line_end < 0 else line_end + 1
+    if not text[line_start:start].strip() and not text[end:line_end].strip():
+        return Edit(directive.source.name, line_start, line_end, "")
+    while start > line_start and text[start - 1] in " \t":
+        start -= 1
+    return Edit(directive.source.name, start, end, "")

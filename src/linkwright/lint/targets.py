@@ -1,0 +1,100 @@
+"""From the files and folders that the user names to the descriptions and packages to check."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.workspace import enclosing_package
+from linkwright.workspace.manifest import MANIFEST
+from linkwright.workspace.sources import IGNORE_MARKERS, SKIPPED_FOLDERS
+from linkwright.xacro import sources
+from linkwright.xmltree import Element
+
+_URDF, _XACRO = ".urdf", ".xacro"
+_OTHER_FORMATS = (".srdf.xacro", ".sdf.xacro", ".world.xacro", ".launch.xacro")
+_INCLUDED = re.compile(r"""<xacro:include\b[^>]*?\bfilename\s*=\s*["']([^"']+)["']""")
+_DECLARATIONS = frozenset({"xacro:include", "xacro:macro", "xacro:property", "xacro:arg"})
+
+
+@dataclass(frozen=True, slots=True)
+class Targets:
+    """What is to be checked.
+
+    Attributes:
+        files: the descriptions, each once.
+        packages: the folders of the packages that they lie in or that were named, each once.
+    """
+
+    files: tuple[Path, ...]
+    packages: tuple[Path, ...]
+
+
+def find_targets(paths: Iterable[Path]) -> Targets:
+    """The descriptions and packages that files and folders mean.
+
+    A file is checked whatever it is. Of a folder and those below it, what is checked are the packages, the ``.urdf``
+    files and those ``.xacro`` files that describe a robot by themselves: no other file there includes them, their root
+    is a ``<robot>`` with a name, and they hold more than declarations. Build products and hidden folders are left out.
+    """
+    files: dict[Path, None] = {}
+    packages: dict[Path, None] = {}
+    for path in paths:
+        if path.is_dir():
+            found, below = _walk(path)
+            files.update(dict.fromkeys(_entries(found)))
+            packages.update(dict.fromkeys(below))
+        else:
+            files[path] = None
+    for file in list(files):
+        around = enclosing_package(file.absolute().parent)
+        if around is not None:
+            packages[around[1]] = None
+    return Targets(tuple(files), tuple(packages))
+
+
+def _walk(folder: Path) -> tuple[list[Path], list[Path]]:
+    """The description files at and below a folder and the packages there, in the order of their names."""
+    found: list[Path] = []
+    packages: list[Path] = []
+    for place, folders, names in os.walk(folder):
+        if not IGNORE_MARKERS.isdisjoint(names):
+            folders.clear()
+            continue
+        folders[:] = sorted(name for name in folders if not name.startswith(".") and name not in SKIPPED_FOLDERS)
+        if MANIFEST in names:
+            packages.append(Path(place).absolute())
+        found += [Path(place, name) for name in sorted(names) if name.endswith((_URDF, _XACRO))]
+    return found, packages
+
+
+def _entries(found: list[Path]) -> Iterator[Path]:
+    included = {
+        Path(name).name
+        for path in found
+        if path.suffix == _XACRO
+        for name in _INCLUDED.findall(path.read_text(encoding="utf-8", errors="replace"))
+    }
+    for path in found:
+        if path.suffix == _URDF or (path.name not in included and _describes_robot(path)):
+            yield path
+
+
+def _describes_robot(path: Path) -> bool:
+    if path.name.endswith(_OTHER_FORMATS):
+        return False
+    try:
+        root = sources.read(str(path)).root
+    except LinkwrightError:
+        return True  # which the check will tell
+    return root.tag == "robot" and "name" in root.attributes and _has_content(root)
+
+
+def _has_content(root: Element) -> bool:
+    """Whether there is more than declarations: a wrapper that only includes others counts as well."""
+    tags = {element.tag for element in root.elements()}
+    return bool(tags - _DECLARATIONS) or tags == {"xacro:include"} or tags == {"xacro:include", "xacro:arg"}

@@ -1,0 +1,146 @@
+"""Elements and attributes that nobody reads, and what may be meant by them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from difflib import SequenceMatcher
+
+from linkwright.diagnostics import Span, nearest
+from linkwright.lint.subject import Subject
+from linkwright.lint.walk import Place, known_elements
+from linkwright.urdf import schema
+from linkwright.urdf.schema import ElementRule
+from linkwright.xmltree import Element
+
+EXTENSIONS = frozenset({"gazebo", "transmission", "ros2_control", "sensor", "mujoco", "simulation", "plugin"})
+"""Elements of other tools directly in ``<robot>``."""
+INNER_EXTENSIONS = frozenset({"contact", "sensor", "verbose", "self_collision_checking", "plugin", "gazebo"})
+"""Elements of other tools inside of links and joints."""
+EXTENSION_ATTRIBUTES = frozenset({"D", "K", "mu_coulomb", "mu_viscous", "type", "id", "reference_position", "unit"})
+"""Attributes of other tools, such as those of Franka's ``<dynamics>``."""
+_CLOSE = 0.75
+
+_OTHER_ELEMENTS = {
+    "pose": "origin",
+    "transform": "origin",
+    "inertia_tensor": "inertia",
+    "limits": "limit",
+    "safety": "safety_controller",
+    "colour": "color",
+    "shape": "geometry",
+    "collider": "collision",
+}
+_OTHER_ATTRIBUTES = {
+    "min": "lower",
+    "max": "upper",
+    "max_velocity": "velocity",
+    "max_effort": "effort",
+    "pos": "xyz",
+    "position": "xyz",
+    "euler": "rpy",
+    "orientation": "rpy",
+    "file": "filename",
+    "uri": "filename",
+    "url": "filename",
+    "ratio": "multiplier",
+    "gain": "multiplier",
+    "rgb": "rgba",
+    "dampening": "damping",
+    "ypr": "rpy",
+}
+
+
+def _homes() -> dict[str, tuple[str, ...]]:
+    """Tag -> the elements in which it is read."""
+    homes: dict[str, dict[str, None]] = {}
+    waiting: list[ElementRule] = [schema.ROBOT]
+    while waiting:
+        rule = waiting.pop()
+        for child in rule.children:
+            homes.setdefault(child.tag, {})[rule.tag] = None
+            waiting.append(child)
+    return {tag: tuple(sorted(found)) for tag, found in homes.items()}
+
+
+HOMES = _homes()
+
+
+def unknown_children(subject: Subject) -> Iterator[tuple[Place, Element]]:
+    """The elements that URDF has no place for where they stand, but for those of other tools and namespaces."""
+    for place in known_elements(subject):
+        for child in place.element.elements():
+            if place.rule.child(child.tag) is not None or ":" in child.tag:
+                continue
+            if place.rule is schema.ROBOT and child.tag in EXTENSIONS:
+                continue
+            if place.rule is schema.GEOMETRY and child is next(place.element.elements(), None):
+                continue  # an unknown shape, which the reader reports
+            yield place, child
+
+
+def unknown_attributes(subject: Subject) -> Iterator[tuple[Place, str]]:
+    """The attributes that their elements do not have, but for those of other namespaces."""
+    for place in known_elements(subject):
+        for attribute in place.element.attributes:
+            if place.rule.attribute(attribute) is None and ":" not in attribute and attribute != "xmlns":
+                yield place, attribute
+
+
+def told_by_reader(subject: Subject) -> dict[Span | None, str]:
+    """What the reader said, by place: its hint names what is misspelt."""
+    return {found.span: found.hint or "" for found in subject.reading.diagnostics}
+
+
+def meant_element(rule: ElementRule, child: Element) -> str | None:
+    """The element that is meant by one that is not known here, or None."""
+    if child.tag in HOMES:
+        return None
+    known = [each.tag for each in rule.children]
+    other = _OTHER_ELEMENTS.get(child.tag.casefold())
+    if other in known:
+        return other
+    if rule is schema.ROBOT:
+        return close_name(child.tag, [*known, *EXTENSIONS])
+    near = nearest(child.tag, known, limit=1)
+    return near[0] if near else None
+
+
+def is_misspelt(tag: str, meant: str) -> bool:
+    """Whether a tag is a slip of the pen for another, not the word of another format for it."""
+    return _OTHER_ELEMENTS.get(tag.casefold()) != meant
+
+
+def meant_attribute(place: Place, attribute: str) -> str | None:
+    """The attribute that is meant by one that is not known here, and is not given; or None."""
+    known = [rule.name for rule in place.rule.attributes if rule.name not in place.element.attributes]
+    other = _OTHER_ATTRIBUTES.get(attribute.casefold())
+    if other in known:
+        return other
+    near = nearest(attribute, known, limit=1)
+    return near[0] if near else None
+
+
+def close_name(name: str, known: Iterable[str]) -> str | None:
+    """The known name that a misspelt one is very near, or None; shorter differences than a word's own variants."""
+    best = max(known, key=lambda each: _likeness(name, each), default="")
+    return best if best and best != name and _likeness(name, best) >= _CLOSE and len(name) > 2 else None
+
+
+def _likeness(one: str, other: str) -> float:
+    return SequenceMatcher(None, one.casefold(), other.casefold()).ratio()
+
+
+def inside(place: Place) -> str:
+    """An element as the place of another in a message."""
+    return "<robot>" if place.rule is schema.ROBOT else str(place)
+
+
+def attribute_name_span(element: Element, attribute: str) -> Span | None:
+    """The place of an attribute's name in the source."""
+    from linkwright.xmltree.positions import attribute_name_range
+
+    source = element.source
+    if source is None:
+        return None
+    found = attribute_name_range(source.text, element.offset, attribute)
+    return source.span(*found) if found else element.span()

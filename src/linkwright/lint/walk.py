@@ -1,0 +1,124 @@
+"""Walking over a description as rules do: every element with its place in the schema, every joint with its parts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from linkwright.urdf import Joint, schema
+from linkwright.urdf.schema import ElementRule
+from linkwright.urdf.values import number, numbers
+from linkwright.xmltree import Element
+
+if TYPE_CHECKING:
+    from linkwright.lint.subject import Subject
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """An element that URDF knows, with its rule.
+
+    Attributes:
+        element: the element.
+        rule: what it may carry and contain.
+        parent: the element around it; None for ``<robot>``.
+        owner: the link, joint or material that it is part of, as messages name it; empty for ``<robot>``.
+    """
+
+    element: Element
+    rule: ElementRule
+    parent: Element | None
+    owner: str
+
+    @property
+    def of_owner(self) -> str:
+        """What follows the tag of a part in a message: `` of joint 'elbow'``."""
+        return f" of {self.owner}" if self.owner and self.rule not in schema.ROBOT.children else ""
+
+    def __str__(self) -> str:
+        """The element as messages name it: ``joint 'elbow'``, ``<limit> of joint 'elbow'``."""
+        return self.owner if self.owner and not self.of_owner else f"<{self.rule.tag}>{self.of_owner}"
+
+
+def known_elements(subject: Subject) -> Iterator[Place]:
+    """Every element of the description that URDF has a place for, in document order."""
+    if subject.root.tag != schema.ROBOT.tag:
+        return
+    waiting = [Place(subject.root, schema.ROBOT, None, "")]
+    while waiting:
+        place = waiting.pop()
+        yield place
+        inner = []
+        for child in place.element.elements():
+            rule = place.rule.child(child.tag)
+            if rule is not None:
+                inner.append(Place(child, rule, place.element, place.owner or owner_name(child)))
+        waiting.extend(reversed(inner))
+
+
+def owner_name(element: Element) -> str:
+    """A link, joint or material as messages name it."""
+    name = element.attributes.get("name")
+    return f"a {element.tag} without a name" if name is None else f"{element.tag} '{name}'"
+
+
+def joints(subject: Subject) -> Iterator[tuple[Joint, Element]]:
+    """The joints with their elements, in file order."""
+    for joint in subject.joints:
+        if joint.element is not None:
+            yield joint, joint.element
+
+
+def parts(subject: Subject, tag: str) -> Iterator[tuple[Joint, Element, Element]]:
+    """The joints that have a part of a tag: joint, its element, and the first such part, which is the one read."""
+    for joint, element in joints(subject):
+        part = element.first(tag)
+        if part is not None:
+            yield joint, element, part
+
+
+BOUNDED = ("revolute", "prismatic")
+"""The types of joints that have bounds."""
+UNBOUNDED = 1000.0
+"""Bounds further out than this, in rad or m, stand for 'none'."""
+
+
+def limits(subject: Subject, *types: str) -> Iterator[tuple[Joint, Element]]:
+    """The joints of some types that have a ``<limit>``, with it."""
+    for joint, _, limit in parts(subject, "limit"):
+        if joint.type in types:
+            yield joint, limit
+
+
+def bounds(limit: Element) -> tuple[float, float] | None:
+    """Lower and upper as urdfdom reads them, an absent one as 0; None where one is no number."""
+    ends = [value(limit, name) if name in limit.attributes else 0.0 for name in ("lower", "upper")]
+    return None if ends[0] is None or ends[1] is None else (ends[0], ends[1])
+
+
+def value(element: Element, attribute: str) -> float | None:
+    """The number an attribute says; None where it is absent or no number."""
+    text = element.attributes.get(attribute)
+    if text is None:
+        return None
+    try:
+        return number(text)
+    except ValueError:
+        return None
+
+
+def values(element: Element, attribute: str) -> tuple[float, ...]:
+    """The numbers an attribute says; none where it is absent or one of them is no number."""
+    text = element.attributes.get(attribute)
+    if text is None:
+        return ()
+    try:
+        return numbers(text)
+    except ValueError:
+        return ()
+
+
+def shown(number: float) -> str:
+    """A number as messages and hints show it."""
+    return f"{number:.6g}"

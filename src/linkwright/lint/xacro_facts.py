@@ -1,0 +1,349 @@
+"""What the xacro files of a description define and use, read from the files as they are written.
+
+Nothing is evaluated, so branches that are not taken and macros that are not called count too. Names are matched by
+name alone, without scopes: xacro's scopes are dynamic, and a rule that calls something unused must be sure.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from weakref import WeakKeyDictionary
+
+from linkwright.diagnostics import LinkwrightError, Span
+from linkwright.lint.subject import Subject
+from linkwright.lint.xacro_names import Mentions, identifiers, mentions
+from linkwright.xacro.faults import Fault
+from linkwright.xacro.macros import Parameter, parse_parameters
+from linkwright.xacro.symbols import MATHEMATICS
+from linkwright.xmltree import Comment, Document, Element, Text
+from linkwright.xmltree.positions import attribute_value_range
+
+TAGS = frozenset(
+    f"xacro:{name}"
+    for name in ("arg", "attribute", "call", "element", "if", "include", "insert_block", "macro", "property", "unless")
+)
+_DIRECTIVE_IN_COMMENT = "xacro:eval-comments"
+_LARGEST_FOLDER = 200
+
+
+@dataclass(frozen=True)
+class Definition:
+    """A definition of a property, argument or macro, or an include.
+
+    Attributes:
+        name: what is defined; for an include its file name as written.
+        element: the tag.
+        parents: the elements around it, outermost first.
+        order: its number among all elements of the file.
+    """
+
+    name: str
+    element: Element
+    parents: tuple[Element, ...]
+    order: int
+
+    @property
+    def macro(self) -> Element | None:
+        """The innermost macro definition around it, or None."""
+        return next((parent for parent in reversed(self.parents) if parent.tag == "xacro:macro"), None)
+
+    @property
+    def is_conditional(self) -> bool:
+        """Whether it stands in ``xacro:if`` or ``xacro:unless``."""
+        return any(parent.tag in ("xacro:if", "xacro:unless") for parent in self.parents)
+
+
+@dataclass(frozen=True)
+class Use:
+    """A text that mentions something: an attribute of an element, or (None) its character data."""
+
+    element: Element
+    attribute: str | None
+    found: Mentions
+    parents: tuple[Element, ...]
+    order: int
+
+
+@dataclass
+class FileFacts:
+    """What one file defines and uses.
+
+    Attributes:
+        names: every name that its expressions mention, and the pasted values' too.
+        called: the macros that it calls, without prefix and namespace.
+        calls_open: whether it calls a macro whose name is a value.
+    """
+
+    document: Document
+    properties: list[Definition] = field(default_factory=list)
+    macros: list[Definition] = field(default_factory=list)
+    arguments: list[Definition] = field(default_factory=list)
+    includes: list[Definition] = field(default_factory=list)
+    calls: list[Definition] = field(default_factory=list)
+    uses: list[Use] = field(default_factory=list)
+    names: set[str] = field(default_factory=set)
+    used_arguments: set[str] = field(default_factory=set)
+    pasted: set[str] = field(default_factory=set)
+    called: set[str] = field(default_factory=set)
+    blocks: set[str] = field(default_factory=set)
+    is_open: bool = False
+    arguments_open: bool = False
+    calls_open: bool = False
+    has_content: bool = False
+
+    @classmethod
+    def of(cls, document: Document) -> FileFacts:
+        """The facts of a parsed file."""
+        facts = cls(document)
+        facts._walk()
+        return facts
+
+    def parameters(self, macro: Element) -> tuple[Parameter, ...]:
+        """The parameters that a macro of this file declares; none where they are malformed."""
+        try:
+            return parse_parameters(macro.attributes.get("params", ""))
+        except Fault:
+            return ()
+
+    def _walk(self) -> None:
+        stack: list[tuple[Element, tuple[Element, ...]]] = [(self.document.root, ())]
+        order = 0
+        while stack:
+            element, parents = stack.pop()
+            order += 1
+            self._take(element, parents, order)
+            inner = (*parents, element)
+            below: list[tuple[Element, tuple[Element, ...]]] = []
+            evaluates_comments = False
+            for child in element.children:
+                if isinstance(child, Element):
+                    below.append((child, inner))
+                elif isinstance(child, Text):
+                    if not child.cdata:
+                        self._mention(child.data, element, None, parents, order)
+                elif isinstance(child, Comment):
+                    evaluates_comments = evaluates_comments or _DIRECTIVE_IN_COMMENT in child.data
+                    if evaluates_comments:
+                        self._mention(child.data, element, None, parents, order)
+            stack.extend(reversed(below))
+
+    def _take(self, element: Element, parents: tuple[Element, ...], order: int) -> None:
+        for attribute, value in element.attributes.items():
+            if attribute != "params":
+                self._mention(value, element, attribute, parents, order)
+        tag = element.tag
+        if not tag.startswith("xacro:"):
+            if parents and not any(parent.tag == "xacro:macro" for parent in parents):
+                self.has_content = self.has_content or not _in_block_property(parents)
+            return
+        definition = Definition(element.attributes.get("name", ""), element, parents, order)
+        if tag == "xacro:property":
+            self.properties.append(definition)
+        elif tag == "xacro:macro":
+            self._macro(definition)
+        elif tag == "xacro:arg":
+            self.arguments.append(definition)
+        elif tag == "xacro:include":
+            filename = element.attributes.get("filename", "")
+            self.includes.append(Definition(filename, element, parents, order))
+        elif tag == "xacro:insert_block":
+            self.blocks.add(definition.name)
+        else:
+            self._call(element, parents, order)
+
+    def _macro(self, definition: Definition) -> None:
+        name = definition.name.removeprefix("xacro:")
+        self.macros.append(Definition(name, definition.element, definition.parents, definition.order))
+        for parameter in self.parameters(definition.element):
+            if parameter.forward:
+                self.names.add(parameter.name)
+            if parameter.default is not None:
+                self._mention(parameter.default, definition.element, "params", definition.parents, definition.order)
+
+    def _call(self, element: Element, parents: tuple[Element, ...], order: int) -> None:
+        tag, attributes = element.tag, element.attributes
+        name = tag.removeprefix("xacro:")
+        if tag in ("xacro:call", "xacro:element"):
+            name = attributes.get("macro" if tag == "xacro:call" else "xacro:name", "").removeprefix("xacro:")
+            if "$" in name:
+                self.calls_open = True
+                return
+        if tag in TAGS and tag != "xacro:call":
+            return
+        self.called.add(name.rpartition(".")[2])
+        self.calls.append(Definition(name, element, parents, order))
+
+    def _mention(
+        self, text: str, element: Element, attribute: str | None, parents: tuple[Element, ...], order: int
+    ) -> None:
+        found = mentions(text)
+        if "$" not in text:
+            return
+        self.uses.append(Use(element, attribute, found, parents, order))
+        self.names |= found.names
+        self.used_arguments |= found.arguments
+        self.pasted |= found.pasted
+        self.is_open = self.is_open or found.is_open
+        self.arguments_open = self.arguments_open or found.arguments_open
+
+
+class XacroFacts:
+    """What all files of a description define and use.
+
+    Attributes:
+        files: path -> facts, the checked file first.
+    """
+
+    def __init__(self, subject: Subject) -> None:
+        self._subject = subject
+        self.files: dict[Path, FileFacts] = {path: FileFacts.of(document) for path, document in subject.sources.items()}
+
+    @property
+    def main(self) -> FileFacts:
+        """The facts of the checked file."""
+        return next(iter(self.files.values()))
+
+    @property
+    def is_library(self) -> bool:
+        """Whether the file makes no robot of its own: it is there for others to include."""
+        return not self._subject.links
+
+    @cached_property
+    def own(self) -> Mapping[Path, FileFacts]:
+        """The files that belong to the author of the checked one: those of its package, else those of its folder."""
+        package = self._subject.package
+        folder = (package.folder if package else self._subject.path.parent).absolute()
+        main = next(iter(self.files))
+        return {path: facts for path, facts in self.files.items() if path == main or _lies_in(path, folder)}
+
+    @cached_property
+    def neighbours(self) -> Mapping[Path, FileFacts]:
+        """The other description files of the same package (or folder), which may use what this one defines."""
+        package = self._subject.package
+        documents = _descriptions_beside(self._subject.path) if package is None else package.descriptions
+        known = {path.absolute() for path in self.files}
+        return {path: FileFacts.of(document) for path, document in documents.items() if path.absolute() not in known}
+
+    @cached_property
+    def names(self) -> frozenset[str]:
+        """All names that any file here or beside mentions in an expression or could paste into one."""
+        found: set[str] = set()
+        for facts in self._all():
+            found |= facts.names | facts.blocks
+        expansion = self._subject.expansion
+        pasted = {name for facts in self._all() for name in facts.pasted}
+        if pasted and expansion is not None:
+            for value in expansion.arguments.values():
+                found |= identifiers(value)
+        return frozenset(found)
+
+    @cached_property
+    def used_arguments(self) -> frozenset[str]:
+        """All arguments that any file here or beside uses."""
+        return frozenset(name for facts in self._all() for name in facts.used_arguments)
+
+    @cached_property
+    def called(self) -> frozenset[str]:
+        """The names of all macros that any file here or beside calls, without namespaces."""
+        return frozenset(name for facts in self._all() for name in facts.called)
+
+    @cached_property
+    def is_open(self) -> bool:
+        """Whether a property may be used by a name that cannot be told, or by a file that was not read."""
+        return any(facts.is_open for facts in self._all()) or self._misses_files
+
+    @cached_property
+    def arguments_open(self) -> bool:
+        """Whether an argument may be used by a name that cannot be told, or by a file that was not read."""
+        return any(facts.arguments_open for facts in self._all()) or self._misses_files
+
+    @cached_property
+    def calls_open(self) -> bool:
+        """Whether a macro may be called by a name that cannot be told, or by a file that was not read."""
+        return any(facts.calls_open for facts in self._all()) or self._misses_files
+
+    @cached_property
+    def _misses_files(self) -> bool:
+        """Whether a branch that is not taken includes a file that is not known."""
+        known = {path.name for path in self.files} | {path.name for path in self.neighbours}
+        for facts in self.files.values():
+            for include in facts.includes:
+                name = include.name.replace("\\", "/").rpartition("/")[2]
+                if "$" in name or "}" in name or ")" in name:
+                    if include.is_conditional or include.macro is not None:
+                        return True
+                elif not any(_matches(name, each) for each in known):
+                    return True
+        return False
+
+    def _all(self) -> Iterator[FileFacts]:
+        yield from self.files.values()
+        yield from self.neighbours.values()
+
+
+_known: WeakKeyDictionary[Subject, XacroFacts] = WeakKeyDictionary()
+
+
+def xacro_facts(subject: Subject) -> XacroFacts:
+    """The facts about a subject's files, gathered once for each subject."""
+    facts = _known.get(subject)
+    if facts is None:
+        facts = _known[subject] = XacroFacts(subject)
+    return facts
+
+
+def is_global(name: str) -> bool:
+    """Whether xacro provides a name that properties may hide, such as ``pi``."""
+    return name in MATHEMATICS
+
+
+def parameter_span(macro: Element, parameter: Parameter) -> Span | None:
+    """The place of a parameter's name in the definition of a macro; None where that cannot be told."""
+    source = macro.source
+    if source is None:
+        return None
+    found = attribute_value_range(source.text, macro.offset, "params")
+    if found is None or source.text[slice(*found)].replace("\n", " ") != macro.attributes.get("params", ""):
+        return None
+    start = found[0] + parameter.start
+    return source.span(start, start + len(parameter.name))
+
+
+def _in_block_property(parents: tuple[Element, ...]) -> bool:
+    return any(parent.tag == "xacro:property" for parent in parents)
+
+
+def _lies_in(path: Path, folder: Path) -> bool:
+    try:
+        return path.resolve().is_relative_to(folder.resolve())
+    except OSError:
+        return False
+
+
+def _matches(pattern: str, name: str) -> bool:
+    if not re.search(r"[*?\[]", pattern):
+        return pattern == name
+    from fnmatch import fnmatchcase
+
+    return fnmatchcase(name, pattern)
+
+
+def _descriptions_beside(path: Path) -> dict[Path, Document]:
+    from linkwright.xacro import sources
+
+    found: dict[Path, Document] = {}
+    try:
+        candidates = sorted(path.absolute().parent.iterdir())[:_LARGEST_FOLDER]
+    except OSError:
+        return found
+    for candidate in candidates:
+        if candidate.suffix in (".xacro", ".urdf"):
+            try:
+                found[candidate] = sources.read(str(candidate))
+            except LinkwrightError:
+                continue
+    return found

@@ -1,0 +1,214 @@
+"""Which properties, arguments and packages a text with ``${...}`` and ``$(...)`` mentions, without evaluating it.
+
+The lexer is that of the xacro room and the expressions are parsed by Python itself. A text that makes a name out of
+other values is *open*: nobody can tell before evaluating it what it mentions.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+import warnings
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from functools import lru_cache
+
+from linkwright.xacro.faults import Fault
+from linkwright.xacro.lexer import Token, TokenKind, tokenize
+
+_IDENTIFIER = re.compile(r"[^\W\d]\w*")
+_PASTED = "pasted_here__"
+DEPRECATED = {
+    "load_yaml": "xacro.load_yaml",
+    "abs_filename": "xacro.abs_filename",
+    "dotify": "xacro.dotify",
+    "sorted": "python.sorted",
+    "range": "python.range",
+}
+"""Functions that still have a bare name, and how they are to be written."""
+
+
+@dataclass(frozen=True, slots=True)
+class BareCall:
+    """A call of a function by its deprecated bare name; the offset is that of the name in the text."""
+
+    name: str
+    offset: int
+
+
+@dataclass(frozen=True, slots=True)
+class Mentions:
+    """What a text mentions.
+
+    Attributes:
+        names: the names in its expressions.
+        arguments: the names of the arguments.
+        pasted: of those, the ones whose value becomes part of an expression's source.
+        packages: package -> offset in the text of ``$(find package)``.
+        is_open: whether names are made of values.
+        arguments_open: whether names of arguments are made of values.
+        bare_calls: the calls of functions by a deprecated name.
+    """
+
+    names: frozenset[str] = frozenset()
+    arguments: frozenset[str] = frozenset()
+    pasted: frozenset[str] = frozenset()
+    packages: tuple[tuple[str, int], ...] = ()
+    is_open: bool = False
+    arguments_open: bool = False
+    bare_calls: tuple[BareCall, ...] = ()
+
+
+_NONE = Mentions()
+
+
+def mentions(text: str) -> Mentions:
+    """What a text mentions."""
+    return _mentions(text) if "$" in text else _NONE
+
+
+def is_constant(text: str) -> bool:
+    """Whether a text has the same value wherever it is evaluated: it mentions nothing."""
+    found = mentions(text)
+    return not (found.names or found.arguments or found.packages or found.is_open or found.arguments_open) and (
+        "$(env" not in text and "$(optenv" not in text and "$(cwd" not in text and "$(dirname" not in text
+    )
+
+
+def identifiers(text: str) -> frozenset[str]:
+    """Everything in a text that could be a name."""
+    return frozenset(_IDENTIFIER.findall(text))
+
+
+@lru_cache(maxsize=20_000)
+def _mentions(text: str) -> Mentions:
+    gathered = _Gathered()
+    gathered.text(text, 0)
+    return Mentions(
+        frozenset(gathered.names),
+        frozenset(gathered.arguments),
+        frozenset(gathered.pasted),
+        tuple(gathered.packages),
+        gathered.is_open,
+        gathered.arguments_open,
+        tuple(gathered.bare_calls),
+    )
+
+
+@dataclass
+class _Gathered:
+    names: set[str] = field(default_factory=set)
+    arguments: set[str] = field(default_factory=set)
+    pasted: set[str] = field(default_factory=set)
+    packages: list[tuple[str, int]] = field(default_factory=list)
+    is_open: bool = False
+    arguments_open: bool = False
+    bare_calls: list[BareCall] = field(default_factory=list)
+
+    def text(self, text: str, shift: int) -> None:
+        try:
+            tokens = tokenize(text)
+        except Fault:
+            self.names |= identifiers(text)
+            return
+        for token in tokens:
+            if token.kind is TokenKind.EXPRESSION:
+                self.expression(token, shift + token.start + 2)
+            elif token.kind is TokenKind.SUBSTITUTION:
+                self.substitution(token, shift + token.start + 2)
+
+    def expression(self, token: Token, shift: int) -> None:
+        source = token.text
+        if "$" in source:
+            self.text(source, shift)
+            source = self._with_placeholders(source)
+        tree = _parsed(source)
+        if tree is None:
+            self.names |= identifiers(source)
+            self.is_open = self.is_open or _PASTED in source
+            return
+        start = shift + len(token.text) - len(token.text.lstrip())
+        local = set(_bound(tree))
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Name):
+                self._name(node.id)
+            elif isinstance(node, ast.Attribute):
+                self.names.add(node.attr)
+            elif isinstance(node, ast.Call):
+                self._call(node, local, start if "\n" not in source and source.isascii() else None, token.text)
+
+    def _with_placeholders(self, source: str) -> str:
+        try:
+            tokens = tokenize(source)
+        except Fault:
+            return source
+        pieces = []
+        for token in tokens:
+            if token.kind is TokenKind.TEXT:
+                pieces.append(token.text)
+                continue
+            words = token.text.split()
+            if token.kind is TokenKind.SUBSTITUTION and len(words) == 2 and words[0] == "arg":
+                pieces.append(f"{_PASTED}{words[1]}" if words[1].isidentifier() else _PASTED)
+            else:
+                pieces.append(_PASTED)
+        return "".join(pieces)
+
+    def _name(self, name: str) -> None:
+        if _PASTED not in name:
+            self.names.add(name)
+        elif name.startswith(_PASTED) and name[len(_PASTED) :] in self.arguments:
+            self.pasted.add(name[len(_PASTED) :])  # the whole name is the value of an argument
+        else:
+            self.is_open = True
+
+    def _call(self, node: ast.Call, local: set[str], start: int | None, written: str) -> None:
+        function = node.func
+        called = function.attr if isinstance(function, ast.Attribute) else getattr(function, "id", "")
+        if called == "arg":
+            first = node.args[0] if node.args else None
+            if isinstance(first, ast.Constant) and isinstance(first.value, str):
+                self.arguments.add(first.value)
+            else:
+                self.arguments_open = True
+        is_bare = isinstance(function, ast.Name) and called in DEPRECATED and called not in local
+        if is_bare and start is not None and "$" not in written:
+            self.bare_calls.append(BareCall(called, start + function.col_offset))
+
+    def substitution(self, token: Token, shift: int) -> None:
+        body = token.text
+        if "$" in body:
+            self.text(body, shift)
+        words = body.split()
+        if len(words) < 2:
+            return
+        command = words[0]
+        if command == "arg":
+            if "$" in body:
+                self.arguments_open = True
+            else:
+                self.arguments.add(words[1])
+        elif command == "find" and "$" not in body:
+            self.packages.append((words[1], shift + body.index(words[1], len(command))))
+        elif command == "eval":
+            self.arguments |= identifiers(body)
+
+
+def _parsed(source: str) -> ast.expr | None:
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            return ast.parse(source.strip(), mode="eval").body
+    except (SyntaxError, ValueError, MemoryError, RecursionError):
+        return None
+
+
+def _bound(tree: ast.expr) -> Iterator[str]:
+    """The names that an expression binds itself, in lambdas and comprehensions."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.arg):
+            yield node.arg
+        elif isinstance(node, ast.comprehension):
+            for target in ast.walk(node.target):
+                if isinstance(target, ast.Name):
+                    yield target.id

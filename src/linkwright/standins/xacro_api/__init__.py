@@ -1,0 +1,1 @@
+"""What the Python module ``xacro`` offers, on the engine of `linkwright.xacro`."""

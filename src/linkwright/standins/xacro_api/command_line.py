@@ -1,0 +1,61 @@
+"""The words of the command ``xacro``, as ``xacro.cli`` reads them for programs."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterable, Sequence
+
+from linkwright.standins.xacro_api import colour
+
+REMAP = ":="
+
+
+def load_mappings(argv: Iterable[str]) -> dict[str, str]:
+    """Names and values of the words ``name:=value``; empty values and names that begin with one ``_`` are left out.
+
+    Raises:
+        RuntimeError: a word has two signs.
+    """
+    mappings = {}
+    for word in argv:
+        if REMAP not in word:
+            continue
+        name, value, *rest = (part.strip() for part in word.split(REMAP))
+        if rest:
+            raise RuntimeError(f"'{word}' has more than one '{REMAP}'")
+        if name and value and not (len(name) > 1 and name[0] == "_" and name[1] != "_"):
+            mappings[name] = value
+    return mappings
+
+
+def process_args(argv: Sequence[str], require_input: bool = True) -> tuple[argparse.Namespace, str | None]:
+    """The options that words stand for, and the file.
+
+    Args:
+        argv: the words, without the command.
+        require_input: whether exactly one file is needed; if not and there is none, None is returned for it.
+
+    Returns:
+        ``output``, ``just_deps``, ``in_order``, ``root_dir``, ``verbosity`` and ``mappings``, and the file.
+
+    Raises:
+        SystemExit: the words are wrong.
+    """
+    parser = argparse.ArgumentParser(prog="xacro", usage="%(prog)s [options] <input>")
+    parser.add_argument("-o", dest="output", metavar="FILE", help="write to this file instead of standard output")
+    parser.add_argument("--deps", action="store_true", dest="just_deps", help="print the files that are included")
+    parser.add_argument("--inorder", "-i", action="store_true", dest="in_order", help="without effect")
+    parser.add_argument("--root-dir", dest="root_dir", metavar="DIR", help="folder that relative paths are in")
+    parser.add_argument("-q", action="store_const", dest="verbosity", const=0, default=1, help="print errors only")
+    parser.add_argument("-v", action="count", dest="verbosity", default=1, help="print more")
+    parser.add_argument("--verbosity", metavar="LEVEL", dest="verbosity", type=int, default=1, help="0 to 4")
+    parser.add_argument("files", nargs="*", help=argparse.SUPPRESS)
+    options = parser.parse_intermixed_args([word for word in argv if REMAP not in word])
+    files = options.__dict__.pop("files")
+    if options.in_order:
+        colour.message("xacro: files are always processed in reading order; the option can be left out")
+    options.in_order = True
+    if len(files) != 1 and require_input:
+        parser.error("exactly one file is expected")
+    options.mappings = load_mappings(argv)
+    return options, files[0] if len(files) == 1 else None

@@ -1,0 +1,95 @@
+"""The exceptions of the module ``xacro``: those that programs catch, with the diagnostics that ours carry."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from xml.parsers.expat import ExpatError
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.launch.engine.descriptions import DescriptionError, XacroCall
+
+
+class XacroException(LinkwrightError):
+    """What is wrong with a description.
+
+    Args:
+        msg: what is wrong.
+        suffix: more of it, put at the end.
+        exc: the exception behind it.
+        macro: the macro that it happened in.
+
+    Attributes:
+        suffix: as given.
+        exc: as given.
+        macros: the macro given, in a list, and those around it.
+    """
+
+    def __init__(
+        self, msg: object = None, suffix: object = None, exc: BaseException | None = None, macro: object = None
+    ) -> None:
+        words = " ".join(str(part) for part in (msg, exc, suffix) if part is not None and str(part))
+        super().__init__(Diagnostic("XAC706", words or "xacro failed"))
+        self.suffix = suffix
+        self.exc = exc
+        self.macros = [] if macro is None else [macro]
+
+
+class ExpansionError(XacroException, DescriptionError):
+    """A description that cannot be expanded.
+
+    Attributes:
+        call: the file that was to be expanded.
+    """
+
+    def __init__(self, call: XacroCall, diagnostics: Iterable[Diagnostic]) -> None:
+        DescriptionError.__init__(self, call, diagnostics)
+        self.suffix = self.exc = None
+        self.macros = []
+
+
+class TextError(XacroException):
+    """A description that is no file and cannot be expanded."""
+
+    def __init__(self, diagnostics: Iterable[Diagnostic]) -> None:
+        LinkwrightError.__init__(self, *diagnostics)
+        self.suffix = self.exc = None
+        self.macros = []
+
+
+class MalformedError(LinkwrightError, ExpatError):
+    """A description that is not XML; line and column are in `lineno` and `offset`."""
+
+    def __init__(self, diagnostics: Iterable[Diagnostic]) -> None:
+        LinkwrightError.__init__(self, *diagnostics)
+        span = self.diagnostics[0].span
+        self.code = 0
+        self.lineno = span.line if span else 0
+        self.offset = span.column - 1 if span else 0
+
+
+class MalformedFileError(MalformedError, DescriptionError):
+    """A file that is not XML, or that includes one.
+
+    Attributes:
+        call: the file that was to be expanded.
+    """
+
+    def __init__(self, call: XacroCall, diagnostics: Iterable[Diagnostic]) -> None:
+        MalformedError.__init__(self, diagnostics)
+        self.call = call
+
+
+def translated(error: LinkwrightError, call: XacroCall | None) -> LinkwrightError:
+    """An error of the engine as one that programs for ``xacro`` expect.
+
+    Args:
+        error: what the engine raised.
+        call: the file that was to be expanded; None for a text.
+    """
+    diagnostics = error.diagnostics
+    if isinstance(error, (XacroException, MalformedError)):
+        return error
+    malformed = diagnostics[0].code.startswith("XML2")
+    if call is None:
+        return MalformedError(diagnostics) if malformed else TextError(diagnostics)
+    return MalformedFileError(call, diagnostics) if malformed else ExpansionError(call, diagnostics)

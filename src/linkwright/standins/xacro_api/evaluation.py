@@ -1,0 +1,189 @@
+"""Texts and expressions as the module ``xacro`` evaluates them for programs."""
+
+from __future__ import annotations
+
+import enum
+import keyword
+from collections.abc import Callable, Mapping
+from typing import Any, TypeVar
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.standins.xacro_api.errors import XacroException, translated
+from linkwright.standins.xacro_api.stacks import STATE, abs_filename_spec
+from linkwright.xacro import yamldata
+from linkwright.xacro.engine import Inputs
+from linkwright.xacro.faults import Fault
+from linkwright.xacro.literals import truth
+from linkwright.xacro.scope import Namespace, Scope
+from linkwright.xacro.session import Session
+from linkwright.xacro.substitution import substitute
+from linkwright.xacro.symbols import tokenize
+
+_Result = TypeVar("_Result")
+
+
+def eval_text(text: str, symbols: Mapping[str, Any] | None) -> Any:
+    """The value of a text with ``${...}`` and ``$(...)`` in it; of one token, with its type.
+
+    Args:
+        text: the text.
+        symbols: the names that expressions may use besides those of the language.
+
+    Raises:
+        XacroException: it has none.
+    """
+    session = _session()
+    return _checked(lambda: session.evaluate(text, _scope(session, symbols)))
+
+
+def safe_eval(expr: str, globals: Mapping[str, Any] | None, locals: Mapping[str, Any] | None = None) -> Any:
+    """The value of an expression; see `eval_text`. Only what descriptions may use is evaluated.
+
+    Raises:
+        XacroException: it has none, or may not be used.
+    """
+    from linkwright.xacro.template import compile_expression
+
+    session = _session()
+    scope = _scope(session, globals)
+    if locals is not None:
+        scope = Scope(scope, session, _View(locals, session))
+    return _checked(lambda: compile_expression(expr).evaluate(scope))
+
+
+def eval_extension(s: str) -> str:
+    """The value of a substitution such as ``$(find package)``.
+
+    Raises:
+        XacroException: it has none.
+    """
+    session = _session()
+    return _checked(lambda: substitute(s.removeprefix("$(").removesuffix(")"), session))
+
+
+def load_yaml(filename: str) -> Any:
+    """The value of a YAML file; the keys of its mappings are attributes too.
+
+    Raises:
+        XacroException: there is no such file, or it is not YAML.
+    """
+    session = _session()
+    STATE.all_includes.append(abs_filename_spec(filename))
+    return YamlListWrapper.wrap(_checked(lambda: session.load_yaml(filename)))
+
+
+def dotify(mapping: Any = (), **items: Any) -> YamlDictWrapper:
+    """A mapping whose keys are attributes too, and so are those of mappings in it."""
+    result: YamlDictWrapper = YamlListWrapper.wrap(dict(mapping, **items))
+    return result
+
+
+def get_boolean_value(value: Any, condition: object = None) -> bool:
+    """What a condition that has this value says.
+
+    Args:
+        value: the value.
+        condition: the text of the condition, for the message.
+
+    Raises:
+        XacroException: the value is a text that is neither true, false nor a whole number.
+    """
+    try:
+        return truth(value)
+    except ValueError:
+        what = f"the condition '{condition}'" if condition is not None else "the condition"
+        raise XacroException(f"{what} gives '{value}', which is neither true nor false") from None
+
+
+def is_valid_name(name: str) -> bool:
+    """Whether a name can be that of a property or macro: a Python identifier that is no keyword."""
+    return name.isidentifier() and not keyword.iskeyword(name)
+
+
+def create_global_symbols() -> dict[str, Any]:
+    """The names that the language provides to expressions."""
+    return dict(_session().globals.values)
+
+
+class ConstructUnits(enum.Enum):
+    """The tags of YAML values with a unit, and what one of each is in metres or radians."""
+
+    radians = ("!radians", yamldata.UNITS["!radians"])
+    degrees = ("!degrees", yamldata.UNITS["!degrees"])
+    meters = ("!meters", yamldata.UNITS["!meters"])
+    millimeters = ("!millimeters", yamldata.UNITS["!millimeters"])
+    foot = ("!foot", yamldata.UNITS["!foot"])
+    inches = ("!inches", yamldata.UNITS["!inches"])
+
+
+class YamlDictWrapper(dict[Any, Any]):
+    """A mapping whose keys are attributes too."""
+
+    def __getattr__(self, item: str) -> Any:
+        try:
+            return self[item]
+        except KeyError:
+            raise AttributeError(f"the YAML mapping has no key '{item}'") from None
+
+
+class YamlListWrapper(list[Any]):
+    """A sequence of such mappings."""
+
+    @staticmethod
+    def wrap(item: Any) -> Any:
+        """A value with all mappings in it made `YamlDictWrapper`, and all sequences lists of this kind."""
+        if isinstance(item, dict):
+            return YamlDictWrapper({key: YamlListWrapper.wrap(value) for key, value in item.items()})
+        if isinstance(item, list):
+            return YamlListWrapper(map(YamlListWrapper.wrap, item))
+        return item
+
+
+class _View(dict[str, Any]):
+    """The names of a table, which may evaluate its values when they are asked for."""
+
+    __slots__ = ("_session", "_table")
+
+    def __init__(self, table: Mapping[str, Any], session: Session) -> None:
+        super().__init__()
+        self._table = table
+        self._session = session
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._table
+
+    def __getitem__(self, name: str) -> Any:
+        value = self._table[name]
+        if isinstance(value, (YamlDictWrapper, YamlListWrapper)):
+            return yamldata.dotted(value)
+        if isinstance(value, dict) and hasattr(value, "unevaluated"):  # the table of a namespace
+            return Namespace(None, self._session, _View(value, self._session))
+        return value
+
+    def __iter__(self) -> Any:
+        return iter(self._table)
+
+    def get(self, name: str, default: Any = None) -> Any:
+        return self[name] if name in self._table else default
+
+
+def _scope(session: Session, symbols: Mapping[str, Any] | None) -> Scope:
+    return Scope(session.globals, session, _View({} if symbols is None else symbols, session))
+
+
+def _session() -> Session:
+    file = abs_filename_spec("text")
+    return Inputs(file, STATE.arguments, root_dir=_root()).session()
+
+
+def _root() -> str:
+    return "" if str(STATE.root_dir) == "." else str(STATE.root_dir)
+
+
+def _checked(evaluate: Callable[[], _Result]) -> _Result:
+    try:
+        return evaluate()
+    except Fault as fault:
+        raise XacroException(fault.message) from None
+    except LinkwrightError as error:
+        raise translated(error, None) from None

@@ -1,0 +1,70 @@
+"""Macros as the module ``xacro`` shows them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from linkwright.standins.xacro_api.errors import XacroException
+from linkwright.xacro.faults import Fault
+from linkwright.xacro.macros import parse_parameters
+
+
+class Macro:
+    """A macro.
+
+    Attributes:
+        name: its name.
+        body: the element that defines it.
+        params: the names of its parameters.
+        defaultmap: parameter -> whether the caller's property is taken, and the text of its default.
+        history: for each definition, the files that were being processed.
+    """
+
+    def __init__(self) -> None:
+        self.name = ""
+        self.body: Any = None
+        self.params: list[str] = []
+        self.defaultmap: dict[str, tuple[str | None, str | None]] = {}
+        self.history: list[list[str | None]] = []
+
+
+def parse_macro_arg(s: str) -> tuple[str, tuple[str | None, str | None] | None, str]:
+    """The first parameter in a list of them.
+
+    Returns:
+        Its name; its default as the name of the caller's property to take (or None) and a text (or None), and None in
+        place of both for a parameter without a sign; and the rest of the list.
+
+    Raises:
+        XacroException: a quote is never closed.
+        IndexError: the list is empty.
+    """
+    try:
+        first, *others = parse_parameters(s)
+    except ValueError:
+        raise IndexError("there is no parameter in the list") from None
+    except Fault as fault:
+        raise XacroException(fault.message) from None
+    rest = s[others[0].start :] if others else ""
+    behind = s[first.start + len(first.name) :].lstrip()
+    if not behind.startswith(("=", ":=")):
+        return first.name, None, rest
+    return first.name, (first.name if first.forward else None, first.default), rest
+
+
+def resolve_macro(fullname: str, macros: Mapping[str, Any], symbols: Mapping[str, Any]) -> tuple[Any, Any, Any]:
+    """The macro of a name, which may have namespaces before it, with the tables that it is in.
+
+    Returns:
+        The table of macros, the table of properties and the macro.
+
+    Raises:
+        KeyError: there is no such macro.
+    """
+    if fullname in macros:
+        return macros, symbols, macros[fullname]
+    *namespaces, name = fullname.split(".")
+    for namespace in namespaces:
+        macros, symbols = macros[namespace], symbols[namespace]
+    return macros, symbols, macros[name]

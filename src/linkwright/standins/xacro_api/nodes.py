@@ -1,0 +1,204 @@
+"""The functions on nodes of minidom that the module ``xacro`` offers to programs."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Mapping, Sequence
+from typing import Any
+from xml.dom import minidom
+
+from linkwright.standins.xacro_api import colour
+from linkwright.standins.xacro_api.errors import XacroException
+from linkwright.standins.xacro_api.evaluation import eval_text, get_boolean_value, is_valid_name
+from linkwright.standins.xacro_api.macros import Macro, parse_macro_arg
+from linkwright.standins.xacro_api.stacks import STATE, print_location
+from linkwright.standins.xacro_api.tables import NameSpace, Table
+
+_ELEMENT, _TEXT, _COMMENT = minidom.Node.ELEMENT_NODE, minidom.Node.TEXT_NODE, minidom.Node.COMMENT_NODE
+_MARKER = minidom.Document().createTextNode("\n\n")
+"""Stands where the comments above a tag were looked through; there is one, and it moves."""
+
+
+def first_child_element(elt: Any) -> Any:
+    """The first element inside a node, or None."""
+    return next((child for child in elt.childNodes if child.nodeType == _ELEMENT), None)
+
+
+def next_sibling_element(node: Any) -> Any:
+    """The next element after a node, or None."""
+    node = node.nextSibling
+    while node is not None and node.nodeType != _ELEMENT:
+        node = node.nextSibling
+    return node
+
+
+def replace_node(node: Any, by: Any, content_only: bool = False) -> None:
+    """Put nodes in the place of one.
+
+    Args:
+        node: the one that goes.
+        by: a node, a list of them, or None.
+        content_only: whether what they hold is put there in place of themselves.
+    """
+    parent = node.parentNode
+    for new in by if isinstance(by, list) else [] if by is None else [by]:
+        for each in list(new.childNodes) if content_only else [new]:
+            parent.insertBefore(each, node)
+    parent.removeChild(node)
+
+
+def attribute(tag: Any, a: str) -> str | None:
+    """The value of an attribute, or None."""
+    return tag.getAttribute(a) if tag.hasAttribute(a) else None
+
+
+def opt_attrs(tag: Any, attrs: Sequence[str]) -> list[str | None]:
+    """The values of attributes; None for those that are not there."""
+    return [attribute(tag, name) for name in attrs]
+
+
+def reqd_attrs(tag: Any, attrs: Sequence[str]) -> list[str]:
+    """The values of attributes.
+
+    Raises:
+        RuntimeError: one is not there.
+    """
+    for name in attrs:
+        if not tag.hasAttribute(name):
+            raise RuntimeError(f"'{tag.nodeName}' lacks its attribute '{name}'")
+    return [tag.getAttribute(name) for name in attrs]
+
+
+def check_attrs(tag: Any, required: Sequence[str], optional: Sequence[str]) -> list[Any]:
+    """The values of the attributes that a tag may have; a warning is printed of others.
+
+    Raises:
+        RuntimeError: a required one is not there.
+    """
+    values = [*reqd_attrs(tag, required), *opt_attrs(tag, optional)]
+    others = [name for name in tag.attributes.keys() if name not in (*required, *optional)]  # noqa: SIM118 - no dict
+    others = [name for name in others if not name.startswith("xmlns:")]
+    if others:
+        colour.warning(f"'{tag.nodeName}' knows no attribute {', '.join(map(repr, others))}")
+        if STATE.verbosity > 0:
+            print_location()
+    return values
+
+
+def import_xml_namespaces(parent: Any, attributes: Any) -> None:
+    """Declare on an element the namespaces among some attributes; a warning is printed of contradictions."""
+    for name, value in attributes.items():
+        if not name.startswith("xmlns:"):
+            continue
+        if parent.hasAttribute(name) and parent.getAttribute(name) != value:
+            colour.warning(f"'{name}' is declared as '{value}' here and as '{parent.getAttribute(name)}' around it")
+        else:
+            parent.setAttribute(name, value)
+
+
+def remove_previous_comments(node: Any) -> None:
+    """Take away the comments just above a node, as far as no blank line or text stands between."""
+    following, previous = node.nextSibling, node.previousSibling
+    while previous is not None:
+        if previous.nodeType == _TEXT and previous.data.isspace() and previous.data.count("\n") <= 1:
+            previous = previous.previousSibling
+        if previous is None or previous.nodeType != _COMMENT:
+            if following is not None and following is not _MARKER:
+                if _MARKER.parentNode is not None:
+                    _MARKER.parentNode.removeChild(_MARKER)
+                node.parentNode.insertBefore(_MARKER, following)
+            return
+        comment, previous = previous, previous.previousSibling
+        node.parentNode.removeChild(comment)
+
+
+def grab_macro(elt: Any, macros: dict[str, Any]) -> None:
+    """Take a definition of a macro out of a document and into a table.
+
+    Raises:
+        XacroException: the name or the parameters are wrong.
+    """
+    remove_previous_comments(elt)
+    name, params = check_attrs(elt, ["name"], ["params"])
+    if name == "call" or "." in name:
+        raise XacroException(f"a macro cannot be named '{name}'")
+    if name.startswith("xacro:"):
+        colour.warning(f"macro names must not contain prefix 'xacro:': {name}")
+        name = name.removeprefix("xacro:")
+    macro = macros[name] if name in macros else Macro()
+    macro.name, macro.body = name, elt
+    macro.history.append(copy.copy(STATE.filestack or [None]))
+    macro.params, macro.defaultmap = [], {}
+    while params and params.strip():
+        parameter, default, params = parse_macro_arg(params)
+        macro.params.append(parameter)
+        if default is not None:
+            macro.defaultmap[parameter] = default
+    macros[name] = macro
+    replace_node(elt, by=None)
+
+
+def grab_property(elt: Any, table: Table) -> None:
+    """Take a definition of a property out of a document and into a table.
+
+    Raises:
+        XacroException: the name or the attributes are wrong.
+    """
+    remove_previous_comments(elt)
+    name, value, default, remove, scope, lazy = check_attrs(
+        elt, ["name"], ["value", "default", "remove", "scope", "lazy_eval"]
+    )
+    name = eval_text(name, table)
+    if not isinstance(name, str) or not is_valid_name(name) or name.startswith("__"):
+        raise XacroException(f"'{name}' cannot be the name of a property")
+    removed = _flag(remove, table, default=False)
+    if (value is not None) + (default is not None) + removed > 1:
+        raise XacroException(f"the property '{name}' has more than one of 'value', 'default' and 'remove'")
+    replace_node(elt, by=None)
+    if removed:
+        if name in table:
+            del table[name]
+        return
+    if value is None and default is not None:
+        if name in table:
+            return
+        value = default
+    if value is None:
+        Table._setitem(table, f"**{name}", elt, unevaluated=False)
+        return
+    target = _target(table, scope)
+    if target is table and _flag(lazy, table, default=True):
+        table._setitem(name, value, unevaluated=True)
+    else:
+        target._setitem(name, eval_text(value, table), unevaluated=False)
+
+
+def eval_default_arg(forward_variable: str | None, default: str | None, symbols: Mapping[str, Any], macro: Any) -> Any:
+    """The value of a macro's parameter that the call does not give.
+
+    Raises:
+        XacroException: there is no property to take, and no default.
+    """
+    if forward_variable is not None and forward_variable in symbols:
+        return symbols[forward_variable]
+    if default is None:
+        raise XacroException(f"there is no property '{forward_variable}' to forward", macro=macro)
+    return eval_text(default, symbols)
+
+
+def _flag(text: str | None, table: Table, *, default: bool) -> bool:
+    return get_boolean_value(eval_text(text, table), text) if text else default
+
+
+def _target(table: Table, scope: str | None) -> Table:
+    if scope == "global":
+        return table.top()
+    if scope != "parent":
+        return table
+    target = table.parent
+    if not isinstance(table, NameSpace):
+        while isinstance(target, NameSpace):
+            target = target.parent
+    if not isinstance(target, Table):
+        raise XacroException("there is no scope around this one")
+    return target

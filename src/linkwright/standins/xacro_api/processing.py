@@ -1,0 +1,260 @@
+"""Expanding files, texts and documents, as the functions of the module ``xacro`` do."""
+
+from __future__ import annotations
+
+import io
+import os
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import IO, Any
+from xml.dom import minidom
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, print_diagnostics
+from linkwright.launch.engine.descriptions import XacroCall, current_descriptions
+from linkwright.standins.xacro_api import dom
+from linkwright.standins.xacro_api.command_line import process_args
+from linkwright.standins.xacro_api.errors import XacroException, translated
+from linkwright.standins.xacro_api.stacks import STATE, StackExpander, StackSession, init_stacks
+from linkwright.xacro.engine import Expansion, Inputs, banner
+from linkwright.xacro.limits import room_for
+from linkwright.xmltree import Document
+from linkwright.xmltree import parse as parse_text
+
+_TEXT = os.path.join(os.curdir, "string")  # noqa: PTH118 - relative paths in a text begin with './', as in xacro
+_FAILED = 2
+
+
+class XacroDocument(minidom.Document):
+    """A document that knows which file it was read from, and what it expanded to.
+
+    The texts that it gives are those that a running launch keeps positions and live reload for.
+    """
+
+    call: XacroCall | None = None
+    expansion: Expansion | None = None
+
+    def toprettyxml(self, *arguments: Any, **named: Any) -> Any:
+        """The document as text; see ``xml.dom.minidom``."""
+        text = super().toprettyxml(*arguments, **named)
+        descriptions, expansion = current_descriptions(), self.expansion
+        if descriptions is None or self.call is None or expansion is None or not isinstance(text, str):
+            return text
+        if dom.is_same(self, expansion.document):
+            descriptions.remember(self.call, expansion, text)
+        return text
+
+
+def parse(inp: Any, filename: str | Path | None = None) -> minidom.Document:
+    """A description as a document, not expanded.
+
+    Args:
+        inp: its text, an open file, or a document, which is returned; None to open `filename`.
+        filename: the file; or the name of the text, for messages.
+
+    Raises:
+        xml.parsers.expat.ExpatError: it is not XML.
+        XacroException: the file cannot be read.
+        TypeError: `inp` is nothing that can be read.
+    """
+    if isinstance(inp, minidom.Document):
+        return inp
+    if isinstance(inp, Path):
+        inp, filename = None, inp
+    path: Path | None = None
+    if inp is None:
+        if filename is None:
+            raise TypeError("expected a file or its name")
+        path = Path(STATE.root_dir, filename)
+    elif hasattr(inp, "read"):
+        name = filename or getattr(inp, "name", None)
+        path = Path(name) if isinstance(name, (str, Path)) else None
+    elif not isinstance(inp, (str, bytes)):
+        raise TypeError(f"expected a file or its path, got {inp!r} of type {type(inp).__name__}")
+    call = None if path is None else XacroCall(Path.cwd() / path)
+    try:
+        tree = _tree(inp, path, filename)
+    except LinkwrightError as error:
+        raise translated(error, call) from None
+    document = XacroDocument()
+    dom.fill(document, tree)
+    document.call = call
+    return document
+
+
+def process_doc(doc: minidom.Document, mappings: Mapping[str, Any] | None = None, **options: Any) -> None:
+    """Expand a document in place.
+
+    Args:
+        doc: the document.
+        mappings: name -> value of the arguments; they are not changed.
+        options: `verbosity`; whatever else is given has no effect.
+
+    Raises:
+        XacroException: what is wrong with the description.
+        xml.parsers.expat.ExpatError: a file that it includes is not XML.
+    """
+    STATE.verbosity = options.get("verbosity", STATE.verbosity)
+    if not STATE.filestack:
+        init_stacks(None)
+    call = doc.call if isinstance(doc, XacroDocument) else None
+    if call is not None:
+        call = XacroCall(call.path, _words(mappings))
+    file = STATE.filestack[-1] if STATE.filestack else None
+    expansion = _expand(dom.read(doc), file, mappings, call)
+    dom.fill(doc, expansion.document)
+    if isinstance(doc, XacroDocument):
+        doc.call, doc.expansion = call, expansion
+
+
+def process_file(
+    input_file_name: str | Path, *, mappings: Mapping[str, Any] | None = None, **options: Any
+) -> minidom.Document:
+    """Expand a file.
+
+    Args:
+        input_file_name: the file.
+        mappings: name -> value of the arguments; they are not changed.
+        options: `verbosity`; whatever else is given has no effect.
+
+    Returns:
+        The document, with the comments before it that name the file.
+
+    Raises:
+        XacroException: what is wrong with the description.
+        xml.parsers.expat.ExpatError: the file, or one that it includes, is not XML.
+    """
+    STATE.verbosity = options.get("verbosity", STATE.verbosity)
+    init_stacks(input_file_name)
+    name = os.fspath(input_file_name)
+    call = XacroCall(Path.cwd() / STATE.root_dir / name, _words(mappings))
+    try:
+        tree = _tree(None, Path(STATE.root_dir, name), None)
+    except LinkwrightError as error:
+        raise translated(error, call) from None
+    expansion = _expand(tree, name, mappings, call)
+    expansion.document.prolog[:0] = comments = banner(name)
+    expansion.document.doctype_index += len(comments)
+    document = XacroDocument()
+    dom.fill(document, expansion.document)
+    document.call, document.expansion = call, expansion
+    return document
+
+
+def process(
+    input_file_name: str | Path,
+    just_deps: bool = False,
+    xacro_ns: bool = True,  # noqa: ARG001 - accepted for those who give it
+    verbosity: int = 1,
+    mappings: Mapping[str, Any] | None = None,
+) -> str:
+    """The text that a file expands to, or the names of the files that it includes; see `process_file`.
+
+    Args:
+        input_file_name: the file.
+        just_deps: whether the names are wanted.
+        xacro_ns: without effect.
+        verbosity: how much is printed.
+        mappings: name -> value of the arguments.
+    """
+    document = process_file(input_file_name, mappings=mappings, verbosity=verbosity)
+    return _result(document, just_deps=just_deps)
+
+
+def open_output(output_filename: str | Path | None) -> IO[str]:
+    """A file to write to, its folder made if need be; standard output for None.
+
+    Raises:
+        XacroException: it cannot be opened.
+    """
+    if output_filename is None:
+        return sys.stdout
+    path = Path(output_filename)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        return path.open("w", encoding="utf-8")
+    except OSError as error:
+        raise XacroException(f"cannot write '{path}':", exc=error) from error
+
+
+def main(words: Sequence[str] | None = None) -> None:
+    """The command ``xacro``; ends the process when something is wrong."""
+    options, file = process_args(sys.argv[1:] if words is None else list(words))
+    assert file is not None, "the options say that a file is needed"
+    if options.root_dir:
+        STATE.root_dir = options.root_dir
+    try:
+        document = process_file(file, mappings=options.mappings, verbosity=options.verbosity)
+        out = open_output(options.output)
+    except LinkwrightError as error:
+        print_diagnostics(error.diagnostics, sys.stderr)
+        sys.exit(_FAILED)
+    out.write(_result(document, just_deps=options.just_deps))
+    if options.output:
+        out.close()
+
+
+def _result(document: minidom.Document, *, just_deps: bool) -> str:
+    if just_deps and isinstance(document, XacroDocument) and document.expansion is not None:
+        return " ".join(map(str, document.expansion.dependencies[1:]))
+    text: str = document.toprettyxml(indent="  ")
+    return text
+
+
+def _tree(inp: Any, path: Path | None, filename: str | Path | None) -> Document:
+    from linkwright.xmltree import parse_file
+
+    if inp is None:
+        assert path is not None, "there is a text or a file"
+        return parse_file(path)
+    if hasattr(inp, "read"):
+        inp = inp.read()
+    text = inp if isinstance(inp, str) else _decoded(inp, str(path or filename or _TEXT))
+    return parse_text(text, str(path or filename or "<string>"))
+
+
+def _decoded(data: bytes, name: str) -> str:
+    from linkwright.xmltree.decoding import decode
+
+    return decode(io.BytesIO(data).getvalue(), name)
+
+
+def _words(mappings: Mapping[str, Any] | None) -> tuple[tuple[str, str], ...]:
+    return tuple((name, str(value)) for name, value in (mappings or {}).items())
+
+
+def _expand(tree: Document, file: str | None, mappings: Mapping[str, Any] | None, call: XacroCall | None) -> Expansion:
+    """Expand a tree; what is remarked is printed, unless a launch is running, which tells it itself."""
+    descriptions = current_descriptions()
+    packages = descriptions.finder if descriptions is not None else None
+    root = "" if str(STATE.root_dir) == os.curdir else str(STATE.root_dir)
+    inputs = Inputs(_TEXT if file is None else file, dict(_words(mappings)), packages, root_dir=root)
+    session = StackSession(inputs)
+    STATE.arguments = session.arguments
+    if descriptions is not None and call is not None:
+        descriptions.begin(call)
+    try:
+        with room_for(inputs.limits):
+            expanded = StackExpander(session, session.directives, session.call).document(tree)
+    except LinkwrightError as error:
+        session.return_to_mistake()
+        _tell(session.diagnostics)
+        raise translated(error, call) from None
+    finally:
+        STATE.arguments = {}
+    session.warn_of_unused_arguments()
+    if descriptions is None or call is None:
+        _tell(session.diagnostics)
+    files = tuple(Path(name) for name in session.dependencies)
+    return Expansion(expanded, files, session.arguments, tuple(session.diagnostics))
+
+
+def _tell(diagnostics: Sequence[Diagnostic]) -> None:
+    quiet = STATE.verbosity <= 0
+    told = [found for found in diagnostics if not quiet or found.severity is Severity.ERROR or _is_said(found)]
+    print_diagnostics(told, sys.stderr)
+
+
+def _is_said(diagnostic: Diagnostic) -> bool:
+    """Whether the description itself says it, with ``xacro.message`` or its like."""
+    return diagnostic.code.startswith("XAC7")

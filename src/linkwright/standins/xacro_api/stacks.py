@@ -1,0 +1,220 @@
+"""Where an expansion is: the files and macros being processed, as the module ``xacro`` keeps them for the process."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from linkwright.standins.xacro_api.macros import Macro
+from linkwright.xacro.calls import call_macro
+from linkwright.xacro.directives import DIRECTIVES
+from linkwright.xacro.engine import Inputs
+from linkwright.xacro.expander import Directive, Expander, Site
+from linkwright.xacro.faults import Fault
+from linkwright.xacro.macros import Macro as EngineMacro
+from linkwright.xacro.macros import MacroTable
+from linkwright.xacro.session import Session
+from linkwright.xmltree import Document, Element
+
+_PREFIX = "xacro:"
+
+
+class State:
+    """What the module ``xacro`` holds in variables.
+
+    Attributes:
+        filestack: the files being processed, the innermost last; None stands for a text.
+        macrostack: the macros being called, the innermost last.
+        root_dir: the folder that relative paths are in.
+        verbosity: 0 to 4.
+        all_includes: the files that were included or loaded since the process began.
+        arguments: the arguments of the expansion that is going on.
+    """
+
+    def __init__(self) -> None:
+        self.filestack: list[str | None] | None = None
+        self.macrostack: list[Macro] | None = None
+        self.root_dir: str | Path = os.curdir
+        self.verbosity = 1
+        self.all_includes: list[str] = []
+        self.arguments: dict[str, Any] = {}
+
+
+STATE = State()
+
+
+class LiveModule(ModuleType):
+    """A module some of whose variables are those of `STATE`, so that they can be read and set from outside."""
+
+    @property
+    def filestack(self) -> list[str | None] | None:
+        """See `State`."""
+        return STATE.filestack
+
+    @filestack.setter
+    def filestack(self, stack: list[str | None] | None) -> None:
+        STATE.filestack = stack
+
+    @property
+    def macrostack(self) -> list[Macro] | None:
+        """See `State`."""
+        return STATE.macrostack
+
+    @macrostack.setter
+    def macrostack(self, stack: list[Macro] | None) -> None:
+        STATE.macrostack = stack
+
+    @property
+    def root_dir(self) -> str | Path:
+        """See `State`."""
+        return STATE.root_dir
+
+    @root_dir.setter
+    def root_dir(self, folder: str | Path) -> None:
+        STATE.root_dir = folder
+
+    @property
+    def verbosity(self) -> int:
+        """See `State`."""
+        return STATE.verbosity
+
+    @verbosity.setter
+    def verbosity(self, level: int) -> None:
+        STATE.verbosity = level
+
+
+def init_stacks(file: str | Path | None) -> None:
+    """Begin with a file; None stands for a text."""
+    STATE.filestack = [None if file is None else str(file)]
+    STATE.macrostack = []
+
+
+def abs_filename_spec(filename_spec: str) -> str:
+    """A file name with the folder of the file being processed before it, unless it is absolute."""
+    if os.path.isabs(filename_spec):  # noqa: PTH117 - kept as it is written
+        return filename_spec
+    current = STATE.filestack[-1] if STATE.filestack else None
+    folder = os.path.dirname(current) if current else os.curdir  # noqa: PTH120
+    return os.path.join(folder, filename_spec)  # noqa: PTH118
+
+
+def print_location() -> None:
+    """Print to standard error which macros and files are being processed, innermost first."""
+    words = "when instantiating macro:"
+    for macro in reversed(STATE.macrostack or []):
+        file = macro.history[-1][-1] if macro.history and macro.history[-1] else None
+        print(f"{words} {macro.name} ({file or '???'})", file=sys.stderr)
+        words = "instantiated from:"
+    words = "in file:" if STATE.macrostack else "when processing file:"
+    for file in reversed(STATE.filestack or []):
+        print(words, "string" if file is None else file, file=sys.stderr)
+        words = "included from:"
+
+
+class StackExpander(Expander):
+    """An expander that tells its session where mistakes are made."""
+
+    session: StackSession
+
+    def note(self, fault: Fault) -> None:
+        """Keep a mistake; see `Expander.note`."""
+        self.session.keep_place()
+        super().note(fault)
+
+
+class StackSession(Session):
+    """A session that keeps `STATE` up to date.
+
+    Attributes:
+        directives: what the expansion is to be done with.
+    """
+
+    def __init__(self, inputs: Inputs) -> None:
+        super().__init__(inputs.name, inputs.arguments, inputs.packages, inputs.limits, inputs.root_dir)
+        self.directives: Mapping[str, Directive] = {
+            **DIRECTIVES,
+            "xacro:include": self._include,
+            "xacro:macro": self._define,
+            "xacro:call": self._call_dynamically,
+        }
+        self._defined: dict[int, tuple[Element, Macro]] = {}
+        self._files = 0
+        self._mistake: tuple[list[str | None], list[Macro]] | None = None
+        self.globals.values["xacro"].values["print_location"] = self._print_location
+
+    def read(self, path: str) -> Document:
+        """The document of a file, which is the one being processed from then on."""
+        if STATE.filestack is not None and self._files:
+            del STATE.filestack[self._files :]
+            STATE.filestack.append(path)
+        return super().read(path)
+
+    def call(self, expander: Expander, site: Site) -> None:
+        """What expands macro calls."""
+        self._within(call_macro, expander, site, site.node.tag[len(_PREFIX) :])
+
+    def depends_on(self, file: str) -> None:
+        """Remember that a file was read; see `Session.depends_on`."""
+        super().depends_on(file)
+        STATE.all_includes.append(file)
+
+    def keep_place(self) -> None:
+        """Remember that this is where the first mistake was made, though the walk goes on."""
+        if self._mistake is None:
+            self._mistake = (list(STATE.filestack or []), list(STATE.macrostack or []))
+
+    def return_to_mistake(self) -> None:
+        """The expansion has failed: leave the stacks as they were at the first mistake."""
+        if self._mistake is not None:
+            STATE.filestack, STATE.macrostack = self._mistake
+
+    def _include(self, expander: Expander, site: Site) -> None:
+        around, stack = self._files, STATE.filestack
+        self._files = len(stack) if stack is not None else 0
+        DIRECTIVES["xacro:include"](expander, site)
+        if stack is not None:
+            del stack[self._files :]
+        self._files = around
+
+    def _define(self, expander: Expander, site: Site) -> None:
+        DIRECTIVES["xacro:macro"](expander, site)
+        name = site.node.attributes["name"].removeprefix(_PREFIX)
+        known = self._defined.get(id(site.node))
+        macro = known[1] if known else Macro()
+        macro.name = name
+        macro.history.append(list(STATE.filestack or [None]))
+        self._defined[id(site.node)] = (site.node, macro)
+
+    def _call_dynamically(self, expander: Expander, site: Site) -> None:
+        text = site.node.attributes.get("macro", "")
+        name = text if "$" not in text or self.changes(text) else expander.text_value(site.node, "macro", site.scope)
+        self._within(DIRECTIVES["xacro:call"], expander, site, name)
+
+    def _within(self, directive: Directive, expander: Expander, site: Site, name: str) -> None:
+        macro = _find(site.macros, name)
+        known = self._defined.get(id(macro.body)) if macro else None
+        stack = STATE.macrostack
+        if known is None or stack is None:
+            directive(expander, site)
+            return
+        stack.append(known[1])
+        directive(expander, site)
+        stack.pop()  # only if all went well: an error leaves its place behind
+
+    def _print_location(self, *_: Any) -> str:
+        print_location()
+        return ""
+
+
+def _find(macros: MacroTable, name: str) -> EngineMacro | None:
+    found = macros.find(name)
+    if isinstance(found, EngineMacro):
+        return found
+    table: Any = macros
+    for part in name.split("."):
+        table = table.find(part) if isinstance(table, MacroTable) else None
+    return table if isinstance(table, EngineMacro) else None

@@ -1,0 +1,120 @@
+"""Tables of properties and macros as the module ``xacro`` shows them to programs."""
+
+from __future__ import annotations
+
+import sys
+from typing import Any
+
+from linkwright.standins.xacro_api import colour
+from linkwright.standins.xacro_api.errors import XacroException
+from linkwright.standins.xacro_api.evaluation import eval_text
+from linkwright.standins.xacro_api.stacks import STATE, print_location
+from linkwright.xacro.literals import literal
+
+_DOCUMENT, _EVERYWHERE = 2, 3
+"""Above these verbosities the properties of the document, and all of them, are logged."""
+
+
+class Table(dict[str, Any]):
+    """Names and their values, with a table around it; texts are evaluated when they are first asked for.
+
+    Args:
+        parent: the table around; a plain dict is one of the language's own names.
+
+    Attributes:
+        parent: as given.
+        root: the outermost table.
+        depth: how many tables there are around, that one not counted.
+        unevaluated: the names whose texts are not evaluated yet.
+        recursive: the names being evaluated because of one another.
+    """
+
+    def __init__(self, parent: dict[str, Any] | None = None) -> None:
+        super().__init__()
+        self.parent: dict[str, Any] = {} if parent is None else parent
+        self.root: dict[str, Any] = parent.root if isinstance(parent, Table) else self.parent
+        self.depth: int = parent.depth + 1 if isinstance(parent, Table) else 0
+        self.unevaluated: set[str] = set()
+        self.recursive: list[str] = []
+
+    def __getitem__(self, key: str) -> Any:
+        if not dict.__contains__(self, key):
+            return self.parent[key]
+        if key in self.unevaluated:
+            self._evaluate(key)
+        value = dict.__getitem__(self, key)
+        self._log("use", key, value)
+        return value
+
+    def __setitem__(self, key: str, value: Any) -> None:
+        self._setitem(key, value, unevaluated=True)
+
+    def __delitem__(self, key: str) -> None:
+        table: dict[str, Any] = self
+        while isinstance(table, Table):
+            dict.pop(table, key, None)
+            table.unevaluated.discard(key)
+            table = table.parent
+        if key in self.root:
+            colour.warning(f"Cannot remove global symbol: {key}")
+
+    def __contains__(self, key: object) -> bool:
+        return dict.__contains__(self, key) or key in self.parent
+
+    def __str__(self) -> str:
+        return f"{dict.__repr__(self)}\n  parent: {self.parent}"
+
+    def top(self) -> Table:
+        """The outermost table that is not the language's own."""
+        table = self
+        while table.parent is not table.root and isinstance(table.parent, Table):
+            table = table.parent
+        return table
+
+    @staticmethod
+    def _eval_literal(value: Any) -> Any:
+        return literal(value)
+
+    def _setitem(self, key: str, value: Any, unevaluated: bool) -> None:
+        if key in self.root:
+            colour.warning(f"redefining global symbol: {key}")
+            print_location()
+        value = literal(value)
+        dict.__setitem__(self, key, value)
+        self.unevaluated.discard(key)
+        if unevaluated and isinstance(value, str):
+            self.unevaluated.add(key)
+        self._log("set", key, value)
+
+    def _evaluate(self, key: str) -> None:
+        if key in self.recursive:
+            circle = " -> ".join([*self.recursive, key])
+            raise XacroException(
+                f"the property '{key}' is defined by itself: {circle}; "
+                'evaluate one of them where it is written: lazy_eval="false"'
+            )
+        self.recursive.append(key)
+        try:
+            value = literal(eval_text(dict.__getitem__(self, key), self))
+        finally:
+            self.recursive.remove(key)
+        dict.__setitem__(self, key, value)
+        self.unevaluated.discard(key)
+
+    def _log(self, what: str, key: str, value: Any) -> None:
+        level = STATE.verbosity
+        if level > _EVERYWHERE or (level > _DOCUMENT and self.parent is self.root):
+            file = STATE.filestack[-1] if STATE.filestack else None
+            print(f"{' ' * self.depth}{what} {key}: {value} ({file})", file=sys.stderr)
+
+
+class NameSpace(Table):
+    """The table of an include with a namespace: its names are attributes too."""
+
+    def __getattr__(self, item: str) -> Any:
+        if item.startswith("__"):
+            raise AttributeError(item)
+        try:
+            return self[item]
+        except KeyError:
+            raise NameError(f"name '{item}' is not defined") from None

@@ -1,0 +1,271 @@
+"""The arguments that a description takes, whether or not it can be expanded without them.
+
+The file is expanded with a session that never lacks an argument: one that is not there gets the default that some file
+declares for it, or an empty text, and is noted as required. All files that were read that way are then looked through
+for what lies in branches not taken and in macros not called; where the expansion came to no end, includes that it did
+not reach are followed as far as their names can be told.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, Span, did_you_mean
+from linkwright.xacro.directives import DIRECTIVES
+from linkwright.xacro.engine import Inputs, main_document
+from linkwright.xacro.expander import Directive, Expander, Site
+from linkwright.xacro.faults import Fault, attribute_part, text_part
+from linkwright.xacro.observed import ObservedSession, expand_observed
+from linkwright.xacro.scope import Scope
+from linkwright.xmltree import Document, Element, Text
+
+_MOST_FILES = 1_000
+_USE = re.compile(r"\$\(\s*arg\s+(?P<plain>[^\s()$]+)\s*\)|\bxacro\.arg\(\s*(['\"])(?P<called>[^'\"]*)\2\s*\)")
+
+
+@dataclass(frozen=True, slots=True)
+class Argument:
+    """An argument that a description takes.
+
+    Attributes:
+        name: its name.
+        default: its default as written, or None if the files declare none.
+        span: where it is declared; where it is first used if nothing declares it.
+        required: whether the description cannot be expanded unless it is given. That may be so in spite of a default:
+            the attributes of the root are evaluated before any declaration.
+        used: whether anything asks for it.
+        value: what it is worth with the arguments given, or None where that cannot be told.
+        given: whether it was given.
+    """
+
+    name: str
+    default: str | None
+    span: Span | None
+    required: bool
+    used: bool = True
+    value: str | None = None
+    given: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Arguments:
+    """What a description takes.
+
+    Attributes:
+        arguments: the arguments, in the order in which they are met.
+        unused: a warning for each argument that was given and that nothing declares or uses.
+        problems: why the expansion came to no end, if it did not; arguments may be missing from the list then.
+    """
+
+    arguments: tuple[Argument, ...]
+    unused: tuple[Diagnostic, ...]
+    problems: tuple[Diagnostic, ...]
+
+
+def examine_arguments(inputs: Inputs) -> Arguments:
+    """The arguments that a description takes, and what is to be said of those given.
+
+    Raises:
+        LinkwrightError: the file cannot be read or is not XML.
+    """
+    session = _Session(inputs)
+    main = main_document(session, inputs.text)
+    session.documents[inputs.name] = main
+    session.expect(main)
+    problems: tuple[Diagnostic, ...] = ()
+    directives: dict[str, Directive] = {**DIRECTIVES, "xacro:arg": session.declare}
+    try:
+        expand_observed(inputs, session, directives)
+    except LinkwrightError as error:
+        problems = error.diagnostics
+        _follow_includes(session)
+    found = _Findings(inputs, session, complete=not problems)
+    return Arguments(found.arguments(), found.unused(), problems)
+
+
+class _Session(ObservedSession):
+    """A session in which no argument is missing.
+
+    Attributes:
+        documents: path -> document of every file read.
+        declared: name -> the first element met that declares it.
+        missing: names that were asked for when nothing had given them a value.
+        asked: names that were asked for.
+    """
+
+    def __init__(self, inputs: Inputs) -> None:
+        super().__init__(inputs, probes=False)
+        self.documents: dict[str, Document] = {}
+        self.declared: dict[str, Element] = {}
+        self.missing: dict[str, None] = {}
+        self.asked: dict[str, None] = {}
+        self._defaults: dict[str, str] = {}
+
+    def read(self, path: str) -> Document:
+        """The document of a file; what it declares is a default for what is missing from then on."""
+        document = super().read(path)
+        if path not in self.documents:
+            self.documents[path] = document
+            self.expect(document)
+        return document
+
+    def expect(self, document: Document) -> None:
+        """Take the defaults that a document declares for what may be missing before it is declared."""
+        for element in _elements(document.root):
+            if element.tag == "xacro:arg" and "name" in element.attributes:
+                default = element.attributes.get("default", "")
+                self._defaults.setdefault(element.attributes["name"], "" if "$" in default else default)
+
+    def argument(self, name: str) -> str:
+        """The value of an argument, or what stands for it."""
+        self.asked[name] = None
+        if name not in self.arguments:
+            self.missing[name] = None
+            return self._defaults.get(name, "")
+        return super().argument(name)
+
+    def declare(self, expander: Expander, site: Site) -> None:
+        """What ``<xacro:arg>`` does."""
+        DIRECTIVES["xacro:arg"](expander, site)
+        self.declared.setdefault(site.node.attributes["name"], site.node)
+
+
+@dataclass
+class _Findings:
+    """What was found out about the arguments, by name.
+
+    Attributes:
+        complete: whether the expansion came to its end, so that what it asked for is all that it needs.
+    """
+
+    inputs: Inputs
+    session: _Session
+    complete: bool
+    uses: dict[str, Span | None] = field(default_factory=dict)
+    elsewhere: dict[str, Element] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        for document in self.session.documents.values():
+            for element in _elements(document.root):
+                if element.tag == "xacro:arg" and "name" in element.attributes:
+                    self.elsewhere.setdefault(element.attributes["name"], element)
+                for name, span in _uses(element):
+                    self.uses.setdefault(name, span)
+
+    def arguments(self) -> tuple[Argument, ...]:
+        """All of them; those that are declared first."""
+        session = self.session
+        declared = {**session.declared, **self.elsewhere, **session.declared}
+        needed = dict(session.missing)
+        if not self.complete:
+            needed.update(dict.fromkeys(name for name in self.uses if name not in declared))
+        listed = [self._declared(name, element, needed) for name, element in declared.items()]
+        listed += [self._undeclared(name) for name in needed if name not in declared]
+        given = self.inputs.arguments
+        listed += [
+            replace(self._undeclared(name), required=False)
+            for name in self.uses
+            if name in given and name not in declared and name not in needed
+        ]
+        return tuple(listed)
+
+    def unused(self) -> tuple[Diagnostic, ...]:
+        """A warning for each argument given that nothing declares or uses."""
+        known = {**self.uses, **self.elsewhere, **self.session.declared, **self.session.asked}
+        return tuple(
+            Diagnostic(
+                "XAC215",
+                f"the argument '{name}' is given, but '{self.inputs.name}' does not use it",
+                severity=Severity.WARNING,
+                hint=did_you_mean(name, known),
+            )
+            for name in self.inputs.arguments
+            if name not in known
+        )
+
+    def _declared(self, name: str, element: Element, needed: Mapping[str, None]) -> Argument:
+        default = element.attributes.get("default")
+        given = name in self.inputs.arguments
+        value = self.session.arguments.get(name)
+        if value is None and default is not None and "$" not in default:
+            value = default
+        return Argument(
+            name=name,
+            default=default,
+            span=element.attribute_span("name"),
+            required=not given and (name in needed or default is None),
+            used=name in self.uses or name in self.session.asked,
+            value=None if name in needed else value,
+            given=given,
+        )
+
+    def _undeclared(self, name: str) -> Argument:
+        given = name in self.inputs.arguments
+        value = self.inputs.arguments.get(name)
+        return Argument(name, None, self.uses.get(name), not given, True, value, given)
+
+
+def _follow_includes(session: _Session) -> None:
+    """Read the includes that an expansion did not come to, as far as their names can be told."""
+    scope = Scope(session.globals, session)
+    pending = list(session.documents.items())
+    seen = set(session.documents)
+    while pending and len(seen) < _MOST_FILES:
+        file, document = pending.pop()
+        session.file = file
+        for element in _elements(document.root):
+            if element.tag != "xacro:include":
+                continue
+            try:
+                path = session.absolute(session.evaluate_text(element.attributes.get("filename", ""), scope))
+                if path not in seen:
+                    seen.add(path)
+                    pending.append((path, session.read(path)))
+            except (Fault, LinkwrightError):
+                continue  # one that the files' own properties decide about
+
+
+def _uses(element: Element) -> Iterator[tuple[str, Span | None]]:
+    """The arguments that an element asks for, in its attributes and the texts directly inside."""
+    for attribute, value in element.attributes.items():
+        for match in _found(value):
+            name = match["plain"] or match["called"]
+            yield name, attribute_part(element, attribute, *match.span())
+    for child in element.children:
+        if isinstance(child, Text) and not child.cdata:
+            for match in _found(child.data):
+                yield match["plain"] or match["called"], text_part(child, *match.span())
+
+
+def _found(text: str) -> Iterator[re.Match[str]]:
+    return _USE.finditer(text) if "arg" in text else iter(())
+
+
+def _elements(root: Element) -> Iterator[Element]:
+    """An element and all elements inside, in document order."""
+    pending = [root]
+    while pending:
+        element = pending.pop()
+        yield element
+        pending.extend(reversed(list(element.elements())))
+
+
+def arguments_data(arguments: tuple[Argument, ...]) -> list[dict[str, Any]]:
+    """Arguments as JSON-ready data; places are 1-based, absent ones are None."""
+    return [
+        {
+            "name": argument.name,
+            "default": argument.default,
+            "value": argument.value,
+            "required": argument.required,
+            "used": argument.used,
+            "given": argument.given,
+            "file": argument.span.file if argument.span else None,
+            "line": argument.span.line if argument.span else None,
+            "column": argument.span.column if argument.span else None,
+        }
+        for argument in arguments
+    ]

@@ -1,0 +1,53 @@
+"""The list of a description's arguments for a terminal."""
+
+from __future__ import annotations
+
+from linkwright.diagnostics import Diagnostic, Note, Severity
+from linkwright.xacro.arguments import Argument, Arguments
+from linkwright.xacro.story_text import place
+
+
+def arguments_text(arguments: tuple[Argument, ...]) -> str:
+    """The arguments, one a line: name, default, place, and what is special about it."""
+    if not arguments:
+        return "the file takes no arguments\n"
+    names = max(len(argument.name) for argument in arguments)
+    defaults = min(max(len(_default(argument)) for argument in arguments), 40)
+    lines = []
+    for argument in arguments:
+        remarks = "".join(f"  {remark}" for remark in _remarks(argument))
+        lines.append(f"{argument.name:{names}}  {_default(argument):{defaults}}  {place(argument.span)}{remarks}")
+    return "".join(f"{line.rstrip()}\n" for line in lines)
+
+
+def incomplete(examined: Arguments) -> list[Diagnostic]:
+    """A remark that the list may lack arguments, when the expansion came to no end."""
+    if not examined.problems:
+        return []
+    first = examined.problems[0]
+    message = "the file cannot be expanded with the arguments given, so some may be missing from the list"
+    required = [f"{argument.name}:=..." for argument in examined.arguments if argument.required]
+    hint = f"give {' '.join(required)}" if required else None
+    notes = (Note(first.message), *first.notes)
+    return [Diagnostic("XAC803", message, first.span, Severity.WARNING, notes, hint, first.source)]
+
+
+def _default(argument: Argument) -> str:
+    if argument.required:
+        return "required"
+    return "no default" if argument.default is None else f'"{argument.default}"'
+
+
+def _remarks(argument: Argument) -> list[str]:
+    remarks = []
+    if argument.given:
+        remarks.append(f'given "{argument.value}"')
+    elif argument.required and argument.default is not None:
+        remarks.append(f'asked for before its default "{argument.default}" is declared')
+    elif argument.default is None:
+        remarks.append("not declared")
+    elif argument.value is not None and argument.value != argument.default:
+        remarks.append(f'which is "{argument.value}"')
+    if not argument.used:
+        remarks.append("not used")
+    return remarks

@@ -1,0 +1,71 @@
+"""Calling what an expression calls, and paying for it.
+
+A function costs what it goes through: Python's own run through a long list much faster than an expression could, but
+not for nothing, and an expression may call them as often as it likes.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from linkwright.xacro import sandbox
+from linkwright.xacro.budget import Budget
+from linkwright.xacro.functions import Function
+from linkwright.xacro.yamldata import YamlDict, YamlList
+
+_CALL = 2
+_ITEMS_A_STEP = 2
+_CHARACTERS_A_STEP = 32
+_LONG_ITEMS = (list, tuple, dict, set, frozenset, range, YamlList, YamlDict)
+_SHARES = {**dict.fromkeys(_LONG_ITEMS, _ITEMS_A_STEP), str: _CHARACTERS_A_STEP, bytes: _CHARACTERS_A_STEP}
+_QUICK = frozenset(
+    {
+        *("append", "bool", "get", "isinstance", "items", "keys", "len", "pop", "popitem", "setdefault", "type"),
+        *("values",),
+    }
+)
+"""What takes no longer for a long value than for a short one."""
+
+
+def cost(value: Any) -> int:
+    """How many steps it takes to run through a value once; what is inside of its items does not count."""
+    share = _SHARES.get(value.__class__)
+    return len(value) // share if share else 0
+
+
+def call(budget: Budget, function: Any, arguments: list[Any], keywords: dict[str, Any]) -> Any:
+    """The value that a function gives for some arguments.
+
+    Raises:
+        RefusalError: the function may not be called, or its value is too large.
+        Fault: XAC603 when there were too many steps.
+    """
+    sandbox.check_call(function)
+    steps = _CALL
+    if getattr(function, "__name__", None) not in _QUICK:
+        for argument in arguments:
+            steps += cost(argument)
+        owner = getattr(function, "__self__", None)
+        if owner is not None:
+            steps += cost(owner)
+    budget.step(steps)
+    if (function is map or function is filter) and arguments:
+        arguments = [_paying(budget, arguments[0]), *arguments[1:]]
+    if "key" in keywords:
+        keywords = {**keywords, "key": _paying(budget, keywords["key"])}
+    value = function(*arguments, **keywords)
+    weight = sandbox.weight(value)
+    if weight:
+        budget.step(weight // (_CHARACTERS_A_STEP if isinstance(value, (str, bytes)) else _ITEMS_A_STEP))
+    return value
+
+
+def _paying(budget: Budget, function: Any) -> Any:
+    """A function that pays when Python's own functions call it; a lambda does so by itself."""
+    if not callable(function) or isinstance(function, Function):
+        return function
+
+    def paying(*arguments: Any) -> Any:
+        return call(budget, function, list(arguments), {})
+
+    return paying

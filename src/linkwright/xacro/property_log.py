@@ -1,0 +1,107 @@
+"""The log of properties: when each is set and used, as ``xacro --verbosity 3`` and ``4`` print it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.xacro.directives import DIRECTIVES
+from linkwright.xacro.engine import Inputs
+from linkwright.xacro.expander import Expander, Site
+from linkwright.xacro.observed import PROBE, ObservedSession, echo, expand_observed
+from linkwright.xacro.references import shown
+from linkwright.xacro.scope import Lazy, Scope
+from linkwright.xacro.session import Session
+from linkwright.xmltree import Element
+
+
+def log_properties(inputs: Inputs, put: Callable[[str], None], *, everywhere: bool) -> None:
+    """Expand a file for the log alone; what is wrong with it is not told.
+
+    Args:
+        inputs: what the expansion starts from.
+        put: takes each line of the log.
+        everywhere: whether the properties and parameters of macros and namespaces are logged too.
+    """
+    log = _Log(put, everywhere=everywhere)
+    try:
+        expand_observed(inputs, ObservedSession(inputs), {**DIRECTIVES, PROBE: log.probe})
+    except LinkwrightError:
+        put("the expansion ends here")
+
+
+class _Log:
+    """Puts a `_Table` into each scope as soon as it is seen."""
+
+    def __init__(self, put: Callable[[str], None], *, everywhere: bool) -> None:
+        self._put = put
+        self._everywhere = everywhere
+
+    def probe(self, expander: Expander, site: Site) -> None:
+        """What a probe does."""
+        scope, about = site.scope, site.node.origin
+        depth = _depth(scope)
+        if scope.values.__class__ is dict and (depth == 1 or self._everywhere):
+            session = expander.session
+            known, scope.values = scope.values, _Table(session, self._put, depth - 1)
+            if session.frame is not None:
+                session.place = session.frame.site  # which gives the parameters that are there already
+            for name, value in known.items():
+                scope.values[name] = value
+        if not (isinstance(about, Element) and about.tag == "xacro:macro"):
+            site.parent.children.append(echo(None))
+
+
+class _Table(dict[str, Any]):
+    """The names of a scope, logged."""
+
+    __slots__ = ("_indent", "_put", "_session", "_waiting")
+
+    def __init__(self, session: Session, put: Callable[[str], None], depth: int) -> None:
+        super().__init__()
+        self._session = session
+        self._put = put
+        self._indent = " " * depth
+        self._waiting: set[str] = set()
+
+    def __setitem__(self, name: str, value: Any) -> None:
+        super().__setitem__(name, value)
+        if name in self._waiting:  # not set anew: it is evaluated because it is used
+            self._waiting.discard(name)
+            self._tell("use", name, value)
+        else:
+            self._tell("set", name, value)
+
+    def __getitem__(self, name: str) -> Any:
+        value = super().__getitem__(name)
+        if isinstance(value, Lazy):
+            self._waiting.add(name)
+        else:
+            self._tell("use", name, value)
+        return value
+
+    def get(self, name: str, default: Any = None) -> Any:
+        """The value of a name; using it is logged."""
+        return self[name] if name in self else default  # noqa: SIM401 - it is `get` itself
+
+    def _tell(self, what: str, name: str, value: Any) -> None:
+        if isinstance(value, Scope):
+            return
+        if isinstance(value, Element):
+            text = f"<{value.tag}>"
+        else:
+            text = value.text if isinstance(value, Lazy) else shown(value)
+        place = self._session.place
+        span = place.span() if isinstance(place, Element) else None
+        if span is None and place is not None and place.source is not None:
+            span = place.source.span(place.offset)
+        self._put(f"{self._indent}{what} {name}: {text} ({span or self._session.file})")
+
+
+def _depth(scope: Scope) -> int:
+    """How many scopes there are around one."""
+    depth = 0
+    while scope.parent is not None:
+        scope, depth = scope.parent, depth + 1
+    return depth

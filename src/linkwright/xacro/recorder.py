@@ -1,0 +1,274 @@
+"""The recorder: what an expansion did for each element that it made."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from linkwright.diagnostics import LinkwrightError, Span
+from linkwright.xacro.calls import call_macro
+from linkwright.xacro.directives import DIRECTIVES
+from linkwright.xacro.expander import Directive, Expander, Site
+from linkwright.xacro.faults import Fault, attribute_part
+from linkwright.xacro.literals import literal
+from linkwright.xacro.macros import Parameter, parse_parameters
+from linkwright.xacro.observed import PROBE, echo
+from linkwright.xacro.origin import Frame
+from linkwright.xacro.references import Reference, Value, references, shown, written_attribute
+from linkwright.xacro.scope import Lazy, Scope
+from linkwright.xmltree import Element, Text
+
+
+@dataclass
+class Moment:
+    """How an element was made.
+
+    Attributes:
+        node: the element as it is written.
+        frame: the innermost macro call or include then.
+        values: attribute -> what it refers to.
+        texts: text as it is written, with what it refers to, for the texts with expressions in it.
+    """
+
+    node: Element
+    frame: Frame | None
+    values: dict[str, tuple[Value, ...]] = field(default_factory=dict)
+    texts: list[tuple[Text, tuple[Value, ...]]] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class Setting:
+    """A use of ``<xacro:attribute>``: its element, the call or include then, and what its value refers to."""
+
+    node: Element
+    name: str
+    value: str
+    frame: Frame | None
+    values: tuple[Value, ...]
+
+
+class Recorder:
+    """Watches one expansion.
+
+    Args:
+        given: the names of the arguments that were given.
+
+    Attributes:
+        directives: what the expansion is to be done with.
+    """
+
+    def __init__(self, given: Collection[str] = ()) -> None:
+        self._given = given
+        self.directives: Mapping[str, Directive] = {
+            **{tag: self._watched(directive) for tag, directive in DIRECTIVES.items()},
+            "xacro:property": self._define_property,
+            "xacro:attribute": self._set_attribute,
+            PROBE: self._probe,
+        }
+        self._moments: dict[int, tuple[Element, Moment]] = {}
+        self._settings: list[Setting] = []
+        self._set: dict[tuple[int, str], Setting] = {}
+        self._properties: dict[tuple[int, str], Element] = {}
+        self._parameters: dict[int, dict[str, Value]] = {}
+        self._of_frame: dict[int, tuple[Value, ...]] = {}
+        self._arguments: dict[str, Element] = {}
+        self._kept: list[Any] = []  # what is known by its id must live on
+
+    def call(self, expander: Expander, site: Site) -> None:
+        """What expands macro calls."""
+        self._watched(call_macro)(expander, site)
+
+    # what was recorded
+
+    def moment(self, element: Element) -> Moment | None:
+        """How an element was made."""
+        known = self._moments.get(id(element))
+        return known[1] if known else None
+
+    def setting(self, element: Element, name: str) -> Setting | None:
+        """The ``<xacro:attribute>`` that set an attribute of an element, or None when it is written on it."""
+        return self._set.get((id(element), name))
+
+    def parameters(self, frame: Frame) -> tuple[Value, ...]:
+        """The parameters of a macro call."""
+        return self._of_frame.get(id(frame), ())
+
+    # watching
+
+    def _watched(self, directive: Directive) -> Directive:
+        """A directive that may contain ``<xacro:attribute>``, whose effect goes to the element around it."""
+
+        def expand(expander: Expander, site: Site) -> None:
+            before = len(self._settings)
+            directive(expander, site)
+            for setting in self._settings[before:]:
+                if site.parent.attributes.get(setting.name) == setting.value:
+                    self._set[id(site.parent), setting.name] = setting
+            if site.node.tag == "xacro:arg" and site.node.attributes.get("name"):
+                self._arguments.setdefault(site.node.attributes["name"], site.node)
+
+        return expand
+
+    def _set_attribute(self, expander: Expander, site: Site) -> None:
+        node, session = site.node, expander.session
+        DIRECTIVES["xacro:attribute"](expander, site)
+        name = _again(expander, node, "name", site.scope)
+        if name is None or name not in site.parent.attributes:
+            return
+        values = self._values(expander, node.attributes["value"], site.scope)
+        setting = Setting(node, name, site.parent.attributes[name], session.frame, values)
+        self._settings.append(setting)
+        self._kept.append(site.parent)
+        self._set[id(site.parent), name] = setting
+
+    def _define_property(self, expander: Expander, site: Site) -> None:
+        DIRECTIVES["xacro:property"](expander, site)
+        name = _again(expander, site.node, "name", site.scope)
+        where = site.node.attributes.get("scope")
+        if name is None:
+            return
+        if "remove" in site.node.attributes and name not in site.scope:
+            self._forget(name, site.scope)
+            return
+        scope: Scope | None = site.scope if where is None else site.scope.parent
+        if where == "global":
+            scope = site.scope.document_scope()
+        while scope is not None and name not in scope.values:
+            scope = scope.parent
+        if scope is not None and ("default" not in site.node.attributes or (id(scope), name) not in self._properties):
+            self._kept.append(scope)
+            self._properties[id(scope), name] = site.node
+
+    def _forget(self, name: str, scope: Scope | None) -> None:
+        while scope is not None:
+            self._properties.pop((id(scope), name), None)
+            scope = scope.parent
+
+    def _probe(self, expander: Expander, site: Site) -> None:
+        made, about = site.parent, site.node.origin
+        if isinstance(about, Moment):  # a block that is expanded once more
+            self._remember(made, about)
+        elif isinstance(about, Text):
+            known = self.moment(made)
+            if known is not None:
+                known.texts.append((about, self._values(expander, about.data, site.scope)))
+            return
+        elif isinstance(about, Element) and about.tag == "xacro:macro":
+            self._begin_macro(expander, about, site.scope)
+            return
+        elif isinstance(about, Element):
+            moment = Moment(about, expander.session.frame)
+            for name, text in about.attributes.items():
+                if "$" in text:
+                    moment.values[name] = self._values(expander, text, site.scope)
+            about = moment
+            self._remember(made, moment)
+        made.children.append(echo(about))
+
+    def _remember(self, element: Element, moment: Moment) -> None:
+        self._moments[id(element)] = (element, moment)
+
+    def _begin_macro(self, expander: Expander, macro: Element, scope: Scope) -> None:
+        frame = expander.session.frame
+        if frame is None:
+            return
+        found = {}
+        for parameter in parse_parameters(macro.attributes.get("params", "")):
+            if not parameter.is_block and parameter.name in scope.values:
+                found[parameter.name] = _parameter(parameter, scope.values[parameter.name], frame.site, macro)
+        self._kept += [scope, frame]
+        self._parameters[id(scope)] = found
+        self._of_frame[id(frame)] = tuple(found.values())
+
+    # values
+
+    def _values(self, expander: Expander, text: str, scope: Scope) -> tuple[Value, ...]:
+        if "$" not in text:
+            return ()
+        found = (self._value(expander, reference, scope) for reference in references(text))
+        return tuple(value for value in found if value is not None)
+
+    def _value(self, expander: Expander, reference: Reference, scope: Scope) -> Value | None:
+        if reference.command is not None:
+            return self._substituted(expander, reference, scope)
+        holder = _holder(scope, reference.name)
+        if holder is None or holder.parent is None:
+            return None  # a name that the language provides
+        value = _evaluated(expander, f"${{{reference.path}}}", scope)
+        if value is _UNKNOWN or callable(value) or isinstance(value, Scope):
+            return None
+        node = self._properties.get((id(holder), reference.name))
+        if node is not None:
+            attribute = "value" if "value" in node.attributes else "default"
+            place, written = node.attribute_span(attribute), written_attribute(node, attribute)
+            return Value(reference.path, "property", shown(value), place, written)
+        parameter = self._parameters.get(id(holder), {}).get(reference.name)
+        if parameter is not None:
+            return Value(reference.path, "parameter", shown(value), parameter.span, parameter.written)
+        inside = self._member(holder.values.get(reference.name), reference.path)
+        place, written = inside or (None, None)
+        return Value(reference.path, "property", shown(value), place, written)
+
+    def _member(self, namespace: object, path: str) -> tuple[Span | None, str | None] | None:
+        """Where a property of a namespace, such as ``A.B.radius``, is defined."""
+        *_, name = parts = path.split(".")
+        for part in parts[1:-1]:
+            namespace = namespace.values.get(part) if isinstance(namespace, Scope) else None
+        node = self._properties.get((id(namespace), name))
+        if node is None:
+            return None
+        attribute = "value" if "value" in node.attributes else "default"
+        return node.attribute_span(attribute), written_attribute(node, attribute)
+
+    def _substituted(self, expander: Expander, reference: Reference, scope: Scope) -> Value | None:
+        value = _evaluated(expander, reference.path, scope)
+        if value is _UNKNOWN:
+            return None
+        if reference.command == "arg":
+            node = self._arguments.get(reference.name)
+            if node is None or reference.name in self._given:
+                return Value(reference.path, "argument", shown(value))
+            place, written = node.attribute_span("default"), written_attribute(node, "default")
+            return Value(reference.path, "argument", shown(value), place, written)
+        return Value(reference.path, "package" if reference.command == "find" else "variable", shown(value))
+
+
+_UNKNOWN = object()
+
+
+def _evaluated(expander: Expander, text: str, scope: Scope) -> Any:
+    try:
+        return expander.session.evaluate(text, scope)
+    except (Fault, LinkwrightError, KeyError):
+        return _UNKNOWN
+
+
+def _again(expander: Expander, node: Element, attribute: str, scope: Scope) -> str | None:
+    """An attribute that a directive has evaluated, evaluated once more; None where that could change something."""
+    text = node.attributes.get(attribute)
+    if text is None or ("$" in text and expander.session.changes(text)):
+        return None
+    return expander.text_value(node, attribute, scope)
+
+
+def _holder(scope: Scope, name: str) -> Scope | None:
+    """The scope of a chain that has a name."""
+    holder: Scope | None = scope
+    while holder is not None and name not in holder.values:
+        holder = holder.parent
+    return holder
+
+
+def _parameter(parameter: Parameter, value: Any, call: Element, macro: Element) -> Value:
+    """A parameter of a call: what the call gives it, or its default."""
+    text = shown(value.text if isinstance(value, Lazy) else literal(value))
+    if parameter.name in call.attributes:
+        place, written = call.attribute_span(parameter.name), written_attribute(call, parameter.name)
+        return Value(parameter.name, "parameter", text, place, written)
+    default = parameter.default
+    if default is None:
+        place = attribute_part(macro, "params", parameter.start, parameter.start + len(parameter.name))
+        return Value(parameter.name, "parameter", text, place, None)
+    place = attribute_part(macro, "params", parameter.default_start, parameter.default_start + len(default))
+    return Value(parameter.name, "parameter", text, place, default)

@@ -1,0 +1,142 @@
+"""What a text with expressions refers to: the names in it, each with its value and where it got it."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from linkwright.diagnostics import Span
+from linkwright.xacro.faults import Fault
+from linkwright.xacro.lexer import TokenKind, tokenize
+from linkwright.xmltree.positions import attribute_value_range
+
+_LONGEST = 100
+
+
+@dataclass(frozen=True, slots=True)
+class Value:
+    """What a name stood for when a text was evaluated.
+
+    Attributes:
+        name: the name as written, such as ``radius``, ``arm.length`` or ``$(arg prefix)``.
+        kind: ``parameter``, ``property``, ``argument``, ``package`` or ``variable`` (of the environment).
+        value: its value, as Python writes it; long ones are cut.
+        span: where the value is written, or None if it was given from outside.
+        written: the text there, such as ``${wheel_radius}``, or None.
+    """
+
+    name: str
+    kind: str
+    value: str
+    span: Span | None = None
+    written: str | None = None
+
+
+class Reference(NamedTuple):
+    """A name in a text.
+
+    Attributes:
+        path: the name, with the keys that are reached for in it, as an expression.
+        name: the name alone.
+        command: ``arg``, ``find``, ``env`` or ``optenv`` for a substitution, else None.
+    """
+
+    path: str
+    name: str
+    command: str | None = None
+
+
+def references(text: str) -> list[Reference]:
+    """The names in a text, each path once, in the order in which they stand there."""
+    found = dict.fromkeys(_references(text))
+    return list(found)
+
+
+def shown(value: Any) -> str:
+    """A value as Python writes it, cut when it is long."""
+    from linkwright.xacro import sandbox
+
+    try:
+        text = repr(value) if isinstance(value, str) else sandbox.as_text(value)
+    except (sandbox.RefusalError, ValueError):
+        text = f"a {type(value).__name__}"
+    return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 3]}..."
+
+
+def written_attribute(element: Any, name: str) -> str | None:
+    """An attribute's value as the source has it, or None when it is not there."""
+    source = element.source
+    if source is None:
+        return None
+    place = attribute_value_range(source.text, element.offset, name)
+    return source.text[place[0] : place[1]] if place else None
+
+
+def _references(text: str) -> Iterator[Reference]:
+    try:
+        tokens = tokenize(text)
+    except Fault:
+        return
+    for kind, inside, _, _ in tokens:
+        if kind is TokenKind.TEXT:
+            continue
+        if "$" in inside:
+            yield from _references(inside)
+        if kind is TokenKind.SUBSTITUTION:
+            yield from _substituted(inside)
+        else:
+            yield from _in_expression(inside)
+
+
+def _substituted(inside: str) -> Iterator[Reference]:
+    words = inside.split()
+    if len(words) >= 2 and words[0] in ("arg", "find", "env", "optenv"):
+        yield Reference(f"$({inside})", words[1], words[0])
+
+
+def _in_expression(inside: str) -> Iterator[Reference]:
+    paths = _Paths()
+    try:
+        paths.visit(ast.parse(inside.strip(), mode="eval"))
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return
+    yield from (reference for reference in paths.found if reference.name not in paths.bound)
+
+
+class _Paths(ast.NodeVisitor):
+    """Collects names with the keys reached for in them; the variables of lambdas and comprehensions are `bound`."""
+
+    def __init__(self) -> None:
+        self.found: list[Reference] = []
+        self.bound: set[str] = set()
+
+    def visit(self, node: ast.AST) -> None:
+        if isinstance(node, ast.arg) or (isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)):
+            self.bound.add(node.arg if isinstance(node, ast.arg) else node.id)
+            return
+        name = _root(node)
+        if name is not None:
+            self.found.append(Reference(ast.unparse(node), name))
+            for part in ast.walk(node):
+                if isinstance(part, ast.Subscript):
+                    self.visit(part.slice)
+        elif isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
+            for part in (node.func.value, *node.args, *node.keywords):  # the method itself is no value to show
+                self.visit(part)
+        else:
+            self.generic_visit(node)
+
+
+def _root(node: ast.AST) -> str | None:
+    """The name that a path of keys begins with; None when it is no such path."""
+    while True:
+        if isinstance(node, ast.Name):
+            return node.id
+        if isinstance(node, ast.Attribute) or (
+            isinstance(node, ast.Subscript) and isinstance(node.slice, (ast.Constant, ast.Name))
+        ):
+            node = node.value
+        else:
+            return None

@@ -1,0 +1,119 @@
+"""From YAML nodes to values, for what nearly all files consist of: mappings and lists of texts and numbers.
+
+PyYAML's own way does the same with a dozen calls for each value. Anything out of the ordinary (merge keys, keys that
+are no scalars, dates, tags) is left to it.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import yaml
+
+_PREFIX = "tag:yaml.org,2002:"
+_MOST_REMEMBERED = 10_000
+_DEEPEST = 200
+_MOST_PAIRS = 100_000
+
+tags: dict[str, str] = {}
+"""Plain scalar -> its tag; what a plain scalar is does not depend on where it stands."""
+
+
+class NodeLoader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore[misc]
+    """The safe loader, which remembers the tags of plain scalars, and which has bounds.
+
+    Without them, a file of a few lines could fill the memory, or overflow the stack of libyaml's composer.
+    """
+
+    depth = 0
+    merged = 0
+
+    def resolve(self, kind: Any, value: Any, implicit: Any) -> Any:
+        """The tag of a node that has none."""
+        if kind is not yaml.ScalarNode or not implicit[0]:
+            return super().resolve(kind, value, implicit)
+        tag = tags.get(value)
+        if tag is None:
+            if len(tags) >= _MOST_REMEMBERED:
+                tags.clear()
+            tag = tags[value] = super().resolve(kind, value, implicit)
+        return tag
+
+    def descend_resolver(self, node: Any, _index: Any) -> None:
+        """Count how deep nodes nest; tags do not depend on the path to a node."""
+        self.depth += 1
+        if self.depth > _DEEPEST:
+            message = f"the values are nested more than {_DEEPEST} deep"
+            raise yaml.composer.ComposerError(None, None, message, node.start_mark)
+
+    def ascend_resolver(self) -> None:
+        """See `descend_resolver`."""
+        self.depth -= 1
+
+    def flatten_mapping(self, node: Any) -> None:
+        """Put the pairs of merged mappings into a mapping, unless they become too many."""
+        super().flatten_mapping(node)
+        self.merged += len(node.value)
+        if self.merged > _MOST_PAIRS:
+            message = f"the merged mappings have more than {_MOST_PAIRS:,} keys"
+            raise yaml.constructor.ConstructorError(None, None, message, node.start_mark)
+
+
+class _UnusualError(Exception):
+    """A node that is left to PyYAML."""
+
+
+def construct(loader: Any, node: Any) -> Any:
+    """The value of the root node of a document.
+
+    Raises:
+        yaml.YAMLError: it has none.
+    """
+    try:
+        return _Construction(loader).value(node)
+    except _UnusualError:
+        return loader.construct_document(node)
+
+
+class _Construction:
+    def __init__(self, loader: Any) -> None:
+        self._scalars = {
+            f"{_PREFIX}int": loader.construct_yaml_int,
+            f"{_PREFIX}float": loader.construct_yaml_float,
+            f"{_PREFIX}bool": loader.construct_yaml_bool,
+            f"{_PREFIX}null": loader.construct_yaml_null,
+        }
+        self._begun: set[int] = set()
+        self._done: dict[int, Any] = {}  # node -> its value, for what aliases share
+
+    def value(self, node: Any) -> Any:
+        tag = node.tag
+        if isinstance(node, yaml.ScalarNode):
+            if tag == "tag:yaml.org,2002:str":
+                return node.value
+            convert = self._scalars.get(tag)
+            if convert is None:
+                raise _UnusualError
+            return convert(node)
+        key = id(node)
+        if key in self._done:
+            return self._done[key]
+        if key in self._begun:
+            raise _UnusualError
+        self._begun.add(key)
+        if tag == "tag:yaml.org,2002:map":
+            value: Any = self._mapping(node)
+        elif tag == "tag:yaml.org,2002:seq":
+            value = [self.value(item) for item in node.value]
+        else:
+            raise _UnusualError
+        self._done[key] = value
+        return value
+
+    def _mapping(self, node: Any) -> dict[Any, Any]:
+        mapping = {}
+        for key, value in node.value:
+            if not isinstance(key, yaml.ScalarNode):
+                raise _UnusualError
+            mapping[self.value(key)] = self.value(value)
+        return mapping

@@ -1,0 +1,168 @@
+"""`linkwright check` over several files and folders: what is looked at, forms, settings, fixes, exit status."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from linkwright.cli import main
+from linkwright.lint.targets import find_targets
+
+GOOD = '<robot name="r">\n  <link name="base_link"/>\n</robot>\n'
+XACRO = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
+LONG_AXIS = """<robot name="r">
+  <link name="base_link"/>
+  <link name="arm_link"/>
+  <joint name="arm_joint" type="continuous">
+    <parent link="base_link"/>
+    <child link="arm_link"/>
+    <axis xyz="0 0 2"/>
+  </joint>
+</robot>
+"""
+ONLY = ["--select", "LW2"]
+
+
+@pytest.fixture(autouse=True)
+def here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def write(folder, files):
+    for name, text in files.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(text)
+
+
+def test_of_a_folder_the_descriptions_are_checked_that_stand_by_themselves(here):
+    write(
+        here,
+        {
+            "a/plain.urdf": GOOD,
+            "a/robot.urdf.xacro": f'<robot name="r" {XACRO}><xacro:include filename="parts/arm.xacro"/><x/></robot>',
+            "a/parts/arm.xacro": f'<robot name="arm" {XACRO}><link name="b"/></robot>',
+            "a/macros.xacro": f'<robot name="m" {XACRO}><xacro:macro name="m"><link name="c"/></xacro:macro></robot>',
+            "a/unnamed.xacro": f'<robot {XACRO}><link name="c"/></robot>',
+            "a/wrapper.xacro": f'<robot name="w" {XACRO}><xacro:include filename="robot2.xacro"/></robot>',
+            "a/r.srdf.xacro": f'<robot name="s" {XACRO}><group name="arm"/></robot>',
+            "a/broken.xacro": "<robot",
+            "build/copy.urdf": GOOD,
+            ".hidden/h.urdf": GOOD,
+            "ignored/COLCON_IGNORE": "",
+            "ignored/i.urdf": GOOD,
+        },
+    )
+    found = [path.relative_to(here).as_posix() for path in find_targets([here]).files]
+    assert found == ["a/broken.xacro", "a/plain.urdf", "a/robot.urdf.xacro", "a/wrapper.xacro"]
+
+
+def test_packages_are_those_around_the_files_and_those_in_the_folders(here):
+    manifest = "<package><name>{}</name></package>"
+    write(
+        here,
+        {
+            "src/one/package.xml": manifest.format("one"),
+            "src/one/urdf/r.urdf": GOOD,
+            "src/two/package.xml": manifest.format("two"),
+        },
+    )
+    assert find_targets([here / "src"]).packages == (here / "src" / "one", here / "src" / "two")
+    assert find_targets([here / "src/one/urdf/r.urdf"]).packages == (here / "src" / "one",)
+
+
+def test_of_several_files_no_tree_is_printed_but_a_summary(here, capsys):
+    write(here, {"a.urdf": GOOD, "b.urdf": LONG_AXIS})
+    assert main(["check", "a.urdf", "b.urdf", *ONLY]) == 0
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert "warning[LW221]" in captured.err
+    assert captured.err.endswith("0 errors, 1 warning\n")
+
+
+def test_warnings_fail_when_strict(here):
+    write(here, {"b.urdf": LONG_AXIS})
+    assert main(["check", "b.urdf", *ONLY]) == 0
+    assert main(["check", "b.urdf", *ONLY, "--strict"]) == 1
+    assert main(["check", "b.urdf", *ONLY, "--strict", "--ignore", "axis-not-unit"]) == 0
+
+
+def test_forms_go_to_standard_output(here, capsys):
+    write(here, {"b.urdf": LONG_AXIS})
+    main(["check", "b.urdf", *ONLY, "--format", "concise"])
+    assert capsys.readouterr().out.startswith("b.urdf:7:16: warning[LW221] ")
+    main(["check", "b.urdf", *ONLY, "--format", "json"])
+    (found,) = json.loads(capsys.readouterr().out)["diagnostics"]
+    assert (found["code"], found["file"], found["line"], found["column"]) == ("LW221", "b.urdf", 7, 16)
+    main(["check", "b.urdf", *ONLY, "--format", "sarif"])
+    assert json.loads(capsys.readouterr().out)["version"] == "2.1.0"
+    main(["check", "b.urdf", *ONLY, "--format", "github"])
+    captured = capsys.readouterr()
+    assert captured.out.startswith("::warning file=b.urdf,line=7")
+    assert captured.err == ""
+
+
+def test_a_file_that_two_robots_include_is_told_of_once(here, capsys):
+    robot = f'<robot name="r" {XACRO}><xacro:include filename="../arm.xacro"/></robot>'
+    write(here, {"a/one.xacro": robot, "a/two.xacro": robot, "arm.xacro": LONG_AXIS.replace('name="r"', XACRO, 1)})
+    main(["check", "a", *ONLY, "--format", "json"])
+    assert len(json.loads(capsys.readouterr().out)["diagnostics"]) == 1
+
+
+def test_values_are_for_all_files(here, capsys):
+    text = f'<robot name="r" {XACRO}><link name="$(arg n)"/></robot>'
+    write(here, {"a.xacro": text, "b.xacro": text})
+    assert main(["check", "a.xacro", "n:=x", "b.xacro", *ONLY]) == 0
+    assert main(["check", "a.xacro", "b.xacro", *ONLY]) == 1
+
+
+def test_fixes_are_written_and_counted(here, capsys):
+    write(here, {"b.urdf": LONG_AXIS})
+    assert main(["check", "b.urdf", "--diff", *ONLY]) == 1
+    assert '+    <axis xyz="0 0 1"/>' in capsys.readouterr().out
+    assert (here / "b.urdf").read_text() == LONG_AXIS
+    assert main(["check", "b.urdf", "--fix", *ONLY]) == 0
+    assert (here / "b.urdf").read_text() == LONG_AXIS.replace("0 0 2", "0 0 1")
+    assert "mended 1 finding in 1 file" in capsys.readouterr().err
+    assert main(["check", "b.urdf", "--diff", *ONLY]) == 0
+
+
+def test_statistics(here, capsys):
+    write(here, {"b.urdf": LONG_AXIS})
+    main(["check", "b.urdf", "--statistics", *ONLY])
+    assert capsys.readouterr().err.endswith("     1  LW221     axis-not-unit\n")
+
+
+def test_a_configuration_is_found_or_named(here, capsys):
+    write(here, {"r/b.urdf": LONG_AXIS, "r/linkwright.toml": 'select = ["LW1"]\n', "other.toml": 'select = ["LW2"]\n'})
+    main(["check", "r/b.urdf", "--format", "concise"])
+    assert "LW221" not in capsys.readouterr().out
+    main(["check", "r/b.urdf", "--format", "concise", "--config", "other.toml"])
+    assert "LW221" in capsys.readouterr().out
+
+
+def test_mistakes_in_the_configuration_are_told_once(here, capsys):
+    write(here, {"a.urdf": GOOD, "b.urdf": GOOD, "linkwright.toml": 'ignore = ["nonsens"]\n'})
+    assert main(["check", "a.urdf", "b.urdf"]) == 1
+    assert capsys.readouterr().err.count("error[LINT104]") == 1
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["n:=1"], "name a file or folder to check"),
+        (["b.urdf", "--select", "limit-invertd"], "there is no rule 'limit-invertd'; did you mean 'limit-inverted'?"),
+        (["b.urdf", "--config", "none.toml"], "no such file: 'none.toml'"),
+    ],
+)
+def test_wrong_usage(here, capsys, words, said):
+    write(here, {"b.urdf": GOOD})
+    assert main(["check", *words]) == 2
+    assert said in capsys.readouterr().err
+
+
+def test_a_missing_file_is_told(here, capsys):
+    write(here, {"b.urdf": GOOD})
+    assert main(["check", "c.urdf"]) == 1
+    assert "there are: b.urdf" in capsys.readouterr().err

@@ -1,0 +1,151 @@
+"""`linkwright inertia`: the blocks, the comparison, writing, and what cannot be."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from linkwright.cli import main
+from linkwright.urdf import load
+
+MODEL = """\
+<robot name="r">
+  <link name="base_footprint"/>
+  <joint name="base_joint" type="fixed"><parent link="base_footprint"/><child link="base_link"/></joint>
+  <link name="base_link">
+    <inertial>
+      <origin xyz="0.01 0 0"/>
+      <mass value="2"/>
+      <inertia ixx="0.02" ixy="0" ixz="0" iyy="0.02" iyz="0" izz="0.02"/>
+    </inertial>
+    <visual><geometry><box size="0.2 0.2 0.2"/></geometry></visual>
+  </link>
+  <joint name="wheel_joint" type="continuous"><parent link="base_link"/><child link="wheel"/></joint>
+  <link name="wheel">
+    <collision><geometry><sphere radius="0.1"/></geometry></collision>
+  </link>
+</robot>
+"""
+
+
+@pytest.fixture
+def model(tmp_path):
+    path = tmp_path / "r.urdf"
+    path.write_text(MODEL)
+    return path
+
+
+def test_blocks_and_comparison(model, capsys):
+    assert main(["inertia", str(model)]) == 0
+    assert capsys.readouterr().out == (
+        "base_footprint: no shape with a volume, so nothing is computed\n"
+        "\n"
+        "base_link: 1 visual shape, mass as in the file: 2 kg at 250 kg/m3\n"
+        "  <inertial>\n"
+        '    <origin xyz="0 0 0" rpy="0 0 0"/>\n'
+        '    <mass value="2"/>\n'
+        '    <inertia ixx="0.0133333" ixy="0" ixz="0" iyy="0.0133333" iyz="0" izz="0.0133333"/>\n'
+        "  </inertial>\n"
+        "  in the file: mass 2 kg (1 times), centre of mass 10 mm away, "
+        "principal moments for each kg 1.5 1.5 1.5 times\n"
+        "\n"
+        "wheel: 1 collision shape, mass from density: 4.18879 kg at 1000 kg/m3\n"
+        "  <inertial>\n"
+        '    <origin xyz="0 0 0" rpy="0 0 0"/>\n'
+        '    <mass value="4.18879"/>\n'
+        '    <inertia ixx="0.0167552" ixy="0" ixz="0" iyy="0.0167552" iyz="0" izz="0.0167552"/>\n'
+        "  </inertial>\n"
+        "  in the file: no <inertial>\n"
+    )
+
+
+def test_density_mass_and_link(model, capsys):
+    words = ["inertia", str(model), "--density", "100", "--mass", "wheel=0.5", "--link", "wheel", "--link", "base_link"]
+    assert main(words) == 0
+    out = capsys.readouterr().out
+    assert "base_link: 1 visual shape, mass from density: 0.8 kg at 100 kg/m3" in out
+    assert "wheel: 1 collision shape, mass as given: 0.5 kg" in out
+    assert "base_footprint" not in out
+
+
+def test_json(model, capsys):
+    assert main(["inertia", str(model), "--format", "json"]) == 0
+    data = json.loads(capsys.readouterr().out)
+    empty, base, wheel = data["links"]
+    assert empty["inertial"] is None
+    assert base["inertial"]["mass"] == 2.0
+    assert base["inertial"]["inertia"]["ixx"] == pytest.approx(2 * 0.08 / 12)
+    assert base["present"]["center_distance"] == pytest.approx(0.01)
+    assert base["present"]["moment_ratios"] == pytest.approx([1.5] * 3)
+    assert base["equivalent_box"] == pytest.approx([0.2] * 3, rel=1e-4)
+    assert wheel["present"] is None
+    assert wheel["from"] == "collision"
+    assert wheel["xml"].startswith("<inertial>\n  <origin")
+
+
+def test_writing(model, capsys):
+    assert main(["inertia", str(model), "--write"]) == 0
+    out = capsys.readouterr().out
+    assert out.endswith(f"wrote 2 <inertial> to '{model}'\n")
+    assert "  it was: mass 2 kg" in out
+    assert "<mass" not in out
+    robot = load(model)
+    assert robot.links["base_link"].inertial.ixx == 0.0133333
+    assert robot.links["wheel"].inertial.mass == 4.18879
+    assert main(["inertia", str(model)]) == 0
+    assert "0 mm away, principal moments for each kg 1 1 1 times" in capsys.readouterr().out
+
+
+def test_what_a_macro_writes_is_printed_and_refused(tmp_path, capsys):
+    path = tmp_path / "r.xacro"
+    path.write_text(
+        '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
+        '  <xacro:macro name="ball" params="name r">\n'
+        '    <link name="${name}"><visual><geometry><sphere radius="${r}"/></geometry></visual></link>\n'
+        "  </xacro:macro>\n"
+        '  <xacro:arg name="r" default="1"/>\n'
+        '  <xacro:ball name="b" r="$(arg r)"/>\n'
+        "</robot>\n"
+    )
+    before = path.read_text()
+    assert main(["inertia", str(path), "r:=0.1", "--write"]) == 1
+    captured = capsys.readouterr()
+    assert '<mass value="4.18879"/>' in captured.out
+    assert "wrote 0 <inertial> to no file" in captured.out
+    assert "INR211" in captured.err
+    assert "it is written by the macro 'ball'" in captured.err
+    assert f"{path}:3:5" in captured.err
+    assert path.read_text() == before
+
+
+def test_names_are_checked(model, capsys):
+    assert main(["inertia", str(model), "--link", "weel"]) == 1
+    err = capsys.readouterr().err
+    assert "CLI311" in err
+    assert "did you mean 'wheel'?" in err
+    assert main(["inertia", str(model), "--mass", "weel=1", "--mass", "wheel", "--mass", "wheel=-1"]) == 1
+    err = capsys.readouterr().err
+    assert err.count("CLI312") == 2
+    assert "CLI311" in err
+
+
+def test_a_density_is_positive(model, capsys):
+    assert main(["inertia", str(model), "--density", "-3"]) == 2
+    assert "'-3' is not a positive number" in capsys.readouterr().err
+
+
+def test_a_description_without_a_robot(tmp_path, capsys):
+    path = tmp_path / "r.urdf"
+    path.write_text('<robot name="r"/>')
+    assert main(["inertia", str(path)]) == 1
+    assert "URDF106" in capsys.readouterr().err
+
+
+def test_errors_in_the_description_are_told_and_the_rest_is_computed(tmp_path, capsys):
+    path = tmp_path / "r.urdf"
+    path.write_text(MODEL.replace('<mass value="2"/>', '<mass value="2 kg"/>'))
+    assert main(["inertia", str(path)]) == 1
+    captured = capsys.readouterr()
+    assert "2 kg" in captured.err
+    assert "wheel: 1 collision shape" in captured.out

@@ -1,0 +1,39 @@
+"""The pages of the rules are generated and current; every rule has a Chinese title."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from linkwright.lint.registry import all_rules
+from tests.repository_tools import load_tool
+
+
+def test_the_pages_are_current() -> None:
+    for path, text in load_tool("rule_reference").generate().items():
+        assert path.read_text(encoding="utf-8") == text, "run tools/rule_reference.py"
+
+
+def test_every_rule_has_a_chinese_title_and_nothing_else_has() -> None:
+    assert set(load_tool("rule_reference").chinese_titles()) == {rule.code for rule in all_rules()}
+
+
+def test_every_rule_is_on_exactly_one_page() -> None:
+    tool = load_tool("rule_reference")
+    whole = "".join(tool.generate().values())
+    for rule in all_rules():
+        assert whole.count(f"{{#{rule.code.lower()}}}") == 1
+        assert all(f"`{option.name}` (default" in whole for option in rule.options)
+
+
+def test_the_check_finds_a_stale_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    tool = load_tool("rule_reference")
+    monkeypatch.setattr(tool, "DOCS", tmp_path)
+    monkeypatch.setattr(tool, "ROOT", tmp_path)
+    monkeypatch.setattr("sys.argv", ["rule_reference.py", "--check"])
+    assert tool.main() == 1
+    monkeypatch.setattr("sys.argv", ["rule_reference.py"])
+    assert tool.main() == 0
+    monkeypatch.setattr("sys.argv", ["rule_reference.py", "--check"])
+    assert tool.main() == 0

@@ -1,0 +1,106 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from linkwright.inertia import MeshLibrary, estimate
+from linkwright.urdf import load
+from linkwright.workspace import PackageFinder
+
+BOX = '<geometry><box size="0.2 0.2 0.2"/></geometry>'
+BALL = '<geometry><sphere radius="0.1"/></geometry>'
+TETRAHEDRON = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n"
+"""Without its slanted side."""
+INERTIAL = '<inertial><mass value="{}"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>'
+
+
+@pytest.fixture
+def of(tmp_path):
+    """Estimates the only link of a robot from what stands in it."""
+
+    def estimate_link(content, **options):
+        robot = load(f'<robot name="r" version="1.1"><link name="a">{content}</link></robot>')
+        return estimate(robot.links["a"], MeshLibrary(PackageFinder(start=tmp_path), tmp_path), **options)
+
+    return estimate_link
+
+
+def test_water_when_nothing_is_said(of):
+    found = of(f"<visual>{BOX}</visual>")
+    assert (found.kind, found.shapes, found.basis) == ("visual", 1, "density")
+    assert found.properties.mass == pytest.approx(8.0)
+    assert found.density == pytest.approx(1000.0)
+
+
+def test_the_mass_in_the_file_is_kept(of):
+    found = of(f"{INERTIAL.format(2)}<visual>{BOX}</visual>")
+    assert found.basis == "present"
+    assert found.properties.mass == pytest.approx(2.0)
+    assert found.density == pytest.approx(250.0)
+    assert found.properties.inertia[0, 0] == pytest.approx(2.0 * 0.04 * 2 / 12)
+
+
+def test_a_mass_that_is_none_is_not_kept(of):
+    assert of(f"{INERTIAL.format(-2)}<visual>{BOX}</visual>").basis == "density"
+
+
+def test_a_density_wins_over_the_file_and_a_mass_over_both(of):
+    content = f"{INERTIAL.format(2)}<visual>{BOX}</visual>"
+    assert of(content, density=500.0).properties.mass == pytest.approx(4.0)
+    assert of(content, density=500.0, mass=7.0).properties.mass == pytest.approx(7.0)
+
+
+def test_collisions_come_first_unless_visuals_are_asked_for(of):
+    content = f"<visual>{BOX}</visual><collision>{BALL}</collision>"
+    assert of(content).kind == "collision"
+    assert of(content, prefer="visual").kind == "visual"
+    assert of(f"<collision>{BALL}</collision>", prefer="visual").kind == "collision"
+
+
+def test_several_shapes_are_one_body(of):
+    found = of(
+        f'<visual><origin xyz="0 0 0.1"/>{BOX}</visual><visual><origin xyz="0 0 -0.1"/>{BOX}</visual>', density=100.0
+    )
+    assert found.shapes == 2
+    assert np.allclose(found.properties.center, 0)
+    assert found.properties.mass == pytest.approx(1.6)
+    assert found.properties.inertia[0, 0] == pytest.approx(1.6 * (0.04 + 0.16) / 12)
+
+
+def test_a_link_without_shapes_has_nothing(of):
+    found = of("")
+    assert found.properties is None
+    assert found.kind is None
+
+
+def test_a_capsule(of):
+    found = of('<collision><geometry><capsule radius="0.1" length="0.2"/></geometry></collision>', density=1.0)
+    assert found.properties.mass == pytest.approx(np.pi * 0.01 * 0.2 + 4 / 3 * np.pi * 0.001)
+
+
+def test_an_open_mesh_is_its_hull_and_says_so(of, tmp_path):
+    (tmp_path / "open.obj").write_text(TETRAHEDRON)
+    found = of('<collision><geometry><mesh filename="open.obj" scale="1 -2 3"/></geometry></collision>', density=1.0)
+    assert found.properties.mass == pytest.approx(1.0)
+    assert np.allclose(found.properties.center, (0.25, -0.5, 0.75))
+    assert found.notes == ("the collision mesh 'open.obj' is not watertight: its convex hull is taken",)
+
+
+def test_a_mesh_that_is_missing_leaves_the_visuals(of):
+    found = of(f'<visual>{BOX}</visual><collision><geometry><mesh filename="none.stl"/></geometry></collision>')
+    assert found.kind == "visual"
+    assert found.notes[0].startswith("a collision mesh is left out: there is no mesh file")
+    assert found.notes[1] == "taken from the visual shapes instead"
+
+
+def test_shapes_without_volume_are_left_out(of, tmp_path):
+    (tmp_path / "flat.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    found = of(
+        '<visual><geometry><box size="1 0 1"/></geometry></visual>'
+        '<visual><geometry><mesh filename="flat.obj"/></geometry></visual>'
+    )
+    assert found.properties is None
+    assert found.notes == (
+        "a visual box is left out: it has a size that is not positive",
+        "the visual mesh 'flat.obj' is left out: it is flat",
+    )

@@ -1,0 +1,152 @@
+from __future__ import annotations
+
+import struct
+
+import numpy as np
+import pytest
+import trimesh
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.inertia import MeshLibrary, read_mesh
+from linkwright.urdf import Mesh
+from linkwright.workspace import PackageFinder
+from linkwright.xmltree import parse
+from tests.places import REPOSITORY
+
+CONE = trimesh.creation.cone(0.3, 1.0)
+
+
+def write(folder, kind):
+    """A cone in a file of a kind."""
+    data = CONE.export(file_type=kind)
+    path = folder / f"cone.{kind.partition('_')[0]}"
+    if isinstance(data, dict):  # glTF with its buffer beside it
+        for name, part in data.items():
+            (folder / name).write_bytes(part)
+        (folder / "model.gltf").rename(path)
+    else:
+        path.write_bytes(data.encode() if isinstance(data, str) else data)
+    return path
+
+
+@pytest.mark.parametrize("kind", ["stl", "stl_ascii", "obj", "dae", "glb", "gltf"])
+def test_every_format_gives_the_same_body(kind, tmp_path):
+    mesh = read_mesh(write(tmp_path, kind))
+    assert mesh.is_watertight
+    assert mesh.solid.mass == pytest.approx(CONE.volume, rel=1e-5)
+    assert np.allclose(mesh.solid.center, CONE.center_mass, atol=1e-5)
+    assert np.allclose(mesh.solid.inertia, CONE.moment_inertia, rtol=1e-4, atol=1e-8)
+    assert np.allclose(mesh.bounds, CONE.bounds, atol=1e-6)
+
+
+def test_endings_in_capitals_are_endings(tmp_path):
+    write(tmp_path, "stl").rename(tmp_path / "CONE.STL")
+    assert len(read_mesh(tmp_path / "CONE.STL").faces) == len(CONE.faces)
+
+
+def test_the_unit_of_collada_is_applied_and_its_up_axis_is_not(tmp_path):
+    path = write(tmp_path, "dae")
+    text = path.read_text(encoding="utf-8")
+    assert "<up_axis>Y_UP</up_axis>" in text
+    changed = text.replace("<asset>", '<asset><unit name="millimeter" meter="0.001"/>', 1)
+    path.write_text(changed.replace("Y_UP", "Z_UP"), encoding="utf-8")
+    assert np.allclose(read_mesh(path).bounds, CONE.bounds * 0.001, atol=1e-9)
+
+
+def test_the_kinect_of_mbot_is_as_large_as_a_kinect():
+    mesh = read_mesh(REPOSITORY / "robots" / "my_robot_description" / "meshes" / "kinect.dae")
+    assert mesh.is_watertight
+    assert np.allclose(mesh.bounds[1] - mesh.bounds[0], (0.28, 0.07, 0.046), atol=1e-3)
+
+
+def test_parts_of_a_scene_stand_where_its_nodes_put_them(tmp_path):
+    scene = trimesh.Scene()
+    box = trimesh.creation.box((1, 1, 1))
+    scene.add_geometry(box, transform=trimesh.transformations.translation_matrix((5, 0, 0)))
+    mirrored = np.diag((1.0, -1.0, 1.0, 1.0))
+    scene.add_geometry(box, transform=mirrored)
+    (tmp_path / "scene.glb").write_bytes(scene.export(file_type="glb"))
+    mesh = read_mesh(tmp_path / "scene.glb")
+    assert mesh.is_watertight
+    assert mesh.solid.mass == pytest.approx(2.0, rel=1e-5)
+    assert np.allclose(mesh.solid.center, (2.5, 0, 0), atol=1e-5)
+
+
+@pytest.mark.parametrize("scale", [(2, 2, 2), (0.001, 0.001, 0.001), (1, -1, 1), (-1, -2, -3)])
+def test_scaling_scales_the_solid(scale, tmp_path):
+    mesh = read_mesh(write(tmp_path, "stl")).scaled(scale)
+    assert mesh.is_watertight
+    assert mesh.solid.mass == pytest.approx(CONE.volume * abs(np.prod(scale)), rel=1e-5)
+    assert np.allclose(mesh.solid.center, CONE.center_mass * scale, atol=1e-5)
+
+
+def test_an_open_mesh_is_taken_as_its_hull(tmp_path):
+    ball = trimesh.creation.icosphere(2)
+    ball.update_faces(np.arange(len(ball.faces)) > 3)
+    (tmp_path / "open.stl").write_bytes(ball.export(file_type="stl"))
+    mesh = read_mesh(tmp_path / "open.stl")
+    assert not mesh.is_watertight
+    assert mesh.solid.mass == pytest.approx(trimesh.creation.icosphere(2).volume, rel=1e-2)
+
+
+def test_a_flat_mesh_has_no_mass(tmp_path):
+    (tmp_path / "flat.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    assert read_mesh(tmp_path / "flat.obj").solid.mass == 0
+
+
+@pytest.mark.parametrize(
+    ("name", "data", "code"),
+    [
+        ("none.stl", None, "INR101"),
+        ("part.step", b"ISO-10303-21;", "INR102"),
+        ("empty.stl", b"", "INR103"),
+        ("lfs.stl", b"version https://git-lfs.github.com/spec/v1\n", "INR103"),
+        ("torn.stl", b"\0" * 80 + struct.pack("<I", 1000) + b"\0" * 50, "INR103"),
+        ("torn.glb", b"glTF\x02\0\0\0\xff\xff\xff\xff", "INR103"),
+        ("torn.gltf", b'{"asset": {"version": "2.0"}', "INR103"),
+        ("torn.dae", b"<COLLADA>", "INR103"),
+        ("words.dae", b"not XML at all", "INR103"),
+        ("bad.obj", b"v 0 0\nf 1 2 99\n", "INR103"),
+        ("infinite.obj", b"v 0 0 0\nv 1e999 0 0\nv 0 1 0\nf 1 2 3\n", "INR103"),
+        ("folder.stl", b"/", "INR103"),
+    ],
+)
+def test_what_cannot_be_read_says_why(name, data, code, tmp_path):
+    path = tmp_path / name
+    if data == b"/":
+        path.mkdir()
+    elif data is not None:
+        path.write_bytes(data)
+    with pytest.raises(LinkwrightError) as caught:
+        read_mesh(path)
+    assert caught.value.diagnostics[0].code == code
+    assert caught.value.diagnostics[0].hint
+
+
+def test_a_gltf_reads_nothing_outside_its_folder(tmp_path):
+    inner = tmp_path / "inner"
+    inner.mkdir()
+    path = write(inner, "gltf")
+    buffer = next(inner.glob("*.bin"))
+    buffer.rename(tmp_path / "secret.bin")
+    path.write_text(path.read_text().replace(buffer.name, "../secret.bin"))
+    with pytest.raises(LinkwrightError):
+        read_mesh(path)
+
+
+def test_a_library_reads_each_file_once_and_finds_it_from_the_file_it_is_named_in(tmp_path):
+    (tmp_path / "meshes").mkdir()
+    (tmp_path / "urdf").mkdir()
+    write(tmp_path / "meshes", "stl")
+    document = parse('<mesh filename="../meshes/cone.stl"/>', str(tmp_path / "urdf" / "part.xacro"))
+    library = MeshLibrary(PackageFinder(start=tmp_path), tmp_path)
+    first = library.load(Mesh("../meshes/cone.stl"), document.root)
+    assert library.load(Mesh("../meshes/cone.stl"), document.root) is first
+    assert library.load(Mesh("meshes/cone.stl")) is first
+    for _ in range(2):
+        with pytest.raises(LinkwrightError) as caught:
+            library.load(Mesh("package://nowhere/cone.stl"))
+        assert caught.value.diagnostics[0].code == "PKG101"
+        with pytest.raises(LinkwrightError) as caught:
+            library.load(Mesh("meshes/cube.stl"))
+        assert caught.value.diagnostics[0].code == "INR101"

@@ -1,0 +1,213 @@
+"""Putting blocks into files: what is written, what stays, and what is refused."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.inertia import MassProperties, shape_properties
+from linkwright.inertia.blocks import inertial_block
+from linkwright.inertia.writing import write_inertials
+from linkwright.urdf import Box, Pose, load
+
+CUBE = shape_properties(Box((0.2, 0.2, 0.2)), 125.0)
+BLOCK = """\
+<inertial>
+  <origin xyz="0 0 0" rpy="0 0 0"/>
+  <mass value="1"/>
+  <inertia ixx="0.00666667" ixy="0" ixz="0" iyy="0.00666667" iyz="0" izz="0.00666667"/>
+</inertial>"""
+XACRO = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
+
+
+@pytest.fixture
+def write(tmp_path):
+    """Writes the cube to links of a description, and returns what came of it and the new text."""
+
+    def run(text, *links, name="r.urdf"):
+        path = tmp_path / name
+        path.write_bytes(text if isinstance(text, bytes) else text.encode())
+        robot = load(path)
+        written = write_inertials(robot, dict.fromkeys(links or ("a",), CUBE))
+        again = load(path)
+        for link in written.links:
+            assert again.links[link].inertial is not None
+            assert again.links[link].inertial.mass == 1.0
+            assert again.links[link].inertial.ixx == pytest.approx(CUBE.inertia[0, 0], rel=1e-5)
+        return written, path.read_bytes().decode("utf-8")
+
+    return run
+
+
+def test_the_block():
+    assert inertial_block(CUBE) == BLOCK
+
+
+def test_numbers_that_are_rounding_are_zero():
+    body = shape_properties(Box((0.1, 0.2, 0.3)), 1000.0).moved(Pose((1e-12, -1e-17, 0.5), (1e-13, 0, 0)))
+    assert 'xyz="0 0 0.5"' in inertial_block(body)
+    assert 'ixy="0" ixz="0"' in inertial_block(body)
+    assert "-0" not in inertial_block(MassProperties(1.0))
+
+
+def test_a_new_block_takes_the_indentation_of_the_link(write):
+    _, text = write(
+        '<robot name="r">\n    <link name="a"> <!-- the body -->\n        <visual/>\n    </link>\n</robot>\n'
+    )
+    assert text == (
+        '<robot name="r">\n    <link name="a"> <!-- the body -->\n'
+        "        <inertial>\n"
+        '            <origin xyz="0 0 0" rpy="0 0 0"/>\n'
+        '            <mass value="1"/>\n'
+        '            <inertia ixx="0.00666667" ixy="0" ixz="0" iyy="0.00666667" iyz="0" izz="0.00666667"/>\n'
+        "        </inertial>\n"
+        "        <visual/>\n    </link>\n</robot>\n"
+    )
+
+
+def test_a_link_in_one_line_is_opened_up(write):
+    _, text = write('<robot name="r">\n  <link name="a"><visual/></link>\n</robot>\n')
+    assert '<link name="a">\n    <inertial>\n      <origin' in text
+    assert "    </inertial>\n    <visual/></link>" in text
+
+
+def test_windows_line_ends_and_byte_order_marks_stay(write):
+    _, text = write(b'\xef\xbb\xbf<robot name="r">\r\n  <link name="a">\r\n    <visual/>\r\n  </link>\r\n</robot>\r\n')
+    assert text.startswith("\ufeff<robot")
+    assert text.count("\n") == text.count("\r\n") == 10
+
+
+def test_an_inertial_that_is_there_keeps_its_form_and_comments(write):
+    _, text = write(
+        '<robot name="r">\n<link name="a">\n'
+        "  <inertial> <!-- from CAD -->\n"
+        "    <mass   value='3' /><!-- weighed -->\n"
+        '    <inertia ixx="1" ixy="2"\n      ixz="3" iyy="4" iyz="5" izz="6"/>\n'
+        '    <origin rpy="1 2 3" xyz="1 2 3"></origin>\n'
+        "  </inertial>\n</link>\n</robot>\n"
+    )
+    assert text == (
+        '<robot name="r">\n<link name="a">\n'
+        "  <inertial> <!-- from CAD -->\n"
+        "    <mass   value='1' /><!-- weighed -->\n"
+        '    <inertia ixx="0.00666667" ixy="0"\n      ixz="0" iyy="0.00666667" iyz="0" izz="0.00666667"/>\n'
+        '    <origin rpy="0 0 0" xyz="0 0 0"></origin>\n'
+        "  </inertial>\n</link>\n</robot>\n"
+    )
+
+
+def test_what_an_inertial_lacks_is_added(write):
+    _, text = write(
+        '<robot name="r">\n<link name="a">\n  <inertial>\n    <mass value="3"/>\n    <inertia/>\n  </inertial>\n'
+        "</link>\n</robot>\n"
+    )
+    assert '  <inertial>\n    <origin xyz="0 0 0" rpy="0 0 0"/>\n    <mass value="1"/>\n    <inertia ixx=' in text
+    _, text = write('<robot name="r">\n<link name="a">\n  <inertial/>\n</link>\n</robot>\n')
+    assert '  <inertial>\n    <origin xyz="0 0 0" rpy="0 0 0"/>\n' in text
+
+
+def test_a_quaternion_gives_way(write):
+    _, text = write(
+        '<robot name="r" version="1.1"><link name="a"><inertial><origin xyz="1 0 0" quat_xyzw="1 0 0 0"/>'
+        '<mass value="3"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link></robot>'
+    )
+    assert '<origin xyz="0 0 0" />' in text
+
+
+def test_several_links_of_one_file(write):
+    joint = '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>'
+    links = [f'<link name="{name}">\n  <visual/>\n</link>\n' for name in "ab"]
+    text = f'<robot name="r">\n{joint.join(links)}</robot>'
+    written, text = write(text, "b", "a")
+    assert text.count("<inertial>") == 2
+    assert sorted(written.links) == ["a", "b"]
+
+
+def test_a_plain_link_of_a_xacro_file_is_written(write):
+    written, text = write(
+        f'{XACRO}\n  <xacro:arg name="p" default="/"/>\n  <link name="a">\n'
+        '    <visual><geometry><box size="1 1 1"/></geometry></visual>\n  </link>\n</robot>',
+        name="r.xacro",
+    )
+    assert written.links == ("a",)
+    assert "<inertial>" in text
+
+
+ONES = '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>'
+REFUSED = {
+    "it is written by the macro 'part'": """
+      <xacro:macro name="part" params="n"><link name="${n}"/></xacro:macro>
+      <xacro:part n="a"/>""",
+    "its shapes are written with expressions, which numbers in the file would not follow": """
+      <xacro:property name="s" value="1"/>
+      <link name="a"><visual><geometry><box size="${s} 1 1"/></geometry></visual></link>""",
+    "its <inertial> is written with expressions": f"""
+      <link name="a"><inertial><mass value="${{1 + 1}}"/>{ONES}</inertial></link>""",
+    "part of it is written by <xacro:heavy>": f"""
+      <xacro:macro name="heavy"><inertial><mass value="1"/>{ONES}</inertial></xacro:macro>
+      <link name="a"><xacro:heavy/></link>""",
+}
+
+
+@pytest.mark.parametrize("why", REFUSED, ids=["macro", "shape", "inertial", "part"])
+def test_what_xacro_writes_is_refused(write, why):
+    before = f"{XACRO}{REFUSED[why]}</robot>"
+    written, text = write(before, name="r.xacro")
+    assert written.refused == {"a": why}
+    assert written.links == ()
+    assert text == before
+
+
+def test_a_file_that_was_included_is_written(write, tmp_path):
+    part = tmp_path / "part.xacro"
+    part.write_text(f'{XACRO}\n  <link name="a">\n    <visual/>\n  </link>\n</robot>\n')
+    written, text = write(f'{XACRO}<xacro:include filename="part.xacro"/></robot>', name="r.xacro")
+    assert written.files == (part,)
+    assert "<inertial>" in part.read_text()
+    assert "<inertial>" not in text
+
+
+def test_a_place_that_makes_two_links_is_refused(write, tmp_path):
+    part = tmp_path / "part.xacro"
+    part.write_text(f'{XACRO}<link name="$(eval n)"/></robot>'.replace("$(eval n)", "${n}"))
+    joint = '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>'
+    include = '<xacro:property name="n" value="{}"/><xacro:include filename="part.xacro"/>'
+    written, _ = write(f"{XACRO}{include.format('a')}{include.format('b')}{joint}</robot>", name="r.xacro")
+    assert written.refused == {"a": "its place in the file makes several links"}
+
+
+def test_a_file_that_changed_meanwhile_is_left_alone(tmp_path):
+    path = tmp_path / "r.urdf"
+    path.write_text('<robot name="r"><link name="a"/></robot>')
+    robot = load(path)
+    path.write_text('<robot name="other"><link name="a"/></robot>')
+    assert write_inertials(robot, {"a": CUBE}).refused == {"a": "its file has changed since it was read"}
+    path.unlink()
+    assert write_inertials(robot, {"a": CUBE}).refused == {"a": "it is not written in a file"}
+
+
+def test_a_text_has_no_file():
+    robot = load('<robot name="r"><link name="a"/></robot>')
+    assert write_inertials(robot, {"a": CUBE}).refused == {"a": "it is not written in a file"}
+
+
+def test_other_encodings_are_left_alone(tmp_path):
+    path = tmp_path / "r.urdf"
+    path.write_bytes(
+        '<?xml version="1.0" encoding="latin-1"?><robot name="é"><link name="a"/></robot>'.encode("latin-1")
+    )
+    assert write_inertials(load(path), {"a": CUBE}).refused == {"a": "its file is not UTF-8"}
+
+
+def test_a_file_that_cannot_be_written_is_an_error(tmp_path, monkeypatch):
+    path = tmp_path / "r.urdf"
+    path.write_text('<robot name="r">\n<link name="a">\n</link></robot>')
+    robot = load(path)
+
+    def refuse(*_):
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr("pathlib.Path.write_bytes", refuse)
+    with pytest.raises(LinkwrightError) as caught:
+        write_inertials(robot, {"a": CUBE})
+    assert caught.value.diagnostics[0].code == "INR201"

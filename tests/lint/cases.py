@@ -1,0 +1,119 @@
+"""Rules tested by Markdown pages: a document, and what is to be said of it.
+
+A page begins with a comment that says whose findings it shows, ``<!-- rules: LW2 -->`` (all rules of those codes run,
+pedantic ones too). A case is:
+
+- a ``##`` heading;
+- code blocks with the files: ```` ```xml ```` is ``robot.urdf``, ```` ```xml file=name ```` any other file in any
+  language; the first block is the file that is checked; ```` ```toml ```` is ``linkwright.toml``;
+- a ```` ```text ```` block with the findings by place, ``LINE:COLUMN CODE message`` (``FILE:LINE:COLUMN`` in files
+  other than the first, ``-`` without a place), then indented ``note: ...`` (with its place in parentheses) and
+  ``hint: ...``; an empty block says that nothing is found;
+- perhaps a ```` ```xml fixed ```` block: the checked file after all its fixes, unsafe ones too.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from linkwright.diagnostics import Diagnostic, Span
+from linkwright.lint.apply import fix_file
+from linkwright.lint.configuration import settings_for
+from linkwright.lint.engine import examine
+from linkwright.lint.settings import Settings
+
+FOLDER = Path(__file__).parent
+_RULES = re.compile(r"<!-- rules: ([A-Z0-9 ]+?) -->")
+_CASE = re.compile(r"^## (.+?)\n(.*?)(?=^## |\Z)", re.MULTILINE | re.DOTALL)
+_BLOCK = re.compile(r"^```(\w+)(?: +(?:file=(\S+)|(fixed)))?\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+
+
+@dataclass(frozen=True)
+class Case:
+    """One case of a page."""
+
+    page: str
+    title: str
+    selectors: tuple[str, ...]
+    files: dict[str, str]
+    said: str
+    fixed: str | None
+
+    @property
+    def name(self) -> str:
+        """What the test is called."""
+        return f"{self.page}: {self.title}"
+
+    def run(self, folder: Path) -> str:
+        """Write the files, check the first, and return what is said, in the form of the page."""
+        for name, text in self.files.items():
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            (folder / name).write_text(text, encoding="utf-8")
+        main = folder / next(iter(self.files))
+        found = examine(main, settings=self._settings(main)).diagnostics
+        wanted = [each for each in found if each.code.startswith(self.selectors)]
+        return "".join(f"{line}\n" for each in wanted for line in _lines(each, folder, main))
+
+    def mend(self, folder: Path) -> str:
+        """The checked file, written by `run`, after all its fixes."""
+        main = folder / next(iter(self.files))
+        settings = self._settings(main)
+        fix_file(main, lambda _text: examine(main, settings=settings).diagnostics, unsafe=True)
+        return main.read_text(encoding="utf-8")
+
+    def _settings(self, main: Path) -> Settings:
+        settings, trouble = settings_for(main)
+        assert not trouble
+        return settings if settings.select is not None else replace(settings, select=self.selectors)
+
+
+def load_cases() -> list[Case]:
+    """The cases of all pages beside this file."""
+    return [case for page in sorted(FOLDER.glob("*.md")) for case in _cases(page)]
+
+
+def _cases(page: Path) -> list[Case]:
+    text = page.read_text(encoding="utf-8")
+    rules = _RULES.search(text)
+    assert rules, f"{page.name} does not say whose findings it shows"
+    selectors = tuple(rules[1].split())
+    return [_case(page.stem, match[1].strip(), selectors, match[2]) for match in _CASE.finditer(text)]
+
+
+def _case(page: str, title: str, selectors: tuple[str, ...], body: str) -> Case:
+    files: dict[str, str] = {}
+    said = fixed = None
+    for language, name, is_fixed, text in _BLOCK.findall(body):
+        if language == "text" and not name:
+            said = text
+        elif is_fixed:
+            fixed = text
+        else:
+            files[name or {"xml": "robot.urdf", "toml": "linkwright.toml"}[language]] = text
+    assert said is not None, f"{page}.md: '{title}' has no text block"
+    assert files, f"{page}.md: '{title}' has no file"
+    return Case(page, title, selectors, files, said, fixed)
+
+
+def _lines(diagnostic: Diagnostic, root: Path, main: Path) -> list[str]:
+    lines = [f"{_place(diagnostic.span, root, main)} {diagnostic.code} {_flat(diagnostic.message, root)}"]
+    for note in diagnostic.notes:
+        place = f" ({_place(note.span, root, main)})" if note.span else ""
+        lines.append(f"  note: {_flat(note.message, root)}{place}")
+    if diagnostic.hint:
+        lines.append(f"  hint: {_flat(diagnostic.hint, root)}")
+    return lines
+
+
+def _place(span: Span | None, root: Path, main: Path) -> str:
+    if span is None:
+        return "-"
+    path = Path(span.file)
+    shown = path.relative_to(root).as_posix() if path.is_relative_to(root) else span.file
+    return f"{span.line}:{span.column}" if path == main else f"{shown}:{span.line}:{span.column}"
+
+
+def _flat(text: str, root: Path) -> str:
+    return text.replace(f"{root}/", "").replace("\n", "\\n")

@@ -1,0 +1,155 @@
+"""Settings from files: what they do, and what is said of mistakes in them, with the place."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from linkwright.diagnostics import Severity
+from linkwright.lint.configuration import find_configuration, read_settings, settings_for
+from linkwright.lint.registry import find_rule
+from linkwright.lint.settings import Settings
+
+
+def said(tmp_path: Path, text: str, name: str = "linkwright.toml") -> list[str]:
+    file = tmp_path / name
+    file.write_text(text, encoding="utf-8")
+    settings, found = read_settings(file)
+    assert isinstance(settings, Settings)
+    return [f"{each.span.line}:{each.span.column} {each.code} {each.message} | {each.hint}" for each in found]
+
+
+def test_everything_that_can_be_set(tmp_path):
+    (tmp_path / "linkwright.toml").write_text(
+        """
+        select = ["LW1", "limit-inverted"]
+        extend-select = ["LW228"]
+        ignore = ["URDF160", "LW101"]
+
+        [severity]
+        LW2 = "info"
+        limit-inverted = "warning"
+
+        [per-file-ignores]
+        "vendor/*" = ["LW2"]
+
+        [options.origin-far]
+        farthest = 100
+        """
+    )
+    settings, found = settings_for(tmp_path / "urdf" / "robot.urdf")
+    assert found == ()
+    assert settings.select == ("LW1", "LW201")
+    assert settings.selects("LW104")
+    assert not settings.selects("LW101")
+    assert not settings.selects("LW202")
+    assert settings.selects("LW228", default=False)
+    assert settings.severity_of("LW201", Severity.ERROR) is Severity.WARNING
+    assert settings.severity_of("LW202", Severity.WARNING) is Severity.INFO
+    assert settings.severity_of("LW301", Severity.ERROR) is Severity.ERROR
+    assert settings.ignores("LW201", str(tmp_path / "vendor" / "arm.urdf"))
+    assert not settings.ignores("LW201", str(tmp_path / "urdf" / "arm.urdf"))
+    assert settings.options == {"origin-far": {"farthest": 100}}
+
+
+def test_the_closer_selector_wins_and_ignore_wins_a_tie():
+    settings = Settings(ignore=("LW2",), extend_select=("LW201",))
+    assert settings.selects("LW201")
+    assert not settings.selects("LW202")
+    assert not Settings(select=("LW201",), ignore=("LW201",)).selects("LW201")
+    assert Settings(select=("ALL",)).selects("LW228", default=False)
+
+
+def test_a_rule_that_is_off_runs_when_it_is_selected():
+    rule = find_rule("angle-rounded")
+    assert not Settings().runs(rule)
+    assert Settings(extend_select=("LW228",)).runs(rule)
+    assert Settings(select=("LW2",)).runs(rule)
+
+
+def test_the_nearest_configuration_counts(tmp_path):
+    inner = tmp_path / "package" / "urdf"
+    inner.mkdir(parents=True)
+    (tmp_path / "linkwright.toml").write_text("ignore = ['LW1']")
+    assert find_configuration(inner / "robot.urdf") == tmp_path / "linkwright.toml"
+    (tmp_path / "package" / "pyproject.toml").write_text("[project]\nname = 'p'\n")
+    assert find_configuration(inner / "robot.urdf") == tmp_path / "linkwright.toml"
+    (tmp_path / "package" / "pyproject.toml").write_text("[tool.linkwright]\nignore = ['LW2']\n")
+    assert find_configuration(inner / "robot.urdf") == tmp_path / "package" / "pyproject.toml"
+    assert settings_for(inner / "robot.urdf")[0].ignore == ("LW2",)
+
+
+def test_no_configuration_is_no_mistake(tmp_path):
+    assert settings_for(tmp_path / "robot.urdf") == (Settings(), ())
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("ignor = []\n", "1:1 LINT102 there is no setting 'ignor' | did you mean 'ignore'?"),
+        (
+            'ignore = "LW201"\n',
+            '1:1 LINT103 \'ignore\' is not a list of texts | write ignore = ["LW204", "limit-inverted"]',
+        ),
+        (
+            'ignore = [\n  "LW201",\n  "limit-invertd",\n]\n',
+            "3:4 LINT104 there is no rule 'limit-invertd' | did you mean 'limit-inverted'?",
+        ),
+        (
+            '[severity]\nLW201 = "warn"\n',
+            "2:1 LINT103 'LW201' is not a severity: 'warn' | did you mean 'warning'?",
+        ),
+        (
+            '[per-file-ignores]\n"a/*.urdf" = "LW1"\n',
+            '2:2 LINT103 \'a/*.urdf\' is not a list of texts | write "a/*.urdf" = ["LW204", "limit-inverted"]',
+        ),
+        (
+            "[options.origin-far]\nfarthst = 3\n",
+            "2:1 LINT102 rule 'origin-far' has no option 'farthst' | did you mean 'farthest'?",
+        ),
+        (
+            '[options.origin-far]\nfarthest = "far"\n',
+            "2:1 LINT103 'farthest' is not a number | the default is 20.0",
+        ),
+        (
+            "[options.origin-fat]\nfarthest = 3\n",
+            "1:10 LINT104 there is no rule 'origin-fat' | did you mean 'origin-far'?",
+        ),
+        ("[options]\norigin-far = 3\n", "2:1 LINT103 'origin-far' is not a table | write [options.origin-far]"),
+        (
+            "options.origin-far.farthst = 3\n",
+            "1:20 LINT102 rule 'origin-far' has no option 'farthst' | did you mean 'farthest'?",
+        ),
+        ("severity = 3\n", "1:1 LINT103 'severity' is not a table | write [severity]"),
+    ],
+)
+def test_mistakes_are_told_with_their_place(tmp_path, text, expected):
+    assert said(tmp_path, text) == [expected]
+
+
+def test_what_is_not_toml_is_told_with_its_place(tmp_path):
+    (found,) = said(tmp_path, "ignore = []\nselect = LW201\n")
+    assert found.startswith("2:10 LINT101 this is not TOML: ")
+
+
+def test_mistakes_in_pyproject_are_found_below_the_table(tmp_path):
+    text = "[project]\nignore = 3\n\n[tool.linkwright]\nignore = 3\n"
+    assert said(tmp_path, text, "pyproject.toml")[0].startswith("5:1 LINT103")
+
+
+def test_the_rest_of_a_configuration_holds_beside_a_mistake(tmp_path):
+    file = tmp_path / "linkwright.toml"
+    file.write_text('ignore = ["LW1", "nonsense"]\n')
+    settings, found = read_settings(file)
+    assert settings.ignore == ("LW1",)
+    assert len(found) == 1
+
+
+@pytest.mark.parametrize(
+    "text", ["", "x = [", "[a]\n[a]\n", "options.a.b.c = 1", "per-file-ignores.x = 3", "\x00", "select=[1]"]
+)
+def test_no_text_makes_the_reader_raise(tmp_path, text):
+    file = tmp_path / "linkwright.toml"
+    file.write_text(text)
+    read_settings(file)

@@ -1,0 +1,53 @@
+"""Every code has a page: of a rule its docstring, of others a section."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+import linkwright
+from linkwright.lint.explain import find_page, known_codes, nearest_codes, room_pages, rule_page
+from linkwright.lint.registry import all_rules
+
+ROOMS = Path(linkwright.__file__).parent
+CODE = re.compile(r'"((?:XML|XAC|URDF|PKG|KIN|GRAPH|NODE|RVIZ|VIEW|LAUNCH|CLI|LINT|INR)[0-9]{3})"')
+
+
+def codes_of_the_program() -> set[str]:
+    return {
+        code
+        for file in ROOMS.rglob("*.py")
+        if "translation" not in file.parts
+        for code in CODE.findall(file.read_text(encoding="utf-8"))
+    }
+
+
+def test_every_code_that_the_program_reports_has_a_page():
+    assert codes_of_the_program() - set(known_codes()) == set()
+
+
+def test_no_page_is_of_a_code_that_nothing_reports():
+    assert set(room_pages()) - codes_of_the_program() == set()
+
+
+@pytest.mark.parametrize("rule", all_rules(), ids=lambda rule: rule.code)
+def test_the_page_of_a_rule_says_what_why_and_what_instead(rule):
+    page = rule_page(rule)
+    assert page.title
+    assert "\n" not in page.title
+    headings = re.findall(r"^## (.+)$", page.text, re.MULTILINE)
+    assert headings[:3] == ["Why", "Example", "Use instead"]
+    assert all(f"`{option.name}`" in page.text for option in rule.options)
+
+
+def test_a_page_is_found_by_code_and_name_in_any_case():
+    assert find_page("lw201") == find_page("limit-inverted") == find_page("LW201")
+    assert find_page("urdf110").title == "two things of one kind have the same name"
+    assert find_page("LW999") is None
+
+
+def test_near_codes_are_offered():
+    assert "limit-inverted" in nearest_codes("limit-invertd")
+    assert "URDF110" in nearest_codes("URDF111")

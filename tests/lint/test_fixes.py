@@ -1,0 +1,248 @@
+"""Fixes: what they change, what they leave alone, and that files are never left half written."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from linkwright.diagnostics import LinkwrightError, SourceText
+from linkwright.lint import Edit, Finding, Fix, Settings, examine
+from linkwright.lint.apply import fix_file, write_text
+from linkwright.lint.fix import (
+    add_attribute,
+    element_range,
+    is_literal,
+    remove_attribute,
+    remove_element,
+    rename_attribute,
+    rename_element,
+    replace_value,
+)
+from linkwright.xmltree import Element, parse
+
+ROBOT = """<?xml version="1.0"?>
+<!-- kept -->
+<robot name="r">
+  <link name="a"/>  <!-- kept too -->
+  <link name='b'/>
+  <joint name="j"   type="continuous">
+    <parent link="a"/>
+    <child link="b"/>
+    <axis   xyz="1 1 0"
+    />
+  </joint>
+</robot>
+"""
+
+
+def element(text: str, *path: str) -> Element:
+    found = parse(text, "robot.urdf").root
+    for tag in path:
+        inner = found.first(tag)
+        assert inner is not None
+        found = inner
+    return found
+
+
+def applied(text: str, fix: Fix | None) -> str:
+    assert fix is not None
+    for edit in sorted(fix.edits, key=lambda each: -each.start):
+        text = text[: edit.start] + edit.replacement + text[edit.end :]
+    return text
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("<r><a x='1'/></r>", "<a x='1'/>"),
+        ("<r><a><a/><b>t</b></a ><c/></r>", "<a><a/><b>t</b></a >"),
+        ("<r><a><!-- </a> --><![CDATA[</a>]]><?p </a>?></a></r>", "<a><!-- </a> --><![CDATA[</a>]]><?p </a>?></a>"),
+        ("<r><a x='/>'  y=\"/a>\" ></a></r>", "<a x='/>'  y=\"/a>\" ></a>"),
+    ],
+)
+def test_the_range_of_an_element(text, expected):
+    found = element_range(element(text, "a"))
+    assert found is not None
+    assert text[slice(*found)] == expected
+
+
+def test_a_value_is_replaced_between_its_quotes():
+    text = "<r><a  x = '1'  y=\"2\"/></r>"
+    assert applied(text, replace_value(element(text, "a"), "x", '"<&')) == "<r><a  x = '&quot;&lt;&amp;'  y=\"2\"/></r>"
+
+
+def test_attributes_are_added_renamed_and_removed():
+    text = '<r><a x="1"\n  y="2" /></r>'
+    assert applied(text, add_attribute(element(text, "a"), "z", "3")) == '<r><a x="1"\n  y="2" z="3" /></r>'
+    assert applied(text, rename_attribute(element(text, "a"), "y", "z")) == '<r><a x="1"\n  z="2" /></r>'
+    assert applied(text, remove_attribute(element(text, "a"), "y")) == '<r><a x="1" /></r>'
+    assert rename_attribute(element(text, "a"), "y", "x") is None
+    assert add_attribute(element("<r><a></a></r>", "a"), "z", "3") is not None
+
+
+def test_elements_are_renamed_at_both_ends():
+    text = "<r><a><a/></a\n></r>"
+    assert applied(text, rename_element(element(text, "a"), "bc")) == "<r><bc><a/></bc\n></r>"
+    assert applied("<r><a/></r>", rename_element(element("<r><a/></r>", "a"), "bc")) == "<r><bc/></r>"
+
+
+def test_an_element_is_removed_with_its_line_where_it_is_alone_on_it():
+    text = "<r>\n  <a>\n  </a>\n  <b/>\n</r>"
+    assert applied(text, remove_element(element(text, "a"))) == "<r>\n  <b/>\n</r>"
+    assert applied("<r><a/><b/></r>", remove_element(element("<r><a/><b/></r>", "a"))) == "<r><b/></r>"
+
+
+def test_an_expression_is_no_literal():
+    text = '<r><a x="${1 + 1}" y="2" z="&lt;"/></r>'
+    found = element(text, "a")
+    assert [is_literal(found, name) for name in "xyz"] == [False, True, False]
+    assert replace_value(found, "x", "3") is None
+
+
+def test_an_element_made_by_a_program_has_no_fix():
+    made = Element("a", {"x": "1"})
+    assert replace_value(made, "x", "2") is None
+    assert remove_element(made) is None
+    assert add_attribute(made, "y", "2") is None
+
+
+def mend(path: Path, *, unsafe: bool = False, write: bool = True, select: tuple[str, ...] = ("LW2",)):
+    def check(text: str | None):
+        return examine(path, settings=Settings(select=select), text=text).diagnostics
+
+    return fix_file(path, check, unsafe=unsafe, write=write)
+
+
+def test_everything_else_stays_as_it_is(tmp_path):
+    path = tmp_path / "robot.urdf"
+    path.write_text(ROBOT)
+    mended = mend(path)
+    assert path.read_text() == ROBOT.replace("1 1 0", "0.707107 0.707107 0")
+    assert mended.counts == {"LW221": 1}
+
+
+def test_a_diff_changes_nothing(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    path = Path("robot.urdf")
+    path.write_text(ROBOT)
+    assert mend(path, write=False).diff().splitlines() == [
+        "--- robot.urdf",
+        "+++ robot.urdf",
+        "@@ -6,7 +6,7 @@",
+        '   <joint name="j"   type="continuous">',
+        '     <parent link="a"/>',
+        '     <child link="b"/>',
+        '-    <axis   xyz="1 1 0"',
+        '+    <axis   xyz="0.707107 0.707107 0"',
+        "     />",
+        "   </joint>",
+        " </robot>",
+    ]
+    assert path.read_text() == ROBOT
+
+
+def test_windows_line_ends_a_byte_order_mark_and_permissions_stay(tmp_path):
+    path = tmp_path / "robot.urdf"
+    path.write_bytes(b"\xef\xbb\xbf" + ROBOT.replace("\n", "\r\n").encode())
+    path.chmod(0o640)
+    mend(path)
+    expected = ROBOT.replace("1 1 0", "0.707107 0.707107 0").replace("\n", "\r\n")
+    assert path.read_bytes() == b"\xef\xbb\xbf" + expected.encode()
+    assert path.stat().st_mode & 0o777 == 0o640
+
+
+def test_a_link_stays_a_link(tmp_path):
+    (tmp_path / "real").mkdir()
+    real = tmp_path / "real" / "robot.urdf"
+    real.write_text(ROBOT)
+    link = tmp_path / "robot.urdf"
+    link.symlink_to(real)
+    write_text(link, "<robot/>")
+    assert link.is_symlink()
+    assert real.read_text() == "<robot/>"
+    assert list((tmp_path / "real").iterdir()) == [real]
+
+
+def test_an_included_file_is_mended_once_for_all_its_calls(tmp_path):
+    (tmp_path / "wheel.xacro").write_text(
+        '<robot xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
+        '  <xacro:macro name="wheel" params="side tilt:=0">\n'
+        '    <link name="${side}"/>\n'
+        '    <joint name="${side}_joint" type="continuous">\n'
+        '      <parent link="a"/>\n      <child link="${side}"/>\n      <axis xyz="0 2 0"/>\n    </joint>\n'
+        '    <link name="${side}2"/>\n'
+        '    <joint name="${side}2_joint" type="continuous">\n'
+        '      <parent link="a"/>\n      <child link="${side}2"/>\n      <axis xyz="0 ${2} 0"/>\n    </joint>\n'
+        "  </xacro:macro>\n</robot>\n"
+    )
+    path = tmp_path / "robot.urdf.xacro"
+    path.write_text(
+        '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n  <xacro:include filename="wheel.xacro"/>\n'
+        '  <link name="a"/>\n  <xacro:wheel side="l"/>\n  <xacro:wheel side="r"/>\n</robot>\n'
+    )
+    mended = mend(path)
+    assert mended.counts == {"LW221": 1}
+    text = (tmp_path / "wheel.xacro").read_text()
+    assert 'xyz="0 1 0"' in text
+    assert 'xyz="0 ${2} 0"' in text
+
+
+def test_files_of_other_packages_are_left_alone(tmp_path):
+    (tmp_path / "mine").mkdir()
+    other = tmp_path / "other.xacro"
+    other.write_text(ROBOT)
+    path = tmp_path / "mine" / "robot.urdf.xacro"
+    path.write_text(
+        '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:include filename="../other.xacro"/></robot>'
+    )
+    assert mend(path).counts == {}
+    assert other.read_text() == ROBOT
+
+
+def test_of_fixes_that_overlap_one_is_applied_and_the_next_pass_looks_again(tmp_path):
+    path = tmp_path / "robot.urdf"
+    path.write_text("<robot>aaa</robot>")
+
+    def check(_text: str | None):
+        text = path.read_text()
+        if "aaa" in text:
+            start = text.index("aaa")
+            for replacement in ("ab", "b"):
+                yield Finding("LW999", "m", fix=Fix((Edit(str(path), start, start + 3, replacement),)))
+
+    assert fix_file(path, check).counts == {"LW999": 1}
+    assert path.read_text() == "<robot>ab</robot>"
+
+
+def test_a_fix_that_would_break_the_file_is_not_applied(tmp_path):
+    path = tmp_path / "robot.urdf"
+    path.write_text("<robot>a</robot>")
+    finding = Finding("LW999", "m", fix=Fix((Edit(str(path), 0, 1, ""),)))
+    assert fix_file(path, lambda _text: [finding]).counts == {}
+    assert path.read_text() == "<robot>a</robot>"
+
+
+def test_a_file_that_cannot_be_written_is_told(tmp_path):
+    with pytest.raises(LinkwrightError) as caught:
+        write_text(tmp_path / "none" / "robot.urdf", "x")
+    assert caught.value.diagnostics[0].code == "LINT201"
+
+
+def test_unsafe_fixes_are_applied_only_when_asked_for(tmp_path):
+    path = tmp_path / "robot.urdf"
+    text = (
+        ROBOT.replace("1 1 0", "1 0 0")
+        .replace('"continuous"', '"revolute"')
+        .replace("</joint>", '<limit lower="2" upper="1" effort="1" velocity="1"/></joint>')
+    )
+    path.write_text(text)
+    mend(path)
+    assert path.read_text() == text
+    mend(path, unsafe=True)
+    assert 'lower="1" upper="2"' in path.read_text()
+
+
+def test_places_are_offsets_of_the_text():
+    source = SourceText("f", "ab")
+    assert source.span(1).column == 2

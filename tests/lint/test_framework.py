@@ -1,0 +1,99 @@
+"""The registry, the engine, and what all rules have in common."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from linkwright.lint import Settings, check, examine
+from linkwright.lint.registry import all_rules, find_rule
+from linkwright.lint.rule import Scope
+from tests.lint.cases import FOLDER, load_cases
+
+ROBOTS = sorted((Path(__file__).parents[2] / "robots" / "my_robot_description" / "urdf").glob("*.*"))
+ALL = Settings(select=("ALL",))
+
+
+def test_codes_and_names_are_unique_and_in_order():
+    rules = all_rules()
+    assert len(rules) >= 90
+    assert [rule.code for rule in rules] == sorted({rule.code for rule in rules})
+    assert len({rule.name for rule in rules}) == len(rules)
+
+
+def test_a_rule_is_found_by_code_and_name():
+    assert find_rule("LW201") is find_rule("lw201") is find_rule("limit-inverted")
+    assert find_rule("LW999") is None
+
+
+@pytest.mark.parametrize("rule", all_rules(), ids=lambda rule: rule.code)
+def test_every_rule_has_a_case_that_fires_and_one_that_does_not(rule):
+    group = re.compile(rf"^(?:\S+:)?(?:\d+:\d+|-) {rule.code} ", re.MULTILINE)
+    cases = [case for case in load_cases() if rule.code.startswith(case.selectors)]
+    assert any(group.search(case.said) for case in cases), f"no page beside {FOLDER.name}/cases.py shows {rule.code}"
+    assert any(not group.search(case.said) for case in cases)
+
+
+@pytest.mark.parametrize("case", [pytest.param(case, id=case.name) for case in load_cases()])
+def test_no_rule_raises_on_any_page(case, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for name, text in case.files.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    examine(tmp_path / next(iter(case.files)), settings=ALL)
+
+
+@pytest.mark.parametrize("path", ROBOTS, ids=lambda path: path.name)
+def test_the_robots_of_the_tutorial_are_fine(path):
+    assert check(path, settings=Settings()) == []
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "<robot/>",
+        '<robot name="r"/>',
+        "<robot><link/><joint/></robot>",
+        '<robot name="r"><link name="a"><inertial/><visual/><collision/></link><joint ><limit/></joint></robot>',
+        '<robot name="r"><joint name="j" type="revolute"><mimic joint="j"/><axis xyz="a"/><limit/></joint></robot>',
+        '<robot name="r"><gazebo/><ros2_control><joint/></ros2_control><transmission><joint/></transmission></robot>',
+        "<sdf/>",
+        '<robot name="r"><link name="a"><visual><geometry/><material/></visual></link><material/></robot>',
+    ],
+)
+def test_no_rule_raises_on_odd_descriptions(tmp_path, text):
+    path = tmp_path / "robot.urdf"
+    path.write_text(text)
+    examine(path, settings=ALL)
+
+
+def test_findings_come_in_the_order_of_the_text(tmp_path):
+    path = tmp_path / "robot.urdf"
+    path.write_text(
+        '<robot name="r">\n  <link name="a"/>\n  <link name="b"/>\n  <joint name="j" type="revolute">\n'
+        '    <axis xyz="0 0 2"/>\n    <parent link="a"/>\n    <child link="c"/>\n'
+        '    <limit lower="1" upper="-1" effort="1" velocity="1"/>\n  </joint>\n</robot>\n'
+    )
+    found = check(path, settings=Settings(select=("LW2",)))
+    assert [each.code for each in found] == ["LW221", "URDF150", "LW201"]
+
+
+def test_what_cannot_be_read_is_told_and_not_raised(tmp_path):
+    (only,) = check(tmp_path / "none.urdf")
+    assert only.code == "XML101"
+    path = tmp_path / "robot.urdf.xacro"
+    path.write_text('<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><link name="${nothing}"/></robot>')
+    assert [each.code for each in check(path)] == ["XAC201"]
+
+
+def test_package_rules_say_so():
+    assert {rule.scope for rule in all_rules() if rule.code.startswith("LW1")} == {Scope.DESCRIPTION}
+
+
+def test_an_error_of_the_reader_cannot_be_ignored(tmp_path):
+    path = tmp_path / "robot.urdf"
+    path.write_text('<!-- linkwright: ignore-file -->\n<robot name="r"/>\n')
+    found = check(path, settings=Settings(select=(), ignore=("URDF",)))
+    assert [each.code for each in found] == ["URDF106"]

@@ -1,0 +1,96 @@
+"""Whole packages: fixes outside descriptions, real robots, and robustness of the package rules."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from linkwright.lint.apply import fix_file
+from linkwright.lint.engine import examine_package
+from linkwright.lint.package import PackageContext, find_package
+from linkwright.lint.settings import Settings
+from tests.places import PACKAGE, TUTORIAL
+
+_ALL = Settings(select=("LW8",))
+_LAUNCH = """\
+# räder
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    one = Command(["xacro", LaunchConfiguration("model")])
+    two = Command([FindExecutable(name='xacro'), LaunchConfiguration('model')])
+    return {'robot_description': ParameterValue(Command(['xacro ', one]))}, two
+"""
+_MANIFEST = """\
+<package format="3">
+  <name>my_robot</name>
+  <depend>xacro</depend> <!-- for the model -->
+  <exec_depend>xacro</exec_depend>
+</package>
+"""
+
+
+def test_fixes_of_launch_file_and_manifest(tmp_path):
+    (tmp_path / "package.xml").write_text(_MANIFEST)
+    (tmp_path / "launch").mkdir()
+    launch = tmp_path / "launch" / "show.launch.py"
+    launch.write_text(_LAUNCH, encoding="utf-8")
+    settings = Settings(select=("LW809", "LW845", "LW846", "LW848"))
+    fix_file(tmp_path / "package.xml", lambda _text: examine_package(tmp_path, settings).diagnostics)
+    assert launch.read_text(encoding="utf-8") == _LAUNCH.replace('"xacro", L', '"xacro ", L').replace(
+        "name='xacro'), L", "name='xacro'), ' ', L"
+    ).replace("['xacro ', one]))", "['xacro ', one]), value_type=str)")
+    assert (tmp_path / "package.xml").read_text() == (
+        '<package format="3">\n'
+        "  <name>my_robot</name>\n"
+        "  <depend>xacro</depend> <!-- for the model -->\n"
+        "  <exec_depend>launch_ros</exec_depend>\n"
+        "</package>\n"
+    )
+    assert not examine_package(tmp_path, settings).diagnostics
+
+
+def test_the_shipped_package_is_silent():
+    assert not examine_package(PACKAGE, Settings()).diagnostics
+
+
+def test_the_tutorial_package_has_its_known_slips():
+    package = TUTORIAL / "my_robot_description"
+    if not package.is_dir():
+        pytest.skip("the tutorial's files are not here")
+    found = {(each.code, each.message) for each in examine_package(package, _ALL).diagnostics}
+    assert ("LW821", "the pattern 'urdf/sensors/*.*' in setup.py matches no file") in found
+    assert ("LW808", "the e-mail address 'lll@todo.todo' is a placeholder") in found
+    assert any(code == "LW848" for code, _ in found)
+
+
+def test_the_nearest_manifest_upwards_is_that_of_the_package(tmp_path):
+    (tmp_path / "package.xml").write_text("<package>")
+    (tmp_path / "urdf").mkdir()
+    found = find_package(tmp_path / "urdf" / "robot.urdf")
+    assert found is not None
+    assert found.folder == tmp_path
+    assert found.manifest is None
+    assert found.name == tmp_path.name
+
+
+def test_hidden_files_build_products_and_inner_packages_are_no_files_of_a_package(tmp_path):
+    for name in ("package.xml", ".git/x", "build/x", "inner/package.xml", "inner/x", "urdf/a/b.urdf", "urdf/.hidden"):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text("")
+    package = PackageContext(tmp_path)
+    assert package.files == ("package.xml", "urdf/a/b.urdf")
+    assert package.folders == {"urdf", "urdf/a"}
+
+
+@pytest.mark.parametrize(
+    "text", ["", "<package/>", "<package><name/></package>", "<a><depend/></a>", "\xff", "<package>"]
+)
+@pytest.mark.parametrize("other", ["", "setup()", "\0", "setup(name=3, data_files=[(1, 2), 3, ('a',)], packages=[1])"])
+def test_rules_stand_any_package(tmp_path: Path, text: str, other: str):
+    (tmp_path / "package.xml").write_text(text, encoding="latin-1")
+    for name in ("setup.py", "CMakeLists.txt", "a.launch.py", "a.rviz", "a.xacro", "setup.cfg"):
+        (tmp_path / name).write_text(other)
+    examine_package(tmp_path, _ALL)

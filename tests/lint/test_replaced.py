@@ -1,0 +1,46 @@
+"""Findings of several rooms or rules about one thing are told once."""
+
+from __future__ import annotations
+
+from linkwright.lint import check
+from linkwright.lint.settings import Settings
+
+_XACRO = """\
+<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <link name="l${range(2)[0]}"/>
+</robot>
+"""
+
+
+def test_a_rule_stands_for_the_warning_of_xacro(tmp_path):
+    path = tmp_path / "robot.xacro"
+    path.write_text(_XACRO)
+    codes = {each.code for each in check(path, settings=Settings())}
+    assert "LW714" in codes
+    assert "XAC507" not in codes
+
+
+def test_the_warning_of_xacro_stays_where_the_rule_is_off(tmp_path):
+    path = tmp_path / "robot.xacro"
+    path.write_text(_XACRO)
+    codes = {each.code for each in check(path, settings=Settings(ignore=("LW714",)))}
+    assert "XAC507" in codes
+    assert "LW714" not in codes
+
+
+def test_a_rule_stands_for_another_rule(tmp_path):
+    path = tmp_path / "robot.urdf"
+    path.write_text('<robot name="r"><link name="a"><if value="1"/></link></robot>')
+    codes = [each.code for each in check(path, settings=Settings(select=("LW1", "LW7")))]
+    assert codes.count("LW720") == 1
+    assert "LW107" not in codes
+
+
+def test_two_findings_at_one_place_of_a_package_file_are_both_told(tmp_path):
+    (tmp_path / "package.xml").write_text(
+        "<package><name>p</name><export><build_type>ament_python</build_type></export></package>"
+    )
+    (tmp_path / "setup.py").write_text("from setuptools import setup\nsetup(name='p', data_files=[])\n")
+    (tmp_path / "robot.urdf").write_text('<robot name="r"><link name="a"/></robot>')
+    codes = [each.code for each in check(tmp_path / "robot.urdf", settings=Settings(select=("LW826",)))]
+    assert codes == ["LW826", "LW826"]

@@ -1,0 +1,38 @@
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from linkwright.standins import activate
+
+activate()
+
+HEAD = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
+
+
+@pytest.fixture(autouse=True)
+def _fresh_module(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """Each test finds the module as it is when it was just imported, in a folder of its own."""
+    import xacro
+
+    monkeypatch.chdir(tmp_path)
+    saved = xacro.root_dir, xacro.verbosity
+    xacro.filestack = xacro.macrostack = None
+    yield
+    xacro.root_dir, xacro.verbosity = saved
+    xacro.filestack = xacro.macrostack = None
+
+
+@pytest.fixture
+def write(tmp_path: Path) -> Callable[[str, str], Path]:
+    """Writes a file of a robot's, put between the tags of the root."""
+
+    def file(name: str, inside: str) -> Path:
+        path = tmp_path / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(inside if name.endswith(".yaml") else f"{HEAD}{inside}</robot>", encoding="utf-8")
+        return path
+
+    return file

@@ -1,0 +1,49 @@
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from linkwright.cli import main
+
+Write = Callable[[str, str], Path]
+HEAD = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
+
+
+@dataclass
+class Answer:
+    """What a command printed, and its exit status."""
+
+    status: int
+    out: str
+    err: str
+
+
+@pytest.fixture
+def write(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Write:
+    """Writes a file of a robot's, put between the tags of the root, into the folder that is the current one."""
+    monkeypatch.chdir(tmp_path)
+
+    def file(name: str, inside: str) -> Path:
+        path = tmp_path / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        text = inside if inside.startswith(("<?xml", "<robot")) else f"{HEAD}\n{inside}\n</robot>\n"
+        path.write_text(text, encoding="utf-8")
+        return Path(name)
+
+    return file
+
+
+@pytest.fixture
+def run(capsys: pytest.CaptureFixture[str]) -> Callable[..., Answer]:
+    """Runs ``linkwright xacro``."""
+
+    def command(*words: str) -> Answer:
+        capsys.readouterr()
+        status = main(["xacro", *words])
+        captured = capsys.readouterr()
+        return Answer(status, captured.out, captured.err)
+
+    return command
