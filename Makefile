@@ -5,6 +5,7 @@
 #   make check   ruff, mypy, import-linter, the page's type check, generated files current
 #   make bench   the figures the project promises, measured on this machine
 #   make docs    the documentation site in site/
+#   make fuzz    a million hostile inputs for everything that reads files; see fuzz/README.md
 
 PYTHON ?= python3
 VERSION ?=
@@ -16,7 +17,7 @@ export UV
 LOCKED := .build/constraints.txt
 PAGE_SOURCES := $(shell find frontend -path frontend/node_modules -prune -o -type f -print)
 
-.PHONY: demo test test-quick test-browser check bench docs page lock format clean
+.PHONY: demo test test-quick test-browser check bench fuzz docs page lock format clean
 
 demo: $(VENV)/.ready
 	$(BIN)/linkwright launch my_robot_description display_xacro.launch.py $(ARGS)
@@ -43,7 +44,16 @@ check: $(VENV)/.dev
 	$(BIN)/python tools/build_page.py run check
 
 bench: $(VENV)/.dev page
+	$(BIN)/python -m benchmarks.peers
 	$(BIN)/python -m benchmarks $(ARGS)
+
+fuzz: .build/fuzz/venv/.ready
+	PYTHONPATH=src:. nice -n 15 .build/fuzz/venv/bin/python -m fuzz $(ARGS)
+
+.build/fuzz/venv/.ready: | $(UV)
+	$(UV) venv --quiet --clear --python $(or $(VERSION),3.11) .build/fuzz/venv
+	$(UV) pip install --quiet --python .build/fuzz/venv/bin/python atheris numpy pyyaml
+	touch $@
 
 docs: $(VENV)/.dev
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet

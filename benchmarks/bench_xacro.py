@@ -7,6 +7,7 @@ from earlier ones; within a pass over all models a file is read once.
 
 from __future__ import annotations
 
+import gc
 import io
 import os
 import sys
@@ -62,6 +63,7 @@ def forget() -> None:
         kept.clear()
     macros.parse_parameters.cache_clear()
     literals.number_or_boolean.cache_clear()
+    gc.collect()
 
 
 def one_pass(engine: Engine, robots: list[Model]) -> None:
@@ -81,31 +83,26 @@ def rows() -> list[Row]:
 
 
 def _in_process(robots: list[Model], largest: list[Model], other: Engine | None) -> list[Row]:
-    def cold(chosen: list[Model]) -> Callable[[], None]:
-        def run() -> None:
-            forget()
-            one_pass(ours, chosen)
+    def calls(chosen: list[Model]) -> dict[str, Callable[[], None] | None]:
+        peer = None if other is None else lambda: one_pass(other, chosen)
+        return {"ours": lambda: one_pass(ours, chosen), PEER: peer}
 
-        return run
-
-    def peer(chosen: list[Model]) -> Callable[[], None] | None:
-        return None if other is None else lambda: one_pass(other, chosen)
-
-    calls = {"cold": cold(robots), "warm": lambda: one_pass(ours, robots), PEER: peer(robots)}
-    times = side_by_side(calls, PASSES)
+    count = f"{len(robots)} models"
+    cold = side_by_side(calls(robots), PASSES, before=forget)
+    warm = side_by_side(calls(robots), PASSES)
     found = [
-        _row(f"{len(robots)} models, cold at the start of the pass", times, "cold", "5 times faster, towards 10"),
-        _row(f"{len(robots)} models, files and texts known", times, "warm", ""),
+        _row(f"{count}, cold at the start of each pass", cold, "5 times faster, towards 10"),
+        _row(f"{count}, files and texts known", warm, ""),
     ]
     for model in largest:
-        times = side_by_side({"cold": cold([model]), PEER: peer([model])}, SINGLES)
-        found.append(_row(f"{model.name}, cold", times, "cold", "5 times faster"))
+        times = side_by_side(calls([model]), SINGLES, before=forget)
+        found.append(_row(f"{model.name}, cold", times, "5 times faster"))
     return found
 
 
-def _row(what: str, seconds: dict[str, float], key: str, target: str) -> Row:
+def _row(what: str, seconds: dict[str, float], target: str) -> Row:
     other = seconds.get(PEER)
-    return Row(what, seconds[key] * 1e3, "ms", target, {PEER: None if other is None else other * 1e3})
+    return Row(what, seconds["ours"] * 1e3, "ms", target, {PEER: None if other is None else other * 1e3})
 
 
 def _largest(robots: list[Model], engine: Engine) -> list[Model]:

@@ -50,20 +50,26 @@ def show(rows: Sequence[Row]) -> None:
         print(f"{what:58} {ours:>12}   {f'(promised: {target})  ' if target else ''}{others}")
 
 
-def side_by_side(calls: Mapping[str, Callable[[], object] | None], rounds: int, repeat: int = 1) -> dict[str, float]:
+def side_by_side(
+    calls: Mapping[str, Callable[[], object] | None],
+    rounds: int,
+    repeat: int = 1,
+    before: Callable[[], object] = gc.collect,
+) -> dict[str, float]:
     """The median seconds of one call of each, called in turns so that all meet the same machine.
 
     Args:
         calls: name -> what to call; None for what cannot be.
         rounds: how many turns.
         repeat: how many calls are timed together.
+        before: what is done before each turn of each, untimed.
     """
     times: dict[str, list[float]] = {name: [] for name, call in calls.items() if call is not None}
     for number in range(rounds + 1):
         for name, call in calls.items():
             if call is None:
                 continue
-            gc.collect()
+            before()
             begin = time.perf_counter()
             for _ in range(repeat):
                 call()

@@ -23,7 +23,10 @@ class Model:
     @property
     def name(self) -> str:
         """A short name for tables."""
-        return Path(self.path).name + "".join(f" {name}:={value}" for name, value in self.arguments.items())
+        path = Path(self.path)
+        return f"{path.parent.name}/{path.name}" + "".join(
+            f" {name}:={value}" for name, value in self.arguments.items()
+        )
 
 
 def has_corpus() -> bool:

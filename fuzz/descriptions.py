@@ -10,42 +10,313 @@ from fuzz.choices import Choices
 
 HEAD = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="r">'
 _VALUES = [
-    *("1", "2.5", "abc", "true", "False", "'5'", "007", "", " 3 ", "1e3", "1_0", "-0.0", "a b", "é", "nan", "'true'", "1,2"),
+    *(
+        "1",
+        "2.5",
+        "abc",
+        "true",
+        "False",
+        "'5'",
+        "007",
+        "",
+        " 3 ",
+        "1e3",
+        "1_0",
+        "-0.0",
+        "a b",
+        "é",
+        "nan",
+        "'true'",
+        "1,2",
+    ),
     *("0x10", "+5", "1.", ".5", "1e400", "TRUE", "None", "[1, 2]", "'a' 'b'", "''", "'", "1 2 3", "$", "$$ ", "10_0.5"),
 ]
 _EXPRESSIONS = [
-    *("1", "2*3", "1/3", "7//2", "-7 % 3", "2**10", "2**-1", "1e16", "1e-7", "0.1+0.2", "100.0", "10**20", "1.0*10**20"),
+    *(
+        "1",
+        "2*3",
+        "1/3",
+        "7//2",
+        "-7 % 3",
+        "2**10",
+        "2**-1",
+        "1e16",
+        "1e-7",
+        "0.1+0.2",
+        "100.0",
+        "10**20",
+        "1.0*10**20",
+    ),
     *("'a' + 'b'", "'%.3f' % 3.14159", "'%s-%d' % ('x', 3)", "'%05d' % 42", "'%e' % 12345.678", "'%g' % 1e-5", "'%%'"),
     *("'abc'[::-1]", "'abc'[1]", "'abcdef'[1:4]", "'a,b,c'.split(',')", "' x '.strip()", "'A'.lower()", "'ab'.upper()"),
-    *("[1, 2.0, 'x']", "[x*2 for x in [1,2,3]]", "[x for x in python.range(5) if x % 2]", "[[1,2],[3]]", "(1, 'a')", "(1,)"),
+    *(
+        "[1, 2.0, 'x']",
+        "[x*2 for x in [1,2,3]]",
+        "[x for x in python.range(5) if x % 2]",
+        "[[1,2],[3]]",
+        "(1, 'a')",
+        "(1,)",
+    ),
     *("[(i, c) for i, c in python.enumerate('ab')]", "[x+y for x in [1,2] for y in [10,20]]", "python.sum([1,2,3])"),
     *("list(map(lambda v: v+1, [1,2]))", "(lambda a, b=2: a*b)(3)", "python.sorted([3,1,2], key=lambda k: -k)"),
-    *("1 if True else 2", "'y' if 1 > 2 else 'n'", "1 < 2 < 3", "not 1", "1 and 0", "0 or 'x'", "None", "True", "1 == 1.0"),
-    *("sin(pi/2)", "round(2.675, 2)", "round(2.5)", "degrees(pi)", "radians(180)", "math.sqrt(2)", "floor(2.7)", "ceil(2.1)"),
-    *("max(1, 2.5)", "min([3, 1])", "len('abc')", "str(1.0)", "int('12')", "float('1e3')", "int(2.9)", "bool('')", "e", "inf"),
-    *("-inf", "nan", "tau", "hypot(3,4)", "atan2(1,1)", "pow(2,3)", "pow(2, 0.5)", "fmod(7,3)", "copysign(1,-0.0)", "log(10)"),
-    *("python.range(3)", "range(3)", "sorted([2,1])", "list(range(3))", "python.dict(a=1)", "dict(a=1, b='x')", "python.abs(-3)"),
-    *("python.isinstance(1, int)", "python.type(1)", "python.set([1])", "python.zip([1],[2])", "list(python.zip([1],[2]))"),
-    *("python.any([0,1])", "python.tuple([1])", "python.str(b'x')", "python.repr('x')", "python.ord('a')", "1+2j", "0b11"),
-    *("0x1F", "1_000", "r'\\d'", "'\\n'", "'\\\\'", '"dq"', "'it''s'", "xacro.tokenize('a b,c;d')", "xacro.dotify(dict(a=1)).a"),
-    *("a", "b", "c", "a+b", "a*2", "str(a)", "str(a)+str(b)", "[a, b]", "a if a else b", "a == b", "c", "lst[0]", "lst", "lst[-1]"),
-    *("len(lst)", "data", "data.p", "data['p']", "data.q", "data.q.r", "data.l[0]", "data.l", "data['q']['r']", "n", "'%s' % a"),
-    *("xacro.arg('n')", "int(xacro.arg('n'))+1", "ns.a", "ns.b", "x # comment", "1 # c", " 1 ", "(y:=3)", "a<b", "a&lt;b", "1 &lt; 2"),
-    *("lst.pop(0)", "lst.append(9)", "', '.join(['a','b'])", "'x'*3", "[0]*3", "'a' in 'abc'", "1 in lst", "a is None", "~5", "1^3"),
-    *("1<<4", "255>>2", "6&3", "6|1", "@", "a b", "1+", "undefined", "__x", "''.join([str(i) for i in lst])", "divmod(7,2)"),
-    *("str(lst)", "data.keys()", "list(data.keys())", "list(data.items())", "data.values()", "data.missing", "data['missing']"),
-    *("1/0", "'a'+1", "lst[9]", "int('x')", "e1", "1e5", "1E5", "100000000000000000000", "1.10", "5.0e-324", "2e308", "3.0e0"),
-    *("-a", "+a", "(1+2)*3", "((1))", "5 % 2 == 1", "'%d%%' % 50", "'é'", "'日本'", "len('é')", "str(None)", "[]", "[None]", "()"),
+    *(
+        "1 if True else 2",
+        "'y' if 1 > 2 else 'n'",
+        "1 < 2 < 3",
+        "not 1",
+        "1 and 0",
+        "0 or 'x'",
+        "None",
+        "True",
+        "1 == 1.0",
+    ),
+    *(
+        "sin(pi/2)",
+        "round(2.675, 2)",
+        "round(2.5)",
+        "degrees(pi)",
+        "radians(180)",
+        "math.sqrt(2)",
+        "floor(2.7)",
+        "ceil(2.1)",
+    ),
+    *(
+        "max(1, 2.5)",
+        "min([3, 1])",
+        "len('abc')",
+        "str(1.0)",
+        "int('12')",
+        "float('1e3')",
+        "int(2.9)",
+        "bool('')",
+        "e",
+        "inf",
+    ),
+    *(
+        "-inf",
+        "nan",
+        "tau",
+        "hypot(3,4)",
+        "atan2(1,1)",
+        "pow(2,3)",
+        "pow(2, 0.5)",
+        "fmod(7,3)",
+        "copysign(1,-0.0)",
+        "log(10)",
+    ),
+    *(
+        "python.range(3)",
+        "range(3)",
+        "sorted([2,1])",
+        "list(range(3))",
+        "python.dict(a=1)",
+        "dict(a=1, b='x')",
+        "python.abs(-3)",
+    ),
+    *(
+        "python.isinstance(1, int)",
+        "python.type(1)",
+        "python.set([1])",
+        "python.zip([1],[2])",
+        "list(python.zip([1],[2]))",
+    ),
+    *(
+        "python.any([0,1])",
+        "python.tuple([1])",
+        "python.str(b'x')",
+        "python.repr('x')",
+        "python.ord('a')",
+        "1+2j",
+        "0b11",
+    ),
+    *(
+        "0x1F",
+        "1_000",
+        "r'\\d'",
+        "'\\n'",
+        "'\\\\'",
+        '"dq"',
+        "'it''s'",
+        "xacro.tokenize('a b,c;d')",
+        "xacro.dotify(dict(a=1)).a",
+    ),
+    *(
+        "a",
+        "b",
+        "c",
+        "a+b",
+        "a*2",
+        "str(a)",
+        "str(a)+str(b)",
+        "[a, b]",
+        "a if a else b",
+        "a == b",
+        "c",
+        "lst[0]",
+        "lst",
+        "lst[-1]",
+    ),
+    *(
+        "len(lst)",
+        "data",
+        "data.p",
+        "data['p']",
+        "data.q",
+        "data.q.r",
+        "data.l[0]",
+        "data.l",
+        "data['q']['r']",
+        "n",
+        "'%s' % a",
+    ),
+    *(
+        "xacro.arg('n')",
+        "int(xacro.arg('n'))+1",
+        "ns.a",
+        "ns.b",
+        "x # comment",
+        "1 # c",
+        " 1 ",
+        "(y:=3)",
+        "a<b",
+        "a&lt;b",
+        "1 &lt; 2",
+    ),
+    *(
+        "lst.pop(0)",
+        "lst.append(9)",
+        "', '.join(['a','b'])",
+        "'x'*3",
+        "[0]*3",
+        "'a' in 'abc'",
+        "1 in lst",
+        "a is None",
+        "~5",
+        "1^3",
+    ),
+    *(
+        "1<<4",
+        "255>>2",
+        "6&3",
+        "6|1",
+        "@",
+        "a b",
+        "1+",
+        "undefined",
+        "__x",
+        "''.join([str(i) for i in lst])",
+        "divmod(7,2)",
+    ),
+    *(
+        "str(lst)",
+        "data.keys()",
+        "list(data.keys())",
+        "list(data.items())",
+        "data.values()",
+        "data.missing",
+        "data['missing']",
+    ),
+    *(
+        "1/0",
+        "'a'+1",
+        "lst[9]",
+        "int('x')",
+        "e1",
+        "1e5",
+        "1E5",
+        "100000000000000000000",
+        "1.10",
+        "5.0e-324",
+        "2e308",
+        "3.0e0",
+    ),
+    *(
+        "-a",
+        "+a",
+        "(1+2)*3",
+        "((1))",
+        "5 % 2 == 1",
+        "'%d%%' % 50",
+        "'é'",
+        "'日本'",
+        "len('é')",
+        "str(None)",
+        "[]",
+        "[None]",
+        "()",
+    ),
     *("math.pi", "math.e", "python.len([1])", "python.max(1,2)", "list", "str", "sin", "xacro.arg"),
 ]
 _SUBSTITUTIONS = [
-    *("arg n", "arg s", "arg flag", "arg missing", "find pkg", "find nopkg", "optenv NOPE_X", "optenv NOPE_X a b", "env NOPE_X"),
-    *("eval 1+1", "eval n", "eval s", "eval pi", "arg  n", " arg n", "arg n ", "find pkg extra", "anon x", "", "eval flag", "cwd"),
-    *("optenv", "arg", "eval n+1", "eval n == 3", "eval 'a' + s", "eval true", "eval __x", "eval sin", "eval undefined"),
+    *(
+        "arg n",
+        "arg s",
+        "arg flag",
+        "arg missing",
+        "find pkg",
+        "find nopkg",
+        "optenv NOPE_X",
+        "optenv NOPE_X a b",
+        "env NOPE_X",
+    ),
+    *(
+        "eval 1+1",
+        "eval n",
+        "eval s",
+        "eval pi",
+        "arg  n",
+        " arg n",
+        "arg n ",
+        "find pkg extra",
+        "anon x",
+        "",
+        "eval flag",
+        "cwd",
+    ),
+    *(
+        "optenv",
+        "arg",
+        "eval n+1",
+        "eval n == 3",
+        "eval 'a' + s",
+        "eval true",
+        "eval __x",
+        "eval sin",
+        "eval undefined",
+    ),
 ]
 _CONDITIONS = [
-    *("true", "false", "True", "0", "1", "2", " 1 ", "-1", "", "1.0", "yes", "${True}", "${a}", "${1 == 1}", "${a == 1}", "${b}"),
-    *("${lst}", "${[]}", "${''}", "${'true'}", "${None}", "${0.0}", "$(arg flag)", "$(arg n)", "${c}", "${not a}", "${nan}"),
+    *(
+        "true",
+        "false",
+        "True",
+        "0",
+        "1",
+        "2",
+        " 1 ",
+        "-1",
+        "",
+        "1.0",
+        "yes",
+        "${True}",
+        "${a}",
+        "${1 == 1}",
+        "${a == 1}",
+        "${b}",
+    ),
+    *(
+        "${lst}",
+        "${[]}",
+        "${''}",
+        "${'true'}",
+        "${None}",
+        "${0.0}",
+        "$(arg flag)",
+        "$(arg n)",
+        "${c}",
+        "${not a}",
+        "${nan}",
+    ),
     *("${'x' in 'xyz'}", "$(eval n == 3)", "${xacro.arg('flag')}", "${flag}", "TRUE", " true", "${' 1'}", "1_0", "٣"),
 ]
 _NAMES = ["a", "b", "c", "lst", "x", "y"]
@@ -55,7 +326,9 @@ _GAPS = ["", "\n", "\n  ", "\n\n", " ", "\n\n\n", "\t", "\r\n"]
 def description(choices: Choices) -> tuple[dict[str, str | bytes], dict[str, str]]:
     """Files by name, the first of them main.xacro, and the arguments given."""
     maker = _Maker(choices)
-    start = choices.pick(["", '<?xml version="1.0"?>\n', '<?xml version="1.0" encoding="UTF-8"?>\n<!-- top -->\n', "<!-- top -->"])
+    start = choices.pick(
+        ["", '<?xml version="1.0"?>\n', '<?xml version="1.0" encoding="UTF-8"?>\n<!-- top -->\n', "<!-- top -->"]
+    )
     prelude = maker.prelude()
     body = "".join(maker.gap() + maker.node(0) for _ in range(1 + choices.pick([0, 0, 1, 1, 2, 3, 6])))
     end = choices.pick(["", "\n", "\n<!-- after -->\n", "<?pi x?>"])
@@ -69,7 +342,11 @@ def description(choices: Choices) -> tuple[dict[str, str | bytes], dict[str, str
         "pkg/part.xacro": f'{HEAD}<xacro:macro name="part" params="v:=1"><part v="${{v}}"/></xacro:macro></robot>',
         "data.yaml": "p: 1\nq: {r: yes, s: 1e3, t: !degrees 90}\nl: [1, 2.50, 'x', ~, 012]\nkeys: k\n",
     }
-    given = {} if choices.chance(2) else {"s": choices.pick(["v", "1", "true", "a b", "é", "${1+1}", "$(find pkg)", "", "'q'"])}
+    given = (
+        {}
+        if choices.chance(2)
+        else {"s": choices.pick(["v", "1", "true", "a b", "é", "${1+1}", "$(find pkg)", "", "'q'"])}
+    )
     return files, given
 
 
@@ -98,7 +375,10 @@ class _Maker:
     def gap(self) -> str:
         gap = self.pick(_GAPS)
         if self.choices.chance(5):
-            gap += f"<!--{self.pick([' c ', '${a}', 'xacro:eval-comments', ' xacro:eval-comments:off', '${', '$$x'])}-->" + self.pick(_GAPS)
+            gap += (
+                f"<!--{self.pick([' c ', '${a}', 'xacro:eval-comments', ' xacro:eval-comments:off', '${', '$$x'])}-->"
+                + self.pick(_GAPS)
+            )
         return gap
 
     def text(self) -> str:
@@ -110,20 +390,44 @@ class _Maker:
         if kind == 5:
             return self.pick(_VALUES)
         joined = "".join(self.text() for _ in range(1 + self.choices.number(3)))
-        return self.pick([joined, f" {joined} ", f"a{joined}", "$$" + joined, "$" + joined, f"${{'$(arg n)' + {self.expression()}}}", "a&amp;b&lt;", "&quot;'", "&#10;x", "&#9;"])
+        return self.pick(
+            [
+                joined,
+                f" {joined} ",
+                f"a{joined}",
+                "$$" + joined,
+                "$" + joined,
+                f"${{'$(arg n)' + {self.expression()}}}",
+                "a&amp;b&lt;",
+                "&quot;'",
+                "&#10;x",
+                "&#9;",
+            ]
+        )
 
     def expression(self) -> str:
         expression = self.pick(_EXPRESSIONS)
         if self.choices.chance(5):
             expression = f"{expression} {self.pick(['+', '*', '==', 'and', 'or', '-', '%', 'if a else'])} {self.pick(_EXPRESSIONS)}"
-        return expression.replace('"', "&quot;").replace("< ", "&lt; ").replace("<<", "&lt;&lt;").replace("a<b", "a&lt;b")
+        return (
+            expression.replace('"', "&quot;").replace("< ", "&lt; ").replace("<<", "&lt;&lt;").replace("a<b", "a&lt;b")
+        )
 
     def node(self, depth: int) -> str:
         if depth > 5:
             return "<leaf/>"
         kinds = (
             *(self.element, self.element, self.element, self.property, self.property, self.macro, self.call, self.call),
-            *(self.condition, self.condition, self.include, self.blocks, self.made, self.odd, self.characters, self.loop),
+            *(
+                self.condition,
+                self.condition,
+                self.include,
+                self.blocks,
+                self.made,
+                self.odd,
+                self.characters,
+                self.loop,
+            ),
         )
         return self.pick(kinds)(depth + 1)
 
@@ -136,11 +440,35 @@ class _Maker:
         return f"<e{attributes}>{self.inside(depth)}</e>" if self.choices.chance(2) else f"<e{attributes}/>"
 
     def characters(self, _depth: int) -> str:
-        return self.pick(["text", "${a}", " ${a} and ${b} ", "\n  t\n", "<![CDATA[${a}]]>", "a&amp;b", "x &gt; y", "<?pi ${a}?>", "$(arg n)"])
+        return self.pick(
+            [
+                "text",
+                "${a}",
+                " ${a} and ${b} ",
+                "\n  t\n",
+                "<![CDATA[${a}]]>",
+                "a&amp;b",
+                "x &gt; y",
+                "<?pi ${a}?>",
+                "$(arg n)",
+            ]
+        )
 
     def property(self, depth: int) -> str:
         name = self.pick([*_NAMES, "pi", "e", "new", "p${1+1}", "é", "1x", "class", "a.b", "_u", "__d"])
-        extra = self.pick(["", "", "", "", ' lazy_eval="false"', ' scope="global"', ' scope="parent"', ' lazy_eval="true"', ' odd="1"'])
+        extra = self.pick(
+            [
+                "",
+                "",
+                "",
+                "",
+                ' lazy_eval="false"',
+                ' scope="global"',
+                ' scope="parent"',
+                ' lazy_eval="true"',
+                ' odd="1"',
+            ]
+        )
         kind = self.choices.number(10)
         if kind == 8:
             return f'<xacro:property name="{name}"{extra}>{self.inside(depth)}</xacro:property>'
@@ -151,8 +479,28 @@ class _Maker:
     def macro(self, depth: int) -> str:
         parameters = self.pick(
             [
-                *("x", "x y", "x:=1 y", "x:=${a} y:=${b}", "x:=^ y:=^|3", "x='a b' y:='c'", "x y *one", "x **one y:=''", "x:=$(arg n)"),
-                *("x y:=[1,2]", "x y:=${[1,2]}", "x = 5 y", "", "x:=true y:=007", "*one *two", "x y:=a_b", "x\n   y:=1", "a:=^|5 x:=${a}"),
+                *(
+                    "x",
+                    "x y",
+                    "x:=1 y",
+                    "x:=${a} y:=${b}",
+                    "x:=^ y:=^|3",
+                    "x='a b' y:='c'",
+                    "x y *one",
+                    "x **one y:=''",
+                    "x:=$(arg n)",
+                ),
+                *(
+                    "x y:=[1,2]",
+                    "x y:=${[1,2]}",
+                    "x = 5 y",
+                    "",
+                    "x:=true y:=007",
+                    "*one *two",
+                    "x y:=a_b",
+                    "x\n   y:=1",
+                    "a:=^|5 x:=${a}",
+                ),
                 *("x y:='${a} b'", "x y:=${a}cm", "x:=a=b", "x, y", "x y:=^|", "x y:=1:2", "x x", "x:='it' y:='\"'"),
             ]
         )
@@ -185,7 +533,7 @@ class _Maker:
                 '<xacro:include filename="missing.xacro" optional="true"/>',
                 '<xacro:include filename="$(find pkg)/part.xacro"/>',
                 '<xacro:include filename="missing.xacro"/>',
-                '<xacro:include filename="${\'sub\'}/inner.xacro" ns="${\'q\'}"/>',
+                "<xacro:include filename=\"${'sub'}/inner.xacro\" ns=\"${'q'}\"/>",
             ]
         )
 
@@ -200,8 +548,21 @@ class _Maker:
     def odd(self, _depth: int) -> str:
         return self.pick(
             [
-                *('<property name="a" value="1"/>', '<xs:q xmlns:xs="u" v="${a}"/>', '<e xacro:x="${a}" b="1"/>', "<if>${a}</if>"),
-                *('<e xmlns:xacro="other"/>', "<xacro:nothing/>", '<e v="a\nb\tc"/>', "<e>a\nb</e>", "<e> </e>", "<e>\n</e>", "<e>${''}</e>"),
+                *(
+                    '<property name="a" value="1"/>',
+                    '<xs:q xmlns:xs="u" v="${a}"/>',
+                    '<e xacro:x="${a}" b="1"/>',
+                    "<if>${a}</if>",
+                ),
+                *(
+                    '<e xmlns:xacro="other"/>',
+                    "<xacro:nothing/>",
+                    '<e v="a\nb\tc"/>',
+                    "<e>a\nb</e>",
+                    "<e> </e>",
+                    "<e>\n</e>",
+                    "<e>${''}</e>",
+                ),
             ]
         )
 

@@ -9,16 +9,63 @@ from fuzz.expressions import NAMES, expression
 
 HEAD = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro"'
 MACROS = ["m", "k", "ns.m", "inner", "call", "other", "ns.other", "xacro:m"]
-LITERALS = ["1", "", "a", "true", "False", "0.5", "007", "'5'", " 5 ", "1_0", "nan", "1e2", "a b", "é", "日本", "-0", "TRUE"]
+LITERALS = [
+    "1",
+    "",
+    "a",
+    "true",
+    "False",
+    "0.5",
+    "007",
+    "'5'",
+    " 5 ",
+    "1_0",
+    "nan",
+    "1e2",
+    "a b",
+    "é",
+    "日本",
+    "-0",
+    "TRUE",
+]
 SUBSTITUTIONS = [
     *("arg name", "arg n", "arg", "find pkg", "find missing", "optenv A b c", "optenv", "env LINKWRIGHT_UNSET", "cwd"),
     *("dirname", "eval 1+1", "eval n", "anon x", "", "arg ${name}", "find  pkg", "eval __x", "arg undeclared"),
 ]
 PARAMETERS = [
-    *("a", "a b", "a:=1", "a:=^", "a:=^|2", "*a", "**a", "*b **n", "a:=${n+1} b", "a=1 b:='x y'", "a:=$(arg name) b:=''"),
+    *(
+        "a",
+        "a b",
+        "a:=1",
+        "a:=^",
+        "a:=^|2",
+        "*a",
+        "**a",
+        "*b **n",
+        "a:=${n+1} b",
+        "a=1 b:='x y'",
+        "a:=$(arg name) b:=''",
+    ),
     *("a a", "a:=", "a := 1", "a:=^|${n}", "a:='", "a:=$(find pkg)/b", "a:=[] b:=(1)", 'a:="x y"', "ns m", "é:=1"),
 ]
-CHARACTERS = ["text", "", " ", "\n", "\n\n", "$", "$$", "$${a}", "$5", "&amp;", "&lt;", "&#228;", "é", "]]&gt;", "\t", "\r\n"]
+CHARACTERS = [
+    "text",
+    "",
+    " ",
+    "\n",
+    "\n\n",
+    "$",
+    "$$",
+    "$${a}",
+    "$5",
+    "&amp;",
+    "&lt;",
+    "&#228;",
+    "é",
+    "]]&gt;",
+    "\t",
+    "\r\n",
+]
 
 
 class Files(NamedTuple):
@@ -68,7 +115,9 @@ def _yaml_value(choices: Choices, depth: int) -> str:
         pairs = (f"{key}: {_yaml_value(choices, depth + 1)}" for key in ["x", "keys", "1", "get"][: choices.number(5)])
         return f"{{{', '.join(pairs)}}}"
     if kind == 3:
-        tag = choices.pick(["!degrees", "!radians", "!inches", "!meters", "!x", "!!python/object:a.b", "!!int", "!!set"])
+        tag = choices.pick(
+            ["!degrees", "!radians", "!inches", "!meters", "!x", "!!python/object:a.b", "!!int", "!!set"]
+        )
         return f"{tag} {choices.pick(['90', 'pi/2', '1+', 'undefined', '1e999', '[1]', 'a: b', '{1: 2}'])}"
     if kind == 4:
         return choices.pick(["&a [1]", "*a", "&a {<<: *a}", "*undefined", "|\n  block", ">-\n  folded", "&a [*a]"])
@@ -110,14 +159,26 @@ def _characters(choices: Choices, _depth: int) -> str:
 
 
 def _comment(choices: Choices, _depth: int) -> str:
-    inside = choices.pick([" c ", "xacro:eval-comments", " xacro:eval-comments:off ", " ${n} ", " ${ ", "a\nb", " -", "x-"])
+    inside = choices.pick(
+        [" c ", "xacro:eval-comments", " xacro:eval-comments:off ", " ${n} ", " ${ ", "a\nb", " -", "x-"]
+    )
     return choices.pick(["", "\n", "\n\n"]) + f"<!--{inside}-->"
 
 
 def _property(choices: Choices, depth: int) -> str:
     name = choices.pick(NAMES) if not choices.chance(10) else text(choices)
     extra = choices.pick(
-        ["", "", "", ' lazy_eval="false"', ' scope="parent"', ' scope="global"', ' remove="true"', ' x="1"', ' scope="?"']
+        [
+            "",
+            "",
+            "",
+            ' lazy_eval="false"',
+            ' scope="parent"',
+            ' scope="global"',
+            ' remove="true"',
+            ' x="1"',
+            ' scope="?"',
+        ]
     )
     kind = choices.number(6)
     if kind == 0:
@@ -153,7 +214,9 @@ def _condition(choices: Choices, depth: int) -> str:
 
 
 def _include(choices: Choices, _depth: int) -> str:
-    name = choices.pick(["other.xacro", "missing.xacro", "*.xacro", "./other.xacro", "$(find pkg)/other.xacro", "none*", ""])
+    name = choices.pick(
+        ["other.xacro", "missing.xacro", "*.xacro", "./other.xacro", "$(find pkg)/other.xacro", "none*", ""]
+    )
     extra = choices.pick(["", "", ' ns="ns"', ' optional="true"', ' optional="x"', ' ns="${name}"', ' ns="pi"'])
     return f'<xacro:include filename="{name}"{extra}/>'
 
@@ -173,8 +236,25 @@ def _made_attribute(choices: Choices, _depth: int) -> str:
 def _odd(choices: Choices, _depth: int) -> str:
     return choices.pick(
         [
-            *("<![CDATA[${n} <a>]]>", "<?pi ${n}?>", "<xacro:undefined/>", "<xacro:include/>", "<xacro:property/>", "&a;"),
-            *("&c;", "&undefined;", "<a><b></a>", '<a v="1" v="2"/>', "<a v=1/>", "<xacro:if/>", "<xacro:", "\x00", "&"),
+            *(
+                "<![CDATA[${n} <a>]]>",
+                "<?pi ${n}?>",
+                "<xacro:undefined/>",
+                "<xacro:include/>",
+                "<xacro:property/>",
+                "&a;",
+            ),
+            *(
+                "&c;",
+                "&undefined;",
+                "<a><b></a>",
+                '<a v="1" v="2"/>',
+                "<a v=1/>",
+                "<xacro:if/>",
+                "<xacro:",
+                "\x00",
+                "&",
+            ),
             *('<xacro:property name="data" value="${xacro.load_yaml(\'data.yaml\')}"/>', "<property/>", "<q:x/>"),
         ]
     )
@@ -190,7 +270,20 @@ def _loop(choices: Choices, depth: int) -> str:
 
 
 _NODES = [
-    *(_element, _element, _characters, _comment, _property, _property, _property, _argument, _macro, _macro, _call, _call),
+    *(
+        _element,
+        _element,
+        _characters,
+        _comment,
+        _property,
+        _property,
+        _property,
+        _argument,
+        _macro,
+        _macro,
+        _call,
+        _call,
+    ),
     *(_condition, _include, _block, _made_element, _made_attribute, _odd, _loop),
 ]
 

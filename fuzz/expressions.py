@@ -5,7 +5,24 @@ from __future__ import annotations
 from fuzz.choices import Choices
 
 NAMES = ["a", "b", "n", "items", "data", "name", "pi", "e", "x", "undefined", "true", "False", "None", "_", "ns"]
-NUMBERS = ["1", "0", "2", "-1", "0.5", "1e3", "1e308", "007", "1_0", "0x1F", "10**3", "1j", "9" * 30, "1e-7", ".5", "3."]
+NUMBERS = [
+    "1",
+    "0",
+    "2",
+    "-1",
+    "0.5",
+    "1e3",
+    "1e308",
+    "007",
+    "1_0",
+    "0x1F",
+    "10**3",
+    "1j",
+    "9" * 30,
+    "1e-7",
+    ".5",
+    "3.",
+]
 STRINGS = ["'a'", "''", "'1'", "'%s'", "'%d %.3f'", "'a,b c'", "'x' 'y'", "r'\\d'", "b'a'", "'é'", "'\\x00'", '"q"']
 BINARY = ["+", "-", "*", "/", "//", "%", "**", "<<", ">>", "&", "|", "^", "@"]
 COMPARISONS = ["==", "!=", "<", "<=", ">", ">=", "is", "is not", "in", "not in"]
@@ -22,7 +39,19 @@ METHODS = [
     *("upper", "lower", "split", "strip", "join", "replace", "format", "count", "index", "find", "zfill", "ljust"),
     *("append", "pop", "extend", "insert", "sort", "reverse", "get", "keys", "values", "items", "update", "copy"),
     *("is_integer", "bit_length", "real", "hex", "encode", "decode", "center", "expandtabs", "title", "clear"),
-    *("__class__", "_x", "gi_frame", "mro", "union", "add", "partition", "splitlines", "start", "setdefault", "popitem"),
+    *(
+        "__class__",
+        "_x",
+        "gi_frame",
+        "mro",
+        "union",
+        "add",
+        "partition",
+        "splitlines",
+        "start",
+        "setdefault",
+        "popitem",
+    ),
 ]
 
 
@@ -120,7 +149,9 @@ def _formatting(choices: Choices, depth: int) -> str:
 
 
 def _odd(choices: Choices, _depth: int) -> str:
-    return choices.pick(["", "a b", "1 +", "f'a'", "yield", "await a", "*a", "a = 1", "print 1", "\\", "'", "a;b", "#", "..."])
+    return choices.pick(
+        ["", "a b", "1 +", "f'a'", "yield", "await a", "*a", "a = 1", "print 1", "\\", "'", "a;b", "#", "..."]
+    )
 
 
 def _operand(choices: Choices, depth: int) -> str:

@@ -4,15 +4,48 @@ from __future__ import annotations
 
 from fuzz.choices import Choices
 
-_NUMBERS = ["0", "1", "-1", "0.5", "1e3", "nan", "inf", "1e999", "", " ", "x", "1,5", "0x1", " 1 ", "1 2", "é", "-0", "${x}"]
+_NUMBERS = [
+    "0",
+    "1",
+    "-1",
+    "0.5",
+    "1e3",
+    "nan",
+    "inf",
+    "1e999",
+    "",
+    " ",
+    "x",
+    "1,5",
+    "0x1",
+    " 1 ",
+    "1 2",
+    "é",
+    "-0",
+    "${x}",
+]
 _NAMES = ["a", "b", "c", "base_link", "", " ", "a b", "é", "a/b", "日本"]
 _JOINTS = ["fixed", "revolute", "continuous", "prismatic", "floating", "planar", "Fixed", "", "hinge"]
-_TAGS = ["link", "joint", "robot", "visual", "origin", "gazebo", "transmission", "ros2_control", "sensor", "limits", "xacro:if"]
+_TAGS = [
+    "link",
+    "joint",
+    "robot",
+    "visual",
+    "origin",
+    "gazebo",
+    "transmission",
+    "ros2_control",
+    "sensor",
+    "limits",
+    "xacro:if",
+]
 
 
 def urdf(choices: Choices) -> str:
     """A robot, or nearly."""
-    opening = choices.pick(['<robot name="r">', "<robot>", '<robot name="r" version="1.2">', '<robot name="" version="x">'])
+    opening = choices.pick(
+        ['<robot name="r">', "<robot>", '<robot name="r" version="1.2">', '<robot name="" version="x">']
+    )
     body = "".join(choices.pick(_PARTS)(choices) for _ in range(2 + choices.number(8)))
     return f"{opening}{body}{choices.pick(['</robot>', '</robot><robot/>', '</robot> text', ''])}"
 
@@ -41,21 +74,34 @@ def _geometry(choices: Choices) -> str:
     }
     shape = choices.pick(list(shapes))
     values = "".join(
-        _attribute(choices, name, choices.pick(["package://p/m.stl", "", "m.dae"]) if name == "filename" else _vector(choices))
+        _attribute(
+            choices, name, choices.pick(["package://p/m.stl", "", "m.dae"]) if name == "filename" else _vector(choices)
+        )
         if name in ("size", "scale", "filename")
         else _attribute(choices, name, choices.pick(_NUMBERS))
         for name in shapes[shape]
     )
-    return choices.pick([f"<geometry><{shape}{values}/></geometry>", f"<geometry><{shape}{values}/><box/></geometry>", "<geometry/>", ""])
+    return choices.pick(
+        [
+            f"<geometry><{shape}{values}/></geometry>",
+            f"<geometry><{shape}{values}/><box/></geometry>",
+            "<geometry/>",
+            "",
+        ]
+    )
 
 
 def _material(choices: Choices) -> str:
-    color = choices.pick(['<color rgba="1 0 0 1"/>', f'<color rgba="{_vector(choices)}"/>', "<color/>", "", '<texture filename=""/>'])
+    color = choices.pick(
+        ['<color rgba="1 0 0 1"/>', f'<color rgba="{_vector(choices)}"/>', "<color/>", "", '<texture filename=""/>']
+    )
     return f"<material{_attribute(choices, 'name', choices.pick(_NAMES))}>{color}</material>"
 
 
 def _inertial(choices: Choices) -> str:
-    values = "".join(_attribute(choices, name, choices.pick(_NUMBERS)) for name in ("ixx", "iyy", "izz", "ixy", "ixz", "iyz"))
+    values = "".join(
+        _attribute(choices, name, choices.pick(_NUMBERS)) for name in ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
+    )
     mass = choices.pick([f'<mass value="{choices.pick(_NUMBERS)}"/>', "<mass/>", ""])
     return f"<inertial>{_origin(choices)}{mass}<inertia{values}/></inertial>"
 
@@ -69,7 +115,9 @@ def _link(choices: Choices) -> str:
         elif kind == "odd":
             parts.append(f"<{choices.pick(_TAGS[:-1])}/>")
         else:
-            parts.append(f"<{kind}>{_origin(choices)}{_geometry(choices)}{_material(choices) if choices.chance(3) else ''}</{kind}>")
+            parts.append(
+                f"<{kind}>{_origin(choices)}{_geometry(choices)}{_material(choices) if choices.chance(3) else ''}</{kind}>"
+            )
     return f"<link{_attribute(choices, 'name', choices.pick(_NAMES))}>{''.join(parts)}</link>"
 
 
@@ -97,19 +145,73 @@ def _joint(choices: Choices) -> str:
 
 
 def _odd(choices: Choices) -> str:
-    return choices.pick(["text", "<!-- c -->", "<gazebo reference='a'><x/></gazebo>", "<a><b/></a>", "&amp;", "<![CDATA[x]]>", "<link/>"])
+    return choices.pick(
+        [
+            "text",
+            "<!-- c -->",
+            "<gazebo reference='a'><x/></gazebo>",
+            "<a><b/></a>",
+            "&amp;",
+            "<![CDATA[x]]>",
+            "<link/>",
+        ]
+    )
 
 
 _PARTS = [_link, _link, _joint, _joint, _material, _odd]
 
 _KEYS = [
-    *("Visualization Manager", "Displays", "Class", "Name", "Enabled", "Value", "Global Options", "Fixed Frame", "Views"),
-    *("Current", "Distance", "Yaw", "Pitch", "Focal Point", "X", "Background Color", "Frame Rate", "Topic", "Links", "Alpha"),
+    *(
+        "Visualization Manager",
+        "Displays",
+        "Class",
+        "Name",
+        "Enabled",
+        "Value",
+        "Global Options",
+        "Fixed Frame",
+        "Views",
+    ),
+    *(
+        "Current",
+        "Distance",
+        "Yaw",
+        "Pitch",
+        "Focal Point",
+        "X",
+        "Background Color",
+        "Frame Rate",
+        "Topic",
+        "Links",
+        "Alpha",
+    ),
     *("Frames", "Marker Scale", "Description Topic", "Cell Size", "Plane Cell Count", "Color", "Offset", "Tree", "x"),
 ]
 _VALUES = [
-    *("1", "true", "rviz_default_plugins/Grid", "rviz_default_plugins/TF", "rviz_default_plugins/RobotModel", "rviz/Grid"),
-    *("rviz_common/Group", "255; 0; 0", "map", ".inf", "1e999", "~", "''", "é", "[1, 2]", "{}", "[]", "-1", "*x", "&x 1"),
+    *(
+        "1",
+        "true",
+        "rviz_default_plugins/Grid",
+        "rviz_default_plugins/TF",
+        "rviz_default_plugins/RobotModel",
+        "rviz/Grid",
+    ),
+    *(
+        "rviz_common/Group",
+        "255; 0; 0",
+        "map",
+        ".inf",
+        "1e999",
+        "~",
+        "''",
+        "é",
+        "[1, 2]",
+        "{}",
+        "[]",
+        "-1",
+        "*x",
+        "&x 1",
+    ),
     *("rviz_default_plugins/Orbit", "rviz_default_plugins/TopDownOrtho", "<Fixed Frame>", "!!python/x 1", "2001-01-01"),
 ]
 

@@ -42,10 +42,12 @@ def test_of_a_folder_the_descriptions_are_checked_that_stand_by_themselves(here)
         {
             "a/plain.urdf": GOOD,
             "a/robot.urdf.xacro": f'<robot name="r" {XACRO}><xacro:include filename="parts/arm.xacro"/><x/></robot>',
+            "a/parts/colours.urdf": f'<robot name="c" {XACRO}/>',
             "a/parts/arm.xacro": f'<robot name="arm" {XACRO}><link name="b"/></robot>',
             "a/macros.xacro": f'<robot name="m" {XACRO}><xacro:macro name="m"><link name="c"/></xacro:macro></robot>',
             "a/unnamed.xacro": f'<robot {XACRO}><link name="c"/></robot>',
             "a/wrapper.xacro": f'<robot name="w" {XACRO}><xacro:include filename="robot2.xacro"/></robot>',
+            "a/unnamed2.xacro": f'<robot {XACRO}><xacro:include filename="parts/colours.urdf"/></robot>',
             "a/r.srdf.xacro": f'<robot name="s" {XACRO}><group name="arm"/></robot>',
             "a/broken.xacro": "<robot",
             "build/copy.urdf": GOOD,
@@ -166,3 +168,9 @@ def test_a_missing_file_is_told(here, capsys):
     write(here, {"b.urdf": GOOD})
     assert main(["check", "c.urdf"]) == 1
     assert "there are: b.urdf" in capsys.readouterr().err
+
+
+def test_a_folder_with_nothing_in_it_is_told(here, capsys):
+    (here / "empty").mkdir()
+    assert main(["check", "empty"]) == 1
+    assert "error[CLI302]: there is nothing to check in 'empty'" in capsys.readouterr().err

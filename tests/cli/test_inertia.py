@@ -47,7 +47,7 @@ def test_blocks_and_comparison(model, capsys):
         '    <mass value="2"/>\n'
         '    <inertia ixx="0.0133333" ixy="0" ixz="0" iyy="0.0133333" iyz="0" izz="0.0133333"/>\n'
         "  </inertial>\n"
-        "  in the file: mass 2 kg (1 times), centre of mass 10 mm away, "
+        "  in the file: mass 2 kg, centre of mass 10 mm away, "
         "principal moments for each kg 1.5 1.5 1.5 times\n"
         "\n"
         "wheel: 1 collision shape, mass from density: 4.18879 kg at 1000 kg/m3\n"

@@ -141,3 +141,16 @@ def test_paths_below_the_current_folder_are_shown_short(tmp_path, monkeypatch):
     assert display_path(tmp_path / "other" / "a.urdf") == str(tmp_path / "other" / "a.urdf")
     source = SourceText(str(tmp_path / "here" / "a.urdf"), "x")
     assert "--> a.urdf:1:1" in render(Diagnostic("X1", "m", source.span(0), source=source))
+
+
+def test_of_a_very_long_line_only_what_is_around_the_place_is_shown() -> None:
+    source = SourceText("robot.urdf", f"{'a' * 1000}HERE{'b' * 1000}")
+    shown = render(Diagnostic("XML206", "it is wrong", source.span(1000, 1004), source=source)).splitlines()
+    assert shown[3] == f"1 | ...{'a' * 80}HERE{'b' * 76}..."
+    assert shown[4] == f"  | {' ' * 83}^^^^"
+
+
+def test_a_place_at_the_end_of_a_very_long_line() -> None:
+    source = SourceText("robot.urdf", f"{'a' * 1000}HERE")
+    shown = render(Diagnostic("XML206", "it is wrong", source.span(1000, 1004), source=source)).splitlines()
+    assert shown[3] == f"1 | ...{'a' * 80}HERE"

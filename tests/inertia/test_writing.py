@@ -106,6 +106,15 @@ def test_what_an_inertial_lacks_is_added(write):
     assert '  <inertial>\n    <origin xyz="0 0 0" rpy="0 0 0"/>\n' in text
 
 
+def test_numbers_that_say_the_same_stay_as_they_are_written(write):
+    _, text = write(
+        '<robot name="r"><link name="a"><inertial><origin xyz="0.0 0.0 0.0"/><mass value="1.000e+00"/>'
+        '<inertia ixx="6.666667e-3" ixy="-0.0" ixz="0" iyy="0.5" iyz="0" izz="1"/></inertial></link></robot>'
+    )
+    assert '<origin xyz="0.0 0.0 0.0"/><mass value="1.000e+00"/>' in text
+    assert '<inertia ixx="6.666667e-3" ixy="-0.0" ixz="0" iyy="0.00666667" iyz="0" izz="0.00666667"/>' in text
+
+
 def test_a_quaternion_gives_way(write):
     _, text = write(
         '<robot name="r" version="1.1"><link name="a"><inertial><origin xyz="1 0 0" quat_xyzw="1 0 0 0"/>'

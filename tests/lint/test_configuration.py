@@ -25,7 +25,7 @@ def test_everything_that_can_be_set(tmp_path):
         """
         select = ["LW1", "limit-inverted"]
         extend-select = ["LW228"]
-        ignore = ["URDF160", "LW101"]
+        ignore = ["URDF160", "LW103"]
 
         [severity]
         LW2 = "info"
@@ -42,7 +42,7 @@ def test_everything_that_can_be_set(tmp_path):
     assert found == ()
     assert settings.select == ("LW1", "LW201")
     assert settings.selects("LW104")
-    assert not settings.selects("LW101")
+    assert not settings.selects("LW103")
     assert not settings.selects("LW202")
     assert settings.selects("LW228", default=False)
     assert settings.severity_of("LW201", Severity.ERROR) is Severity.WARNING

@@ -188,3 +188,21 @@ def test_constants():
 def test_bare_calls_are_placed():
     (call,) = mentions("x ${ sorted([2, 1])} ${[range(3) for range in a]}").bare_calls
     assert (call.name, call.offset) == ("sorted", 5)
+
+
+def test_warnings_about_the_users_text_are_not_passed_on():
+    assert read_launch_file(SourceText("x.launch.py", "a = '\\d'"), "x.launch.py").error is None
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "a = b + []\nb = a + []\nsetup(data_files=a)",
+        f"setup(data_files={' + '.join(['[]'] * 3000)})",
+        f"setup(name={'(' * 150}1{')' * 150})",
+        f"setup(name={'-' * 50_000}1)",
+    ],
+)
+def test_lists_made_of_each_other_and_deep_ones(text):
+    read_setup(SourceText("setup.py", text))
+    read_launch_file(SourceText("x.launch.py", text), "x.launch.py")

@@ -172,3 +172,12 @@ def test_any_text_is_read_or_refused_at_a_place_within_it(text: str) -> None:
     assert diagnostic.code.startswith("XML")
     assert diagnostic.span is not None
     assert diagnostic.span.line <= text.count("\n") + 1
+
+
+def test_blank_texts_may_be_left_out() -> None:
+    text = "<a>\n  <b> x </b> <!-- c -->\n  <c> </c><![CDATA[ ]]></a>"
+    root = parse(text, "a", blanks=False).root
+    assert [type(child).__name__ for child in root.children] == ["Element", "Comment", "Element"]
+    assert root.first("b").text() == " x "
+    assert root.first("c").children == []
+    assert root.first("c").offset == text.index("<c>")

@@ -6,13 +6,13 @@ import argparse
 import sys
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from linkwright.cli.assignments import parse_assignments
-from linkwright.diagnostics import Diagnostic, Severity, has_errors, print_diagnostics
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, has_errors, print_diagnostics
 from linkwright.diagnostics.formats import FORMATS, format_diagnostics
 
 if TYPE_CHECKING:
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from linkwright.lint.engine import Checked
     from linkwright.lint.settings import Settings
     from linkwright.urdf import Robot
+    from linkwright.workspace import PackageFinder
 
 NAME = "check"
 HELP = "check URDF and xacro files and the packages around them; of one file, print the link tree"
@@ -88,6 +89,16 @@ class _Words:
     select: tuple[str, ...] | None
     ignore: tuple[str, ...]
     config: Path | None
+    finders: dict[Path, PackageFinder] = field(default_factory=dict)
+
+    def finder(self, file: Path) -> PackageFinder:
+        """Where the packages are for a file; one finder for each folder, because a search takes time."""
+        from linkwright.workspace import PackageFinder
+
+        folder = file.absolute().parent
+        if folder not in self.finders:
+            self.finders[folder] = PackageFinder(start=[folder, Path.cwd()])
+        return self.finders[folder]
 
     def unknown_selector(self) -> str | None:
         """What to say of a selector that selects nothing, or None."""
@@ -114,6 +125,10 @@ def _check(paths: Sequence[Path], words: _Words) -> tuple[list[Diagnostic], Robo
     from linkwright.lint.targets import find_targets
 
     targets = find_targets(paths)
+    if not targets.files and not targets.packages:
+        named = ", ".join(f"'{path}'" for path in paths)
+        hint = "descriptions are .urdf files and .xacro files with <robot name=...> that no other file includes"
+        raise LinkwrightError(Diagnostic("CLI302", f"there is nothing to check in {named}", hint=hint))
     found: dict[tuple[str, object, str], Diagnostic] = {}
     robot = None
     for file in targets.files:
@@ -137,7 +152,15 @@ def _examine(file: Path, words: _Words, text: str | None = None) -> tuple[Checke
     from linkwright.lint.rule import Scope
 
     settings, trouble = words.settings(file)
-    return examine(file, arguments=words.values, settings=settings, text=text, scopes=(Scope.DESCRIPTION,)), trouble
+    checked = examine(
+        file,
+        arguments=words.values,
+        packages=words.finder(file),
+        settings=settings,
+        text=text,
+        scopes=(Scope.DESCRIPTION,),
+    )
+    return checked, trouble
 
 
 def _fix(paths: Sequence[Path], words: _Words, unsafe: bool, *, write: bool) -> list[Mended]:

@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 NAME = "inertia"
 HELP = "compute mass and inertia of each link from its shapes, compare them with the file, or write them"
 
+_LARGEST = 1e15
+"""Masses and densities beyond this are taken for mistakes."""
+
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
@@ -94,7 +97,7 @@ def _positive(text: str) -> float:
         value = float(text)
     except ValueError:
         value = 0.0
-    if not 0 < value < float("inf"):
+    if not 0 < value <= _LARGEST:
         raise argparse.ArgumentTypeError(f"'{text}' is not a positive number")
     return value
 

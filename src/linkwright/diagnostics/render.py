@@ -16,6 +16,9 @@ if TYPE_CHECKING:
 
 _COLOURS = {Severity.ERROR: "31", Severity.WARNING: "33", Severity.INFO: "36"}
 _TAB = "    "
+_WIDEST = 300
+_AROUND = 80
+"""Of a longer line so many characters are shown before and after the place."""
 
 
 def wants_colour(stream: IO[str]) -> bool:
@@ -111,6 +114,12 @@ def _excerpt(diagnostic: Diagnostic, paint: _Paint) -> list[str]:
         marked = line[span.column - 1 : max(span.end_column - 1, span.column)]
     else:
         marked = line[span.column - 1 :]
+    if len(line) > _WIDEST:  # such as a whole robot in one line
+        cut = max(0, len(before) - _AROUND)
+        end = len(before) + _AROUND
+        line = f"{'...' if cut else ''}{line[cut:end]}{'...' if end < len(line) else ''}"
+        before = f"{'...' if cut else ''}{before[cut:]}"
+        marked = marked[:_AROUND]
     number = str(span.line)
     gutter = " " * len(number)
     bar = paint("|", "34")

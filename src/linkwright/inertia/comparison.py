@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import inf
 
 import numpy as np
 
@@ -41,7 +42,8 @@ def compare(present: MassProperties, computed: MassProperties) -> Comparison:
         ours = computed.principal().moments
         theirs = present.principal().moments
         if ours[0] > 0:
-            first, second, third = (float(ratio) for ratio in theirs / ours / mass_ratio)
-            ratios = (first, second, third)
+            with np.errstate(over="ignore"):
+                first, second, third = (float(ratio) for ratio in theirs / ours / mass_ratio)
+            ratios = (first, second, third) if max(map(abs, (first, second, third))) < inf else None
     distance = float(np.linalg.norm(present.center - computed.center))
     return Comparison(float(present.mass), mass_ratio, distance, ratios, tuple(problems(present)))

@@ -7,14 +7,18 @@ from typing import Literal
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.inertia.mesh_library import MeshLibrary
-from linkwright.inertia.properties import MassProperties, combine
-from linkwright.inertia.shapes import shape_properties
+from linkwright.inertia.properties import FARTHEST, MassProperties, combine, has_mass
+from linkwright.inertia.shapes import half_extents, shape_properties
 from linkwright.urdf import Collision, Link, Mesh, Visual
 
 ShapeKind = Literal["collision", "visual"]
 
 DEFAULT_DENSITY = 1000.0
 """kg/m3, that of water; most robots' links are near it when their hollows are counted in."""
+
+
+_NOTHING = 1e-18
+"""A volume in m3, that of a grain of a thousandth of a millimetre, below which a shape is none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +78,7 @@ def estimate(
     basis: Literal["mass", "density", "present"] = "density"
     if mass is not None:
         basis = "mass"
-    elif density is None and link.inertial is not None and link.inertial.mass > 0:
+    elif density is None and link.inertial is not None and has_mass(link.inertial):
         basis, mass = "present", link.inertial.mass
     if kind is None:
         return Estimate(link.name, None, None, 0, basis, 0.0, tuple(notes))
@@ -91,6 +95,9 @@ def estimate(
 def _solid(shape: Collision | Visual, kind: ShapeKind, meshes: MeshLibrary, notes: list[str]) -> MassProperties | None:
     """A shape of density 1 in the link frame; None when it has no volume or cannot be read, which is noted."""
     geometry = shape.geometry
+    if max(map(abs, shape.origin.xyz)) > FARTHEST:
+        notes.append(f"a {kind} shape is left out: it is too far away")
+        return None
     if isinstance(geometry, Mesh):
         try:
             mesh = meshes.load(geometry, shape.element)
@@ -99,15 +106,19 @@ def _solid(shape: Collision | Visual, kind: ShapeKind, meshes: MeshLibrary, note
             return None
         solid = mesh.solid
         name = geometry.filename.rpartition("/")[2]
-        if not solid.mass > 0:
+        if not solid.mass > _NOTHING:
             notes.append(f"the {kind} mesh '{name}' is left out: it is flat")
             return None
         if not mesh.is_watertight:
             notes.append(f"the {kind} mesh '{name}' is not watertight: its convex hull is taken")
     else:
+        what = type(geometry).__name__.lower()
+        if half_extents(geometry).max() > FARTHEST:
+            notes.append(f"a {kind} {what} is left out: it is too large")
+            return None
         solid = shape_properties(geometry)
-        if not solid.mass > 0:
-            what = type(geometry).__name__.lower()
-            notes.append(f"a {kind} {what} is left out: it has a size that is not positive")
+        if not solid.mass > _NOTHING:
+            why = "it has no volume worth mentioning" if solid.mass > 0 else "it has a size that is not positive"
+            notes.append(f"a {kind} {what} is left out: {why}")
             return None
     return solid.moved(shape.origin)

@@ -6,7 +6,8 @@ import os.path
 from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.inertia.meshes import TriangleMesh, read_mesh
+from linkwright.inertia.meshes import TriangleMesh, read_mesh, unreadable
+from linkwright.inertia.properties import FARTHEST
 from linkwright.urdf import Mesh
 from linkwright.workspace import PackageFinder
 from linkwright.xmltree import Element
@@ -72,7 +73,10 @@ class MeshLibrary:
         Raises:
             LinkwrightError: as `locate` and `read` do.
         """
-        return self.read(self.locate(mesh.filename, element)).scaled(mesh.scale)
+        path = self.locate(mesh.filename, element)
+        if max(map(abs, mesh.scale)) > FARTHEST:
+            raise unreadable(path, "its scale is beyond all bounds")
+        return self.read(path).scaled(mesh.scale)
 
     def _base(self, element: Element | None) -> Path:
         if element is None or element.source is None or element.source.name.startswith("<"):

@@ -14,7 +14,7 @@ import numpy as np
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, missing_file_hint
 from linkwright.inertia.hull import convex_hull
 from linkwright.inertia.polyhedron import Faces, is_closed, merged, polyhedron_properties
-from linkwright.inertia.properties import Array, MassProperties
+from linkwright.inertia.properties import FARTHEST, Array, MassProperties
 from linkwright.urdf import Vector3
 
 MESH_ENDINGS = (".stl", ".dae", ".obj", ".glb", ".gltf")
@@ -86,23 +86,23 @@ def read_mesh(path: Path) -> TriangleMesh:
         raise LinkwrightError(Diagnostic("INR102", message, hint=f"use {', '.join(MESH_ENDINGS)}"))
     try:
         if path.stat().st_size > LARGEST_FILE:
-            raise _unreadable(path, f"it is larger than {LARGEST_FILE >> 20} MiB")
+            raise unreadable(path, f"it is larger than {LARGEST_FILE >> 20} MiB")
         data = path.read_bytes()
     except FileNotFoundError:
         message = f"there is no mesh file '{display_path(path)}'"
         raise LinkwrightError(Diagnostic("INR101", message, hint=missing_file_hint(path))) from None
     except OSError as error:
-        raise _unreadable(path, error.strerror or str(error)) from None
+        raise unreadable(path, error.strerror or str(error)) from None
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             mesh = _parse(data, kind[1:], path)
     except Exception as error:  # noqa: BLE001 - a parser of foreign bytes may raise anything
-        raise _unreadable(path, _first_line(error)) from None
+        raise unreadable(path, _first_line(error)) from None
     if not len(mesh.faces):
-        raise _unreadable(path, "it has no triangles")
-    if not np.isfinite(mesh.vertices).all():
-        raise _unreadable(path, "a coordinate is not finite")
+        raise unreadable(path, "it has no triangles")
+    if not np.abs(mesh.vertices).max() <= FARTHEST:
+        raise unreadable(path, "a coordinate is beyond all bounds")
     return mesh
 
 
@@ -145,7 +145,8 @@ def _collada_unit(scene: Any) -> float:
     return 1.0
 
 
-def _unreadable(path: Path, why: str) -> LinkwrightError:
+def unreadable(path: Path, why: str) -> LinkwrightError:
+    """The error for a mesh that cannot be used (INR103)."""
     hint = "export it again, or leave the link out"
     return LinkwrightError(Diagnostic("INR103", f"cannot read the mesh '{display_path(path)}': {why}", hint=hint))
 

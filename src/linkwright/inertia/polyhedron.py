@@ -13,6 +13,10 @@ _STEPS = 1 << 20
 """Corners nearer to each other than this part of the mesh's size are one."""
 
 
+_POINT = 1e-30
+"""A mesh smaller than this, in m, is a point."""
+
+
 def polyhedron_properties(vertices: Array, faces: Faces, density: float = 1.0) -> MassProperties:
     """Mass properties of the solid that a closed surface bounds.
 
@@ -60,7 +64,7 @@ def merged(vertices: Array, faces: Faces) -> tuple[Array, Faces]:
         return vertices, faces
     low = vertices.min(axis=0)
     size = float((vertices.max(axis=0) - low).max(initial=0.0))
-    if not size > 0:
+    if not size > _POINT:
         return vertices[:1], faces[:0]
     cells = np.rint((vertices - low) * (_STEPS / size)).astype(np.int64)
     keys = (cells[:, 0] << 42) | (cells[:, 1] << 21) | cells[:, 2]

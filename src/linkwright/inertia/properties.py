@@ -13,6 +13,15 @@ from linkwright.urdf import Inertial, Pose
 
 Array = NDArray[np.float64]
 
+FARTHEST = 1e9
+"""Lengths in m beyond this are mistakes; nothing is computed from them, so that nothing overflows."""
+
+_LEAST = 1e-30
+"""A mass in kg below this, some electrons, is none."""
+
+_GREATEST = 1e30
+"""Masses in kg and moments in kg m2 beyond this are too; the sun has 2e30 kg."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PrincipalAxes:
@@ -52,7 +61,7 @@ class MassProperties:
         Raises:
             ValueError: the body has no mass that could be multiplied.
         """
-        if not self.mass > 0:
+        if not self.mass > _LEAST:
             raise ValueError("a body without mass has no shape to spread another mass over")
         return self.times(mass / self.mass)
 
@@ -80,7 +89,7 @@ class MassProperties:
         A box of edges a, b, c has ``I1 = m (b2 + c2) / 12`` and so on, which is solved for the edges. None for a tensor
         that no body can have, and without mass.
         """
-        if not self.mass > 0:
+        if not self.mass > _LEAST:
             return None
         moments = self.principal().moments
         squares = 6.0 / self.mass * (moments.sum() - 2.0 * moments)
@@ -99,6 +108,18 @@ def combine(parts: Iterable[MassProperties]) -> MassProperties:
     center = np.sum([body.mass * body.center for body in bodies], axis=0) / mass
     inertia = np.sum([body.inertia_about(center) for body in bodies], axis=0)
     return MassProperties(mass, center, inertia)
+
+
+def is_computable(inertial: Inertial) -> bool:
+    """Whether the numbers of an ``<inertial>`` are small enough to compute with; they need not be those of a body."""
+    i = inertial
+    numbers = (i.mass, i.ixx, i.ixy, i.ixz, i.iyy, i.iyz, i.izz)
+    return max(map(abs, numbers)) <= _GREATEST and max(map(abs, i.origin.xyz)) <= FARTHEST
+
+
+def has_mass(inertial: Inertial) -> bool:
+    """Whether an ``<inertial>`` gives a mass that can be spread over a shape."""
+    return is_computable(inertial) and inertial.mass > _LEAST
 
 
 def from_inertial(inertial: Inertial) -> MassProperties:

@@ -5,13 +5,14 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import asdict
+from math import isclose
 from typing import Any
 
 from linkwright.diagnostics import display_path
 from linkwright.inertia.blocks import inertial_block
 from linkwright.inertia.comparison import Comparison, compare
 from linkwright.inertia.estimate import Estimate
-from linkwright.inertia.properties import MassProperties, from_inertial, to_inertial
+from linkwright.inertia.properties import MassProperties, from_inertial, is_computable, to_inertial
 from linkwright.inertia.writing import Written
 from linkwright.urdf import Robot
 
@@ -61,9 +62,9 @@ def _summary(found: Estimate) -> str:
 def _comparison_text(robot: Robot, link: str, properties: MassProperties) -> str:
     compared = _compared(robot, link, properties)
     if compared is None:
-        return "no <inertial>"
+        return "no <inertial>" if robot.links[link].inertial is None else "numbers beyond all bounds"
     words = [f"mass {compared.mass:.6g} kg"]
-    if compared.mass_ratio is not None:
+    if compared.mass_ratio is not None and not isclose(compared.mass_ratio, 1.0, rel_tol=1e-6):
         words[0] += f" ({compared.mass_ratio:.3g} times)"
     words.append(f"centre of mass {compared.center_distance * 1000:.3g} mm away")
     if compared.moment_ratios is not None:
@@ -74,7 +75,9 @@ def _comparison_text(robot: Robot, link: str, properties: MassProperties) -> str
 
 def _compared(robot: Robot, link: str, properties: MassProperties) -> Comparison | None:
     inertial = robot.links[link].inertial
-    return None if inertial is None else compare(from_inertial(inertial), properties)
+    if inertial is None or not is_computable(inertial):
+        return None
+    return compare(from_inertial(inertial), properties)
 
 
 def _link_data(robot: Robot, found: Estimate, written: Written | None) -> dict[str, Any]:

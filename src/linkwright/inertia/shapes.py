@@ -69,7 +69,7 @@ def _sphere(sphere: Sphere, density: float) -> MassProperties:
     r = sphere.radius
     if r <= 0:
         return MassProperties(0.0)
-    mass = density * 4 / 3 * pi * r**3
+    mass = density * 4 / 3 * pi * r * r * r
     moment = 2 / 5 * mass * r * r
     return _diagonal(mass, moment, moment, moment)
 
@@ -84,7 +84,7 @@ def _capsule(capsule: Capsule, density: float) -> MassProperties:
     if r <= 0 or length < 0:
         return MassProperties(0.0)
     middle = density * pi * r * r * length
-    ends = density * 4 / 3 * pi * r**3
+    ends = density * 4 / 3 * pi * r * r * r
     across = middle * (3 * r * r + length * length) / 12
     across += ends * (2 / 5 * r * r + length * length / 4 + 3 / 8 * length * r)
     along = middle * r * r / 2 + ends * 2 / 5 * r * r

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from math import isclose
 
 from linkwright.diagnostics import SourceText
 from linkwright.inertia.blocks import Attributes, inertial_block, inertial_parts, start_tag
@@ -135,7 +136,7 @@ def _changed_attributes(text: str, element: Element, attributes: Attributes) -> 
         found = attribute_value_range(text, element.offset, name)
         if found is None:
             added += "" if (name, value) == ("rpy", "0 0 0") else f' {name}="{value}"'
-        else:
+        elif not _says_the_same(text[slice(*found)], value):
             yield Replacement(*found, value)
     if added:
         after = element.offset + 1 + len(element.tag)
@@ -144,6 +145,16 @@ def _changed_attributes(text: str, element: Element, attributes: Attributes) -> 
     value_range = attribute_value_range(text, element.offset, "quat_xyzw")
     if name_range is not None and value_range is not None:  # the block's axes are those of the link
         yield Replacement(name_range[0], value_range[1] + 1, "")
+
+
+def _says_the_same(written: str, value: str) -> bool:
+    """Whether numbers in the file are those to be written, up to the digits that are written."""
+    try:
+        there = [float(word) for word in written.split()]
+    except ValueError:
+        return False
+    wanted = [float(word) for word in value.split()]
+    return len(there) == len(wanted) and all(isclose(a, b, rel_tol=1e-5) for a, b in zip(there, wanted, strict=True))
 
 
 def _walk(root: Element) -> Iterator[Element]:

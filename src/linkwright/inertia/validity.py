@@ -23,10 +23,17 @@ TOLERANCE = 1e-3
 """Part of the largest moment by which rounding in a file may break a rule."""
 
 
+def relative_moments(tensor: Array) -> Array:
+    """The principal moments in units of the tensor's largest entry, smallest first; shape (3,). Nothing overflows."""
+    largest = float(np.abs(tensor).max())
+    if not largest > 0:
+        return np.zeros(3)
+    return np.asarray(np.linalg.eigvalsh(tensor / largest), dtype=np.float64)
+
+
 def is_positive_definite(tensor: Array) -> bool:
     """Whether every principal moment is positive; `tensor` is symmetric, of shape (3, 3)."""
-    moments = np.linalg.eigvalsh(tensor)
-    return bool(moments[0] > 0)
+    return bool(relative_moments(tensor)[0] > 0)
 
 
 def triangle_excess(tensor: Array) -> float:
@@ -34,7 +41,7 @@ def triangle_excess(tensor: Array) -> float:
 
     0 or less for a body that can be; 0 for a flat one. The tensor's axes do not matter.
     """
-    small, middle, large = np.linalg.eigvalsh(tensor)
+    small, middle, large = relative_moments(tensor)
     return float((large - small - middle) / large) if large > 0 else 0.0
 
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Severity
 from linkwright.lint.finding import Finding
-from linkwright.lint.registry import all_rules
+from linkwright.lint.registry import all_rules, find_rule
 from linkwright.lint.rule import Scope
 from linkwright.lint.settings import Settings
 from linkwright.lint.subject import Subject
@@ -88,25 +88,29 @@ def examine(
         subject = _subject(path, arguments, finder, settings, text)
     except LinkwrightError as error:
         return Checked(path, None, (*trouble, *error.diagnostics), None)
-    read_so_far = (*(subject.expansion.diagnostics if subject.expansion else ()), *subject.reading.diagnostics)
-    by_rules = run_rules(subject, scopes)
-    found = _without_replaced([*_adjusted(read_so_far, settings), *by_rules])
-    kept = Suppressions(subject, settings).apply(found)
-    return Checked(path, subject.robot, (*trouble, *in_order(kept, str(path))), subject)
+    said = (*(subject.expansion.diagnostics if subject.expansion else ()), *subject.reading.diagnostics)
+    return Checked(path, subject.robot, (*trouble, *_run(subject, scopes, said)), subject)
 
 
-def run_rules(subject: Subject, scopes: Collection[Scope]) -> list[Diagnostic]:
-    """What the rules find that are in force for a subject; not yet in order, with suppressed ones among them."""
-    settings = subject.settings
+def _run(subject: Subject, scopes: Collection[Scope], said: Iterable[Diagnostic] = ()) -> list[Diagnostic]:
+    """What the rules find and what was said before, as the settings and comments want it, in order."""
+    suppressions = Suppressions(subject, subject.settings)
+    found = _without_replaced([*said, *_find(subject, scopes, suppressions)], subject.settings)
+    kept = [each for each in suppressions.apply(found) if _is_wanted(each, subject.settings)]
+    return in_order(_with_severities(kept, subject.settings), str(subject.path))
+
+
+def _find(subject: Subject, scopes: Collection[Scope], suppressions: Suppressions) -> list[Diagnostic]:
+    """What the rules find, each place once; among it what is only found to see whether a comment is of use."""
     found: list[Diagnostic] = []
     for rule in all_rules():
-        if rule.scope not in scopes or not settings.runs(rule):
+        if rule.scope not in scopes or not (subject.settings.runs(rule) or suppressions.audits(rule.code)):
             continue
         for diagnostic in rule.check(subject):
             if diagnostic.code != rule.code:
                 raise ValueError(f"{rule.code} reported a finding of {diagnostic.code}")
             found.append(_with_trail(diagnostic))
-    return _adjusted(_without_repetitions(found), settings)
+    return _without_repetitions(found)
 
 
 def in_order(diagnostics: Iterable[Diagnostic], first_file: str) -> list[Diagnostic]:
@@ -153,8 +157,7 @@ def examine_package(folder: Path, settings: Settings, finder: PackageFinder | No
         finder=finder or _finder(path, None),
         settings=settings,
     )
-    kept = Suppressions(subject, settings).apply(run_rules(subject, (Scope.PACKAGE,)))
-    return Checked(path, None, tuple(in_order(kept, str(path))), subject)
+    return Checked(path, None, tuple(_run(subject, (Scope.PACKAGE,))), subject)
 
 
 def _finder(path: Path, packages: Packages) -> PackageFinder:
@@ -163,32 +166,33 @@ def _finder(path: Path, packages: Packages) -> PackageFinder:
     return PackageFinder(start=[path.absolute().parent, Path.cwd()], extra=packages)
 
 
-def _adjusted(diagnostics: Iterable[Diagnostic], settings: Settings) -> list[Diagnostic]:
-    """Diagnostics with the severities of the settings, without those that the settings leave out.
+def _is_wanted(diagnostic: Diagnostic, settings: Settings) -> bool:
+    """Whether the settings let a diagnostic through.
 
-    An error of the reader or of xacro stays: without it nothing would tell why there is no robot.
+    An error of the reader or of xacro always comes through: without it nothing would tell why there is no robot.
     """
-    kept = []
+    rule = find_rule(diagnostic.code)
+    if rule is None and diagnostic.severity is Severity.ERROR:
+        return True
+    selected = settings.selects(diagnostic.code) if rule is None else settings.runs(rule)
+    return selected and not (diagnostic.span and settings.ignores(diagnostic.code, diagnostic.span.file))
+
+
+def _with_severities(diagnostics: Iterable[Diagnostic], settings: Settings) -> Iterator[Diagnostic]:
     for diagnostic in diagnostics:
-        is_finding = isinstance(diagnostic, Finding)
-        if is_finding or diagnostic.severity is not Severity.ERROR:
-            if not is_finding and not settings.selects(diagnostic.code):
-                continue
-            if diagnostic.span and settings.ignores(diagnostic.code, diagnostic.span.file):
-                continue
-            severity = settings.severity_of(diagnostic.code, diagnostic.severity)
-            if severity is not diagnostic.severity:
-                diagnostic = replace(diagnostic, severity=severity)
-        kept.append(diagnostic)
-    return kept
+        severity = diagnostic.severity
+        if find_rule(diagnostic.code) is not None or severity is not Severity.ERROR:
+            severity = settings.severity_of(diagnostic.code, severity)
+        yield diagnostic if severity is diagnostic.severity else replace(diagnostic, severity=severity)
 
 
-def _without_replaced(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
+def _without_replaced(diagnostics: list[Diagnostic], settings: Settings) -> list[Diagnostic]:
     """The diagnostics but those for which a rule found something better at the same place."""
     better: dict[str, set[str]] = {}
     for rule in all_rules():
-        for code in rule.replaces:
-            better.setdefault(code, set()).add(rule.code)
+        if settings.runs(rule):
+            for code in rule.replaces:
+                better.setdefault(code, set()).add(rule.code)
     places = {(each.code, each.span) for each in diagnostics}
     return [each for each in diagnostics if not any((code, each.span) in places for code in better.get(each.code, ()))]
 

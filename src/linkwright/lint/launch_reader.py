@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from contextlib import suppress
 from dataclasses import dataclass, field
 
 from linkwright.diagnostics import SourceText, Span
@@ -89,7 +90,8 @@ def read_launch_file(source: SourceText, path: str) -> LaunchFile:
         place = _place(python, argument)
         if place is not None:
             facts.shares.append(place)
-    _PathReader(python, facts).visit(python.tree)
+    with suppress(RecursionError):  # a sum of a thousand terms; the paths in it are not looked at
+        _PathReader(python, facts).visit(python.tree)
     return facts
 
 

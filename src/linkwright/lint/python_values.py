@@ -7,6 +7,7 @@ folders of packages, and patterns of file names. Everything else is `UNKNOWN`, a
 from __future__ import annotations
 
 import ast
+import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum
@@ -68,12 +69,12 @@ class PythonFile:
 
     Raises:
         SyntaxError: it is no Python.
-        ValueError: it holds a null byte.
+        ValueError: it holds a null byte, or is nested too deeply.
     """
 
     def __init__(self, source: SourceText) -> None:
         self.source = source
-        self.tree = ast.parse(source.text)
+        self.tree = _parsed(source.text)
         self._assigned: dict[str, ast.expr | None] = {}
         for node in ast.walk(self.tree):
             self._note_bindings(node)
@@ -223,6 +224,15 @@ class PythonFile:
         if last == "TextSubstitution":
             return self.value(argument_of(node, "text"), depth + 1)
         return UNKNOWN
+
+
+def _parsed(text: str) -> ast.Module:
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # about the user's text, such as an escape that is none
+            return ast.parse(text)
+    except (RecursionError, MemoryError):
+        raise ValueError("it is nested too deeply") from None
 
 
 def called_name(node: ast.Call) -> str:

@@ -43,5 +43,9 @@ def all_rules() -> tuple[Rule, ...]:
 
 def find_rule(code_or_name: str) -> Rule | None:
     """The rule of a code or name, in any case; None where there is none."""
-    folded = code_or_name.strip().casefold()
-    return next((rule for rule in all_rules() if folded in (rule.code.casefold(), rule.name)), None)
+    return _index().get(code_or_name.strip().casefold())
+
+
+@cache
+def _index() -> dict[str, Rule]:
+    return {key: rule for rule in all_rules() for key in (rule.code.casefold(), rule.name)}

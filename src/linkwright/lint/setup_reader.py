@@ -95,7 +95,10 @@ def read_setup(source: SourceText) -> SetupFile:
     text = python.text(name)
     if name is not None and text is not None:
         facts.name = text, python.span(name)
-    _Installing(python, facts).read(argument_of(call, "data_files"), call)
+    try:
+        _Installing(python, facts).read(argument_of(call, "data_files"), call)
+    except RecursionError:  # lists that are made of each other, or of a thousand terms
+        facts.is_complete = False
     _read_packages(python, facts, argument_of(call, "packages"))
     _read_entry_points(python, facts, argument_of(call, "entry_points"))
     return facts

@@ -17,6 +17,7 @@ from linkwright.xmltree import Document, Element
 if TYPE_CHECKING:
     from linkwright.kinematics import KinematicTree
     from linkwright.lint.bodies import Bodies
+    from linkwright.lint.extents import Extents
     from linkwright.lint.meshes import MeshFacts
     from linkwright.lint.package import PackageContext
     from linkwright.workspace import PackageFinder
@@ -127,10 +128,17 @@ class Subject:
 
     @cached_property
     def bodies(self) -> Bodies:
-        """The links that fixed joints make one body, and the space that shapes take."""
+        """The links that fixed joints make one body."""
         from linkwright.lint.bodies import Bodies
 
         return Bodies(self)
+
+    @cached_property
+    def extents(self) -> Extents:
+        """The space that shapes take, and the mass properties of bodies."""
+        from linkwright.lint.extents import Extents
+
+        return Extents(self)
 
     @cached_property
     def package(self) -> PackageContext | None:

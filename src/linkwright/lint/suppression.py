@@ -26,9 +26,9 @@ from linkwright.xmltree.reader import read_bytes
 UNUSED = "LW001"
 UNKNOWN = "LW002"
 
-_WORDS = r"linkwright:[ \t]*(?P<verb>ignore(?:-file)?)(?![\w-])(?P<selectors>[^()#]*?)(?:\([^)]*\)\s*)?"
-_IN_XML = re.compile(rf"<!--\s*{_WORDS}-->", re.DOTALL)
-_IN_TEXT = re.compile(rf"#[ \t]*{_WORDS}$", re.MULTILINE)
+_VERB = r"linkwright:[ \t]*(?P<verb>ignore(?:-file)?)(?![\w-])"
+_IN_XML = re.compile(rf"<!--\s*{_VERB}(?P<selectors>[^(]*?)(?:\((?:(?!-->).)*\)\s*)?-->", re.DOTALL)
+_IN_TEXT = re.compile(rf"#[ \t]*{_VERB}(?P<selectors>[^(\n]*?)(?:\(.*)?$", re.MULTILINE)
 _NEXT = re.compile(r"<!--.*?-->|<\?.*?\?>|<!\[CDATA\[.*?\]\]>|<(?P<tag>[^\s/>!?]+)|</", re.DOTALL)
 _SELECTOR = re.compile(r"[^\s,]+")
 
@@ -75,6 +75,8 @@ class Suppressions:
 
     def __init__(self, subject: Subject, settings: Settings) -> None:
         self._settings = settings
+        unused = find_rule(UNUSED)
+        self._audits = unused is not None and settings.runs(unused)
         self._directives: dict[str, list[Directive]] = {}
         for path, document in subject.sources.items():
             if document.source is not None:
@@ -84,6 +86,15 @@ class Suppressions:
         """The diagnostics that no comment suppresses, and what is wrong with the comments."""
         kept = [diagnostic for diagnostic in diagnostics if not self._suppresses(diagnostic)]
         return [*kept, *self._unknown(), *self._unused()]
+
+    def audits(self, code: str) -> bool:
+        """Whether a comment is to be shown of use or not by the findings of a code, selected or not."""
+        if not self._audits:
+            return False
+        return any(
+            not directive.selectors or matches([canonical(word) for word, _ in directive.selectors], code)
+            for directive in self._all()
+        )
 
     def _suppresses(self, diagnostic: Diagnostic) -> bool:
         if not isinstance(diagnostic, Finding) and diagnostic.severity is Severity.ERROR:
@@ -120,12 +131,11 @@ class Suppressions:
                     span=directive.source.span(offset, offset + len(selector)),
                     source=directive.source,
                     hint=selector_hint(selector),
-                    severity=self._settings.severity_of(UNKNOWN, rule.severity),
                 )
 
     def _unused(self) -> Iterator[Diagnostic]:
         rule = find_rule(UNUSED)
-        if rule is None or not self._settings.runs(rule):
+        if rule is None or not self._audits:
             return
         for directive in self._all():
             words = [word for word, _ in directive.selectors if is_selector(word)] or [""]
@@ -142,7 +152,6 @@ class Suppressions:
                 source=directive.source,
                 hint="remove it" if fix else f"remove {what} from it",
                 fix=fix,
-                severity=self._settings.severity_of(UNUSED, rule.severity),
             )
 
 

@@ -37,9 +37,10 @@ class Targets:
 def find_targets(paths: Iterable[Path]) -> Targets:
     """The descriptions and packages that files and folders mean.
 
-    A file is checked whatever it is. Of a folder and those below it, what is checked are the packages, the ``.urdf``
-    files and those ``.xacro`` files that describe a robot by themselves: no other file there includes them, their root
-    is a ``<robot>`` with a name, and they hold more than declarations. Build products and hidden folders are left out.
+    A file is checked whatever it is. Of a folder and those below it, what is checked are the packages and, of the files
+    that no other there includes, the ``.urdf`` files and those ``.xacro`` files that describe a robot by themselves:
+    their root is a ``<robot>`` with a name, and they hold more than declarations. Build products and hidden folders are
+    left out.
     """
     files: dict[Path, None] = {}
     packages: dict[Path, None] = {}
@@ -73,15 +74,17 @@ def _walk(folder: Path) -> tuple[list[Path], list[Path]]:
 
 
 def _entries(found: list[Path]) -> Iterator[Path]:
-    included = {
-        Path(name).name
-        for path in found
-        if path.suffix == _XACRO
-        for name in _INCLUDED.findall(path.read_text(encoding="utf-8", errors="replace"))
-    }
+    included = {Path(name).name for path in found for name in _INCLUDED.findall(_text(path))}
     for path in found:
-        if path.suffix == _URDF or (path.name not in included and _describes_robot(path)):
+        if path.name not in included and (path.suffix == _URDF or _describes_robot(path)):
             yield path
+
+
+def _text(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return ""  # which the check will tell
 
 
 def _describes_robot(path: Path) -> bool:

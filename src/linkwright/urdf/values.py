@@ -126,6 +126,8 @@ def vector_hint(text: str, count: int) -> str | None:
     bad = next((piece for piece in text.split() if not _reads(piece)), None)
     if bad is None:
         return f"give {count} numbers, not {len(text.split())}"
+    if bad.startswith("(") and "," in bad:
+        return "a comma in an expression makes a pair of numbers; write the decimal point as a point"
     hint = number_hint(bad)
     return f"'{bad}': {hint}" if hint else f"'{bad}' is not a number"
 

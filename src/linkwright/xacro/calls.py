@@ -119,9 +119,7 @@ class _Call:
     def _report_unknown(self) -> NoReturn:
         node, name = self._node, self._name
         known = list(self._site.macros.names())
-        hint = did_you_mean(name, known)
-        if hint is None and name in _TAGS:
-            hint = f"write xacro:{_TAGS[name]}"
+        hint = f"write xacro:{_TAGS[name]}" if name in _TAGS else did_you_mean(name, known)
         if hint is None and known:
             listed = ", ".join(sorted(set(known))[:10])
             hint = f"the macros defined so far are {listed}"
@@ -237,6 +235,8 @@ class _Call:
         node = self._node
         known = [parameter.name for parameter in macro.parameters if not parameter.is_block]
         hint = did_you_mean(name, [candidate for candidate in known if candidate not in node.attributes])
+        if f"{name}," in known:
+            hint = "separate the parameters of the macro with blanks, without commas"
         if hint is None and f"*{name}" in {parameter.name.replace("**", "*") for parameter in macro.parameters}:
             hint = f"'{name}' is a block: write it as an element inside the call"
         if hint is None:
@@ -256,7 +256,7 @@ class _Call:
         what = f"parameter {names[0]}" if len(names) == 1 else f"parameters {', '.join(names)}"
         message = f"the call of the macro '{macro.name}' lacks its {what}"
         hint = "write " + " ".join(f'{parameter.name}="..."' for parameter in missing)
-        if any(sign in parameter.name for parameter in missing for sign in "${}()"):
+        if not all(parameter.name.lstrip("*").isidentifier() for parameter in missing):
             hint = "a default with blanks in it ends at the first one; put it in quotes"
         note = self._definition(macro, missing[0])
         self._expander.fail_at("XAC403", message, node, node.span(), hint, note)

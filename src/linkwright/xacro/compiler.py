@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import ast
 import operator
+import re
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
@@ -32,6 +33,8 @@ _CHANGING = frozenset(
     }
 )
 
+_WITH_UNIT = re.compile(r"\s*([-+]?[0-9.]+)\s*[^\W\d]+\s*")
+_LINES = re.compile(r"[^\r\n]*(?:\r\n?|\n|\Z)")
 _DEEPEST = 500
 """How deep the nodes of an expression may nest; a sum nests as deep as it has terms."""
 
@@ -100,7 +103,7 @@ class Compiler:
     def __init__(self, source: str, shift: int) -> None:
         self._source = source
         self._shift = shift
-        self._is_plain = source.isascii() and "\n" not in source
+        self._is_plain = source.isascii() and "\n" not in source and "\r" not in source
         self._depth = 0
         self.changes = False
 
@@ -126,10 +129,10 @@ class Compiler:
     def _place(self, node: Any) -> tuple[int, int]:
         start, end = node.col_offset, node.end_col_offset
         if not self._is_plain:
-            lines = self._source.split("\n")  # columns count UTF-8 bytes
+            lines = _LINES.findall(self._source)  # columns count UTF-8 bytes
             start, end = (
-                sum(len(line) + 1 for line in lines[: number - 1])
-                + len(lines[number - 1].encode()[:column].decode("utf-8", "replace"))
+                sum(map(len, lines[: number - 1]))
+                + len(lines[number - 1].encode("utf-8", "replace")[:column].decode("utf-8", "replace"))
                 for number, column in ((node.lineno, start), (node.end_lineno, end))
             )
         return start + self._shift, end + self._shift
@@ -139,6 +142,21 @@ class Compiler:
 
     def _failure(self, error: Exception, start: int, end: int) -> Fault:
         return failure(error, self._segment(start, end), start, end)
+
+    def _operand_hint(self, error: Exception, *operands: tuple[ast.expr, Any]) -> str | None:
+        """Which operand is not what it should be, for what is written as a name or reached through one."""
+        for node, value in operands:
+            written = self._segment(*self._place(node))
+            if isinstance(node, ast.Constant) or len(written) > 40:
+                continue
+            if isinstance(error, ZeroDivisionError) and node is operands[-1][0]:
+                return f"'{written}' is {value!r} here; where it may be, write 'A / {written} if {written} else B'"
+            if isinstance(error, TypeError) and isinstance(value, str) and len(value) <= 40:
+                united = _WITH_UNIT.fullmatch(value)
+                if united:
+                    return f"'{written}' is the text '{value}' here; write the number alone: '{united[1]}'"
+                return f"'{written}' is the text '{value}' here, not a number"
+        return None
 
     # names and constants
 
@@ -187,7 +205,9 @@ class Compiler:
             try:
                 result = apply(a, b)
             except FAILURES as error:
-                raise self._failure(error, start, end) from None
+                fault = self._failure(error, start, end)
+                fault.hint = fault.hint or self._operand_hint(error, (node.left, a), (node.right, b))
+                raise fault from None
             if result.__class__ is not float and (steps := cost(result)):
                 env.session.budget.step(steps)
             return result

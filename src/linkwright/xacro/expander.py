@@ -93,7 +93,7 @@ class Expander:
         except RecursionError:
             self._errors.append(self._out_of_stack())
         if self._errors:
-            raise LinkwrightError(*_without_repeats(self._errors))
+            raise LinkwrightError(*_without_repeats(self._errors), *self.session.diagnostics)
         expanded = container.children[0]
         assert isinstance(expanded, Element), "an ordinary element comes out as an element"
         result = Document(expanded, document.source)
@@ -341,7 +341,10 @@ class Expander:
         raise LinkwrightError(Diagnostic(code, message, span, notes=notes, hint=hint, source=node.source))
 
     def _diagnostic(self, fault: Fault) -> Diagnostic:
-        notes = (*fault.notes, *fault.elsewhere(), *trail(self.session.frame))
+        elsewhere = fault.elsewhere()
+        if elsewhere and fault.hint is None:
+            fault.hint = "move its definition above this, and out of any macro that ends before"
+        notes = (*fault.notes, *elsewhere, *trail(self.session.frame))
         return Diagnostic(fault.code, fault.message, fault.span, notes=notes, hint=fault.hint, source=fault.source)
 
 

@@ -22,6 +22,7 @@ _LONGEST = 20_000
 _ITERATORS = frozenset({GeneratorType, enumerate, filter, map, reversed, zip})
 """What is run through before it becomes a value: nested thousands deep, these would overflow the stack."""
 _WARNS = re.compile(r"\\|\d[a-zA-Z]")
+_CLOSING = {"(": ")", "[": "]"}
 _HINTS = (
     ("{", "'}' ends the expression, so there is no way to write a dict or set in it; load one from YAML"),
     ("&&", "write 'and'"),
@@ -112,6 +113,8 @@ def _syntax_fault(source: str, stripped: str, error: SyntaxError) -> Fault:
     hint = next((hint for sign, hint in _HINTS if sign in stripped), None)
     if "!=" in stripped and hint == "write 'not'":
         hint = None
+    if hint is None and "was never closed" in words:
+        hint = f"close it with '{_CLOSING.get(words[1:2], ')')}'"
     fault = Fault("XAC102", message, hint=hint)
     lines = stripped.split("\n")
     if error.lineno and error.offset and error.lineno <= len(lines):

@@ -69,7 +69,13 @@ class Fault(Exception):  # noqa: N818 - it is on its way to a diagnostic, and no
         """Where the missing property is defined in the same file, in vain for this place."""
         if self.missing is None or self.source is None:
             return []
-        return definition_elsewhere(self.source, "property", self.missing)
+        if self.hint is not None and self.hint.startswith(f"'{self.missing}' is defined"):
+            return []
+        found = definition_elsewhere(self.source, "property", self.missing)
+        if not found and (bare := definition_elsewhere(self.source, "property", self.missing, prefix="")):
+            self.hint = "write <xacro:property where it is defined: without its prefix the tag means nothing"
+            return bare
+        return found
 
     def _place(self, source: SourceText | None, span: Span | None) -> None:
         if self.span is None:
@@ -79,13 +85,15 @@ class Fault(Exception):  # noqa: N818 - it is on its way to a diagnostic, and no
         self.start = self.end = None
 
 
-def definition_elsewhere(source: SourceText, tag: str, name: str) -> list[Note]:
+def definition_elsewhere(source: SourceText, tag: str, name: str, prefix: str = "xacro:") -> list[Note]:
     """A note on where a file defines a name, when that is not in effect where it is wanted."""
-    pattern = rf"""<xacro:{tag}\s(?:[^>"']|"[^"]*"|'[^']*')*?\bname\s*=\s*["']{re.escape(name)}["']"""
+    pattern = rf"""<{prefix}{tag}\s(?:[^>"']|"[^"]*"|'[^']*')*?\bname\s*=\s*["']{re.escape(name)}["']"""
     match = re.search(pattern, source.text)
     if match is None:
         return []
-    span = source.span(match.start(), match.start() + len(f"<xacro:{tag}"))
+    span = source.span(match.start(), match.start() + len(f"<{prefix}{tag}"))
+    if not prefix:
+        return [Note(f"a {tag} '{name}' is written here without the prefix 'xacro:'", span)]
     return [Note(f"a {tag} '{name}' is defined here, which is too late or not in scope there", span)]
 
 

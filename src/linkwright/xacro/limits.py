@@ -20,7 +20,7 @@ class Limits:
     Attributes:
         depth: how many macro calls and includes may be active at once.
         nesting: how deep elements may nest, counting those of the macro calls around them.
-        elements: how many elements may be produced; a macro call counts as ten.
+        elements: how many elements may be produced; a macro call counts as ten, any other tag of the language as two.
         steps: how much all expressions may do, together: a turn of a comprehension or a call of a function counts as
             two, of a lambda as eight, and running through two items or 32 characters of a value as one.
         characters: how many characters all long texts and attributes that come out may have, together.

@@ -30,6 +30,7 @@ def literal(value: Any) -> Any:
 
 @lru_cache(maxsize=4096)
 def number_or_boolean(text: str) -> Any:
+    """The value of a text that is a number or a boolean, else the text."""
     if "." not in text:
         try:
             return int(text)

@@ -186,6 +186,10 @@ class Local:
         """The environment of a lambda or comprehension that stands in this one."""
         return Local(self, {})
 
+    def blocks(self) -> Iterator[str]:
+        """The names of all blocks that can be seen from here; see `Scope.blocks`."""
+        return self._around.blocks()
+
     def names(self) -> Iterator[str]:
         """All names that can be seen from here."""
         yield from self._values

@@ -131,6 +131,10 @@ class Session:
             hint = f"write python.{name}"
         elif name in self.arguments:
             hint = f"'{name}' is an argument: write $(arg {name})"
+        elif name.lower() in provided:
+            hint = f"write {name.lower()}"
+        elif f"**{name}" in set(environment.blocks()):
+            hint = f'\'{name}\' is defined without a value; write <xacro:property name="{name}" value="..."/>'
         else:
             hint = did_you_mean(name, [known for known in environment.names() if known not in provided])
             if hint is None and len(name) > len("pi"):
@@ -332,13 +336,18 @@ def _check_characters(text: str) -> None:
 
 
 def _yaml_fault(path: str, text: str, error: YamlError) -> Fault:
-    from linkwright.diagnostics import Note, SourceText
+    from linkwright.diagnostics import SourceText
 
     fault = Fault("XAC506", f"'{path}' is not valid YAML: {error.message}")
     if error.line:
-        source = SourceText(path, text)
+        fault.source = source = SourceText(path, text)
         at = source.offset(error.line, error.column)
-        fault.notes.append(Note("the mistake is here", source.span(at)))
+        if text[at - 1 : at] == "\t":
+            at -= 1
+        fault.span = source.span(at)
+        fault.passing = "the file is loaded here"
+        if text[at : at + 1] == "\t":
+            fault.hint = "YAML is indented with blanks, not with tabs"
     return fault
 
 

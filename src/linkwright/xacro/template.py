@@ -69,7 +69,7 @@ class Template:
                     return substitute(source, scope.session)
                 return compile_expression(source).evaluate(scope)
             except Fault as fault:
-                fault.within(start, end)
+                fault.within(start, end, start + _BRACKET if source == text else None)
                 raise
 
         return part

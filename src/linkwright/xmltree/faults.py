@@ -23,9 +23,14 @@ _UNCLOSED_CDATA = _CODE[expat_errors.XML_ERROR_UNCLOSED_CDATA_SECTION]
 _CLOSING_TAG = re.compile(r"</\s*([^\s>]*)\s*>?")
 _BARE_ATTRIBUTE = re.compile(r"([^\s=/>\"'<]+)\s*$")
 _UNQUOTED = re.compile(r"([^\s=/>\"'<]+)\s*=\s*$")
+_QUOTE_LEFT_OPEN = re.compile(r"""([^\s=/>"'<]+)\s*=\s*(["'])[^"'<>]*\s[^\s=/>"'<]+\s*=\s*\2$""")
+"""A value that ends in what looks like the next attribute: name="a type=" and so on."""
 _NAME = re.compile(r"[^\s=/>\"'&;<]+")
 
+_ADDRESSES = {"xacro": "http://www.ros.org/wiki/xacro", "xi": "http://www.w3.org/2001/XInclude"}
+"""Of the prefixes that descriptions use."""
 _AMPERSAND_HINT = "write '&amp;' for the character '&'"
+_AND_HINT = "write 'and' in an expression, or '&amp;' for each '&'"
 _LESS_HINT = "close the quotes of the attribute before it, or write '&lt;' for the character '<'"
 
 
@@ -51,7 +56,7 @@ def undeclared_prefix(source: SourceText, offset: int, name: str) -> LinkwrightE
             "XML205",
             f"the prefix '{prefix}' of '{name}' is not declared",
             span=source.span(offset, offset + len(name)),
-            hint=f'declare it on the root element: xmlns:{prefix}="..."',
+            hint=f'declare it on the root element: xmlns:{prefix}="{_ADDRESSES.get(prefix, "...")}"',
             source=source,
         )
     )
@@ -166,7 +171,8 @@ class _Fault:
         ampersand = re.search(r"&[^\s;&<>\"']*$", before)
         if ampersand:
             start = at - len(ampersand[0])
-            return self._diagnostic("XML206", "'&' does not begin an entity", at=start, hint=_AMPERSAND_HINT)
+            hint = _AND_HINT if text[start : start + 2] == "&&" else _AMPERSAND_HINT
+            return self._diagnostic("XML206", "'&' does not begin an entity", at=start, hint=hint)
         if re.search(r"<!--(?:(?!-->).)*--$", before, re.DOTALL):
             message = "'--' is not allowed inside a comment"
             return self._diagnostic("XML206", message, 2, at=at - 2, hint="use other characters, such as '=='")
@@ -174,12 +180,20 @@ class _Fault:
             return self._diagnostic("XML206", "'<' does not begin a tag", at=at - 1, hint="write '&lt;'")
         if unquoted := _UNQUOTED.search(before):
             name = unquoted[1]
-            return self._diagnostic("XML206", f"the value of '{name}' is not in quotes", hint=f'write {name}="..."')
+            value = _NAME.match(text, at)
+            curved = character in "\u201c\u201d\u2018\u2019\u201e"
+            hint = f'write {name}="...", with straight quotes' if curved else f'write {name}="..."'
+            message = f"the value of '{name}' is not in quotes"
+            return self._diagnostic("XML206", message, len(value[0]) if value else 1, hint=hint)
         if character == "<" and "<!ENTITY" in text and before.rstrip().endswith(">"):
             hint = "look at the entities that the document declares"
             return self._diagnostic("XML206", "this is not well-formed once its entities are expanded", hint=hint)
         if character == "<":
             return self._diagnostic("XML206", "'<' is not allowed inside a tag", hint=_LESS_HINT)
+        if before[-1:] in ('"', "'") and (open_quote := _QUOTE_LEFT_OPEN.search(before)):
+            start = at - len(open_quote[0])
+            message = f"the quotes around the value of '{open_quote[1]}' are not closed"
+            return self._diagnostic("XML206", message, len(open_quote[1]), at=start, hint="write a quote where it ends")
         if before[-1:] in ('"', "'") and _NAME.match(character):
             hint = "write a blank here, or look for a missing quote before it"
             return self._diagnostic("XML206", "a blank is missing between two attributes", hint=hint)

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, Note, Severity, Span
 from linkwright.lint.rule import Option, Rule
 from linkwright.lint.subject import Subject
-from linkwright.urdf import Collision, Visual
+from linkwright.urdf import Collision, Link, Visual
 from linkwright.xmltree import Element
 
 if TYPE_CHECKING:
-    from linkwright.lint.bodies import Bounds
+    from linkwright.lint.extents import Bounds
 
 
 _WORLD = frozenset(("world", "map", "odom"))
@@ -140,7 +140,7 @@ class CollisionApart(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """See the class."""
-        for link in subject.links:
+        for link in _doubly_shaped(subject):
             seen, felt = _bounds(subject, link.visuals), _bounds(subject, link.collisions)
             if seen is None or felt is None or min(seen.diagonal, felt.diagonal) < _MARKER:
                 continue
@@ -184,7 +184,7 @@ class CollisionSize(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """See the class."""
         factor = subject.option(self, "factor", float)
-        for link in subject.links:
+        for link in _doubly_shaped(subject):
             seen, felt = _bounds(subject, link.visuals), _bounds(subject, link.collisions)
             if seen is None or felt is None or min(seen.diagonal, felt.diagonal) < _MARKER:
                 continue
@@ -199,11 +199,16 @@ class CollisionSize(Rule):
                 )
 
 
+def _doubly_shaped(subject: Subject) -> Iterator[Link]:
+    """The links that have visuals and collisions."""
+    return (link for link in subject.links if link.visuals and link.collisions)
+
+
 def _bounds(subject: Subject, shapes: Iterable[Visual | Collision]) -> Bounds | None:
     """The box around shapes in the link frame; None without any, or when one cannot be measured."""
-    from linkwright.lint.bodies import union
+    from linkwright.lint.extents import union
 
-    found = [subject.bodies.shape_bounds(shape) for shape in shapes]
+    found = [subject.extents.shape_bounds(shape) for shape in shapes]
     known = [bounds for bounds in found if bounds is not None]
     return union(known) if len(known) == len(found) else None
 

@@ -13,10 +13,10 @@ from linkwright.lint.rule import Option, Rule
 from linkwright.lint.rules.inertia import links_with_inertial, part
 from linkwright.lint.rules.inertia_tensor import flaw_of
 from linkwright.lint.subject import Subject
-from linkwright.urdf import Inertial, Link
+from linkwright.urdf import Inertial, Link, Mesh
 
 if TYPE_CHECKING:
-    from linkwright.lint.bodies import Bounds
+    from linkwright.lint.extents import Bounds
 
 _UNITS = ((1e3, "g m2"), (1e4, "kg cm2"), (1e6, "kg mm2"), (1e9, "g mm2"))
 """What a kg m2 is in other units, which may have been written instead."""
@@ -37,12 +37,16 @@ _ALMOST_NOTHING = 1e-3
 def measured(subject: Subject) -> Iterator[tuple[Link, Inertial, Bounds]]:
     """The links whose mass counts in a body that can be measured, with the box around the body in the link frame."""
     for link, inertial in links_with_inertial(subject):
+        from linkwright.inertia.properties import is_computable  # here: robots without masses need no numpy
+
         body = subject.bodies.of(link.name)
-        if body is None or inertial.mass <= 0 or not (link.visuals or link.collisions):
+        if body is None or not (link.visuals or link.collisions):
+            continue
+        if inertial.mass <= 0 or not is_computable(inertial):
             continue
         if inertial.mass < _NEGLIGIBLE * subject.bodies.mass(body):
             continue
-        bounds = subject.bodies.body_bounds(link)
+        bounds = subject.extents.body_bounds(link)
         if bounds is not None and bounds.diagonal > _MARKER:
             yield link, inertial, bounds
 
@@ -75,10 +79,12 @@ class DensityTooHigh(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """See the class."""
+        if not any(links_with_inertial(subject)):
+            return
         from linkwright.inertia.validity import HEAVIEST_DENSITY
 
         for link, inertial, bounds in measured(subject):
-            volume = subject.bodies.volume(link)
+            volume = subject.extents.volume(link)
             if volume is None or bounds.size.min() < _ALMOST_NOTHING / 10:
                 continue  # a sheet: its thickness is not meant
             body = subject.bodies.of(link.name)
@@ -122,16 +128,21 @@ class DensityTooLow(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """See the class."""
+        if not any(links_with_inertial(subject)):
+            return
         from linkwright.inertia.validity import LIGHTEST_DENSITY
-        from linkwright.urdf import Mesh
 
-        for link, inertial, _ in measured(subject):
-            body = subject.bodies.of(link.name)
-            shapes = link.collisions or link.visuals
-            if body is None or any(isinstance(shape.geometry, Mesh) for shape in shapes):
-                continue  # a frame of rods fills little of its box
-            volume, mass = subject.bodies.volume(link), subject.bodies.mass(body)
-            if volume is not None and 0 < mass < LIGHTEST_DENSITY * volume:
+        bodies = subject.bodies
+        for body in bodies.all:
+            members = bodies.members(body)
+            heavy = [(link, link.inertial) for link in members if link.inertial is not None and link.inertial.mass > 0]
+            shapes = [shape.geometry for link in members for shape in (link.collisions or link.visuals)]
+            if not heavy or any(isinstance(geometry, Mesh) for geometry in shapes):
+                continue  # a frame of rods, as in a mesh, fills little of its box
+            mass = bodies.mass(body)
+            volume = sum(subject.extents.volume(link) or 0.0 for link in members)
+            if mass < LIGHTEST_DENSITY * volume:
+                link, inertial = max(heavy, key=lambda each: each[1].mass)
                 yield self.report(
                     f"link '{link.name}' would have a density of {mass / volume:.2g} kg/m3, less than air",
                     part(inertial, "mass"),
@@ -172,6 +183,8 @@ class CenterOutside(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """See the class."""
+        if not any(links_with_inertial(subject)):
+            return
         import numpy as np
 
         from linkwright.inertia.validity import distance_outside
@@ -277,6 +290,8 @@ class InertiaTooLarge(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """See the class."""
+        if not any(links_with_inertial(subject)):
+            return
         import numpy as np
 
         from linkwright.inertia.validity import largest_moment_within
@@ -294,7 +309,7 @@ class InertiaTooLarge(Rule):
                     part(inertial, "inertia"),
                     name,
                     notes=[Note(f"{inertial.mass:g} kg within them have at most {limit:.2g} kg m2")],
-                    hint=_unit_hint(largest / usual) or _COMPUTE,
+                    hint=(_unit_hint(largest / usual) if usual > 0 else None) or _COMPUTE,
                 )
 
 
@@ -330,7 +345,7 @@ class InertiaTooSmall(Rule):
         """See the class."""
         factor = subject.option(self, "factor", float)
         for link, inertial, _ in measured(subject):
-            bounds = subject.bodies.link_bounds(link)
+            bounds = subject.extents.link_bounds(link)
             largest = max(inertial.ixx, inertial.iyy, inertial.izz)
             flaw = flaw_of(inertial)
             if bounds is None or largest <= 0 or (flaw is not None and flaw.kind != "triangle"):

@@ -254,6 +254,7 @@ class JointNotPublished(Rule):
 
     code = "LW225"
     name = "joint-not-published"
+    severity = Severity.INFO
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Every floating and planar joint."""

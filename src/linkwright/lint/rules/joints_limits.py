@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from math import pi
 
 from linkwright.diagnostics import Diagnostic, Severity
 from linkwright.lint.fix import Fix, remove_element, value_edit
@@ -194,7 +195,8 @@ class LimitOnContinuous(Rule):
 
     ## Use instead
 
-    Make the joint `type="revolute"`, or remove `lower` and `upper`. Bounds far out, such as `-1e16`, are left alone.
+    Make the joint `type="revolute"`, or remove `lower` and `upper`. Bounds far out, such as `-1e16`,
+    and those of a whole turn are left alone.
     """
 
     code = "LW209"
@@ -206,6 +208,8 @@ class LimitOnContinuous(Rule):
             ends = bounds(limit)
             if ends is None or ends[0] == ends[1] or max(abs(ends[0]), abs(ends[1])) > UNBOUNDED:
                 continue
+            if ends[1] - ends[0] >= 2 * pi - 0.02:
+                continue  # a whole turn, which is every position there is
             yield self.report(
                 f"continuous joint '{joint.name}' has limits from {shown(ends[0])} to {shown(ends[1])}, which nothing "
                 "observes",

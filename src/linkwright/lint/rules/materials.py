@@ -1,25 +1,19 @@
-"""Rules about colours and textures."""
+"""Rules about materials: their colours and names."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from pathlib import Path
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Severity, Span
+from linkwright.diagnostics import Diagnostic, Note, Severity, Span
 from linkwright.lint.fix import remove_element
 from linkwright.lint.meshes import material_element
 from linkwright.lint.rule import Rule
 from linkwright.lint.rules.geometry import shapes_of
-from linkwright.lint.rules.meshes_addresses import file_hint
-from linkwright.lint.rules.meshes_files import case_twin
 from linkwright.lint.subject import Subject
 from linkwright.urdf import Link, Material, Mesh, Visual
 from linkwright.urdf.findings import Findings
 from linkwright.urdf.materials import read_material
 from linkwright.xmltree import Element
-
-_PICTURES = (".png", ".jpg", ".jpeg", ".bmp", ".gif", ".tga", ".tif", ".tiff", ".dds", ".webp", ".ktx2", ".material")
-"""What RViz reads as a texture, and Ogre's material scripts."""
 
 
 def definitions(subject: Subject) -> Iterator[Material]:
@@ -134,124 +128,6 @@ class InvisibleMaterial(Rule):
                     element.first("color") or element,
                     "rgba",
                     hint=f"the last number is the opacity: write '{red:g} {green:g} {blue:g} 1' to see it",
-                )
-
-
-class MissingTexture(Rule):
-    """A texture whose image is not found.
-
-    ## Why
-
-    The part is shown white, or not at all.
-
-    ## Example
-
-    ```xml
-    <texture filename="package://my_robot_description/materials/logo.pgn"/>
-    ```
-
-    ## Use instead
-
-    ```xml
-    <texture filename="package://my_robot_description/materials/logo.png"/>
-    ```
-    """
-
-    code = "LW503"
-    name = "texture-missing"
-
-    def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
-        for element, uri in _textures(subject):
-            base = Path(element.source.name).parent if element.source is not None else subject.path.parent
-            notes, hint = [], None
-            try:
-                path = subject.finder.resolve(uri, base)
-            except LinkwrightError as error:
-                notes.append(Note(error.diagnostics[0].message))
-            else:
-                if path.is_file():
-                    continue
-                hint = file_hint(path, _PICTURES)
-                twin = case_twin(path.absolute())
-                if twin is not None:
-                    notes.append(Note(f"the file is '{twin.name}', in other capitals"))
-            message = f"there is no image '{uri}' for this texture"
-            yield self.report(message, element, "filename", notes=notes, hint=hint)
-
-
-class TextureFormat(Rule):
-    """A texture file that is no image RViz reads.
-
-    ## Why
-
-    The part is shown without it.
-
-    ## Example
-
-    ```xml
-    <texture filename="package://my_robot_description/materials/logo.svg"/>
-    ```
-
-    ## Use instead
-
-    ```xml
-    <texture filename="package://my_robot_description/materials/logo.png"/>
-    ```
-    """
-
-    code = "LW504"
-    name = "texture-format-unknown"
-
-    def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
-        for element, uri in _textures(subject):
-            ending = Path(uri).suffix
-            if ending.lower() not in _PICTURES:
-                yield self.report(
-                    f"the texture '{uri.rpartition('/')[2]}' is no image of a format that is read",
-                    element,
-                    "filename",
-                    hint="use PNG or JPEG",
-                )
-
-
-class TextureOnStl(Rule):
-    """A texture on an STL mesh.
-
-    ## Why
-
-    STL has no texture coordinates, so there is no telling which part of the image belongs where, and none is shown.
-
-    ## Example
-
-    ```xml
-    <visual>
-      <geometry><mesh filename="package://arm/meshes/base.stl"/></geometry>
-      <material name="logo"><texture filename="package://arm/materials/logo.png"/></material>
-    </visual>
-    ```
-
-    ## Use instead
-
-    A mesh with texture coordinates: COLLADA, OBJ or glTF.
-    """
-
-    code = "LW505"
-    name = "texture-on-stl"
-
-    def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
-        for link, visual in visuals(subject):
-            geometry, material = visual.geometry, visual.material
-            if material is None or material.texture is None or material.rgba is not None:
-                continue
-            if isinstance(geometry, Mesh) and geometry.filename.lower().endswith(".stl"):
-                yield self.report(
-                    f"the texture of link '{link.name}' does not show, for an STL mesh has no texture coordinates",
-                    material_element(visual),
-                    "name",
-                    hint="export the mesh as COLLADA, OBJ or glTF",
                 )
 
 
@@ -419,14 +295,6 @@ class AlikeNames(Rule):
                     notes=[Note(f"'{known.name}' is defined here", _place(known.element))],
                     hint="use one name",
                 )
-
-
-def _textures(subject: Subject) -> Iterator[tuple[Element, str]]:
-    """The ``<texture>`` elements with the address of their image, each place once."""
-    for material in definitions(subject):
-        element = material.element.first("texture") if material.element is not None else None
-        if element is not None and material.texture is not None:
-            yield element, material.texture
 
 
 def _difference(first: Material, second: Material) -> str:

@@ -184,9 +184,8 @@ class FootprintHasBody(Rule):
                 continue
             solid = next((each for each in link.collisions if not _is_tiny(each.geometry)), None)
             part = None if solid is None else solid.element
-            is_root = (
-                subject.robot is None or subject.robot.root == link.name
-            )  # the mass of a root has a rule of its own
+            is_root = subject.robot is None or subject.robot.root == link.name
+            # The mass of a root has a rule of its own.
             if part is None and not is_root and link.inertial is not None and link.inertial.mass > 0.1:
                 part = link.element.first("inertial")
             if part is not None:

@@ -70,7 +70,7 @@ class RobotNameUnusual(Rule):
     ```
     """
 
-    code = "LW610"
+    code = "LW611"
     name = "robot-name-unusual"
     default = False
 

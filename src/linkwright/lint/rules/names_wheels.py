@@ -218,7 +218,8 @@ class WheelsTurnAgainst(Rule):
     ## Why
 
     Equal velocities then turn the wheels against each other, and a controller for differential drive makes the robot
-    spin where it should go straight. Pedantic: some makers mirror a wheel with its frame and negate its velocity.
+    spin where it should go straight. Where the maker of a robot wants it so and negates the velocity of one side, the
+    configuration can ignore this rule.
 
     ## Example
 
@@ -237,7 +238,6 @@ class WheelsTurnAgainst(Rule):
 
     code = "LW643"
     name = "wheels-turn-against"
-    default = False
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
         """What the rule finds."""

@@ -45,8 +45,8 @@ class XacroInUrdf(Rule):
         for place in known_elements(subject):
             for attribute, written in place.element.attributes.items():
                 rule = place.rule.attribute(attribute)
-                if rule is None or rule.kind is not schema.Kind.TEXT or attribute in ("name", "link"):
-                    continue  # names have a rule of their own
+                if rule is None or rule.kind is not schema.Kind.TEXT:
+                    continue
                 if "${" in written or "$(" in written:
                     yield self.report(
                         f"nobody evaluates '{written}' in a file that is not xacro",
@@ -133,4 +133,10 @@ class EmptyName(Rule):
         for element in [subject.root, *named]:
             name = element.attributes.get("name")
             if name is not None and not name.strip():
-                yield self.report(f"the name of a <{element.tag}> is empty", element, "name", hint="give it a name")
+                yield self.report(
+                    f"the name of a <{element.tag}> is empty",
+                    element,
+                    "name",
+                    hint="give it a name",
+                    severity=Severity.WARNING if element is subject.root else None,
+                )

@@ -174,14 +174,14 @@ class ControlInterfaceMisspelt(Rule):
                 if interface.tag not in ("command_interface", "state_interface"):
                     continue
                 name = interface.attributes.get("name", "")
-                near = nearest(name, INTERFACES, limit=1)
-                if name and near and name not in INTERFACES and abs(len(name) - len(near[0])) <= 2:
+                near = close_name(name, INTERFACES) if name.isalpha() and name not in INTERFACES else None
+                if near is not None:
                     yield self.report(
                         f"no controller asks for an interface '{name}'",
                         interface,
                         "name",
-                        hint=f"did you mean '{near[0]}'?",
-                        fix=replace_value(interface, "name", near[0], safe=False),
+                        hint=f"did you mean '{near}'?",
+                        fix=replace_value(interface, "name", near, safe=False),
                     )
 
 

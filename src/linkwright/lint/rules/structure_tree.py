@@ -58,14 +58,15 @@ class DisconnectedPart(Rule):
 
     ## Why
 
-    A description is one tree. urdfdom refuses several roots and names two of them (URDF152); this rule names every
-    part, what is in it, and the joint that would connect it.
+    A description is one tree. urdfdom refuses several roots, and the reader says so at the second one (URDF152); this
+    rule names every further part, what is in it, and the joint that would connect it.
 
     ## Example
 
     ```xml
     <link name="base_link"/>
-    <link name="camera_link"/>
+    <link name="arm_link"/>
+    <link name="camera_link"/>   <!-- and no joint -->
     ```
 
     ## Use instead
@@ -83,7 +84,7 @@ class DisconnectedPart(Rule):
     severity = Severity.ERROR
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every part but the one with the most links, at its topmost link."""
+        """Every part but the one with the most links and the one that the reader reports, at its topmost link."""
         links = {link.name: link for link in subject.links if link.name}
         joints = [joint for joint in subject.joints if joint.parent in links and joint.child in links]
         above = {joint.child: joint.parent for joint in joints}
@@ -94,8 +95,8 @@ class DisconnectedPart(Rule):
         main = max(roots, key=lambda root: (sizes[root], -roots.index(root)))
         for root in roots:
             element = links[root].element
-            if root == main or element is None:
-                continue
+            if root in (main, roots[1]) or element is None:
+                continue  # of the second root the reader speaks
             below = sizes[root] - 1
             what = f"link '{root}'" + (f" and the {below} below it" if below else "")
             verb = "are" if below else "is"

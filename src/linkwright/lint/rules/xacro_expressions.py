@@ -165,6 +165,9 @@ class UndeclaredArgument(Rule):
 
 def elements_below(root: Element) -> Iterator[Element]:
     """All elements inside an element, in document order."""
-    for element in root.elements():
-        yield element
-        yield from elements_below(element)
+    waiting = [root]
+    while waiting:
+        element = waiting.pop()
+        if element is not root:
+            yield element
+        waiting.extend(reversed(list(element.elements())))

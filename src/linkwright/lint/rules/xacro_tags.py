@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, Note, Severity
@@ -12,12 +12,13 @@ from linkwright.lint.fix import Fix, add_attribute, rename_element, replace_valu
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
 from linkwright.lint.xacro_facts import Definition, FileFacts, xacro_facts
+from linkwright.urdf.schema import ROBOT, ElementRule
 from linkwright.xacro.faults import attribute_part
-from linkwright.xmltree import Element
+from linkwright.xmltree import Document, Element
 
 ADDRESS = "http://www.ros.org/wiki/xacro"
 _OLD_ADDRESSES = re.compile(r"https?://(www\.)?ros\.org/(wiki/xacro|xacro)/?(#interface)?")
-_NEEDED = {
+_NEEDED: dict[str, tuple[str, ...]] = {
     "property": ("name",),
     "include": ("filename",),
     "macro": ("name",),
@@ -59,12 +60,15 @@ class XacroPrefixMissing(Rule):
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
         """What the rule finds."""
         documents = subject.sources.values()
+        macros = _macro_names(documents)
         for document in documents:
             root = document.root
             if root.tag != "robot":
                 continue
             for element in _described(root):
                 needed = _NEEDED.get(element.tag)
+                if needed is None and element.tag in macros:
+                    needed = ()
                 if needed is None or not all(name in element.attributes for name in needed):
                     continue
                 message = f"<{element.tag}> without the prefix 'xacro:' means nothing"
@@ -76,6 +80,21 @@ class XacroPrefixMissing(Rule):
                     if fix is not None and declared is not None:
                         fix = Fix((*declared.edits, *fix.edits), safe=False)
                 yield self.report(message, element, hint=hint, fix=fix)
+
+
+def _macro_names(documents: Iterable[Document]) -> set[str]:
+    """The names of all macros that some documents define, those of elements of URDF left out."""
+    macros = (
+        element.attributes.get("name", "")
+        for document in documents
+        for element in _described(document.root)
+        if element.tag == "xacro:macro"
+    )
+    return set(macros) - _elements_of(ROBOT)
+
+
+def _elements_of(rule: ElementRule) -> set[str]:
+    return {rule.tag}.union(*map(_elements_of, rule.children))
 
 
 class XacroNamespaceMissing(Rule):
@@ -413,8 +432,9 @@ def _unconditional_call(macro: Definition, file: FileFacts) -> Definition | None
 
 def _described(root: Element) -> Iterator[Element]:
     """The elements of a description, those of simulators and plugins left out."""
-    for element in root.elements():
-        if element.tag in _FOREIGN:
-            continue
-        yield element
-        yield from _described(element)
+    waiting = [root]
+    while waiting:
+        element = waiting.pop()
+        if element is not root:
+            yield element
+        waiting.extend(inner for inner in reversed(list(element.elements())) if inner.tag not in _FOREIGN)

@@ -1,0 +1,151 @@
+"""Rules about inertia tensors that a body can have and hardly has."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from linkwright.diagnostics import Diagnostic, Note
+from linkwright.lint.rule import Option, Rule
+from linkwright.lint.rules.inertia import links_with_inertial, part
+from linkwright.lint.rules.inertia_tensor import DIAGONAL, PRODUCTS
+from linkwright.lint.subject import Subject
+from linkwright.urdf import Inertial, Link
+
+
+class PlaceholderInertia(Rule):
+    """One and the same inertia copied to links of different shapes.
+
+    ## Why
+
+    A tensor of ones on everything is a placeholder from a tutorial. For a link of a few hundred grams it is thousands
+    of times too large, and the robot moves as if in honey. What depends on size and mass cannot be the same for all.
+    The rule speaks where at least half of the links share such a tensor.
+
+    ## Example
+
+    ```xml
+    <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>
+    ```
+
+    on the body, each wheel and the caster alike.
+
+    ## Use instead
+
+    A tensor for each link; `linkwright inertia FILE` computes them all.
+    """
+
+    code = "LW315"
+    name = "inertia-placeholder"
+    options = (Option("links", 3, "how many links must share a tensor to be reported"),)
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        least = subject.option(self, "links", int)
+        groups: dict[tuple[float, ...], list[tuple[Link, Inertial]]] = {}
+        count = 0
+        for link, inertial in links_with_inertial(subject):
+            values = tuple(getattr(inertial, name) for name in (*DIAGONAL, *PRODUCTS))
+            if any(values):
+                count += 1
+                groups.setdefault(values, []).append((link, inertial))
+        for values, sharing in groups.items():
+            shapes = {_shapes(link) for link, _ in sharing} - {()}
+            if len(sharing) < least or len(shapes) < least or 2 * len(sharing) < count:
+                continue
+            if not values[0] == values[1] == values[2]:
+                continue
+            link, inertial = sharing[0]
+            others = ", ".join(f"'{other.name}'" for other, _ in sharing[1:5])
+            more = "" if len(sharing) <= 5 else ", ..."
+            yield self.report(
+                f"link '{link.name}' has the same inertia as {len(sharing) - 1} links of other shapes",
+                part(inertial, "inertia"),
+                notes=[Note(f"the others are {others}{more}")],
+                hint="`linkwright inertia` computes one for each from its shapes",
+            )
+
+
+class TurnedSphere(Rule):
+    """A rotation in the `<origin>` of an inertia that is the same about every axis.
+
+    ## Why
+
+    The rotation of `<inertial>` turns the tensor only, not the shapes, and a tensor with three equal moments and no
+    products looks the same from everywhere. The rotation was probably meant for something else.
+
+    ## Example
+
+    ```xml
+    <origin xyz="0 0 0.1" rpy="1.5708 0 0"/>
+    <mass value="1"/>
+    <inertia ixx="0.01" ixy="0" ixz="0" iyy="0.01" iyz="0" izz="0.01"/>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <origin xyz="0 0 0.1"/>
+    ```
+    """
+
+    code = "LW316"
+    name = "inertia-turned-in-vain"
+    default = False
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        for link, inertial in links_with_inertial(subject):
+            alike = inertial.ixx == inertial.iyy == inertial.izz
+            products = inertial.ixy or inertial.ixz or inertial.iyz
+            if alike and not products and any(inertial.origin.rpy) and inertial.ixx:
+                yield self.report(
+                    f"the rotation of <inertial> of link '{link.name}' changes nothing: its inertia is alike about "
+                    "every axis",
+                    part(inertial, "origin"),
+                    "rpy",
+                    hint="leave 'rpy' out, or give the moments of the shape",
+                )
+
+
+class TinyInertia(Rule):
+    """A moving body with a moment of inertia that solvers cannot work with.
+
+    ## Why
+
+    Integrators with steps of a millisecond become unstable where a joint turns something of almost no inertia.
+
+    ## Example
+
+    ```xml
+    <inertia ixx="1e-12" ixy="0" ixz="0" iyy="1e-12" iyz="0" izz="1e-12"/>
+    ```
+
+    ## Use instead
+
+    At least 1e-8 kg m2 or so, which is a steel ball of 8 mm; and armature or damping at the joint.
+    """
+
+    code = "LW317"
+    name = "inertia-tiny"
+    default = False
+    options = (Option("smallest", 1e-9, "smallest principal moment of a moving body, in kg m2"),)
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        smallest = subject.option(self, "smallest", float)
+        for body in subject.bodies.all:
+            holders = [link for link in subject.bodies.members(body) if link.inertial is not None]
+            if body.joint is None or not holders:
+                continue
+            moment = float(subject.extents.mass_properties(body).principal().moments[0])
+            if 0 < moment < smallest and holders[0].inertial is not None:
+                yield self.report(
+                    f"the smallest moment of inertia of moving link '{body.links[0]}' is {moment:.2g} kg m2",
+                    part(holders[0].inertial, "inertia"),
+                    hint="simulate with more, or give the joint damping",
+                )
+
+
+def _shapes(link: Link) -> tuple[object, ...]:
+    """What a link looks like, to tell different links from copies."""
+    return tuple(shape.geometry for shape in (link.collisions or link.visuals))

@@ -1,0 +1,132 @@
+"""Rules about the meshes of collisions: how heavy they are, and whether they are closed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from linkwright.diagnostics import Diagnostic, Severity
+from linkwright.lint.rule import Option, Rule
+from linkwright.lint.rules.meshes import file_name, loaded
+from linkwright.lint.subject import Subject
+
+
+class HeavyCollision(Rule):
+    """A collision mesh with too many triangles.
+
+    ## Why
+
+    Every step of a simulation and every pose that a planner tries goes through them. Collision shapes of a few hundred
+    triangles, or a few boxes and cylinders, find the same contacts in a hundredth of the time.
+
+    ## Example
+
+    A `<collision>` with a mesh of 80 000 triangles straight from CAD.
+
+    ## Use instead
+
+    Its convex hull, a decimated copy, or simple shapes.
+    """
+
+    code = "LW435"
+    name = "collision-mesh-heavy"
+    options = (Option("triangles", 20_000, "most triangles of a collision mesh"),)
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        most = subject.option(self, "triangles", int)
+        told: set[Path] = set()
+        for use, mesh in loaded(subject, "collision"):
+            path = subject.meshes.path(use)
+            count = len(mesh.faces)
+            if count > most and path is not None and path not in told:
+                told.add(path)
+                yield self.report(
+                    f"the collision mesh '{file_name(use)}' of link '{use.link.name}' has {_thousands(count)} "
+                    "triangles",
+                    use.element,
+                    "filename",
+                    hint="use its convex hull, a decimated copy, or simple shapes",
+                )
+
+
+class VisualAsCollision(Rule):
+    """A collision that uses the very mesh of the visual, and that is not a light one.
+
+    ## Why
+
+    What looks good has more triangles than contacts need, and is often not closed.
+
+    ## Example
+
+    ```xml
+    <visual><geometry><mesh filename="package://arm/meshes/base.dae"/></geometry></visual>
+    <collision><geometry><mesh filename="package://arm/meshes/base.dae"/></geometry></collision>
+    ```
+
+    ## Use instead
+
+    ```xml
+    <collision><geometry><mesh filename="package://arm/meshes/collision/base.stl"/></geometry></collision>
+    ```
+    """
+
+    code = "LW436"
+    name = "collision-uses-visual-mesh"
+    default = False
+    options = (Option("triangles", 2000, "triangles from which on a shared mesh is reported"),)
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        most = subject.option(self, "triangles", int)
+        seen = {(use.link.name, path) for use, path in subject.meshes.files if use.kind == "visual"}
+        for use, mesh in loaded(subject, "collision"):
+            if (use.link.name, subject.meshes.path(use)) in seen and len(mesh.faces) > most:
+                yield self.report(
+                    f"the collision of link '{use.link.name}' uses the mesh of its visual, '{file_name(use)}', with "
+                    f"{_thousands(len(mesh.faces))} triangles",
+                    use.element,
+                    "filename",
+                    hint="make a lighter mesh for collisions, or use simple shapes",
+                )
+
+
+class OpenMesh(Rule):
+    """A collision mesh that is not watertight.
+
+    ## Why
+
+    Through a hole there is no inside: volumes and inertia computed from it are wrong, and some engines push bodies
+    out at the wrong side. Others take its convex hull, which is then larger than it looks.
+
+    ## Example
+
+    A scan, or a shell exported without its back.
+
+    ## Use instead
+
+    A closed mesh, its convex hull, or simple shapes.
+    """
+
+    code = "LW437"
+    name = "collision-mesh-open"
+    severity = Severity.INFO
+    default = False
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        """See the class."""
+        told: set[Path] = set()
+        for use, mesh in loaded(subject, "collision"):
+            path = subject.meshes.path(use)
+            if path is not None and path not in told and not mesh.is_watertight:
+                told.add(path)
+                yield self.report(
+                    f"the collision mesh '{file_name(use)}' of link '{use.link.name}' is not watertight",
+                    use.element,
+                    "filename",
+                    hint="close its holes, or use its convex hull",
+                )
+
+
+def _thousands(number: int) -> str:
+    return f"{number:,}".replace(",", " ")

@@ -1,0 +1,51 @@
+"""What the page about checking shows is so."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from linkwright.cli import main
+from linkwright.diagnostics import Diagnostic, SourceText
+from linkwright.diagnostics.render import to_data
+from linkwright.lint.configuration import read_settings
+from tests.docs.pages import DOCS, blocks
+
+PAGES = [DOCS / "checking.md", DOCS / "zh" / "checking.md"]
+
+
+def block(page, title):
+    return next(each.text for each in blocks(page) if each.title == title)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.parent.name)
+def test_the_settings_shown_are_good(page, tmp_path):
+    file = tmp_path / "linkwright.toml"
+    file.write_text(block(page, "linkwright.toml"), encoding="utf-8")
+    settings, found = read_settings(file)
+    assert found == ()
+    assert settings.ignore
+    assert settings.options
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.parent.name)
+def test_the_suppressions_shown_suppress_and_each_is_needed(page, tmp_path, capsys):
+    file = tmp_path / "robot.urdf"
+    text = block(page, "robot.urdf")
+    file.write_text(text, encoding="utf-8")
+    words = ["check", str(file), "--strict", "--format", "concise", "--select", "LW001,LW221"]
+    assert main(words) == 1
+    out = capsys.readouterr().out
+    assert "LW221" not in out
+    assert out.count("LW001") == 1
+    assert "'LW6'" in out
+    file.write_text(text.replace("ignore", "look at"), encoding="utf-8")
+    main(words)
+    assert capsys.readouterr().out.count("LW221") == 2
+
+
+def test_the_json_shown_has_the_form_that_is_written():
+    shown = json.loads(next(each.text for each in blocks(PAGES[0]) if each.language == "json"))
+    written = to_data(Diagnostic("LW221", "m", SourceText("f", "x").span(0, 1), hint="h"))
+    assert list(shown["diagnostics"][0]) == list(written)

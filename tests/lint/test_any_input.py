@@ -1,0 +1,84 @@
+"""No rule, comment or setting makes the check stumble, whatever a description says."""
+
+from __future__ import annotations
+
+import random
+import re
+import warnings
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from linkwright.diagnostics import SourceText
+from linkwright.lint import Settings, examine
+from linkwright.lint.suppression import directives
+from tests.lint.cases import load_cases
+
+ODD = [
+    "",
+    " ",
+    "nan",
+    "1e308",
+    "-1e308",
+    "1e-320",
+    "-0",
+    "0",
+    "x",
+    "${a}",
+    "1 2",
+    "0 0 0",
+    "1e308 1e308 1e308",
+    "ä",
+    "../..",
+    "a b",
+    "<",
+]
+VALUE = re.compile(r'="([^"]*)"')
+DESCRIPTIONS = [
+    case for case in load_cases() if next(iter(case.files)).endswith((".urdf", ".xacro")) and len(case.files) == 1
+]
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_odd_values_in_any_attribute(tmp_path, monkeypatch, seed):
+    monkeypatch.chdir(tmp_path)
+    chance = random.Random(seed)
+    for number, case in enumerate(chance.sample(DESCRIPTIONS, 6)):
+        text = next(iter(case.files.values()))
+        for _ in range(chance.randint(1, 4)):
+            places = [match.span(1) for match in VALUE.finditer(text)]
+            if not places:
+                break
+            start, end = chance.choice(places)
+            text = text[:start] + chance.choice(ODD).replace("<", "&lt;") + text[end:]
+        path = tmp_path / f"{number}.urdf"
+        path.write_text(text, encoding="utf-8")
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            examine(path, settings=Settings(select=("ALL",)))
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_parts_left_out_or_doubled(tmp_path, monkeypatch, seed):
+    monkeypatch.chdir(tmp_path)
+    chance = random.Random(seed)
+    for number, case in enumerate(chance.sample(DESCRIPTIONS, 6)):
+        lines = next(iter(case.files.values())).splitlines()
+        for _ in range(chance.randint(1, 3)):
+            at = chance.randrange(len(lines))
+            lines[at : at + 1] = chance.choice([[], [lines[at], lines[at]]])
+            if not lines:
+                break
+        path = tmp_path / f"{number}.urdf"
+        path.write_text("\n".join(lines), encoding="utf-8")
+        examine(path, settings=Settings(select=("ALL",)))
+
+
+@given(st.text(st.sampled_from("<>!-/ab \n#,()\"'=?[]"), max_size=60), st.text(max_size=40))
+def test_any_text_around_a_comment(before, after):
+    text = f"<r>{before}<!-- linkwright: ignore {after}-->{before}<a>{after}"
+    for directive in directives(SourceText("f", text)):
+        assert 0 <= directive.start < directive.end <= len(text)
+        for start, end in directive.ranges or ():
+            assert 0 <= start <= end <= len(text)

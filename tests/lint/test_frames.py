@@ -1,0 +1,48 @@
+"""Frames at rest in plain floats agree with the kinematics room."""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from linkwright.kinematics import KinematicTree
+from linkwright.lint.frames import angle_between, placement, placements, product, rotation, transposed
+from linkwright.urdf import Joint, Link, Pose, Robot
+
+_COORDINATES = st.floats(-10, 10)
+_ANGLES = st.floats(-pi, pi)
+_POSES = st.builds(Pose, st.tuples(_COORDINATES, _COORDINATES, _COORDINATES), st.tuples(_ANGLES, _ANGLES, _ANGLES))
+
+
+@given(_POSES, _POSES)
+def test_links_are_where_the_kinematics_room_says(first, second):
+    links = {name: Link(name) for name in "abc"}
+    joints = {
+        "j": Joint("j", "revolute", "a", "b", first),
+        "k": Joint("k", "fixed", "b", "c", second),
+    }
+    robot = Robot("r", "a", links, joints, {})
+    tree = KinematicTree(robot)
+    matrices = tree.forward(np.zeros(1))
+    for name, found in placements(robot).items():
+        matrix = matrices[tree.link_index(name)]
+        np.testing.assert_allclose(found.rotation, matrix[:3, :3], atol=1e-9)
+        np.testing.assert_allclose(found.position, matrix[:3, 3], atol=1e-9)
+
+
+@given(_POSES, _POSES)
+def test_a_frame_seen_from_another_and_put_back_is_itself(first, second):
+    one, other = placement(first), placement(second)
+    back = one.seen_from(other).inside(other)
+    np.testing.assert_allclose(back.position, one.position, atol=1e-9)
+    assert angle_between(back.rotation, one.rotation) == pytest.approx(0.0, abs=1e-6)
+
+
+def test_the_angle_between_rotations():
+    one, other = rotation(Pose(rpy=(0.3, 0.0, 0.0))), rotation(Pose(rpy=(0.5, 0.0, 0.0)))
+    assert angle_between(one, other) == pytest.approx(0.2)
+    assert angle_between(product(one, transposed(one)), rotation(Pose())) == pytest.approx(0.0)

@@ -1,0 +1,79 @@
+"""The rules about masses, shapes, meshes and materials on whole robots: real ones, and ones with extreme numbers."""
+
+from __future__ import annotations
+
+import json
+import random
+import re
+from pathlib import Path
+
+import pytest
+
+from linkwright.cli import main
+from linkwright.lint.engine import examine
+from linkwright.lint.settings import Settings
+from tests.lint.cases import load_cases
+from tests.places import PACKAGE, REPOSITORY
+
+RULES = ("LW3", "LW4", "LW5")
+CORPUS = (REPOSITORY.parent / "shared" / "corpus").resolve()
+FOUND = {
+    # Steering links with a mass and a tensor of zero; a box of 1 kg in a cubic metre.
+    "gz_ros2_control/gz_ros2_control_demos/urdf/test_ackermann_drive.xacro.urdf": {"LW310", "LW321"},
+    "gz_ros2_control/gz_ros2_control_demos/urdf/test_diff_drive.xacro.urdf": {"LW321"},
+    "gz_ros2_control/gz_ros2_control_demos/urdf/test_tricycle_drive.xacro.urdf": {"LW321", "LW324"},
+    # A beam of 30 m and 100 kg with 1 kg m2.
+    "gz_ros2_control/gz_ros2_control_demos/urdf/test_pendulum_effort.xacro.urdf": {"LW325"},
+    "gz_ros2_control/gz_ros2_control_demos/urdf/test_pendulum_position.xacro.urdf": {"LW325"},
+    # A dock of 15 kg with the inertia of one of 15 g.
+    "husarion_components_description/urdf/wibotic_station.urdf.xacro": {"LW325"},
+    # One link's identified tensor breaks the triangle inequality by 9 %.
+    "franka_description/robots/fer/fer.urdf.xacro": {"LW314"},
+    # "default_inertial" for every link.
+    "urdf_tutorial@ros2/urdf/08-macroed.urdf.xacro": {"LW315", "LW323", "LW325"},
+}
+"""What is warned of in the corpus besides its missing meshes: each is a mistake of the description."""
+
+
+def models():
+    manifest = CORPUS / "manifest.json"
+    return json.loads(manifest.read_text(encoding="utf-8"))["models"] if manifest.is_file() else []
+
+
+@pytest.mark.skipif(not CORPUS.is_dir(), reason="the corpus is not part of the repository")
+@pytest.mark.parametrize("model", models(), ids=lambda model: f"{Path(model['entry']).name} {model['args']}")
+def test_real_robots_are_warned_of_mistakes_only(model):
+    manifest = json.loads((CORPUS / "manifest.json").read_text(encoding="utf-8"))
+    packages = {name: CORPUS / folder for name, folder in manifest["packages"].items()}
+    settings = Settings(select=RULES, ignore=("LW411", "LW424", "LW507", "LW508"))
+    path = CORPUS / "robots" / model["entry"]
+    found = examine(path, arguments=model["args"], packages=packages, settings=settings).diagnostics
+    warned = {each.code for each in found if each.severity.value != "info" and each.code.startswith(RULES)}
+    assert warned == FOUND.get(model["entry"], set())
+
+
+@pytest.mark.parametrize("path", sorted(PACKAGE.glob("urdf/mbot_*")), ids=lambda path: path.name)
+def test_mbot_is_fine_by_all_of_them(path):
+    found = examine(path, settings=Settings(select=RULES)).diagnostics
+    assert [each.message for each in found if each.code.startswith(RULES)] == []
+
+
+NUMBER = re.compile(r'(?<=["\s])-?\d+(?:\.\d+)?(?:e-?\d+)?(?=["\s])')
+EXTREME = ("0", "-1", "1e308", "-1e308", "1e-308", "5e-324", "1e160", "1e-160", "1e77", "1e20", "-0", "0.5", "3")
+PAGES = ("inertia", "geometry", "meshes", "materials")
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_no_number_is_too_odd(seed, tmp_path, capsys):
+    chance = random.Random(seed)
+    case = chance.choice([case for case in load_cases() if case.page in PAGES])
+    for name, text in case.files.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    path = tmp_path / next(iter(case.files))
+    share = chance.choice((0.05, 0.2, 0.6))
+    text = path.read_text(encoding="utf-8")
+    path.write_text(NUMBER.sub(lambda found: chance.choice(EXTREME) if chance.random() < share else found[0], text))
+    examine(path, settings=Settings(select=RULES))
+    assert main(["inertia", str(path), "--format", chance.choice(("text", "json"))]) in (0, 1)
+    capsys.readouterr()

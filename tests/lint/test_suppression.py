@@ -1,0 +1,71 @@
+"""Suppressing comments: where they hold, in XML and in other files."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.diagnostics import SourceText
+from linkwright.lint import Settings, check
+from linkwright.lint.suppression import directives
+
+
+def ranges(text: str) -> list[list[str] | None]:
+    return [
+        None if each.ranges is None else [text[start:end] for start, end in each.ranges]
+        for each in directives(SourceText("f", text))
+    ]
+
+
+def words(text: str) -> list[list[str]]:
+    return [[word for word, _ in each.selectors] for each in directives(SourceText("f", text))]
+
+
+@pytest.mark.parametrize(
+    ("comment", "expected"),
+    [
+        ("<!-- linkwright: ignore -->", []),
+        ("<!--linkwright:ignore LW201-->", ["LW201"]),
+        ("<!-- linkwright: ignore LW201, LW3 limit-inverted -->", ["LW201", "LW3", "limit-inverted"]),
+        ("<!-- linkwright: ignore-file LW201 (because of the vendor) -->", ["LW201"]),
+        ("<!-- linkwright: ignore LW201 (see (1), and # 2) -->", ["LW201"]),
+        ("<!-- linkwright: ignore LW201 because -->", ["LW201", "because"]),
+        ("<!-- linkwright: ignore\n  LW201\n  LW202\n-->", ["LW201", "LW202"]),
+    ],
+)
+def test_what_a_comment_names(comment, expected):
+    assert words(f"<robot>{comment}</robot>") == [expected]
+
+
+@pytest.mark.parametrize("comment", ["<!-- ignore LW201 -->", "<!-- linkwright: ignored -->", "<!-- linkwright -->"])
+def test_other_comments_are_none(comment):
+    assert words(f"<robot>{comment}</robot>") == []
+
+
+def test_where_comments_hold():
+    assert ranges("<r>\n<!-- linkwright: ignore -->\n<a>\n<b/></a>\n</r>") == [["<a>\n<b/></a>"]]
+    assert ranges("<r>\n<a/> <!-- linkwright: ignore -->\n<b/></r>") == [["<a/> <!-- linkwright: ignore -->\n"]]
+    assert ranges("<r>\n<!-- linkwright: ignore --> <a>\n</a>\n</r>") == [
+        ["<!-- linkwright: ignore --> <a>\n", "<a>\n</a>"]
+    ]
+    assert ranges("<r>\n<!-- linkwright: ignore -->\n<!-- x -->\n<a/></r>") == [["<a/>"]]
+    assert ranges("<r>\n<!-- linkwright: ignore -->\n</r>") == [[]]
+    assert ranges("<!-- linkwright: ignore-file -->\n<r/>") == [None]
+
+
+def test_in_files_that_are_not_xml():
+    text = "import os\nx = 1  # linkwright: ignore LW842\n# linkwright: ignore LW843 (reason)\ny = 2\nz = 3\n"
+    assert words(text) == [["LW842"], ["LW843"]]
+    assert ranges(text) == [["x = 1  # linkwright: ignore LW842\n"], ["y = 2\n"]]
+    assert ranges("# linkwright: ignore-file\nx = 1\n") == [None]
+
+
+def test_unused_comments_are_found_whatever_else_is_selected(tmp_path):
+    path = tmp_path / "robot.urdf"
+    path.write_text(
+        '<robot name="r">\n  <link name="a"/>\n  <link name="b"/>\n  <joint name="j" type="continuous">\n'
+        '    <parent link="a"/>\n    <child link="b"/>\n'
+        '    <axis xyz="0 0 2"/> <!-- linkwright: ignore LW221 -->\n'
+        "  </joint> <!-- linkwright: ignore LW2 -->\n</robot>\n"
+    )
+    found = check(path, settings=Settings(select=("LW001",)))
+    assert [(each.code, each.span.line) for each in found] == [("LW001", 8)]

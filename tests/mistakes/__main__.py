@@ -1,0 +1,24 @@
+"""Write what is said now into the Markdown files: ``python -m tests.mistakes``; read the difference before keeping it."""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+from pathlib import Path
+
+from .cases import read_cases
+
+
+def renew(page: Path) -> None:
+    """Write what is said now into one file."""
+    text = page.read_text(encoding="utf-8")
+    for case in read_cases(page):
+        with tempfile.TemporaryDirectory() as folder:
+            said = case.check(Path(folder).resolve())
+        at = text.index("\n```text\n", text.index(f"## {case.title}\n")) + len("\n```text\n")
+        text = text[:at] + (f"{said}\n" if said else "") + text[text.index("```\n", at) :]
+    page.write_text(text, encoding="utf-8")
+
+
+for name in sys.argv[1:] or [path.name for path in sorted(Path(__file__).parent.glob("*.md"))]:
+    renew(Path(__file__).with_name(name))

@@ -1,0 +1,113 @@
+"""Mistakes of learners, written in Markdown: a change to a file of mbot's package, and what ``linkwright check`` says.
+
+A ``##`` heading is a case. Its ```` ```diff FILE ```` blocks change files of the package: of each run of ``-`` lines and
+``+`` lines the first are replaced by the second; the ``-`` lines must occur exactly once in the file. A block with ``+`` lines only makes a new file. An ```` ```arguments ```` block holds ``name:=value``.
+
+The ```` ```text ```` block is what is said, from the JSON form of the command: place with the end of the marked text,
+severity, code, the marked text in brackets, message; then notes with their places, and hints.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import re
+import shutil
+from contextlib import redirect_stderr, redirect_stdout
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from linkwright.cli.command import main
+
+PACKAGE = Path(__file__).parents[2] / "robots" / "my_robot_description"
+_CASE = re.compile(r"^## (?P<title>.+)\n(?P<body>(?:(?!^## ).*\n?)*)", re.MULTILINE)
+_BLOCK = re.compile(r"^```(?P<kind>\w+)(?: (?P<name>\S+))?\n(?P<text>(?:(?!^```$).*\n)*)^```$", re.MULTILINE)
+_RUN = re.compile(r"(?P<old>(?:^-.*\n)*)(?P<new>(?:^\+.*\n)*)", re.MULTILINE)
+
+
+@dataclass
+class Case:
+    """One mistake."""
+
+    title: str
+    changes: list[tuple[str, str]]
+    arguments: list[str]
+    expected: str
+
+    @property
+    def file(self) -> str:
+        """The file that is checked: the first one changed."""
+        return self.changes[0][0]
+
+    def check(self, folder: Path) -> str:
+        """Make the mistake in a copy of the package below a folder, and return what is said of it."""
+        package = folder / PACKAGE.name
+        shutil.copytree(PACKAGE, package, ignore=shutil.ignore_patterns("__pycache__"))
+        for name, change in self.changes:
+            _change(package / name, change)
+        output = io.StringIO()
+        with redirect_stdout(output), redirect_stderr(io.StringIO()):
+            status = main(["check", "--format", "json", str(package / self.file), *self.arguments])
+        found = json.loads(output.getvalue())["diagnostics"]
+        assert status == any(each["severity"] == "error" for each in found)
+        return (
+            "\n".join(line for each in found for line in _lines(each, package))
+            .replace(f"{package}/", "")
+            .replace(f"{folder}", "FOLDER")
+        )
+
+
+def read_cases(path: Path) -> list[Case]:
+    """The cases of a Markdown file."""
+    cases = []
+    for match in _CASE.finditer(path.read_text(encoding="utf-8")):
+        changes, arguments, expected = [], [], ""
+        for block in _BLOCK.finditer(match["body"]):
+            if block["kind"] == "diff":
+                changes.append((block["name"], block["text"]))
+            elif block["kind"] == "arguments":
+                arguments = block["text"].splitlines()
+            else:
+                expected = block["text"].rstrip("\n")
+        cases.append(Case(match["title"], changes, arguments, expected))
+    return cases
+
+
+def _change(path: Path, change: str) -> None:
+    text = path.read_text(encoding="utf-8") if path.exists() else ""
+    for run in _RUN.finditer(change):
+        old, new = ("".join(f"{line[1:]}\n" for line in run[side].splitlines()) for side in ("old", "new"))
+        if old:
+            count = f"\n{text}".count(f"\n{old}")
+            assert count == 1, f"{path.name} has {count} of {old!r}"
+            text = f"\n{text}".replace(f"\n{old}", f"\n{new}")[1:]
+        elif new:
+            text += new
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text, encoding="utf-8")
+
+
+def _lines(found: dict[str, Any], package: Path) -> list[str]:
+    lines = [f"{_place(found)} {found['severity']} {found['code']} [{_marked(found)}] {found['message']}"]
+    for note in found["notes"]:
+        place = f" ({note['file']}:{note['line']}:{note['column']})" if note["file"] else ""
+        lines.append(f"  note: {note['message']}{place}")
+    lines += [f"  hint: {hint}" for hint in found["hints"]]
+    return lines
+
+
+def _place(found: dict[str, Any]) -> str:
+    if found["file"] is None:
+        return "-"
+    return f"{found['file']}:{found['line']}:{found['column']}"
+
+
+def _marked(found: dict[str, Any]) -> str:
+    """The text that a finding marks, with its further lines left out."""
+    if found["file"] is None or not Path(found["file"]).is_file():
+        return ""
+    lines = Path(found["file"]).read_text(encoding="utf-8").splitlines()
+    line = lines[found["line"] - 1] if found["line"] <= len(lines) else ""
+    end = found["end_column"] - 1 if found["end_line"] == found["line"] else len(line)
+    return line[found["column"] - 1 : end]

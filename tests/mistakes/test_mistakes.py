@@ -1,0 +1,33 @@
+"""What is said of realistic mistakes: the place to the column, the words, and a hint that names the fix."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from .cases import Case, read_cases
+
+CASES = {
+    f"{path.stem}: {case.title}": case
+    for path in sorted(Path(__file__).parent.glob("*.md"))
+    for case in read_cases(path)
+}
+
+
+def test_there_are_at_least_fifty() -> None:
+    assert len(CASES) >= 50
+
+
+@pytest.mark.parametrize("case", CASES.values(), ids=CASES.keys())
+def test_mistake(case: Case, tmp_path: Path) -> None:
+    assert case.check(tmp_path) == case.expected
+
+
+@pytest.mark.parametrize("case", CASES.values(), ids=CASES.keys())
+def test_every_mistake_has_a_place_and_a_hint(case: Case) -> None:
+    first, *rest = case.expected.splitlines()
+    if not case.arguments:  # a mistake on the command line is in no file
+        assert ":" in first.split()[0], "it has no place"
+        assert "[]" not in first, "it marks nothing"
+    assert any(line.startswith("  hint: ") for line in rest), "it does not say what to do"

@@ -1,0 +1,38 @@
+"""Inputs that the fuzzers found, or that came up while hunting: whatever was wrong with them stays mended.
+
+Each file of ``inputs/`` is named ``KIND--what-was-wrong.ending``; the kind says how it is read, and what must hold is
+what the fuzzers check (see ``fuzz/targets.py``): no error but ours, and an output that can be read again.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from fuzz import targets
+from fuzz.documents import HEAD, Files
+
+INPUTS = sorted((Path(__file__).parent / "inputs").iterdir())
+
+CHECKS: dict[str, Callable[[str], None]] = {
+    "expression": targets.check_expression,
+    "rviz": targets.check_rviz,
+    "urdf": targets.check_urdf,
+    "xacro": lambda text: targets.check_expansion(Files(text, f"{HEAD}/>", "a: 1")),
+    "xml": targets.check_xml,
+    "yaml": lambda text: targets.check_expansion(
+        Files(f"""{HEAD}><a v="${{xacro.load_yaml('data.yaml')}}"/></robot>""", f"{HEAD}/>", text)
+    ),
+}
+
+
+@pytest.mark.parametrize("path", INPUTS, ids=lambda path: path.name)
+def test_what_was_found_stays_mended(path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    check = CHECKS[path.name.partition("--")[0]]
+    started = time.process_time()
+    check(path.read_bytes().decode("utf-8", "surrogatepass"))
+    assert time.process_time() - started < 3.0

@@ -1,0 +1,67 @@
+"""What comes out as it was read: it is copied, and whoever looks sees no difference."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.xacro import Limits, expand
+from linkwright.xmltree import Comment
+
+HEAD = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
+
+
+def written(tmp_path: Path, inside: str) -> Path:
+    path = tmp_path / "model.xacro"
+    path.write_text(f"{HEAD}{inside}</robot>", encoding="utf-8")
+    return path
+
+
+def test_each_call_of_a_macro_gives_elements_of_its_own(tmp_path: Path) -> None:
+    macro = '<xacro:macro name="m"><link name="a"><visual/></link></xacro:macro>'
+    expansion = expand(written(tmp_path, f"{macro}<xacro:m/>\n<xacro:m/>"))
+    first, second = expansion.document.root.elements("link")
+    assert first.attributes == second.attributes
+    assert first is not second
+    assert next(first.elements()) is not next(second.elements())
+    lines = [expansion.origin(next(link.elements())).trail[0].span.line for link in (first, second)]
+    assert lines == [1, 2]
+
+
+def test_changing_a_result_changes_no_other(tmp_path: Path) -> None:
+    path = written(tmp_path, '<link name="a"><visual name="v"/></link>')
+    expansion = expand(path)
+    before = str(expansion)
+    link = expansion.document.root.first("link")
+    link.attributes["name"] = "b"
+    link.first("visual").attributes.clear()
+    link.children.clear()
+    assert str(expand(path)) == before
+
+
+@pytest.mark.parametrize(
+    ("limits", "code", "before"),
+    [(Limits(elements=5), "XAC602", 4), (Limits(nesting=5), "XAC601", 5), (Limits(), "", 0)],
+)
+def test_what_is_copied_counts(tmp_path: Path, limits: Limits, code: str, before: int) -> None:
+    path = written(tmp_path, "<a>" * 150 + "</a>" * 150)
+    if not code:
+        assert str(expand(path, limits=limits)).count("<a") == 150
+        return
+    with pytest.raises(LinkwrightError) as caught:
+        expand(path, limits=limits)
+    assert caught.value.diagnostics[0].code == code
+    assert caught.value.diagnostics[0].span.column == len(HEAD) + 1 + before * len("<a>")
+
+
+def test_comments_are_evaluated_where_they_are_switched_on(tmp_path: Path) -> None:
+    inside = (
+        '<xacro:property name="p" value="1"/><a><!-- ${p} --><!-- xacro:eval-comments --><!-- ${p} --> '
+        "<!-- ${p + 1} -->"
+        "<b/><!-- ${p} --><!-- xacro:eval-comments -->text<!-- ${p} --></a>"
+    )
+    root = expand(written(tmp_path, inside)).document.root
+    comments = [child.data for child in root.first("a").children if isinstance(child, Comment)]
+    assert comments == [" ${p} ", " 1 ", " 2 ", " ${p} ", " ${p} "]

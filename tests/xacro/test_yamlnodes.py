@@ -1,0 +1,56 @@
+"""Our short way from YAML nodes to values gives what PyYAML gives."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+import yaml
+from hypothesis import given
+from hypothesis import strategies as st
+
+from linkwright.xacro.yamlnodes import NodeLoader, construct
+
+PIECES = [
+    *("a", ": ", "- ", "\n", "\n  ", "1", "0x1f", "012", "1:20", "~", "yes", "&x ", "*x", "<<: ", "[", "]", "{", "}"),
+    *(", ", "1e3", "1.5", ".inf", "2001-01-01", '"q"', "'s'", "? ", "!!str ", "!!set ", "|\n", "# c", "=", "null"),
+]
+
+
+def outcome(load: Any) -> str:
+    try:
+        return repr(load())
+    except (yaml.YAMLError, ValueError, TypeError) as error:
+        return type(error).__name__
+
+
+def loaded(text: str) -> Any:
+    loader = NodeLoader(text)
+    try:
+        node = loader.get_single_node()
+        return None if node is None else construct(loader, node)
+    finally:
+        loader.dispose()
+
+
+@given(st.lists(st.sampled_from(PIECES), max_size=14).map("".join))
+def test_any_text(text: str) -> None:
+    assert outcome(lambda: loaded(text)) == outcome(lambda: yaml.safe_load(text))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "a: {b: [1, 2.5, yes, ~, text, '1']}",
+        "a: &x {b: 1}\nc: *x\nd: {<<: *x, e: 2}",
+        "when: 2001-01-01",
+        "",
+    ],
+)
+def test_some_texts(text: str) -> None:
+    assert loaded(text) == yaml.safe_load(text)
+
+
+def test_what_aliases_name_is_one_value() -> None:
+    value = loaded("a: &x [1]\nb: *x")
+    assert value["a"] is value["b"]
