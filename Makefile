@@ -40,6 +40,7 @@ check: $(VENV)/.dev
 	$(BIN)/python tools/lock.py check
 	$(BIN)/python tools/protocol_types.py --check
 	$(BIN)/python tools/command_reference.py --check
+	$(BIN)/python tools/messages.py --check
 	$(BIN)/python tools/rule_reference.py --check
 	$(BIN)/python tools/build_page.py run check
 

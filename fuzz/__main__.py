@@ -10,6 +10,7 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 from fuzz.names import SHARES
 
@@ -41,9 +42,8 @@ def main() -> int:
         result = FOLDER / f"{name}.json"
         result.unlink(missing_ok=True)
         subprocess.run([*command, "--seconds", str(arguments.seconds)], check=False)
-        counted = (
-            json.loads(result.read_text()) if result.exists() else {"inputs": 0, "found": {"died": 1}, "seconds": 0}
-        )
+        died: dict[str, Any] = {"inputs": 0, "found": {"died": 1}, "seconds": 0}
+        counted = json.loads(result.read_text()) if result.exists() else died
         summary = f"{counted['inputs']:>9,} inputs {counted['seconds']:>7.0f} s  found: {counted['found'] or 'nothing'}"
         print(f"{name:16} {summary}", flush=True)
         total += counted["inputs"]
@@ -54,7 +54,7 @@ def main() -> int:
 
 def fuzz_one(name: str, runs: int, seconds: int) -> None:
     """Fuzz one target in this process, which ends with it; what is found is kept and the run goes on."""
-    import atheris
+    import atheris  # type: ignore[import-untyped]
 
     with atheris.instrument_imports(include=["linkwright"]):
         from fuzz.targets import TARGETS, seeds

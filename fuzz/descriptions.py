@@ -7,320 +7,14 @@ most names must be defined and most values of a fitting kind.
 from __future__ import annotations
 
 from fuzz.choices import Choices
+from fuzz.samples import CONDITIONS, EXPRESSIONS, GAPS, NAMES, SUBSTITUTIONS, VALUES
 
 HEAD = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="r">'
-_VALUES = [
-    *(
-        "1",
-        "2.5",
-        "abc",
-        "true",
-        "False",
-        "'5'",
-        "007",
-        "",
-        " 3 ",
-        "1e3",
-        "1_0",
-        "-0.0",
-        "a b",
-        "é",
-        "nan",
-        "'true'",
-        "1,2",
-    ),
-    *("0x10", "+5", "1.", ".5", "1e400", "TRUE", "None", "[1, 2]", "'a' 'b'", "''", "'", "1 2 3", "$", "$$ ", "10_0.5"),
-]
-_EXPRESSIONS = [
-    *(
-        "1",
-        "2*3",
-        "1/3",
-        "7//2",
-        "-7 % 3",
-        "2**10",
-        "2**-1",
-        "1e16",
-        "1e-7",
-        "0.1+0.2",
-        "100.0",
-        "10**20",
-        "1.0*10**20",
-    ),
-    *("'a' + 'b'", "'%.3f' % 3.14159", "'%s-%d' % ('x', 3)", "'%05d' % 42", "'%e' % 12345.678", "'%g' % 1e-5", "'%%'"),
-    *("'abc'[::-1]", "'abc'[1]", "'abcdef'[1:4]", "'a,b,c'.split(',')", "' x '.strip()", "'A'.lower()", "'ab'.upper()"),
-    *(
-        "[1, 2.0, 'x']",
-        "[x*2 for x in [1,2,3]]",
-        "[x for x in python.range(5) if x % 2]",
-        "[[1,2],[3]]",
-        "(1, 'a')",
-        "(1,)",
-    ),
-    *("[(i, c) for i, c in python.enumerate('ab')]", "[x+y for x in [1,2] for y in [10,20]]", "python.sum([1,2,3])"),
-    *("list(map(lambda v: v+1, [1,2]))", "(lambda a, b=2: a*b)(3)", "python.sorted([3,1,2], key=lambda k: -k)"),
-    *(
-        "1 if True else 2",
-        "'y' if 1 > 2 else 'n'",
-        "1 < 2 < 3",
-        "not 1",
-        "1 and 0",
-        "0 or 'x'",
-        "None",
-        "True",
-        "1 == 1.0",
-    ),
-    *(
-        "sin(pi/2)",
-        "round(2.675, 2)",
-        "round(2.5)",
-        "degrees(pi)",
-        "radians(180)",
-        "math.sqrt(2)",
-        "floor(2.7)",
-        "ceil(2.1)",
-    ),
-    *(
-        "max(1, 2.5)",
-        "min([3, 1])",
-        "len('abc')",
-        "str(1.0)",
-        "int('12')",
-        "float('1e3')",
-        "int(2.9)",
-        "bool('')",
-        "e",
-        "inf",
-    ),
-    *(
-        "-inf",
-        "nan",
-        "tau",
-        "hypot(3,4)",
-        "atan2(1,1)",
-        "pow(2,3)",
-        "pow(2, 0.5)",
-        "fmod(7,3)",
-        "copysign(1,-0.0)",
-        "log(10)",
-    ),
-    *(
-        "python.range(3)",
-        "range(3)",
-        "sorted([2,1])",
-        "list(range(3))",
-        "python.dict(a=1)",
-        "dict(a=1, b='x')",
-        "python.abs(-3)",
-    ),
-    *(
-        "python.isinstance(1, int)",
-        "python.type(1)",
-        "python.set([1])",
-        "python.zip([1],[2])",
-        "list(python.zip([1],[2]))",
-    ),
-    *(
-        "python.any([0,1])",
-        "python.tuple([1])",
-        "python.str(b'x')",
-        "python.repr('x')",
-        "python.ord('a')",
-        "1+2j",
-        "0b11",
-    ),
-    *(
-        "0x1F",
-        "1_000",
-        "r'\\d'",
-        "'\\n'",
-        "'\\\\'",
-        '"dq"',
-        "'it''s'",
-        "xacro.tokenize('a b,c;d')",
-        "xacro.dotify(dict(a=1)).a",
-    ),
-    *(
-        "a",
-        "b",
-        "c",
-        "a+b",
-        "a*2",
-        "str(a)",
-        "str(a)+str(b)",
-        "[a, b]",
-        "a if a else b",
-        "a == b",
-        "c",
-        "lst[0]",
-        "lst",
-        "lst[-1]",
-    ),
-    *(
-        "len(lst)",
-        "data",
-        "data.p",
-        "data['p']",
-        "data.q",
-        "data.q.r",
-        "data.l[0]",
-        "data.l",
-        "data['q']['r']",
-        "n",
-        "'%s' % a",
-    ),
-    *(
-        "xacro.arg('n')",
-        "int(xacro.arg('n'))+1",
-        "ns.a",
-        "ns.b",
-        "x # comment",
-        "1 # c",
-        " 1 ",
-        "(y:=3)",
-        "a<b",
-        "a&lt;b",
-        "1 &lt; 2",
-    ),
-    *(
-        "lst.pop(0)",
-        "lst.append(9)",
-        "', '.join(['a','b'])",
-        "'x'*3",
-        "[0]*3",
-        "'a' in 'abc'",
-        "1 in lst",
-        "a is None",
-        "~5",
-        "1^3",
-    ),
-    *(
-        "1<<4",
-        "255>>2",
-        "6&3",
-        "6|1",
-        "@",
-        "a b",
-        "1+",
-        "undefined",
-        "__x",
-        "''.join([str(i) for i in lst])",
-        "divmod(7,2)",
-    ),
-    *(
-        "str(lst)",
-        "data.keys()",
-        "list(data.keys())",
-        "list(data.items())",
-        "data.values()",
-        "data.missing",
-        "data['missing']",
-    ),
-    *(
-        "1/0",
-        "'a'+1",
-        "lst[9]",
-        "int('x')",
-        "e1",
-        "1e5",
-        "1E5",
-        "100000000000000000000",
-        "1.10",
-        "5.0e-324",
-        "2e308",
-        "3.0e0",
-    ),
-    *(
-        "-a",
-        "+a",
-        "(1+2)*3",
-        "((1))",
-        "5 % 2 == 1",
-        "'%d%%' % 50",
-        "'é'",
-        "'日本'",
-        "len('é')",
-        "str(None)",
-        "[]",
-        "[None]",
-        "()",
-    ),
-    *("math.pi", "math.e", "python.len([1])", "python.max(1,2)", "list", "str", "sin", "xacro.arg"),
-]
-_SUBSTITUTIONS = [
-    *(
-        "arg n",
-        "arg s",
-        "arg flag",
-        "arg missing",
-        "find pkg",
-        "find nopkg",
-        "optenv NOPE_X",
-        "optenv NOPE_X a b",
-        "env NOPE_X",
-    ),
-    *(
-        "eval 1+1",
-        "eval n",
-        "eval s",
-        "eval pi",
-        "arg  n",
-        " arg n",
-        "arg n ",
-        "find pkg extra",
-        "anon x",
-        "",
-        "eval flag",
-        "cwd",
-    ),
-    *(
-        "optenv",
-        "arg",
-        "eval n+1",
-        "eval n == 3",
-        "eval 'a' + s",
-        "eval true",
-        "eval __x",
-        "eval sin",
-        "eval undefined",
-    ),
-]
-_CONDITIONS = [
-    *(
-        "true",
-        "false",
-        "True",
-        "0",
-        "1",
-        "2",
-        " 1 ",
-        "-1",
-        "",
-        "1.0",
-        "yes",
-        "${True}",
-        "${a}",
-        "${1 == 1}",
-        "${a == 1}",
-        "${b}",
-    ),
-    *(
-        "${lst}",
-        "${[]}",
-        "${''}",
-        "${'true'}",
-        "${None}",
-        "${0.0}",
-        "$(arg flag)",
-        "$(arg n)",
-        "${c}",
-        "${not a}",
-        "${nan}",
-    ),
-    *("${'x' in 'xyz'}", "$(eval n == 3)", "${xacro.arg('flag')}", "${flag}", "TRUE", " true", "${' 1'}", "1_0", "٣"),
-]
-_NAMES = ["a", "b", "c", "lst", "x", "y"]
-_GAPS = ["", "\n", "\n  ", "\n\n", " ", "\n\n\n", "\t", "\r\n"]
+_OPERATORS = ["+", "*", "==", "and", "or", "-", "%", "if a else"]
+_BLOCK_MACRO = (
+    '<xacro:macro name="blk" params="p *one **two"><w><xacro:insert_block name="one"/>'
+    '<xacro:insert_block name="two"/></w></xacro:macro>'
+)
 
 
 def description(choices: Choices) -> tuple[dict[str, str | bytes], dict[str, str]]:
@@ -360,24 +54,23 @@ class _Maker:
             '<xacro:arg name="n" default="3"/>',
             f'<xacro:arg name="s" default="{self.pick(["text", "1.50", "${1+1}", "true"])}"/>',
             '<xacro:arg name="flag" default="true"/>',
-            f'<xacro:property name="a" value="{self.pick(["1"] * 40 + _VALUES)}"/>',
-            f'<xacro:property name="b" value="{self.pick(["2.0"] * 40 + _VALUES)}"/>',
+            f'<xacro:property name="a" value="{self.pick(["1"] * 40 + VALUES)}"/>',
+            f'<xacro:property name="b" value="{self.pick(["2.0"] * 40 + VALUES)}"/>',
             f'<xacro:property name="c" value="{self.text() if self.choices.chance(3) else "text"}"/>',
             '<xacro:property name="lst" value="${[3,1,2]}"/>',
             '<xacro:property name="data" value="${xacro.load_yaml(\'data.yaml\')}"/>',
             '<xacro:macro name="m" params="x y:=2 z:=^|7"><m x="${x}" y="${y}" z="${z}"/></xacro:macro>',
-            '<xacro:macro name="blk" params="p *one **two"><w><xacro:insert_block name="one"/>'
-            '<xacro:insert_block name="two"/></w></xacro:macro>',
+            _BLOCK_MACRO,
             '<xacro:include filename="$(find pkg)/part.xacro" ns="ns"/>',
         ]
         return "".join(self.gap() + part for part in parts if not self.choices.chance(100))
 
     def gap(self) -> str:
-        gap = self.pick(_GAPS)
+        gap = self.pick(GAPS)
         if self.choices.chance(5):
             gap += (
                 f"<!--{self.pick([' c ', '${a}', 'xacro:eval-comments', ' xacro:eval-comments:off', '${', '$$x'])}-->"
-                + self.pick(_GAPS)
+                + self.pick(GAPS)
             )
         return gap
 
@@ -386,9 +79,9 @@ class _Maker:
         if kind <= 3:
             return "${" + self.expression() + "}"
         if kind == 4:
-            return f"$({self.pick(_SUBSTITUTIONS)})"
+            return f"$({self.pick(SUBSTITUTIONS)})"
         if kind == 5:
-            return self.pick(_VALUES)
+            return self.pick(VALUES)
         joined = "".join(self.text() for _ in range(1 + self.choices.number(3)))
         return self.pick(
             [
@@ -406,9 +99,9 @@ class _Maker:
         )
 
     def expression(self) -> str:
-        expression = self.pick(_EXPRESSIONS)
+        expression = self.pick(EXPRESSIONS)
         if self.choices.chance(5):
-            expression = f"{expression} {self.pick(['+', '*', '==', 'and', 'or', '-', '%', 'if a else'])} {self.pick(_EXPRESSIONS)}"
+            expression = f"{expression} {self.pick(_OPERATORS)} {self.pick(EXPRESSIONS)}"
         return (
             expression.replace('"', "&quot;").replace("< ", "&lt; ").replace("<<", "&lt;&lt;").replace("a<b", "a&lt;b")
         )
@@ -455,7 +148,7 @@ class _Maker:
         )
 
     def property(self, depth: int) -> str:
-        name = self.pick([*_NAMES, "pi", "e", "new", "p${1+1}", "é", "1x", "class", "a.b", "_u", "__d"])
+        name = self.pick([*NAMES, "pi", "e", "new", "p${1+1}", "é", "1x", "class", "a.b", "_u", "__d"])
         extra = self.pick(
             [
                 "",
@@ -504,7 +197,8 @@ class _Maker:
                 *("x y:='${a} b'", "x y:=${a}cm", "x:=a=b", "x, y", "x y:=^|", "x y:=1:2", "x x", "x:='it' y:='\"'"),
             ]
         )
-        return f'<xacro:macro name="{self.pick(["m", "k", "f"])}" params="{parameters.replace(chr(34), "&quot;")}">{self.inside(depth)}</xacro:macro>'
+        name, parameters = self.pick(["m", "k", "f"]), parameters.replace('"', "&quot;")
+        return f'<xacro:macro name="{name}" params="{parameters}">{self.inside(depth)}</xacro:macro>'
 
     def call(self, depth: int) -> str:
         name = self.pick(["m", "m", "k", "f", "blk", "ns.part", "part", "inc.m"])
@@ -520,7 +214,7 @@ class _Maker:
 
     def condition(self, depth: int) -> str:
         tag = self.pick(["if", "unless"])
-        return f'<xacro:{tag} value="{self.pick(_CONDITIONS)}">{self.inside(depth)}</xacro:{tag}>'
+        return f'<xacro:{tag} value="{self.pick(CONDITIONS)}">{self.inside(depth)}</xacro:{tag}>'
 
     def include(self, _depth: int) -> str:
         return self.pick(
@@ -538,12 +232,13 @@ class _Maker:
         )
 
     def blocks(self, _depth: int) -> str:
-        return f'<xacro:insert_block name="{self.pick([*_NAMES, "one", "two", "new"])}"/>'
+        return f'<xacro:insert_block name="{self.pick([*NAMES, "one", "two", "new"])}"/>'
 
     def made(self, depth: int) -> str:
         if self.choices.chance(2):
-            return f'<e><xacro:attribute name="{self.pick(["v", "${str(a)}", "w"])}" value="{self.text()}"/></e>'
-        return f'<xacro:element xacro:name="{self.pick(["t", "${str(c)}", "xacro:if", "xacro:m"])}" value="1" x="2">{self.inside(depth)}</xacro:element>'
+            return f'<e><xacro:attribute name="{self.pick(["v", "${str(a)}", "w"])}" value="x{self.text()}"/></e>'
+        name = self.pick(["t", "${str(c)}", "xacro:if", "xacro:m"])
+        return f'<xacro:element xacro:name="{name}" value="1" x="2">{self.inside(depth)}</xacro:element>'
 
     def odd(self, _depth: int) -> str:
         return self.pick(
@@ -569,6 +264,7 @@ class _Maker:
     def loop(self, depth: int) -> str:
         return (
             '<xacro:macro name="loop" params="items:=^"><xacro:if value="${items}">'
-            f'<xacro:property name="x" value="${{items.pop(0)}}"/><i v="${{x}}"/>{self.inside(depth)}<xacro:loop/></xacro:if>'
+            '<xacro:property name="x" value="${items.pop(0)}"/><i v="${x}"/>'
+            f"{self.inside(depth)}<xacro:loop/></xacro:if>"
             '</xacro:macro><xacro:property name="items" value="${[1, 2]}"/><xacro:loop/>'
         )

@@ -9,7 +9,6 @@ import re
 import subprocess
 import sys
 from collections import Counter
-from collections.abc import Callable
 from pathlib import Path
 from random import Random
 
@@ -122,8 +121,7 @@ def _without_addresses(text: str) -> str:
 
 
 def _kind(mine: dict[str, str], theirs: dict[str, str]) -> str:
-    shape: Callable[[str], str] = lambda text: "".join(sign for sign in text[:60] if not sign.isdigit())  # noqa: E731
-    return mine.get("code") or shape(theirs.get("error", ""))
+    return mine.get("code") or "".join(sign for sign in theirs.get("error", "")[:60] if not sign.isdigit())
 
 
 def _shown(answer: dict[str, str]) -> str:

@@ -101,10 +101,8 @@ def text(choices: Choices) -> str:
 
 def yaml_text(choices: Choices) -> str:
     """A small YAML file."""
-    lines = []
-    for key in ["a", "b", "p", "q"][: choices.number(5)]:
-        lines.append(f"{key}: {_yaml_value(choices, 0)}")
-    return "\n".join(lines)
+    keys = ["a", "b", "p", "q"][: choices.number(5)]
+    return "\n".join(f"{key}: {_yaml_value(choices, 0)}" for key in keys)
 
 
 def _yaml_value(choices: Choices, depth: int) -> str:
@@ -264,7 +262,8 @@ def _loop(choices: Choices, depth: int) -> str:
     name = choices.pick(["loop", "k"])
     return (
         f'<xacro:macro name="{name}" params="items:=^"><xacro:if value="${{items}}">'
-        f'<xacro:property name="x" value="${{items.pop(0)}}"/>{_inside(choices, depth)}<xacro:{name}/></xacro:if></xacro:macro>'
+        '<xacro:property name="x" value="${items.pop(0)}"/>'
+        f"{_inside(choices, depth)}<xacro:{name}/></xacro:if></xacro:macro>"
         f'<xacro:property name="items" value="${{[1, 2, {choices.number(9)}]}}"/><xacro:{name}/>'
     )
 

@@ -124,7 +124,7 @@ def _comprehension(choices: Choices, depth: int) -> str:
     targets = choices.pick(["x", "x, y", "(x, y)", "[x]", "*x, y", "x.a", "x[0]"])
     condition = f" if {expression(choices, depth)}" if choices.chance(3) else ""
     again = f" for b in {expression(choices, depth)}" if choices.chance(4) else ""
-    opening, closing = choices.pick(["[]", "()"])
+    opening, closing = choices.pick([("[", "]"), ("(", ")")])
     inside = f"{expression(choices, depth)} for {targets} in {expression(choices, depth)}{condition}{again}"
     return f"{opening}{inside}{closing}"
 

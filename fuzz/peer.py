@@ -1,6 +1,7 @@
 """Expands with PyPI's xacro, for comparison; runs in an environment of its own, on line-wise JSON requests.
 
-A request is ``{"path": ..., "arguments": {...}, "packages": {...}}``; the answer ``{"text": ...}`` or ``{"error": ...}``.
+A request is ``{"path": ..., "arguments": {...}, "packages": {...}}``; the answer ``{"text": ...}`` or
+``{"error": ...}``.
 """
 
 from __future__ import annotations

@@ -116,15 +116,17 @@ def _link(choices: Choices) -> str:
             parts.append(f"<{choices.pick(_TAGS[:-1])}/>")
         else:
             parts.append(
-                f"<{kind}>{_origin(choices)}{_geometry(choices)}{_material(choices) if choices.chance(3) else ''}</{kind}>"
+                f"<{kind}>{_origin(choices)}{_geometry(choices)}"
+                f"{_material(choices) if choices.chance(3) else ''}</{kind}>"
             )
     return f"<link{_attribute(choices, 'name', choices.pick(_NAMES))}>{''.join(parts)}</link>"
 
 
 def _joint(choices: Choices) -> str:
-    inside = []
-    for tag in ("parent", "child"):
-        inside.append("" if choices.chance(12) else f"<{tag}{_attribute(choices, 'link', choices.pick(_NAMES))}/>")
+    inside = [
+        "" if choices.chance(12) else f"<{tag}{_attribute(choices, 'link', choices.pick(_NAMES))}/>"
+        for tag in ("parent", "child")
+    ]
     if choices.chance(2):
         inside.append(_origin(choices))
     if choices.chance(2):

@@ -174,3 +174,11 @@ def test_a_folder_with_nothing_in_it_is_told(here, capsys):
     (here / "empty").mkdir()
     assert main(["check", "empty"]) == 1
     assert "error[CLI302]: there is nothing to check in 'empty'" in capsys.readouterr().err
+
+
+def test_an_empty_file_is_one_yet_to_be_written(tmp_path, capsys):
+    (tmp_path / "later.xacro").write_text("\n")
+    (tmp_path / "robot.urdf").write_text('<robot name="r"><link name="base_link"/></robot>')
+    assert main(["check", str(tmp_path)]) == 0
+    assert "later.xacro" not in capsys.readouterr().err
+    assert main(["check", str(tmp_path / "later.xacro")]) == 1

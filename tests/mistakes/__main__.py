@@ -1,4 +1,4 @@
-"""Write what is said now into the Markdown files: ``python -m tests.mistakes``; read the difference before keeping it."""
+"""Write what is said now into the Markdown files: ``python -m tests.mistakes``; read the difference afterwards."""
 
 from __future__ import annotations
 

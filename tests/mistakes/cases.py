@@ -1,7 +1,8 @@
 """Mistakes of learners, written in Markdown: a change to a file of mbot's package, and what ``linkwright check`` says.
 
-A ``##`` heading is a case. Its ```` ```diff FILE ```` blocks change files of the package: of each run of ``-`` lines and
-``+`` lines the first are replaced by the second; the ``-`` lines must occur exactly once in the file. A block with ``+`` lines only makes a new file. An ```` ```arguments ```` block holds ``name:=value``.
+A ``##`` heading is a case. Its ```` ```diff FILE ```` blocks change files of the package: of each run of ``-`` lines
+and ``+`` lines the first are replaced by the second; the ``-`` lines must occur exactly once in the file. A block with
+``+`` lines only makes a new file. An ```` ```arguments ```` block holds ``name:=value``.
 
 The ```` ```text ```` block is what is said, from the JSON form of the command: place with the end of the marked text,
 severity, code, the marked text in brackets, message; then notes with their places, and hints.

@@ -11,7 +11,6 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-
 from fuzz import targets
 from fuzz.documents import HEAD, Files
 

@@ -16,6 +16,7 @@ from linkwright.xacro import sources
 from linkwright.xmltree import Element
 
 _URDF, _XACRO = ".urdf", ".xacro"
+_EMPTY_FILE = "XML105"
 _OTHER_FORMATS = (".srdf.xacro", ".sdf.xacro", ".world.xacro", ".launch.xacro")
 _INCLUDED = re.compile(r"""<xacro:include\b[^>]*?\bfilename\s*=\s*["']([^"']+)["']""")
 _DECLARATIONS = frozenset({"xacro:include", "xacro:macro", "xacro:property", "xacro:arg"})
@@ -40,7 +41,7 @@ def find_targets(paths: Iterable[Path]) -> Targets:
     A file is checked whatever it is. Of a folder and those below it, what is checked are the packages and, of the files
     that no other there includes, the ``.urdf`` files and those ``.xacro`` files that describe a robot by themselves:
     their root is a ``<robot>`` with a name, and they hold more than declarations. Build products and hidden folders are
-    left out.
+    left out, and so are files with nothing in them.
     """
     files: dict[Path, None] = {}
     packages: dict[Path, None] = {}
@@ -92,8 +93,9 @@ def _describes_robot(path: Path) -> bool:
         return False
     try:
         root = sources.read(str(path)).root
-    except LinkwrightError:
-        return True  # which the check will tell
+    except LinkwrightError as error:
+        # An empty file is one that its author has yet to write; anything else the check will tell.
+        return all(diagnostic.code != _EMPTY_FILE for diagnostic in error.diagnostics)
     return root.tag == "robot" and "name" in root.attributes and _has_content(root)
 
 

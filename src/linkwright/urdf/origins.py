@@ -14,6 +14,10 @@ from linkwright.urdf.values import degrees_hint, looks_like_degrees, numbers, ve
 from linkwright.xmltree import Element
 
 _IDENTITY = Pose()
+_ROUNDING = 1e-15
+
+_UNIT = 1e-15
+"""So near to 1 a length is one already: what was written normalised stays as it is."""
 
 
 def read_origin(element: Element | None, owner: str, findings: Findings) -> Pose | None:
@@ -72,5 +76,7 @@ def _read_with_quaternion(element: Element, quaternion: str, owner: str, finding
     if len(found) != 4:
         raise ValueError(quaternion)
     norm = sqrt(sum(part * part for part in found))
+    if abs(norm - 1) < _ROUNDING:
+        norm = 1.0  # what is written for a quaternion of unit length is read as the same one
     x, y, z, w = (part / norm for part in found) if norm > 0 else (0.0, 0.0, 0.0, 1.0)
     return Pose(vector3(get("xyz", "0 0 0")), rpy_from_quaternion((x, y, z, w)), (x, y, z, w))

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from linkwright.diagnostics import Diagnostic
+from linkwright.diagnostics import Diagnostic, translated
 from linkwright.viewer.protocol import DiagnosticItem, DiagnosticNote
 
 
 def item_of(diagnostic: Diagnostic) -> DiagnosticItem:
-    """A diagnostic as the page shows it, with the line of source it points to."""
+    """A diagnostic as the page shows it, in the language of the terminal, with the line of source it points to."""
+    (diagnostic,) = translated([diagnostic])
     span, source = diagnostic.span, diagnostic.source
     excerpt = source.line(span.line) if span and source and source.name == span.file else ""
     return DiagnosticItem(

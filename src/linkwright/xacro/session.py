@@ -109,7 +109,7 @@ class Session:
         if value.__class__ is str:
             if not value.isprintable():
                 _check_characters(value)
-            return value  # type: ignore[no-any-return]
+            return value
         try:
             return sandbox.as_text(value)
         except (sandbox.RefusalError, ValueError) as error:

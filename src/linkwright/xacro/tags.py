@@ -18,8 +18,8 @@ def check_attributes(expander: Expander, node: Element, required: tuple[str, ...
     for name in required:
         if name not in attributes:
             near = did_you_mean(name, [given for given in attributes if given not in optional])
-            hint = f"write {name}=\"...\" for '{near[14:-2]}'" if near else f'write {name}="..."'
-            expander.fail_at("XAC301", f"'{node.tag}' lacks its attribute '{name}'", node, node.span(), hint)
+            missing = f"write {name}=\"...\" for '{near[14:-2]}'" if near else f'write {name}="..."'
+            expander.fail_at("XAC301", f"'{node.tag}' lacks its attribute '{name}'", node, node.span(), missing)
     if len(attributes) == len(required):
         return
     if optional and attributes.keys() <= {*required, *optional}:

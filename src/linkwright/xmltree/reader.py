@@ -6,13 +6,12 @@ import os
 import re
 from bisect import bisect_right
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 from xml.parsers.expat import ExpatError, ParserCreate
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText, missing_file_hint
 from linkwright.xmltree.decoding import decode
 from linkwright.xmltree.entities import GROWTH_LIMIT, EntityGuard
-from linkwright.xmltree.faults import forbidden_entity, syntax_error, undeclared_prefix
 from linkwright.xmltree.nodes import Comment, Document, Element, Node, ProcessingInstruction, Text
 
 if TYPE_CHECKING:
@@ -155,6 +154,8 @@ class _Reader:
         try:
             self._parser.Parse(self._data, True)
         except ExpatError as error:
+            from linkwright.xmltree.faults import syntax_error  # here, because most texts are well-formed
+
             self._check_prefixes()
             open_elements = [(element.tag, self._character(element.offset)) for element in self._open[1:]]
             offset = self._character(self._parser.ErrorByteIndex)
@@ -201,8 +202,18 @@ class _Reader:
                     prefix, colon, _ = name.partition(":")
                     if colon and prefix not in declared:
                         offset = self._source.text.find(name, self._character(element.offset))
-                        raise undeclared_prefix(self._source, offset, name)
+                        self._refuse_prefix(offset, name)
                 pending.extend((child, declared) for child in reversed(list(element.elements())))
+
+    def _refuse_prefix(self, offset: int, name: str) -> NoReturn:
+        from linkwright.xmltree.faults import undeclared_prefix
+
+        raise undeclared_prefix(self._source, offset, name)
+
+    def _refuse_entity(self, offset: int, message: str) -> NoReturn:
+        from linkwright.xmltree.faults import forbidden_entity
+
+        raise forbidden_entity(self._source, offset, message)
 
     # character data
 
@@ -268,7 +279,7 @@ class _Reader:
         self._doctype += ">"
         if self._entities and self._entities.growth(self._source.text) > GROWTH_LIMIT:
             message = f"the entities of this document expand to more than {GROWTH_LIMIT:,} characters"
-            raise forbidden_entity(self._source, self._source.text.find("<!ENTITY"), message)
+            self._refuse_entity(self._source.text.find("<!ENTITY"), message)
 
     def _entity(
         self,
@@ -288,12 +299,12 @@ class _Reader:
     ) -> int:
         offset = self._character(self._parser.CurrentByteIndex)
         message = f"the entity '&{context};' would read another file ('{system_id}')"
-        raise forbidden_entity(self._source, offset, message)
+        self._refuse_entity(offset, message)
 
     def _skipped_entity(self, name: str, is_parameter: bool) -> None:
         if not is_parameter:
             offset = self._character(self._parser.CurrentByteIndex)
-            raise forbidden_entity(self._source, offset, f"the entity '&{name};' is not defined")
+            self._refuse_entity(offset, f"the entity '&{name};' is not defined")
 
 
 def _declared_prefixes(element: Element) -> list[str]:
