@@ -17,7 +17,7 @@ _BLOCK_MACRO = (
 )
 
 
-def description(choices: Choices) -> tuple[dict[str, str | bytes], dict[str, str]]:
+def description(choices: Choices) -> tuple[dict[str, str], dict[str, str]]:
     """Files by name, the first of them main.xacro, and the arguments given."""
     maker = _Maker(choices)
     start = choices.pick(
@@ -29,7 +29,7 @@ def description(choices: Choices) -> tuple[dict[str, str | bytes], dict[str, str
     main = f"{start}{HEAD}{prelude}{body}{maker.gap()}</robot>{end}"
     other = HEAD + "".join(maker.gap() + maker.node(2) for _ in range(choices.number(5))) + "</robot>"
     inner = "<robot>" + "".join(maker.gap() + maker.node(4) for _ in range(choices.number(3))) + "</robot>"
-    files: dict[str, str | bytes] = {
+    files = {
         "main.xacro": main,
         "other.xacro": other,
         "sub/inner.xacro": inner.replace("<robot>", HEAD),

@@ -52,11 +52,11 @@ def ours(path: str, arguments: dict[str, str], packages: dict[str, str]) -> dict
 
 
 def compare(
-    peer: Peer, files: dict[str, str | bytes], arguments: dict[str, str]
+    peer: Peer, files: dict[str, str], arguments: dict[str, str]
 ) -> tuple[str, dict[str, str], dict[str, str]]:
     """How the two answers differ ("same", "both fail", ...), and the answers; files go to the current folder."""
     for name, content in files.items():
-        data = content if isinstance(content, bytes) else content.encode("utf-8")
+        data = content.encode("utf-8")
         Path(name).parent.mkdir(parents=True, exist_ok=True)
         Path(name).write_bytes(data)
     packages = {"pkg": str(Path.cwd() / "pkg")}

@@ -16,9 +16,6 @@ from linkwright.xmltree import Element
 _IDENTITY = Pose()
 _ROUNDING = 1e-15
 
-_UNIT = 1e-15
-"""So near to 1 a length is one already: what was written normalised stays as it is."""
-
 
 def read_origin(element: Element | None, owner: str, findings: Findings) -> Pose | None:
     """The pose an ``<origin>`` gives, the identity when there is none; None when it is malformed."""

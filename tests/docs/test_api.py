@@ -1,0 +1,34 @@
+"""The examples of the API page run."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from tests.docs.pages import blocks
+from tests.places import REPOSITORY
+
+PAGE = REPOSITORY / "docs" / "api.md"
+
+
+def test_the_examples_run_in_order(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys) -> None:
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, object] = {}
+    ran = 0
+    for block in blocks(PAGE):
+        if block.title:
+            (tmp_path / block.title).write_text(block.text, encoding="utf-8")
+        elif block.language == "python":
+            exec(compile(block.text, str(PAGE), "exec"), names)
+            ran += 1
+    assert ran >= 6
+    printed = capsys.readouterr().out
+    assert "arm.xacro:3:3" in printed
+    assert "length 0.4" in printed
+    assert "base_link revolute (0.0, 0.0, 0.2)" in printed
+    assert "root Link: base_link has 1 child(ren)" in printed
+    assert re.search(r"^5\.0+$|^5\.0000\d*$|^4\.99999\d*$", printed, re.MULTILINE), "0.5 x 0.1 x 0.1 m of water"
+    assert "error[URDF" in printed
+    assert len(names["many"]) == 1000  # type: ignore[arg-type]
