@@ -51,9 +51,7 @@ def ours(path: str, arguments: dict[str, str], packages: dict[str, str]) -> dict
         return {"error": f"{first.code} {error}", "code": first.code}
 
 
-def compare(
-    peer: Peer, files: dict[str, str], arguments: dict[str, str]
-) -> tuple[str, dict[str, str], dict[str, str]]:
+def compare(peer: Peer, files: dict[str, str], arguments: dict[str, str]) -> tuple[str, dict[str, str], dict[str, str]]:
     """How the two answers differ ("same", "both fail", ...), and the answers; files go to the current folder."""
     for name, content in files.items():
         data = content.encode("utf-8")

@@ -137,3 +137,16 @@ def test_nothing_is_drawn_when_nothing_changes(page):
     before = state(page, "framesDrawn")
     page.wait_for_timeout(1500)
     assert state(page, "framesDrawn") - before <= 2
+
+
+def test_a_clicked_link_tells_its_macro_call_and_values(page):
+    row = page.get_by_role("treeitem").filter(has_text="Links").last
+    row.locator(".row-name").dblclick()
+    page.get_by_role("treeitem").filter(has_text="left_wheel_link").first.locator(".row-name").click()
+    until(page, "lw.selected?.link === 'left_wheel_link'")
+    story = page.locator(".selection-card .story")
+    story.wait_for()
+    told = story.inner_text()
+    assert "in macro 'wheel' called at" in told
+    assert "prefix" in told
+    assert "left" in told

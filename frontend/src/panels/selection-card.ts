@@ -1,6 +1,6 @@
 import { button, h } from "../dom";
 import { icon } from "../icons";
-import type { LinkScene } from "../protocol.gen";
+import type { LinkScene, LinkStory } from "../protocol.gen";
 import type { Session } from "../state/session";
 import { strings } from "../strings";
 import { placeText, shortPath } from "./place";
@@ -11,13 +11,15 @@ export class SelectionCard {
 
   constructor(private readonly session: Session) {
     session.selection.changed.on(() => this.update());
+    session.storyTold.on((story) => this.tell(story));
     this.update();
   }
 
   private update(): void {
-    const link = this.session.selection.selected?.link;
-    this.element.hidden = !link;
-    if (!link) return;
+    const { selected } = this.session.selection;
+    this.element.hidden = !selected;
+    if (!selected) return;
+    const { link } = selected;
     const words = strings.selection;
     const clear = button(words.clear, () => this.session.selection.select(null), "tool bare", icon("close"));
     this.element.replaceChildren(
@@ -26,6 +28,16 @@ export class SelectionCard {
       place(link),
       ...trail(link),
     );
+    if (link.place) this.session.connection.send({ type: "ask_story", display: selected.display, link: link.name });
+  }
+
+  /** Calls and values take the server a moment; they come in the place of the bare trail. */
+  private tell(story: LinkStory): void {
+    const selected = this.session.selection.selected;
+    if (selected?.display !== story.display || selected.link.name !== story.link) return;
+    for (const old of this.element.querySelectorAll(".trail, .story")) old.remove();
+    const [, ...lines] = story.lines; // the first is the place, which the card shows already
+    if (lines.length > 0) this.element.append(h("pre", { class: "story", tabIndex: 0 }, lines.join("\n")));
   }
 }
 

@@ -1,5 +1,5 @@
 import type { Connection } from "../connection/connection";
-import type { DiagnosticItem, Hello, PropertyValue, RobotScene, ServerMessage } from "../protocol.gen";
+import type { DiagnosticItem, Hello, LinkStory, PropertyValue, RobotScene, ServerMessage } from "../protocol.gen";
 import { DisplaysState } from "./displays";
 import { FrameStore } from "./frames";
 import { JointsState } from "./joints";
@@ -18,6 +18,8 @@ export class Session {
   readonly view = new ViewState(this.frames);
   readonly robotChanged = new Signal<RobotScene>();
   readonly diagnosticsChanged = new Signal();
+  /** Answers `ask_story`. */
+  readonly storyTold = new Signal<LinkStory>();
   readonly greeted = new Signal<Hello>();
   /** The newest description of each RobotModel display, by display id. */
   readonly robots = new Map<string, RobotScene>();
@@ -86,6 +88,9 @@ export class Session {
       case "diagnostics":
         this.diagnostics = message.items;
         this.diagnosticsChanged.emit();
+        break;
+      case "link_story":
+        this.storyTold.emit(message);
         break;
     }
   }

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import OrderedDict
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Union
 
@@ -12,12 +12,16 @@ from linkwright.urdf.model import Robot
 from linkwright.urdf.plaintext import parse_as_urdfdom
 from linkwright.urdf.reader import Reading, read
 from linkwright.xmltree import Document, Element
+from linkwright.xmltree.collection import seldom_collected
 from linkwright.xmltree.reader import read_bytes
 
 if TYPE_CHECKING:
     from linkwright.workspace import PackageFinder
+    from linkwright.xacro.story import Story
 
 Packages = Union[Mapping[str, str | Path], "PackageFinder", None]
+
+Teller = Callable[[Element], "Story"]
 
 TEXT_NAME = "<robot_description>"
 _KEPT_TEXTS = 32
@@ -41,7 +45,8 @@ def load(
     Raises:
         LinkwrightError: it cannot be read or expanded, or urdfdom would refuse the model; with all findings.
     """
-    reading = examine(path_or_text, arguments=arguments, packages=packages)
+    with seldom_collected():
+        reading = examine(path_or_text, arguments=arguments, packages=packages)
     if reading.robot is None:
         raise LinkwrightError(*reading.diagnostics)
     return reading.robot
@@ -83,10 +88,28 @@ class DescriptionLibrary:
 
     def __init__(self) -> None:
         self._readings: OrderedDict[str, Reading] = OrderedDict()
+        self._tellers: dict[str, Teller] = {}
 
-    def remember(self, text: str, document: Document) -> None:
-        """Say that a description text is a document's, whose elements know where they were written."""
+    def remember(self, text: str, document: Document, tell: Teller | None = None) -> None:
+        """Say that a description text is a document's, whose elements know where they were written.
+
+        Args:
+            text: the description.
+            document: what it is the text of.
+            tell: what tells the story of an element of the document (`linkwright.xacro.Expansion.story`).
+        """
         self._keep(text, read(document))
+        if tell is not None:
+            self._tellers[text] = tell
+
+    def story(self, text: str, element: Element) -> Story | None:
+        """How an element of a remembered description came to be; None for a text that nobody tells about.
+
+        Raises:
+            LinkwrightError: XAC802, its files are no longer what they were.
+        """
+        tell = self._tellers.get(text)
+        return None if tell is None else tell(element)
 
     def read(self, text: str) -> Reading:
         """The reading of a description text; one that is not XML has no robot and says why."""
@@ -105,7 +128,8 @@ class DescriptionLibrary:
         self._readings[text] = reading
         self._readings.move_to_end(text)
         if len(self._readings) > _KEPT_TEXTS:
-            self._readings.popitem(last=False)
+            forgotten, _ = self._readings.popitem(last=False)
+            self._tellers.pop(forgotten, None)
 
 
 def _is_xacro(root: Element) -> bool:

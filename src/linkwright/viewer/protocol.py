@@ -23,7 +23,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-PROTOCOL_VERSION = 1
+PROTOCOL_VERSION = 2
 """Raised on every change that an older page would misread; the page reloads itself when it differs."""
 
 StatusLevel = Literal["ok", "warn", "error"]
@@ -294,6 +294,16 @@ class Diagnostics:
     type: Literal["diagnostics"] = "diagnostics"
 
 
+@dataclass(slots=True)
+class LinkStory:
+    """Where a link was written, through which macro calls, and with which values, line by line; answers `AskStory`."""
+
+    display: str
+    link: str
+    lines: list[str]
+    type: Literal["link_story"] = "link_story"
+
+
 # --- page to server ------------------------------------------------------------------------------------------------
 
 
@@ -348,6 +358,15 @@ class MeshStatus:
     type: Literal["mesh_status"] = "mesh_status"
 
 
+@dataclass(slots=True)
+class AskStory:
+    """The user selected a link of a RobotModel display and wants to know how it came to be."""
+
+    display: str
+    link: str
+    type: Literal["ask_story"] = "ask_story"
+
+
 ServerMessage = (
     Hello
     | Tree
@@ -360,8 +379,9 @@ ServerMessage = (
     | Joints
     | JointPositions
     | Diagnostics
+    | LinkStory
 )
-PageMessage = SetProperty | SetJoint | RandomizeJoints | CenterJoints | ViewChanged | MeshStatus
+PageMessage = SetProperty | SetJoint | RandomizeJoints | CenterJoints | ViewChanged | MeshStatus | AskStory
 
 
 def pack_transforms(revision: int, stamp: float, poses: NDArray[Any], ages: NDArray[Any]) -> bytes:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
@@ -20,6 +21,7 @@ from linkwright.viewer.listening import is_open_to_others, listen
 from linkwright.viewer.mesh_files import MeshFolders
 from linkwright.viewer.protocol import (
     PROTOCOL_VERSION,
+    AskStory,
     Diagnostics,
     DisplayStatus,
     Hello,
@@ -86,6 +88,8 @@ class Viewer:
         self._view = ViewState(config.view)  # every page begins with the file's view, wherever others have gone
         self._diagnostics = Diagnostics([])
         self._global_status: list[StatusRow] = []
+        self._stories: dict[Page, asyncio.Task[None]] = {}
+        self._telling = asyncio.Lock()
         self._server: WebServer | None = None
         self._stage = Stage(
             node=self._node,
@@ -146,6 +150,8 @@ class Viewer:
 
     async def close(self) -> None:
         """Say goodbye to the pages, leave the graph and stop listening."""
+        for task in self._stories.values():
+            task.cancel()
         self._joints.attach(None)
         self._stream.close()
         for display in self.displays:
@@ -196,11 +202,33 @@ class Viewer:
         elif isinstance(message, ViewChanged):
             self._keep_view(message)
         elif isinstance(message, MeshStatus):
-            for display in self.displays:
-                if display.id == message.display and isinstance(display, RobotModelDisplay):
-                    display.mesh_status(message)
+            if display := self._robot_model(message.display):
+                display.mesh_status(message)
+        elif isinstance(message, AskStory):
+            self._ask(page, message)
         else:
             self._joints.receive(message)
+
+    def _robot_model(self, identity: str) -> RobotModelDisplay | None:
+        models = (display for display in self.displays if isinstance(display, RobotModelDisplay))
+        return next((model for model in models if model.id == identity), None)
+
+    def _ask(self, page: Page, question: AskStory) -> None:
+        """Tell a page a link's story, which takes a while; of several questions of a page the newest counts."""
+        if page in self._stories:
+            self._stories[page].cancel()
+        task = asyncio.get_running_loop().create_task(self._tell(page, question))
+        self._stories[page] = task
+        task.add_done_callback(lambda done: self._stories.pop(page) if self._stories.get(page) is done else None)
+
+    async def _tell(self, page: Page, question: AskStory) -> None:
+        display = self._robot_model(question.display)
+        if display is None:
+            return
+        async with self._telling:
+            story = await asyncio.to_thread(display.story, question.link)
+        if story is not None:
+            page.send(story)
 
     def _keep_view(self, message: ViewChanged) -> None:
         try:

@@ -48,7 +48,7 @@ class Expression:
         self.source = source
         stripped = source.strip()
         compiler = Compiler(stripped, len(source) - len(source.lstrip()))
-        if stripped.isidentifier() and stripped not in _KEYWORDS:
+        if stripped.isidentifier() and stripped.isascii() and stripped not in _KEYWORDS:
             self.evaluate: Closure = compiler.name(stripped, 0)
         else:
             self.evaluate = _run_through(compiler.compile(_parse(source, stripped).body), source)
@@ -78,7 +78,15 @@ def _run_through(closure: Closure, source: str) -> Closure:
 
 
 def is_identifier(name: str) -> bool:
-    """Whether a name can be that of a property: a Python identifier that is no keyword."""
+    """Whether a name can be that of a property: a Python identifier that is no keyword.
+
+    Of letters that Python takes for one another, such as a ligature and its letters, only the plain form is a name.
+    """
+    if not name.isascii():
+        from unicodedata import normalize
+
+        if normalize("NFKC", name) != name:
+            return False
     return name.isidentifier() and name not in _KEYWORDS
 
 

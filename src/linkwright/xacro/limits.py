@@ -5,12 +5,13 @@ A description comes from a stranger as often as from a colleague: whatever it sa
 
 from __future__ import annotations
 
-import gc
 import sys
 from _thread import allocate_lock  # what threading.Lock is, without the rest of it
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+
+from linkwright.xmltree.collection import seldom_collected
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,39 +37,27 @@ class Limits:
 
 
 _FRAMES_PER_LEVEL = 6
-_SELDOM = 50_000
-"""After how many new objects the garbage collector looks for circles; trees have none that it could collect."""
 _lock = allocate_lock()
 _active = 0
-_recursion_before = 0
-_collection_before = (0, 0, 0)
+_before = 0
 
 
 @contextmanager
 def room_for(limits: Limits) -> Iterator[None]:
-    """Prepare Python for an expansion, and put things back when nobody needs them.
-
-    The recursion limit is raised so that our own limits are met first, and the garbage collector runs less often: on
-    the many small objects of a tree it would spend a tenth of the time for nothing.
-    """
-    global _active, _recursion_before, _collection_before  # noqa: PLW0603 - there is one of them for the whole process
+    """Raise Python's recursion limit so that our own limits are met first; put it back when nobody needs it."""
+    global _active, _before  # noqa: PLW0603 - the recursion limit is one for the whole process
     with _lock:
         if _active == 0:
-            _recursion_before, _collection_before = sys.getrecursionlimit(), gc.get_threshold()
-            if 0 < _collection_before[0] < _SELDOM:
-                gc.set_threshold(_SELDOM, *_collection_before[1:])
+            _before = sys.getrecursionlimit()
         _active += 1
-        wanted = _recursion_before + limits.nesting * _FRAMES_PER_LEVEL
+        wanted = _before + limits.nesting * _FRAMES_PER_LEVEL
         if wanted > sys.getrecursionlimit():
             sys.setrecursionlimit(wanted)
     try:
-        yield
+        with seldom_collected():
+            yield
     finally:
         with _lock:
             _active -= 1
             if _active == 0:
-                sys.setrecursionlimit(_recursion_before)
-                if gc.get_freeze_count() == 0:  # all that is new grows old without being looked at
-                    gc.freeze()
-                    gc.unfreeze()
-                gc.set_threshold(*_collection_before)
+                sys.setrecursionlimit(_before)

@@ -20,13 +20,17 @@ _OUTSIDE = {
 
 def story_text(story: Story) -> str:
     """A story for a terminal: the element as it comes out, the calls that brought it there, and what was evaluated."""
-    lines = [write_element(story.element).rstrip("\n"), ""]
-    lines += [f"written at {place(story.span)}"]
+    return "\n".join([write_element(story.element).rstrip("\n"), "", *story_lines(story)]) + "\n"
+
+
+def story_lines(story: Story) -> list[str]:
+    """What `story_text` says after the element itself."""
+    lines = [f"written at {place(story.span)}"]
     lines += [f"  {line}" for call in story.calls for line in _call_lines(call)]
     evaluated = [line for part in story.walk() for line in _element_lines(part, story)]
     if evaluated:
         lines += ["", *evaluated]
-    return "\n".join(lines) + "\n"
+    return lines
 
 
 def story_data(story: Story) -> dict[str, Any]:

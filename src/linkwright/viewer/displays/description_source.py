@@ -164,5 +164,5 @@ class DescriptionSource:
             self._on_refusal(error.diagnostics)
             return
         text = str(expansion)
-        self._library.remember(text, expansion.document)
+        self._library.remember(text, expansion.document, expansion.story)
         self._on_text(text)

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from linkwright.diagnostics import Diagnostic, Severity
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, translated
 from linkwright.urdf import Link, Robot
 from linkwright.viewer.displays.base import Stage, ViewerDisplay
 from linkwright.viewer.displays.description_source import DESCRIPTION_SPECS, DescriptionSource
 from linkwright.viewer.mesh_files import MeshIndex
 from linkwright.viewer.property_store import Path, Schema
-from linkwright.viewer.protocol import MeshStatus, RobotScene, ServerMessage, StatusRow
+from linkwright.viewer.protocol import LinkStory, MeshStatus, RobotScene, ServerMessage, StatusRow
 from linkwright.viewer.robot_scene import SceneBuilder
 from linkwright.viewer.rviz_config import DisplayConfig
 from linkwright.viewer.schema import PropertySpec
@@ -51,6 +51,7 @@ class RobotModelDisplay(ViewerDisplay):
         self._source = DescriptionSource(
             stage.node, stage.library, stage.finder, self.properties, self._described, self._refused
         )
+        self._text = ""
         self._description: list[StatusRow] = []
         self._file_problems: dict[str, list[str]] = {}
         self._page_problems: dict[tuple[str, str], str] = {}
@@ -114,6 +115,19 @@ class RobotModelDisplay(ViewerDisplay):
                 self.stage.node.get_logger().error(f"Link '{status.link}': {self._page_problems[key]}")
         self._show_status()
 
+    def story(self, link: str) -> LinkStory | None:
+        """How a link came to be; None for one that this robot does not have. Takes as long as an expansion does."""
+        from linkwright.xacro.story_text import story_lines
+
+        element = self.robot.links[link].element if self.robot and link in self.robot.links else None
+        if element is None:
+            return None
+        try:
+            story = self.stage.library.story(self._text, element)
+        except LinkwrightError as error:
+            return LinkStory(self.id, link, [each.message for each in translated(error.diagnostics)])
+        return None if story is None else LinkStory(self.id, link, story_lines(story))
+
     # --- descriptions ------------------------------------------------------------------------------------------
 
     def _described(self, text: str) -> None:
@@ -125,6 +139,7 @@ class RobotModelDisplay(ViewerDisplay):
         if reading.robot is None:
             self._refused(reading.diagnostics)
             return
+        self._text = text
         self._description = [StatusRow("URDF", "ok", "URDF parsed OK")]
         if self.properties.text("Description Source") == "Topic":
             self._description.insert(0, StatusRow("Topic", "ok", "OK"))
