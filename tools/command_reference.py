@@ -34,8 +34,8 @@ INTRODUCTION = """\
 | 130 | interrupted with Ctrl-C |
 
 Every command takes `--lang LANGUAGE`, the language of messages: `zh` for Chinese, `en` for English. Without it, that of
-the environment counts (`LINKWRIGHT_LANG`, else `LC_ALL`, `LC_MESSAGES`, `LANG`), and English where none is known. Help texts
-are in English.
+the environment counts (`LINKWRIGHT_LANG`, else `LC_ALL`, `LC_MESSAGES`, `LANG`), and English where none is known. Help
+texts are in English.
 
 Words in capitals stand for something of yours; brackets mean that it may be left out, dots that it may be repeated.
 """
