@@ -34,6 +34,8 @@ _CHANGING = frozenset(
 )
 
 _WITH_UNIT = re.compile(r"\s*([-+]?[0-9.]+)\s*[^\W\d]+\s*")
+_GENERATOR = 10
+"""What it costs, in steps, to make one, for the memory that it takes."""
 _LINES = re.compile(r"[^\r\n]*(?:\r\n?|\n|\Z)")
 _DEEPEST = 500
 """How deep the nodes of an expression may nest; a sum nests as deep as it has terms."""
@@ -434,7 +436,12 @@ class Compiler:
 
     def _generatorexp(self, node: ast.GeneratorExp) -> Closure:
         item, turns = self.compile(node.elt), self._turns(node.generators)
-        return lambda env: (item(inner) for inner in turns(env))
+
+        def generator(env: Environment) -> Iterator[Any]:
+            env.session.budget.step(_GENERATOR)
+            return (item(inner) for inner in turns(env))
+
+        return generator
 
     def _turns(self, generators: list[ast.comprehension]) -> Callable[[Environment], Iterator[Environment]]:
         """What runs through the loops of a comprehension, giving the environment of each turn."""

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 _Part = Callable[["Scope"], Any]
 _BRACKET = len("${")
 _KEPT = 20_000
+_KEPT_CHARACTERS = 300_000
+"""How many compiled texts are kept, and how long they may be together; compiled they are a hundred times as large."""
 
 
 class Template:
@@ -88,8 +90,7 @@ def compile_template(text: str) -> Template:
     """
     template = templates.get(text)
     if template is None:
-        if len(templates) >= _KEPT:
-            templates.clear()
+        _make_room(len(text))
         template = templates[text] = Template(text)
     return template
 
@@ -102,10 +103,21 @@ def compile_expression(source: str) -> Expression:
     """
     expression = expressions.get(source)
     if expression is None:
-        if len(expressions) >= _KEPT:
-            expressions.clear()
+        _make_room(len(source))
         expression = expressions[source] = Expression(source)
     return expression
+
+
+_characters = 0
+
+
+def _make_room(characters: int) -> None:
+    global _characters  # noqa: PLW0603 - the texts kept are those of the whole process too
+    _characters += characters
+    if len(templates) + len(expressions) >= _KEPT or _characters > _KEPT_CHARACTERS:
+        templates.clear()
+        expressions.clear()
+        _characters = characters
 
 
 def _placed(evaluate: _Part, start: int, end: int) -> _Part:
