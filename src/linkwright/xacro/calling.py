@@ -53,7 +53,16 @@ def call(budget: Budget, function: Any, arguments: list[Any], keywords: dict[str
         arguments = [_paying(budget, arguments[0]), *arguments[1:]]
     if "key" in keywords:
         keywords = {**keywords, "key": _paying(budget, keywords["key"])}
-    value = function(*arguments, **keywords)
+    return made(budget, function(*arguments, **keywords))
+
+
+def made(budget: Budget, value: Any) -> Any:
+    """A value that was made, paid for with all that is in it.
+
+    Raises:
+        RefusalError: it is too large.
+        Fault: XAC603 when there were too many steps.
+    """
     weight = sandbox.weight(value)
     if weight:
         budget.step(weight // (_CHARACTERS_A_STEP if isinstance(value, (str, bytes)) else _ITEMS_A_STEP))

@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
 from linkwright.xacro import sandbox
-from linkwright.xacro.calling import call, cost
+from linkwright.xacro.calling import call, cost, made
 from linkwright.xacro.faults import Fault
 from linkwright.xacro.functions import Function, bind_parameters
 from linkwright.xacro.sandbox import RefusalError
@@ -376,7 +376,7 @@ class Compiler:
 
         def display(env: Environment) -> Any:
             try:
-                return sandbox.check_size(kind(_arguments(env, items, [])[0]))
+                return made(env.session.budget, kind(_arguments(env, items, [])[0]))
             except (RefusalError, TypeError) as error:
                 raise self._failure(error, start, end) from None
 
@@ -394,7 +394,7 @@ class Compiler:
             try:
                 for key, value in items:
                     result.update(value(env) if key is None else {key(env): value(env)})
-                return sandbox.check_size(result)
+                return made(env.session.budget, result)
             except (RefusalError, TypeError, ValueError) as error:
                 raise self._failure(error, start, end) from None
 
@@ -416,7 +416,7 @@ class Compiler:
 
         def comprehension(env: Environment) -> Any:
             try:
-                return sandbox.check_size(kind(item(inner) for inner in turns(env)))
+                return made(env.session.budget, kind(item(inner) for inner in turns(env)))
             except (RefusalError, TypeError, ValueError) as error:
                 raise self._failure(error, start, end) from None
 
@@ -428,7 +428,7 @@ class Compiler:
 
         def comprehension(env: Environment) -> Any:
             try:
-                return sandbox.check_size({key(inner): value(inner) for inner in turns(env)})
+                return made(env.session.budget, {key(inner): value(inner) for inner in turns(env)})
             except (RefusalError, TypeError, ValueError) as error:
                 raise self._failure(error, start, end) from None
 

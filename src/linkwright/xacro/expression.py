@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 _LONGEST = 20_000
 _ITERATORS = frozenset({GeneratorType, enumerate, filter, map, reversed, zip})
 """What is run through before it becomes a value: nested thousands deep, these would overflow the stack."""
-_WARNS = re.compile(r"\\|\d[a-zA-Z]")
+_WARNS = re.compile(r"\\|\d\.?[^\W\d]")
 _CLOSING = {"(": ")", "[": "]"}
 _HINTS = (
     ("{", "'}' ends the expression, so there is no way to write a dict or set in it; load one from YAML"),
