@@ -46,7 +46,7 @@ check: $(VENV)/.dev
 
 bench: $(VENV)/.dev page
 	$(BIN)/python -m benchmarks.peers
-	$(BIN)/python -m benchmarks $(ARGS)
+	LINKWRIGHT_CHROMIUM=$$($(BIN)/python tools/chromium.py) $(BIN)/python -m benchmarks $(ARGS)
 
 fuzz: .build/fuzz/venv/.ready
 	PYTHONPATH=src:. nice -n 15 .build/fuzz/venv/bin/python -m fuzz $(ARGS)
