@@ -212,4 +212,6 @@ async def test_more_pages_than_allowed_are_refused(served):
         assert caught.value.status == 503
         await pages[0].close()
         await asyncio.sleep(0.05)
-        assert await session.ws_connect(address)
+        pages[0] = await session.ws_connect(address)
+        for page in pages:
+            await page.close()
