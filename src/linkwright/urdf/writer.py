@@ -21,7 +21,7 @@ from linkwright.urdf.model import (
     Visual,
 )
 from linkwright.urdf.values import plain
-from linkwright.xmltree import Document, Element, write
+from linkwright.xmltree import Document, Element, Text, write
 
 _IDENTITY = Pose()
 
@@ -39,12 +39,32 @@ def save(robot: Robot) -> str:
     root.children += [_material(material) for material in robot.materials.values()]
     root.children += [_link(link) for link in robot.links.values()]
     root.children += [_joint(joint) for joint in robot.joints.values()]
-    root.children += robot.extensions
+    root.children += map(_tidied, robot.extensions)
     if robot.element is not None:
         # The extensions may use prefixes that the file declared on its root.
         prefixes = {name: value for name, value in robot.element.attributes.items() if name.startswith("xmlns")}
         root.attributes = {**attributes, **prefixes}
     return write(Document(root))
+
+
+def _tidied(root: Element) -> Element:
+    """A copy whose texts beside elements have no blanks around them, or writing would add some each time."""
+    top = Element(root.tag, dict(root.attributes))
+    todo = [(root, top)]  # not by recursion: what is nested too deep is for the writer to say
+    while todo:
+        element, copy = todo.pop()
+        mixed = any(not isinstance(child, Text) for child in element.children)
+        for child in element.children:
+            if isinstance(child, Element):
+                inner = Element(child.tag, dict(child.attributes))
+                copy.children.append(inner)
+                todo.append((child, inner))
+            elif mixed and isinstance(child, Text) and not child.cdata:
+                if text := child.data.strip():
+                    copy.children.append(Text(text))
+            else:
+                copy.children.append(child)
+    return top
 
 
 def _element(tag: str, attributes: dict[str, str] | None = None, *children: Element | None) -> Element:
