@@ -39,6 +39,7 @@ check: $(VENV)/.dev
 	$(BIN)/lint-imports
 	$(BIN)/python tools/lock.py check
 	$(BIN)/python tools/protocol_types.py --check
+	$(BIN)/python tools/message_stubs.py --check
 	$(BIN)/python tools/command_reference.py --check
 	$(BIN)/python tools/messages.py --check
 	$(BIN)/python tools/rule_reference.py --check

@@ -1,7 +1,6 @@
-"""What the computation graph costs: joint_state_publisher -> robot_state_publisher -> tf buffer -> snapshot.
+"""What the computation graph costs: messages, timers, nodes, and the chain from the sliders to the tf buffer.
 
-Run it with ``python -m benchmarks graph``. It prints the share of one core for robots of 500 joints at 30 Hz, and how
-long a slider move takes from ``set_position`` to the tf buffer.
+Run it with ``python -m benchmarks graph``. Everything is in one process, with nobody outside.
 """
 
 from __future__ import annotations
@@ -11,21 +10,168 @@ import random
 import statistics
 import time
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
+from benchmarks.measure import Row
 from benchmarks.robots import tree_robot
 from linkwright.graph import Graph, TransformBuffer, TransformListener
-from linkwright.messages import TFMessage
-from linkwright.nodes import JointStatePublisherGui, NodeOptions, RobotStatePublisher
+from linkwright.messages import JointState, String, TFMessage
+from linkwright.nodes import NodeOptions
+from linkwright.nodes.joint_state_publisher_gui import JointStatePublisherGui
+from linkwright.nodes.robot_state_publisher import RobotStatePublisher
+from linkwright.testing import SteppedGraph
 from linkwright.urdf import DescriptionLibrary
 
+BURST = 1000
+BURSTS = 200
+ROUNDS = 5
+PINGS = 3000
 JOINTS = 500
 RATE = 30
 SECONDS = 5.0
 MOVES = 60
+NODES = 500
 
 
-class _Bench:
+def rows() -> list[Row]:
+    """The table."""
+    rate, latency = asyncio.run(_messages())
+    creation, memory = asyncio.run(_many_nodes())
+    table = [
+        Row("small messages, publish to callback, event loop", rate / 1000, "1000/s", "200"),
+        Row("one message, publish to callback, event loop", latency, "us", "20"),
+        Row("a coroutine waits, message to coroutine", asyncio.run(_round_trip()), "us"),
+        Row(f"{NODES} nodes with parameter services and rosout, each", creation, "ms"),
+        Row(f"{NODES} nodes, memory of each", memory, "KB"),
+        Row("an hour of a 10 Hz timer that publishes, stepped clock", _stepped_hour(), "s"),
+        Row("robot_state_publisher, 100 joints at 1 kHz", asyncio.run(_state_publisher()), "% of a core", "25"),
+    ]
+    for name, branching in (("one chain", 1), ("tree", 3), ("star", JOINTS)):
+        share = asyncio.run(_chain(tree_robot(JOINTS + 1, branching)))
+        table.append(Row(f"sliders to tf buffer, {JOINTS} joints, {RATE} Hz, {name}", share * 100, "% of a core"))
+    text = tree_robot(JOINTS + 1)
+    for name, pause in (
+        ("single moves", lambda: random.uniform(0.12, 0.25)),
+        ("60 moves a second", lambda: 1.0 / 60.0),
+    ):
+        moves = asyncio.run(_move_latencies(text, pause))
+        table.append(Row(f"slider to tf buffer, {JOINTS} joints, {name}", statistics.median(moves), "ms"))
+    return table
+
+
+async def _messages() -> tuple[float, float]:
+    """Messages a second in bursts, and microseconds from `publish` to the callback of a single one."""
+    graph = Graph(on_log=lambda _record: None)
+    node = graph.create_node("node")
+    received = 0
+
+    def count(_message: String) -> None:
+        nonlocal received
+        received += 1
+
+    node.create_subscription(String, "burst", count, BURST)
+    publisher = node.create_publisher(String, "burst", BURST)
+    message = String(data="x")
+    rates = []
+    for _ in range(ROUNDS):
+        received, begin = 0, time.perf_counter()
+        for _ in range(BURSTS):
+            for _ in range(BURST):
+                publisher.publish(message)
+            await graph.settle()
+        rates.append(received / (time.perf_counter() - begin))
+        assert received == BURST * BURSTS
+    arrived: list[int] = []
+    node.create_subscription(String, "ping", lambda _message: arrived.append(time.perf_counter_ns()), 1)
+    pinger = node.create_publisher(String, "ping", 1)
+    latencies = []
+    for _ in range(PINGS):
+        sent = time.perf_counter_ns()
+        pinger.publish(message)
+        await graph.settle()
+        latencies.append((arrived.pop() - sent) / 1000)
+    await graph.close()
+    return statistics.median(rates), statistics.median(latencies)
+
+
+async def _round_trip() -> float:
+    """Microseconds from `publish` until a task that waits for the message goes on."""
+    graph = Graph(on_log=lambda _record: None)
+    node = graph.create_node("node")
+    came = asyncio.Event()
+    node.create_subscription(String, "ping", lambda _message: came.set(), 1)
+    pinger = node.create_publisher(String, "ping", 1)
+    message, trips = String(), []
+    for _ in range(PINGS):
+        came.clear()
+        begin = time.perf_counter_ns()
+        pinger.publish(message)
+        await came.wait()
+        trips.append((time.perf_counter_ns() - begin) / 1000)
+    await graph.close()
+    return statistics.median(trips)
+
+
+async def _many_nodes() -> tuple[float, float]:
+    """Milliseconds and kilobytes that a node costs among many."""
+    graph = Graph(on_log=lambda _record: None)
+    graph.create_node("first")
+    before, begin = _resident_kb(), time.perf_counter()
+    for number in range(NODES):
+        graph.create_node(f"node_{number}")
+    seconds, after = time.perf_counter() - begin, _resident_kb()
+    await graph.close()
+    return seconds / NODES * 1000, (after - before) / NODES
+
+
+def _resident_kb() -> float:
+    return int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1]) * 4
+
+
+def _stepped_hour() -> float:
+    with SteppedGraph() as test:
+        node = test.create_node("node")
+        publisher = node.create_publisher(String, "topic", 10)
+        node.create_subscription(String, "topic", lambda _message: None, 10)
+        node.create_timer(0.1, lambda: publisher.publish(String()))
+        begin = time.perf_counter()
+        test.advance(3600.0)
+        return time.perf_counter() - begin
+
+
+async def _state_publisher() -> float:
+    """Percent of a core for joint states in, transforms out, all joints moving; the making of the states counts."""
+    graph = Graph(on_log=lambda _record: None)
+    described = {"robot_description": tree_robot(101), "publish_frequency": 1000.0}
+    publisher = RobotStatePublisher(graph, NodeOptions(parameters=described, library=DescriptionLibrary()))
+    node = graph.create_node("source")
+    source = node.create_publisher(JointState, "joint_states", 10)
+    names = [f"joint_{number}" for number in range(1, 101)]
+    clock, angle = node.get_clock(), 0.0
+
+    def move() -> None:
+        nonlocal angle
+        angle += 0.001
+        message = JointState(name=names, position=[angle] * 100)
+        message.header.stamp = clock.now().to_msg()
+        source.publish(message)
+
+    node.create_timer(0.001, move)
+    share = await _share_of_a_core()
+    publisher.close()
+    await graph.close()
+    return share * 100
+
+
+async def _share_of_a_core() -> float:
+    await asyncio.sleep(0.5)
+    cpu, wall = time.process_time(), time.perf_counter()
+    await asyncio.sleep(SECONDS)
+    return (time.process_time() - cpu) / (time.perf_counter() - wall)
+
+
+class _Chain:
     """The three nodes of a display.launch.py, with the viewer's buffer in place of the viewer."""
 
     def __init__(self, text: str, *, publish_frequency: float, **parameters: Any) -> None:
@@ -40,23 +186,19 @@ class _Bench:
         TransformListener(self.buffer, self.node)
 
 
-async def cost(text: str, *, snapshots: bool) -> float:
-    """Share of a core with all joints moving."""
-    bench = _Bench(text, publish_frequency=1000.0, rate=RATE, delta=0.01)
-    if snapshots:
-        clock = bench.graph.clock
-        bench.node.create_timer(1.0 / RATE, lambda: bench.buffer.snapshot("link_0", clock.now_ns()))
-    await asyncio.sleep(0.5)
-    cpu, wall = time.process_time(), time.perf_counter()
-    await asyncio.sleep(SECONDS)
-    used, passed = time.process_time() - cpu, time.perf_counter() - wall
-    await bench.graph.close()
-    return used / passed
+async def _chain(text: str) -> float:
+    """Share of a core with all joints moving, and a snapshot of all transforms for each picture."""
+    chain = _Chain(text, publish_frequency=1000.0, rate=RATE, delta=0.01)
+    clock = chain.graph.clock
+    chain.node.create_timer(1.0 / RATE, lambda: chain.buffer.snapshot("link_0", clock.now_ns()))
+    share = await _share_of_a_core()
+    await chain.graph.close()
+    return share
 
 
-async def move_latencies(text: str, pause: Callable[[], float]) -> list[float]:
+async def _move_latencies(text: str, pause: Callable[[], float]) -> list[float]:
     """Milliseconds from each slider move until the tf buffer knows of it or of a later one."""
-    bench = _Bench(text, publish_frequency=20.0)
+    chain = _Chain(text, publish_frequency=20.0)
     await asyncio.sleep(0.3)
     waiting: list[float] = []
     latencies: list[float] = []
@@ -66,36 +208,11 @@ async def move_latencies(text: str, pause: Callable[[], float]) -> list[float]:
         latencies.extend((now - since) * 1000.0 for since in waiting)
         waiting.clear()
 
-    bench.node.create_subscription(TFMessage, "/tf", arrived, 100)
+    chain.node.create_subscription(TFMessage, "/tf", arrived, 100)
     for _ in range(MOVES):
         await asyncio.sleep(pause())
         waiting.append(time.perf_counter())
-        bench.panel.set_position("joint_1", random.uniform(-1.0, 1.0))
+        chain.panel.set_position("joint_1", random.uniform(-1.0, 1.0))
     await asyncio.sleep(0.2)
-    await bench.graph.close()
-    return sorted(latencies)
-
-
-def main() -> None:
-    """Print the table."""
-    for name, branching in (("one chain", 1), ("tree", 3), ("star", JOINTS)):
-        text = tree_robot(JOINTS + 1, branching)
-        for snapshots in (False, True):
-            share = asyncio.run(cost(text, snapshots=snapshots))
-            what = "publishers, tf buffer" + (", snapshots" if snapshots else "")
-            print(f"{JOINTS} joints, {RATE} Hz, {name:<10} {what:<36} {share:8.2%} of a core")
-    text = tree_robot(JOINTS + 1)
-    for name, pause in (
-        ("single moves", lambda: random.uniform(0.12, 0.25)),
-        ("a drag of 60 moves a second", lambda: 1.0 / 60.0),
-    ):
-        latencies = asyncio.run(move_latencies(text, pause))
-        most = latencies[int(len(latencies) * 0.95)]
-        print(
-            f"slider to tf buffer, {JOINTS} joints, {name:<28} "
-            f"median {statistics.median(latencies):5.1f} ms, 95 % {most:5.1f} ms"
-        )
-
-
-if __name__ == "__main__":
-    main()
+    await chain.graph.close()
+    return latencies

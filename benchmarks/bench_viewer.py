@@ -23,7 +23,9 @@ import numpy as np
 from benchmarks.robots import tree_robot
 from linkwright.graph import DESCRIPTION_QOS, TF_QOS, Graph
 from linkwright.messages import String, TFMessage, TransformBatch
-from linkwright.nodes import JointStatePublisherGui, NodeOptions, RobotStatePublisher
+from linkwright.nodes import NodeOptions
+from linkwright.nodes.joint_state_publisher_gui import JointStatePublisherGui
+from linkwright.nodes.robot_state_publisher import RobotStatePublisher
 from linkwright.urdf import DescriptionLibrary
 from linkwright.viewer import RvizConfig, Viewer
 from linkwright.workspace import PackageFinder

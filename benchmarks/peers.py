@@ -21,6 +21,7 @@ PEERS = {
     "yourdfpy": "yourdfpy",
     "urchin": "urchin",
     "pinocchio": "pin",
+    "zenoh_ros2_sdk": "zenoh-ros2-sdk",
 }
 """Module -> what is installed for it."""
 

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from pathlib import Path
 from random import Random
 
-from fuzz import documents, robots
+from fuzz import documents, interfaces, robots
 from fuzz.choices import Choices
 from fuzz.expressions import expression
 from linkwright.diagnostics import LinkwrightError, render, to_data
@@ -177,6 +177,11 @@ TARGETS: dict[str, Callable[[bytes], None]] = {
     "yaml-text": lambda data: check_yaml(_text(data)),
     "rviz": lambda data: check_rviz(robots.rviz(Choices(data))),
     "rviz-text": lambda data: check_rviz(_text(data)),
+    "interface": lambda data: interfaces.check_interface(interfaces.words(Choices(data))),
+    "interface-text": lambda data: interfaces.check_interface(_text(data)),
+    "idl-text": lambda data: interfaces.check_idl(_text(data)),
+    "message": lambda data: interfaces.check_message(interfaces.message_bytes(Choices(data))),
+    "message-raw": interfaces.check_message,
 }
 """Name -> what takes an input. Those with ``-text`` take the bytes as the text, the others decide a grammar by them."""
 
@@ -193,6 +198,7 @@ def seeds(name: str) -> list[bytes]:
 
 _SEEDS = 300
 _SEED_TEXTS: dict[str, Callable[[Choices], str]] = {
+    "interface-text": interfaces.words,
     "xacro-text": lambda choices: "\x1e".join(documents.files(choices)),
     "expression-text": expression,
     "urdf-text": robots.urdf,

@@ -20,6 +20,9 @@ from program_texts import DEEPEST, Texts, UnboundError, bound_arguments
 
 _CODE = re.compile(r"[A-Z]{2,6}\d{3}")
 
+_AMBIGUOUS = frozenset({"get", "pop", "setdefault", "update"})
+"""Methods of dictionaries: who calls a method of ours that bears such a name cannot be told from the name."""
+
 # Which argument of what makes a diagnostic is what: (position, keyword).
 _SINKS = {
     "Diagnostic": {"code": (0, "code"), "message": (1, "message"), "hint": (5, "hint")},
@@ -120,6 +123,8 @@ class Templates:
             same = [call for call in calls if call.module is function.module]
             room = [call for call in calls if call.module.room == function.module.room]
             calls = same or room if function.node.name.startswith("_") else room or calls
+        if function.owner and function.called in _AMBIGUOUS:
+            return
         for call in calls:
             given = bound_arguments(function, call.node, Scope(call.module, call.function))
             yield _rebound(scope, function, given)
@@ -130,11 +135,14 @@ class Templates:
 
 def _rebound(scope: Scope, function: Function, given: dict[str, tuple[ast.AST, Scope] | None]) -> Scope:
     """The scope with the parameters of a function bound: its own, or one on the way to its arguments."""
-    if scope.function is function and scope.bound is None:
-        return Scope(scope.module, function, given)
-    if scope.bound is None:
-        return scope
-    bound = {}
-    for name, value in scope.bound.items():
-        bound[name] = None if value is None else (value[0], _rebound(value[1], function, given))
-    return Scope(scope.module, scope.function, bound)
+    known: dict[int, Scope] = {}
+
+    def rebound(scope: Scope) -> Scope:
+        if scope.bound is None:
+            return Scope(scope.module, function, given) if scope.function is function else scope
+        if id(scope) not in known:
+            bound = {name: value and (value[0], rebound(value[1])) for name, value in scope.bound.items()}
+            known[id(scope)] = Scope(scope.module, scope.function, bound)
+        return known[id(scope)]
+
+    return rebound(scope)

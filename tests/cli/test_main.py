@@ -46,7 +46,7 @@ def test_wrong_option_is_usage(capsys):
 
 
 def test_a_bug_of_ours_is_said_without_a_traceback(monkeypatch, capsys):
-    def broken(_words):
+    def broken(*_words):
         raise ZeroDivisionError("seeded")
 
     monkeypatch.setattr("linkwright.cli.command._dispatch", broken)
@@ -60,7 +60,7 @@ def test_a_bug_of_ours_is_said_without_a_traceback(monkeypatch, capsys):
 
 
 def test_interrupt_is_130(monkeypatch):
-    def interrupted(_words):
+    def interrupted(*_words):
         raise KeyboardInterrupt
 
     monkeypatch.setattr("linkwright.cli.command._dispatch", interrupted)

@@ -1,6 +1,14 @@
 import pytest
 
-from linkwright.graph import InvalidNameError
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph import (
+    InvalidNameError,
+    InvalidNamespaceError,
+    InvalidNodeNameError,
+    InvalidServiceNameError,
+    InvalidTopicNameError,
+)
+from linkwright.graph.names import is_hidden
 from linkwright.messages import String
 
 
@@ -100,3 +108,56 @@ async def test_an_invalid_side_of_a_rule_is_refused(graph):
     node = graph.create_node("node", remappings=[("chatter", "two words")])
     with pytest.raises(InvalidNameError, match="'two words' is not a valid topic name"):
         node.create_publisher(String, "chatter", 1)
+
+
+async def test_each_kind_of_name_has_its_error(graph):
+    node = graph.create_node("node")
+    cases = [
+        (InvalidTopicNameError, "topic name", 1, lambda: node.create_publisher(String, "a b", 1)),
+        (InvalidServiceNameError, "service name", 1, lambda: node.resolve_service_name("a b")),
+        (InvalidNodeNameError, "node name", 1, lambda: graph.create_node("a b")),
+        (InvalidNamespaceError, "namespace", 2, lambda: graph.create_node("node", namespace="a b")),
+    ]
+    for kind, words, index, mistake in cases:
+        with pytest.raises(kind) as caught:
+            mistake()
+        assert caught.value.kind == words
+        assert caught.value.name == "a b"
+        assert caught.value.invalid_index == index
+        assert "must not contain characters" in caught.value.error_msg
+
+
+@pytest.mark.parametrize(
+    ("rules", "topic", "service"),
+    [
+        ([("node:name", "new")], "/new", "/new"),
+        ([("other:name", "new")], "/name", "/name"),
+        ([("rostopic://name", "new")], "/new", "/name"),
+        ([("rosservice://name", "new")], "/name", "/new"),
+        ([("node:rosservice://name", "rosservice://new")], "/name", "/new"),
+        ([("rosservice://name", "one"), ("name", "two")], "/two", "/one"),
+    ],
+)
+async def test_rules_may_be_for_one_node_and_one_kind(graph, rules, topic, service):
+    node = graph.create_node("node", remappings=rules)
+    assert (node.resolve_topic_name("name"), node.resolve_service_name("name")) == (topic, service)
+    assert node.resolve_topic_name("name", only_expand=True) == "/name"
+
+
+async def test_one_rule_renames_one_of_two_nodes(graph):
+    rules = [("first:__node", "renamed"), ("second:__ns", "/away")]
+    names = [graph.create_node(name, remappings=rules).get_fully_qualified_name() for name in ("first", "second")]
+    assert names == ["/renamed", "/away/second"]
+
+
+async def test_wildcards_in_rules_are_refused(graph):
+    with pytest.raises(LinkwrightError) as caught:
+        graph.create_node("node", remappings=[("/*/chatter", "/talk")])
+    assert caught.value.diagnostics[0].code == "GRAPH102"
+
+
+@pytest.mark.parametrize(
+    ("name", "hidden"), [("/chatter", False), ("/_hidden", True), ("/a/_action/status", True), ("/a_b", False)]
+)
+def test_hidden_names(name, hidden):
+    assert is_hidden(name) is hidden

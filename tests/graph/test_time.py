@@ -3,8 +3,9 @@ from math import floor
 
 import pytest
 
-from linkwright.graph import Graph, JumpClock, SystemClock, TimePoint
-from linkwright.messages import String, Time
+from linkwright.graph import Graph, JumpClock, SystemClock, Time
+from linkwright.messages import String
+from linkwright.messages import Time as TimeMessage
 
 
 async def test_timers_keep_to_their_period(graph, clock):
@@ -91,14 +92,13 @@ async def test_missed_calls_are_left_out():
     await graph.close()
 
 
-@pytest.mark.parametrize("period", [0.0, -1.0])
-async def test_a_period_must_be_positive(graph, period):
+async def test_a_period_must_not_be_negative(graph):
     node = graph.create_node("node")
-    with pytest.raises(ValueError, match="must be positive"):
-        node.create_timer(period, print)
+    with pytest.raises(ValueError, match="timer period must be non-negative"):
+        node.create_timer(-1.0, print)
     timer = node.create_timer(1.0, print)
-    with pytest.raises(ValueError, match="must be positive"):
-        timer.timer_period_ns = int(period)
+    with pytest.raises(ValueError, match="timer period must be non-negative"):
+        timer.timer_period_ns = -1
 
 
 async def test_guard_conditions_run_once_for_many_triggers(graph):
@@ -134,7 +134,7 @@ async def test_a_jump_moves_stamps_and_no_timers(graph, clock):
 
 
 def test_points_in_time_become_messages():
-    assert TimePoint(1_700_000_000_123_456_789).to_msg() == Time(1_700_000_000, 123_456_789)
+    assert Time(nanoseconds=1_700_000_000_123_456_789).to_msg() == TimeMessage(sec=1_700_000_000, nanosec=123_456_789)
 
 
 async def test_system_timers_neither_drift_nor_run_early():

@@ -2,9 +2,11 @@ from __future__ import annotations
 
 import io
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
+from typing import Any
 
 import pytest
 
@@ -14,6 +16,7 @@ from linkwright.launch.engine.session import LaunchSession, SessionOptions
 from linkwright.launch.entity import LaunchDescriptionEntity
 from linkwright.standins import activate
 from linkwright.workspace import PackageFinder, use_finder
+from tests.launch.launcher import Running
 
 activate()
 
@@ -38,8 +41,12 @@ class Launched:
 def _surroundings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """Log files stay in the test's folder, and what a launch does to the environment is undone."""
     monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "ros_log"))
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    monkeypatch.setenv("LINKWRIGHT_DDS", "0")  # tests that need it say so, with a domain of their own
+    monkeypatch.setenv("ROS_DOMAIN_ID", "85")
     monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
-    monkeypatch.delenv("OVERRIDE_LAUNCH_PROCESS_OUTPUT", raising=False)
+    for name in ("PROCESS_OUTPUT", "SCREEN_FORMAT", "LOG_FORMAT"):
+        monkeypatch.delenv(f"OVERRIDE_LAUNCH_{name}", raising=False)
     before = dict(os.environ)
     yield
     os.environ.clear()
@@ -51,12 +58,16 @@ def launch(tmp_path: Path) -> Callable[..., object]:
     """Runs entities as a launch does, to the end, and gives what was printed."""
 
     async def run(
-        *entities: LaunchDescriptionEntity, finder: PackageFinder | None = None, **configurations: str
+        *entities: LaunchDescriptionEntity,
+        finder: PackageFinder | None = None,
+        session_options: Mapping[str, Any] = MappingProxyType({}),
+        **configurations: str,
     ) -> Launched:
         out, err = io.StringIO(), io.StringIO()
         finder = finder or PackageFinder(start=tmp_path, environment={})
         with use_finder(finder):
-            session = LaunchSession(finder, SessionOptions(port=0, open_browser=False), LaunchLog(out, err))
+            options = SessionOptions(port=0, open_browser=False, **session_options)
+            session = LaunchSession(finder, options, LaunchLog(out, err))
             session.context.launch_configurations.update(configurations)
             succeeded = await session.run(LaunchDescription(entities))
         return Launched(out.getvalue(), err.getvalue(), succeeded, session)
@@ -75,3 +86,18 @@ def write(tmp_path: Path) -> Callable[[str, str], Path]:
         return path
 
     return written
+
+
+@pytest.fixture
+def start(tmp_path: Path) -> Iterator[Callable[..., Running]]:
+    running: list[Running] = []
+
+    def begin(*words: object, cwd: Path = tmp_path) -> Running:
+        running.append(Running(tmp_path, [str(word) for word in words], cwd))
+        return running[-1]
+
+    yield begin
+    for each in running:
+        if each.process.poll() is None:
+            each.process.kill()
+            each.process.wait()

@@ -30,7 +30,13 @@ from launch.conditions import IfCondition, UnlessCondition
 from launch.event_handlers import OnShutdown
 from launch.events import Shutdown as ShutdownEvent
 from launch.launch_description_sources import AnyLaunchDescriptionSource, PythonLaunchDescriptionSource
-from launch.substitutions import EnvironmentVariable, LaunchConfiguration, LocalSubstitution, ThisLaunchFileDir
+from launch.substitutions import (
+    EnvironmentVariable,
+    LaunchConfiguration,
+    LocalSubstitution,
+    TextSubstitution,
+    ThisLaunchFileDir,
+)
 
 from launch import Action, LaunchContext, LaunchDescription
 
@@ -195,8 +201,11 @@ class TestTimerAction:
         assert done.messages == []
 
     async def test_a_wrong_period(self, launch) -> None:
-        done = await launch(TimerAction(period="soon", actions=[]))
-        assert "the period 'soon' of a timer is no number" in done.err
+        with pytest.raises(ValueError, match="soon") as raised:
+            TimerAction(period="soon", actions=[])
+        assert raised.value.diagnostics[0].message == "the period 'soon' of a timer is no number"
+        done = await launch(TimerAction(period=TextSubstitution(text="later"), actions=[]))
+        assert "the period 'later' of a timer is no number" in done.err
 
 
 class TestEvents:

@@ -14,172 +14,13 @@ from launch.events import matches_action
 from launch.events.process import ShutdownProcess
 from launch.substitutions import Command, LaunchConfiguration
 from launch_ros.actions import Node, PushRosNamespace, SetParameter, SetParametersFromFile, SetRemap
-from launch_ros.parameter_descriptions import Parameter, ParameterFile, ParameterValue
+from launch_ros.parameter_descriptions import Parameter, ParameterValue
 
 from launch import LaunchContext
-from linkwright.diagnostics import LinkwrightError
-from linkwright.launch.ros.parameters import evaluate_parameters
 from linkwright.workspace import PackageFinder
 
 Write = Callable[[str, str], Path]
 URDF = '<robot name="r"><link name="base"/></robot>'
-
-
-@pytest.fixture
-def context() -> LaunchContext:
-    made = LaunchContext()
-    made.launch_configurations.update(number="3", truth="true", word="on", text="a: b", model="<robot> a: b\n</robot>")
-    return made
-
-
-def values(context: LaunchContext, *parameters: Any, node: str = "/talker") -> dict[str, Any]:
-    return evaluate_parameters(context, parameters, node, None).values
-
-
-class TestParameters:
-    def test_python_values_stay_what_they_are(self, context: LaunchContext) -> None:
-        given = {"a": 1, "b": 1.5, "c": True, "d": "true", "e": [1, 2], "f": ["x", "y"], "g": [1, 2.5], "h": ""}
-        assert values(context, given) == {**given, "g": [1.0, 2.5]}
-
-    def test_substitutions_follow_yaml(self, context: LaunchContext) -> None:
-        found = values(
-            context,
-            {
-                "a": LaunchConfiguration("number"),
-                "b": LaunchConfiguration("truth"),
-                "c": LaunchConfiguration("word"),
-                "d": ["/", LaunchConfiguration("number")],
-                "e": [[LaunchConfiguration("number")], ["y"]],
-            },
-        )
-        assert found == {"a": 3, "b": True, "c": True, "d": "/3", "e": ["3", "y"]}
-
-    @pytest.mark.parametrize(
-        ("name", "kind", "value"),
-        [
-            ("number", None, 3),
-            ("number", int, 3),
-            ("number", float, 3.0),
-            ("number", str, "3"),
-            ("truth", bool, True),
-            ("text", str, "a: b"),
-            ("list", list[int], [1, 2]),
-            ("list", list[float], [1.0, 2.0]),
-            ("list", list[str], ["1", "2"]),
-        ],
-    )
-    def test_typed_values(self, context: LaunchContext, name: str, kind: Any, value: Any) -> None:
-        context.launch_configurations["list"] = "[1, 2]"
-        found = values(context, {"p": ParameterValue(LaunchConfiguration(name), value_type=kind)})
-        assert found == {"p": value}
-        assert type(found["p"]) is type(value)
-
-    def test_a_value_of_another_type(self, context: LaunchContext) -> None:
-        with pytest.raises(LinkwrightError, match="not the int that is asked for"):
-            values(context, {"p": ParameterValue(LaunchConfiguration("word"), value_type=int)})
-
-    def test_nested_dictionaries_and_substituted_names(self, context: LaunchContext) -> None:
-        found = values(context, {"zeros": {"joint": 1.0, ("n", LaunchConfiguration("number")): 2.0}, "a.b": 1})
-        assert found == {"zeros.joint": 1.0, "zeros.n3": 2.0, "a.b": 1}
-
-    def test_later_ones_win(self, context: LaunchContext) -> None:
-        assert values(context, {"a": 1, "b": 1}, {"a": 2}, Parameter("b", 3)) == {"a": 2, "b": 3}
-
-    def test_a_description_that_is_read_as_yaml_gives_one_error_with_the_fix(self, context: LaunchContext) -> None:
-        with pytest.raises(LinkwrightError) as caught:
-            values(context, {"robot_description": LaunchConfiguration("model")})
-        (diagnostic,) = caught.value.diagnostics
-        assert diagnostic.code == "LAUNCH132"
-        assert "parameter 'robot_description' is read as YAML" in diagnostic.message
-        assert "ParameterValue(VALUE, value_type=str)" in (diagnostic.hint or "")
-        assert diagnostic.span is not None
-        assert diagnostic.span.file == __file__
-
-    def test_a_description_without_colons_passes_unfolded(self, context: LaunchContext) -> None:
-        text = '<robot name="r">\n  <link name="a"/>\n</robot>'
-        context.launch_configurations["model"] = text
-        assert values(context, {"robot_description": LaunchConfiguration("model")}) == {"robot_description": text}
-
-    @pytest.mark.parametrize("value", ["{a: 1}", "[1, x]", "~"])
-    def test_what_no_parameter_can_be(self, context: LaunchContext, value: str) -> None:
-        context.launch_configurations["odd"] = value
-        with pytest.raises(LinkwrightError, match="which no parameter can be"):
-            values(context, {"p": LaunchConfiguration("odd")})
-
-    def test_other_objects(self, context: LaunchContext) -> None:
-        with pytest.raises(LinkwrightError, match="is of type object"):
-            values(context, {"p": object()})
-        with pytest.raises(LinkwrightError, match="is a Path") as caught:
-            values(context, {"p": Path("/x")})
-        assert caught.value.diagnostics[0].hint == "give it as text: str(PATH)"
-
-
-class TestParameterFiles:
-    FILE = """
-/**:
-  ros__parameters:
-    everywhere: 1
-    deep: {x: 1}
-talker:
-  ros__parameters: {own: 2}
-/robot:
-  talker:
-    ros__parameters: {own: 3}
-/robot/*:
-  ros__parameters: {star: 4}
-listener:
-  ros__parameters: {own: 5}
-"""
-
-    @pytest.mark.parametrize(
-        ("node", "expected"),
-        [
-            ("/talker", {"everywhere": 1, "deep.x": 1, "own": 2}),
-            ("/robot/talker", {"everywhere": 1, "deep.x": 1, "own": 3, "star": 4}),
-            ("/other", {"everywhere": 1, "deep.x": 1}),
-        ],
-    )
-    def test_sections_by_name(self, context: LaunchContext, write: Write, node: str, expected: dict) -> None:
-        path = write("p.yaml", self.FILE)
-        assert values(context, str(path), node=node) == expected
-        assert values(context, path, node=node) == expected
-        assert values(context, ParameterFile(path), node=node) == expected
-
-    def test_substitutions_inside(self, context: LaunchContext, write: Write) -> None:
-        path = write(
-            "p.yaml",
-            "/**: {ros__parameters: {a: $(var number), b: $(env LW_NONE x), c: '$(var n$(var word) d)', "
-            "d: $(find-pkg-share my_robot_description)}}",
-        )
-        found = values(context, ParameterFile(path, allow_substs=True))
-        assert found["a"] == 3
-        assert found["b"] == "x"
-        assert found["c"] == "d"
-        assert found["d"].endswith("my_robot_description")
-
-    @pytest.mark.parametrize(
-        ("text", "message"),
-        [
-            ("a: [", "is not YAML"),
-            ("a: 1", "names no node with 'ros__parameters' below it"),
-            ("/**: {ros__parameters: {a: $(var nmber)}}", "launch configuration 'nmber' is not set"),
-            ("/**: {ros__parameters: {a: $(vra number)}}", "substitution '$(vra number)' is unknown"),
-        ],
-    )
-    def test_faults(self, context: LaunchContext, write: Write, text: str, message: str) -> None:
-        with pytest.raises(LinkwrightError) as caught:
-            values(context, ParameterFile(write("p.yaml", text), allow_substs=True))
-        (diagnostic,) = caught.value.diagnostics
-        assert diagnostic.code == "LAUNCH133"
-        assert message in diagnostic.message
-        assert diagnostic.span is not None
-
-    def test_a_missing_file(self, context: LaunchContext, tmp_path: Path) -> None:
-        with pytest.raises(LinkwrightError, match="does not exist"):
-            values(context, str(tmp_path / "none.yaml"))
-
-    def test_an_empty_file(self, context: LaunchContext, write: Write) -> None:
-        assert values(context, str(write("p.yaml", ""))) == {}
 
 
 @pytest.fixture
@@ -231,14 +72,28 @@ class TestProcessNodes:
                 ]
             ),
         )
-        assert words[:6] == ["--fast", "1", "--ros-args", "-r", "__node:=teller", "-r"]
-        assert words[6] == "__ns:=/robot/left/inner"
-        assert words[9:] == ["-r", "/a:=/b", "-r", "chatter:=/talk", "--log-level", "debug"]
-        assert files == [{"/**": {"ros__parameters": {"global": 1, "own": 2}}}]
+        assert words[:4] == ["--fast", "1", "--ros-args", "--log-level"]
+        assert words[4:10] == ["debug", "--ros-args", "-r", "__node:=teller", "-r", "__ns:=/robot/left/inner"]
+        assert words[10:13] == ["-p", "global:=1", "--params-file"]
+        assert words[14:] == ["-r", "/a:=/b", "-r", "chatter:=/talk"]
+        assert files == [{"/robot/left/inner/teller": {"ros__parameters": {"own": 2}}}]
 
-    async def test_no_ros_arguments_where_none_are_needed(self, launch, ros: PackageFinder) -> None:
+    async def test_parameters_of_a_node_without_a_name_are_for_any(self, launch, ros: PackageFinder) -> None:
+        node = Node(package="arm", executable="tell", output="screen", parameters=[{"a": 1}])
+        words, files = await self.told(launch, ros, node)
+        assert words[:2] == ["--ros-args", "--params-file"]
+        assert files == [{"/**": {"ros__parameters": {"a": 1}}}]
+
+    async def test_single_parameters_are_told_as_rules(self, launch, ros: PackageFinder) -> None:
+        parameters = [Parameter("a", "x: y"), Parameter("b", [1.0, 2.5]), Parameter("c", True), Parameter("d", "1")]
+        node = Node(package="arm", executable="tell", output="screen", parameters=parameters)
+        words, _ = await self.told(launch, ros, node)
+        assert words[1::2] == ["-p"] * 4
+        assert words[2::2] == ["a:='x: y'", "b:=[1.0, 2.5]", "c:=true", "d:='1'"]
+
+    async def test_ros_arguments_are_announced_even_if_there_are_none(self, launch, ros: PackageFinder) -> None:
         words, _ = await self.told(launch, ros, Node(package="arm", executable="tell", output="screen"))
-        assert words == []
+        assert words == ["--ros-args"]
 
     async def test_an_absolute_namespace(self, launch, ros: PackageFinder) -> None:
         words, _ = await self.told(
@@ -276,7 +131,7 @@ class TestProcessNodes:
             ("amr", "tell", "package 'amr' of node executable 'tell' not found", "did you mean 'arm'?"),
             ("robot_state_publishr", "x", "package 'robot_state_publishr'", "did you mean 'robot_state_publisher'"),
             ("rviz2", "rviz", "package 'rviz2' has no executable 'rviz'", "did you mean 'rviz2'?"),
-            ("my_robot_description", "x", "has no executable 'x'", "build it with 'colcon build'"),
+            ("my_robot_description", "x", "has no executable 'x'", "name it in entry_points of setup.py"),
         ],
     )
     async def test_unknown_executables(

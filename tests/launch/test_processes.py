@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
 import time
 from pathlib import Path
@@ -101,7 +102,19 @@ async def test_a_pseudo_terminal(launch) -> None:
 
 
 def written_below(folder: Path) -> dict[str, list[str]]:
-    return {path.name: sorted(path.read_text().splitlines()) for path in folder.glob("*/*")}
+    """What processes wrote into the log files of the one launch, without times."""
+    (launch,) = [path for path in folder.iterdir() if not path.is_symlink()]
+    found = {path.name: sorted(path.read_text().splitlines()) for path in launch.iterdir()}
+    of_processes = [line.partition(" ")[2] for line in found.pop("launch.log")]
+    of_processes = sorted(line for line in of_processes if line.startswith("[py-1]"))
+    return {**found, "launch.log": of_processes} if of_processes else found
+
+
+OWN_LOGS = {
+    "py-1-stderr.log": ["[py-1] err"],
+    "py-1-stdout.log": ["[py-1] out"],
+    "py-1.log": ["[py-1] err", "[py-1] out"],
+}
 
 
 class TestOutput:
@@ -113,7 +126,9 @@ class TestOutput:
             ("screen", True, True, {}),
             ("log", False, True, {"launch.log": ["[py-1] err", "[py-1] out"]}),
             ("both", True, True, {"launch.log": ["[py-1] err", "[py-1] out"]}),
-            ("own_log", False, False, {"py-1-stderr.log": ["[py-1] err"], "py-1-stdout.log": ["[py-1] out"]}),
+            ("own_log", False, False, OWN_LOGS),
+            ("full", True, True, {**OWN_LOGS, "launch.log": ["[py-1] err", "[py-1] out"]}),
+            ({"both": "own_log"}, False, False, {"py-1.log": ["[py-1] err", "[py-1] out"]}),
             ({"stdout": "screen", "stderr": {"log"}}, True, False, {"launch.log": ["[py-1] err"]}),
             ({"both": {"screen"}}, True, True, {}),
         ],
@@ -123,7 +138,36 @@ class TestOutput:
         assert ("[py-1] out" in done.out) is out
         assert ("[py-1] err" in done.err) is err
         assert written_below(tmp_path / "ros_log") == files
-        assert ("can be found below" in done.err) is bool(files)
+
+    async def test_the_launch_log_has_all_lines_of_the_launcher(self, launch, tmp_path: Path) -> None:
+        done = await launch(python("0"))
+        folder = (tmp_path / "ros_log" / "latest").resolve()
+        assert done.err.splitlines()[:2] == [
+            f"[INFO] [launch]: All log files can be found below {folder}",
+            "[INFO] [launch]: Default logging verbosity is set to INFO",
+        ]
+        assert folder.name.endswith(f"-{os.getpid()}")
+        lines = (folder / "launch.log").read_text().splitlines()
+        assert [re.sub(r"^\d{10}\.\d{7} ", "", line) for line in lines] == done.err.splitlines()
+
+    async def test_formats(self, launch, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.setenv("OVERRIDE_LAUNCH_SCREEN_FORMAT", "{name}|{levelname}|{msg}")
+        monkeypatch.setenv("OVERRIDE_LAUNCH_LOG_FORMAT", "{msg}")
+        done = await launch(LogInfo(msg="hello"))
+        assert "launch.user|INFO|hello" in done.err.splitlines()
+        assert "hello" in (tmp_path / "ros_log" / "latest" / "launch.log").read_text().splitlines()
+
+    async def test_a_folder_that_cannot_be_written(self, launch, tmp_path: Path, monkeypatch) -> None:
+        (tmp_path / "file").write_text("")
+        monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "file" / "logs"))
+        done = await launch(python("print('out')", output="both"))
+        assert done.err.count("warning[LAUNCH145]") == 1
+        assert done.out == "[py-1] out\n"
+        assert done.succeeded
+
+    async def test_all_output_on_the_screen_by_the_environment(self, launch, monkeypatch) -> None:
+        monkeypatch.setenv("OVERRIDE_LAUNCH_PROCESS_OUTPUT", "both")
+        assert "[py-1] out" in (await launch(python(self.PROGRAM, output="own_log"))).out
 
     async def test_an_unknown_mode(self, launch) -> None:
         done = await launch(python("0", output="scren"))
@@ -195,7 +239,8 @@ class TestHandlers:
             TimerAction(period=0.3, actions=[python("0", on_exit=Shutdown(reason="over"))]),
             RegisterEventHandler(OnShutdown(on_shutdown=lambda event, _: LogInfo(msg=event.reason))),
         )
-        assert done.messages == ["py-2: over"]
+        assert done.messages == ["over"]
+        assert "process[py-2] was required: shutting down launched system" in done.err
         assert "sending signal 'SIGINT' to process[other-1]" in done.err
         assert time.monotonic() - began < 3.0
 
@@ -206,7 +251,7 @@ class TestHandlers:
         assert done.messages == ["rc 4"]
 
     async def test_a_target_must_be_an_action(self) -> None:
-        with pytest.raises(TypeError, match="target_action must be an action"):
+        with pytest.raises(TypeError, match="target_action must be an ExecuteProcess"):
             OnProcessExit(target_action="talker", on_exit=[])
 
     async def test_completion_needs_an_event(self, launch) -> None:
@@ -228,6 +273,13 @@ class TestEnds:
         )
         assert time.monotonic() - began < 2.0
         assert not done.succeeded
+
+    async def test_a_process_before_an_action_that_fails_is_started_and_its_exit_handled(self, launch) -> None:
+        done = await launch(
+            python("import time; time.sleep(60)", on_exit=LogInfo(msg="exited")), LogInfo(msg=LaunchConfiguration("x"))
+        )
+        assert done.messages == ["exited"]
+        assert "sending signal 'SIGINT' to process[py-1]" in done.err
 
     async def test_a_respawn_that_waits_ends_with_the_launch(self, launch) -> None:
         began = time.monotonic()

@@ -17,7 +17,10 @@ from linkwright.graph import (
     TransformListener,
 )
 from linkwright.messages import Header, JointState, String, TFMessage, Time
-from linkwright.nodes import JointStatePublisher, JointStatePublisherGui, NodeOptions, RobotStatePublisher
+from linkwright.nodes import NodeOptions
+from linkwright.nodes.joint_state_publisher import JointStatePublisher
+from linkwright.nodes.joint_state_publisher_gui import JointStatePublisherGui
+from linkwright.nodes.robot_state_publisher import RobotStatePublisher
 from linkwright.urdf import DescriptionLibrary
 
 

@@ -4,8 +4,9 @@ from random import Random
 import pytest
 
 from linkwright.messages import JointState
-from linkwright.nodes import JointSlider, JointStatePublisherGui, NodeOptions
-from linkwright.nodes.joint_panel import JointPanel
+from linkwright.nodes import NodeOptions
+from linkwright.nodes.joint_panel import JointPanel, JointSlider
+from linkwright.nodes.joint_state_publisher_gui import JointStatePublisherGui
 from tests.nodes.stage import joint, mimic, robot
 
 ROBOT = robot(

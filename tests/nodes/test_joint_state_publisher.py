@@ -5,9 +5,10 @@ import pytest
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.messages import Header, JointState
-from linkwright.nodes import JointStatePublisher, NodeOptions
+from linkwright.nodes import NodeOptions
 from linkwright.nodes.joint_layout import layout_of
 from linkwright.nodes.joint_settings import JointSettings
+from linkwright.nodes.joint_state_publisher import JointStatePublisher
 from linkwright.urdf import Joint, Limit, Link, Robot
 from tests.nodes.stage import joint, mimic, robot
 
@@ -333,3 +334,19 @@ class TestParameters:
         assert await stage.set(publisher, rate=-1) == [
             (False, "parameter 'rate' must be a positive number, and it is -1")
         ]
+
+
+async def test_other_formats_are_named(stage, said, tmp_path):
+    stage.joint_state_publisher()
+    await stage.describe("<?xml version='1.0'?><sdf version='1.7'><model name='a'/></sdf>")
+    await stage.describe("<COLLADA/>")
+    await stage.describe("nothing")
+    assert said("WARN") == [
+        "Invalid robot_description given, ignoring: it is SDF, and this node reads URDF",
+        "Invalid robot_description given, ignoring: it is COLLADA, and this node reads URDF",
+        "Invalid robot_description given, ignoring",
+    ]
+    (tmp_path / "robot.sdf").write_text("<sdf/>")
+    with pytest.raises(LinkwrightError) as caught:
+        JointStatePublisher(stage.graph, stage.options({}, arguments=[str(tmp_path / "robot.sdf")]))
+    assert caught.value.diagnostics[0].code == "NODE205"

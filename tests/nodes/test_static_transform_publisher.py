@@ -1,3 +1,4 @@
+import re
 from math import pi, sqrt
 
 import numpy as np
@@ -5,8 +6,8 @@ import pytest
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import Graph
-from linkwright.nodes import NodeOptions, StaticTransformPublisher
-from linkwright.nodes.static_transform_publisher import parse_arguments
+from linkwright.nodes import NodeOptions
+from linkwright.nodes.static_transform_publisher import StaticTransformPublisher, parse_arguments
 
 HALF = sqrt(0.5)
 
@@ -67,8 +68,9 @@ async def test_the_transform_is_published_for_good(stage, said):
     )
     await stage.graph.settle()
     np.testing.assert_allclose(stage.buffer.lookup("map", "camera"), [1, 2, 7, 0, 0, 0, 1])
-    assert first.node.get_name() == "static_transform_publisher"
-    assert second.node.get_name() == "static_transform_publisher_2"
+    names = [each.node.get_name() for each in (first, second)]
+    assert all(re.fullmatch(r"static_transform_publisher_[A-Za-z0-9]{16}", name) for name in names)
+    assert names[0] != names[1]
     assert said("WARN") == ["Old-style arguments are deprecated; see --help for new-style arguments"]
     assert said("INFO")[0] == (
         "Spinning until stopped - publishing transform\ntranslation: ('1.000000', '2.000000', '3.000000')\n"
@@ -84,3 +86,11 @@ async def test_wrong_arguments_end_the_node(stage: object, graph: Graph, said):
         StaticTransformPublisher(graph, NodeOptions(name="camera_tf", arguments=["1"]))
     assert said("FATAL") == ["error parsing command line arguments: Extra unparsed arguments on command-line"]
     assert graph.node_names() == ["/audience"]
+
+
+async def test_help(stage):
+    printed = []
+    running = StaticTransformPublisher(stage.graph, NodeOptions(arguments=["--help"], output=printed.append))
+    assert running.finished.result() == 0
+    assert printed[0].startswith("A command line utility for manually sending a static transform.")
+    assert stage.graph.count_publishers("/tf_static") == 0

@@ -6,7 +6,8 @@ import math
 import pytest
 
 from linkwright.graph import Graph
-from linkwright.nodes import JointStatePublisherGui, NodeOptions
+from linkwright.nodes import NodeOptions
+from linkwright.nodes.joint_state_publisher_gui import JointStatePublisherGui
 from linkwright.viewer.joints import JointBridge
 from linkwright.viewer.protocol import CenterJoints, JointPositions, Joints, RandomizeJoints, SetJoint
 

@@ -12,7 +12,9 @@ import pytest
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, SourceText
 from linkwright.graph import Graph
-from linkwright.nodes import JointStatePublisherGui, NodeOptions, RobotStatePublisher
+from linkwright.nodes import NodeOptions
+from linkwright.nodes.joint_state_publisher_gui import JointStatePublisherGui
+from linkwright.nodes.robot_state_publisher import RobotStatePublisher
 from linkwright.urdf import DescriptionLibrary
 from linkwright.viewer import RvizConfig, Viewer, server
 from linkwright.viewer.protocol import PROTOCOL_VERSION

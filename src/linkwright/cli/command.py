@@ -19,12 +19,48 @@ from linkwright.cli.language import UnknownLanguageError, take_language
 from linkwright.diagnostics import LinkwrightError, did_you_mean, print_diagnostics
 from linkwright.diagnostics.translation import set_language
 
-VERBS = ("launch", "view", "xacro", "check", "explain", "inertia", "diagram", "pkg")
-"""In the order in which the help lists them; each is a module of this package."""
-_NESTED = frozenset({"pkg"})
-"""Verbs with verbs of their own; elsewhere options may stand between words (`launch PACKAGE --no-open FILE`)."""
+GROUPS = {
+    "descriptions": ("view", "xacro", "check", "explain", "inertia", "diagram"),
+    "packages and running them": ("pkg", "run", "launch", "shell", "bag"),
+    "the running graph, as ros2 does": (
+        "topic",
+        "node",
+        "param",
+        "service",
+        "action",
+        "interface",
+        "lifecycle",
+        "component",
+        "daemon",
+        "doctor",
+    ),
+}
+"""The verbs in the order in which the help lists them; each is a module or package of this package."""
+
+VERBS = tuple(name for names in GROUPS.values() for name in names)
+
+_NESTED = frozenset(
+    {
+        "pkg",
+        "run",
+        "topic",
+        "node",
+        "param",
+        "service",
+        "action",
+        "interface",
+        "lifecycle",
+        "component",
+        "bag",
+        "shell",
+    }
+)
+"""Verbs with verbs of their own, and `run`, whose words are another program's; elsewhere options may stand between
+words (`launch PACKAGE --no-open FILE`)."""
 
 FINE, FINDINGS, USAGE, BUG, INTERRUPTED = 0, 1, 2, 3, 130
+
+PROGRAM = "linkwright"
 
 _COLLECT_AFTER = 50_000
 """After how many new objects Python looks for garbage; its own 700 would cost a short command a tenth of its time."""
@@ -43,13 +79,18 @@ class Verb(Protocol):
         """Do it; returns the exit status."""
 
 
-def main(words: Sequence[str] | None = None) -> int:
-    """Run the command line and return its exit status; never raises."""
+def main(words: Sequence[str] | None = None, *, program: str = PROGRAM) -> int:
+    """Run the command line and return its exit status; never raises.
+
+    Args:
+        words: the command line after the program's name; this process's when left out.
+        program: the name that usage lines begin with, such as ``ros2``; empty where the verb is the program.
+    """
     whole_process = words is None
     if whole_process:
         gc.set_threshold(_COLLECT_AFTER)
     try:
-        return _dispatch(take_language(sys.argv[1:] if words is None else words))
+        return _dispatch(take_language(sys.argv[1:] if words is None else words), program)
     except UnknownLanguageError as error:
         print(f"linkwright: {error}", file=sys.stderr)
         return USAGE
@@ -78,11 +119,14 @@ def verb(name: str) -> Verb:
     return cast("Verb", import_module(f"linkwright.cli.{name}"))
 
 
-def parser_for(name: str) -> argparse.ArgumentParser:
+def parser_for(name: str, *, program: str = PROGRAM) -> argparse.ArgumentParser:
     """The argument parser of one verb, as the command reference and the verb itself use it."""
     module = verb(name)
-    parser = argparse.ArgumentParser(prog=f"linkwright {name}", description=module.HELP, formatter_class=_formatter)
+    prog = f"{program} {name}".strip()
+    parser = argparse.ArgumentParser(prog=prog, description=module.HELP, formatter_class=_formatter)
     module.configure(parser)
+    if parser.usage is not None:
+        parser.usage = parser.usage.replace(f"{PROGRAM} {name}", prog, 1)
     return parser
 
 
@@ -95,7 +139,7 @@ def _formatter(prog: str) -> argparse.HelpFormatter:
     return argparse.HelpFormatter(prog, width=columns - 2)
 
 
-def _dispatch(words: list[str]) -> int:
+def _dispatch(words: list[str], program: str) -> int:
     if not words or words[0] in ("-h", "--help", "help"):
         print(_overview())
         return FINE if words else USAGE
@@ -104,26 +148,34 @@ def _dispatch(words: list[str]) -> int:
         print(f"linkwright {__version__}")
         return FINE
     if name not in VERBS:
-        hint = did_you_mean(name, VERBS) or "`linkwright --help` lists the commands"
-        what = "option" if name.startswith("-") else "command"
-        print(f"linkwright: there is no {what} '{name}'; {hint}", file=sys.stderr)
-        return USAGE
-    parser = parser_for(name)
-    mixed = name not in _NESTED and any(word.startswith("-") for word in words)
+        return _unknown(name, VERBS, program or PROGRAM)
+    parser = parser_for(name, program=program)
+    module = verb(name)
+    if name in _NESTED:
+        below = getattr(module, "VERBS", ())
+        asked = next((word for word in words[1:] if not word.startswith("-")), None)
+        if below and asked is not None and asked not in below:
+            return _unknown(asked, below, parser.prog)
+        return module.run(parser.parse_args(words[1:]))
+    mixed = any(word.startswith("-") for word in words)
     parse = parser.parse_intermixed_args if mixed else parser.parse_args
-    return verb(name).run(parse(words[1:]))
+    return module.run(parse(words[1:]))
+
+
+def _unknown(name: str, known: Sequence[str], prog: str) -> int:
+    """Say that a word is no command."""
+    hint = did_you_mean(name, known) or f"`{prog} --help` lists the commands"
+    what = "option" if name.startswith("-") else "command"
+    print(f"{prog}: there is no {what} '{name}'; {hint}", file=sys.stderr)
+    return USAGE
 
 
 def _overview() -> str:
     width = max(map(len, VERBS))
-    lines = [
-        "usage: linkwright COMMAND ...",
-        "",
-        "Robot descriptions the ROS 2 way, without ROS.",
-        "",
-        "commands:",
-    ]
-    lines += [f"  {name:{width}}  {verb(name).HELP}" for name in VERBS]
+    lines = ["usage: linkwright COMMAND ...", "", "Robot descriptions the ROS 2 way, without ROS."]
+    for title, names in GROUPS.items():
+        lines += ["", f"{title}:"]
+        lines += [f"  {name:{width}}  {verb(name).HELP}" for name in names]
     lines += ["", "options of all commands:", f"  --lang LANGUAGE  {LANGUAGE_HELP}"]
     lines += ["", "`linkwright COMMAND --help` says more. `linkwright --version` prints the version."]
     return "\n".join(lines)

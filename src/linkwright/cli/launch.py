@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 
 NAME = "launch"
 HELP = "run a ROS 2 launch file, with its rviz2 as a page in the browser"
@@ -17,7 +18,31 @@ def configure(parser: argparse.ArgumentParser) -> None:
         nargs="*",
         help="a package and a launch file in it, or the path of a launch file; then values for its arguments",
     )
-    parser.add_argument("-s", "--show-args", action="store_true", help="list the launch file's arguments and end")
+    parser.add_argument(
+        "-s", "--show-args", "--show-arguments", action="store_true", help="list the launch file's arguments and end"
+    )
+    parser.add_argument(
+        "-p", "--print", "--print-description", action="store_true", help="print the launch description and end"
+    )
+    parser.add_argument(
+        "--isolate", action="store_true", help="run the nodes that come with Linkwright as processes, each by itself"
+    )
+    parser.add_argument(
+        "-n", "--noninteractive", action="store_true", help="run without a terminal that sends signals to processes too"
+    )
+    parser.add_argument("-d", "--debug", action="store_true", help="tell in detail what the launcher does")
+    parser.add_argument(
+        "-a",
+        "--show-all-subprocesses-output",
+        action="store_true",
+        help="show what processes write on the screen, whatever the launch file says",
+    )
+    parser.add_argument("--launch-prefix", metavar="COMMAND", help="put a command before those of processes")
+    parser.add_argument(
+        "--launch-prefix-filter",
+        metavar="PATTERN",
+        help="only before those of programs whose name matches this regular expression",
+    )
     add_viewer_options(parser)
 
 
@@ -42,11 +67,26 @@ def port(text: str) -> int:
 def run(arguments: argparse.Namespace) -> int:
     """Run the launch file until it ends."""
     from linkwright import standins
-    from linkwright.launch import LaunchOptions, parse_launch_words, run_launch, show_arguments
+    from linkwright.launch import LaunchOptions, parse_launch_words, print_description, run_launch, show_arguments
 
     target, values = parse_launch_words(arguments.words)
     standins.activate()
     if arguments.show_args:
         print(show_arguments(target))
         return 0
-    return run_launch(target, values, LaunchOptions(arguments.host, arguments.port, not arguments.no_open))
+    if arguments.print:
+        print(print_description(target))
+        return 0
+    if arguments.show_all_subprocesses_output:
+        os.environ["OVERRIDE_LAUNCH_PROCESS_OUTPUT"] = "both"
+    options = LaunchOptions(
+        arguments.host,
+        arguments.port,
+        not arguments.no_open,
+        isolate=arguments.isolate,
+        debug=arguments.debug,
+        noninteractive=arguments.noninteractive,
+        prefix=arguments.launch_prefix,
+        prefix_filter=arguments.launch_prefix_filter,
+    )
+    return run_launch(target, values, options)

@@ -1,22 +1,23 @@
-"""``linkwright pkg``: work with ROS packages; ``pkg create`` makes a new one."""
+"""``linkwright pkg``: work with ROS packages; ``pkg create`` makes a new one, the other commands tell of those there are."""
 
 from __future__ import annotations
 
 import argparse
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from linkwright.cli import pkg_questions
 from linkwright.diagnostics import print_diagnostics
 
 if TYPE_CHECKING:
     from linkwright.workspace.create import Maintainer
 
 NAME = "pkg"
-HELP = "create ROS packages"
+HELP = "create ROS packages, and tell where they are and what is in them"
 
 
 class _ListLicenses(argparse.Action):
@@ -86,9 +87,17 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     create.add_argument("--node-name", metavar="NODE", help="begin with an executable of this name")
     create.add_argument("--library-name", metavar="LIBRARY", help="begin with a library of this name")
+    create.set_defaults(answer=_create)
+    pkg_questions.configure(verbs)
 
 
 def run(arguments: argparse.Namespace) -> int:
+    """Do what the command says."""
+    answer: Callable[[argparse.Namespace], int] = arguments.answer
+    return answer(arguments)
+
+
+def _create(arguments: argparse.Namespace) -> int:
     """Create the package, printing each step as ``ros2 pkg create`` does."""
     from linkwright.workspace.create import PackageRequest, create_package
 

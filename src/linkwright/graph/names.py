@@ -1,74 +1,170 @@
-"""Names in the graph: which are valid, how they are expanded, how they are remapped.
+"""Names in the graph: which are valid, and how they are expanded.
 
-The rules and the wording of the errors are those of rcl and rmw (``validate_topic_name``, ``expand_topic_name``,
-``remap``).
+The rules and the wording of the errors are those of rcl and rmw (``validate_topic_name``, ``expand_topic_name``).
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from functools import lru_cache
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError
 
 _SUBSTITUTION = re.compile(r"\{([^{}]*)\}")
 _MAX_NODE_NAME_LENGTH = 255
+_MAX_NAMESPACE_LENGTH = 245
+
+Problem = tuple[str, int]
+"""What is wrong with a name, and the index of the character where it is."""
 
 
 class InvalidNameError(LinkwrightError):
-    """A node name, namespace or topic name that ROS does not allow.
+    """A node name, namespace, topic or service name that ROS does not allow (rclpy ``NameValidationException``).
 
     Args:
-        kind: ``node name``, ``namespace`` or ``topic name``.
+        kind: ``node name``, ``namespace``, ``topic name`` or ``service name``.
         name: the name as it was given.
         reason: what is wrong with it.
+        index: at which character.
+
+    Attributes:
+        name: the name as it was given.
+        error_msg: what is wrong with it.
+        invalid_index: at which character.
     """
 
-    def __init__(self, kind: str, name: str, reason: str) -> None:
+    def __init__(self, kind: str, name: str, reason: str, index: int = 0) -> None:
         super().__init__(Diagnostic("GRAPH101", f"'{name}' is not a valid {kind}: {reason}"))
+        self.kind = kind
         self.name = name
+        self.error_msg = reason
+        self.invalid_index = index
+
+
+class InvalidNodeNameError(InvalidNameError):
+    """The name of a node is not valid."""
+
+    def __init__(self, name: str, reason: str, index: int = 0) -> None:
+        super().__init__("node name", name, reason, index)
+
+
+class InvalidNamespaceError(InvalidNameError):
+    """A namespace is not valid."""
+
+    def __init__(self, name: str, reason: str, index: int = 0) -> None:
+        super().__init__("namespace", name, reason, index)
+
+
+class InvalidTopicNameError(InvalidNameError):
+    """The name of a topic is not valid."""
+
+    def __init__(self, name: str, reason: str, index: int = 0) -> None:
+        super().__init__("topic name", name, reason, index)
+
+
+class InvalidServiceNameError(InvalidNameError):
+    """The name of a service or an action is not valid."""
+
+    def __init__(self, name: str, reason: str, index: int = 0) -> None:
+        super().__init__("service name", name, reason, index)
+
+
+def node_name_problem(name: str) -> Problem | None:
+    """Why no node may bear the name; None when one may."""
+    if not name:
+        return "node name must not be empty", 0
+    if odd := re.search(r"[^A-Za-z0-9_]", name):
+        return "node name must not contain characters other than alphanumerics or '_'", odd.start()
+    if name[0].isdigit():
+        return "node name must not start with a number", 0
+    if len(name) > _MAX_NODE_NAME_LENGTH:
+        return f"node name length should not exceed '{_MAX_NODE_NAME_LENGTH}'", _MAX_NODE_NAME_LENGTH
+    return None
 
 
 def check_node_name(name: str) -> None:
-    """Raise InvalidNameError unless a node may bear the name."""
-    if not name:
-        reason = "node name must not be empty"
-    elif re.search(r"[^A-Za-z0-9_]", name):
-        reason = "node name must not contain characters other than alphanumerics or '_'"
-    elif name[0].isdigit():
-        reason = "node name must not start with a number"
-    elif len(name) > _MAX_NODE_NAME_LENGTH:
-        reason = f"node name length should not exceed '{_MAX_NODE_NAME_LENGTH}'"
-    else:
-        return
-    raise InvalidNameError("node name", name, reason)
+    """Raise InvalidNodeNameError unless a node may bear the name."""
+    problem = node_name_problem(name)
+    if problem is not None:
+        raise InvalidNodeNameError(name, *problem)
+
+
+def namespace_problem(namespace: str) -> Problem | None:
+    """Why an absolute namespace is not valid; None when it is."""
+    if not namespace:
+        return "namespace must not be empty", 0
+    if not namespace.startswith("/"):
+        return "namespace must be absolute, it must lead with a '/'", 0
+    if namespace == "/":
+        return None
+    if namespace.endswith("/"):
+        return "namespace must not end with a '/'", len(namespace) - 1
+    if odd := re.search(r"[^A-Za-z0-9_/]", namespace):
+        return "namespace must not contain characters other than alphanumerics, '_', or '/'", odd.start()
+    if (at := namespace.find("//")) >= 0:
+        return "namespace must not contain repeated '/'", at + 1
+    if digit := re.search(r"/\d", namespace):
+        return "namespace must not have a token that starts with a number", digit.start() + 1
+    if len(namespace) > _MAX_NAMESPACE_LENGTH:
+        return f"namespace should not exceed '{_MAX_NAMESPACE_LENGTH}'", _MAX_NAMESPACE_LENGTH
+    return None
 
 
 def absolute_namespace(namespace: str) -> str:
     """The namespace with its leading slash, which may be left out; ``/`` for an empty one.
 
     Raises:
-        InvalidNameError: it is not valid.
+        InvalidNamespaceError: it is not valid.
     """
     absolute = namespace if namespace.startswith("/") else f"/{namespace}"
-    if absolute == "/":
-        return absolute
-    if absolute.endswith("/"):
-        reason = "namespace must not end with a '/'"
-    elif re.search(r"[^A-Za-z0-9_/]", absolute):
-        reason = "namespace must not contain characters other than alphanumerics, '_', or '/'"
-    elif "//" in absolute:
-        reason = "namespace must not contain repeated '/'"
-    elif re.search(r"/\d", absolute):
-        reason = "namespace must not have a token that starts with a number"
-    else:
-        return absolute
-    raise InvalidNameError("namespace", namespace, reason)
+    problem = namespace_problem(absolute)
+    if problem is not None:
+        raise InvalidNamespaceError(namespace, *problem)
+    return absolute
 
 
 def join(namespace: str, name: str) -> str:
     """The full name of something in a namespace."""
     return f"/{name}" if namespace == "/" else f"{namespace}/{name}"
+
+
+def split(full_name: str) -> tuple[str, str]:
+    """Namespace and name of a full name."""
+    namespace, _, name = full_name.rpartition("/")
+    return namespace or "/", name
+
+
+def is_hidden(name: str) -> bool:
+    """Whether tools leave a topic, service or node out unless they are asked: a part of it begins with ``_``."""
+    return any(part.startswith("_") for part in name.split("/"))
+
+
+@lru_cache(maxsize=4096)
+def topic_name_problem(name: str) -> Problem | None:
+    """Why a topic or service cannot be named so, before expansion; None when it can."""
+    bare = _SUBSTITUTION.sub(lambda match: "x" * len(match[0]), name)
+    if not name:
+        return "topic name must not be empty string", 0
+    if name.endswith("/"):
+        return "topic name must not end with a forward slash", len(name) - 1
+    if odd := re.search(r"[^A-Za-z0-9_/~{}]", name):
+        return "topic name must not contain characters other than alphanumerics, '_', '~', '{', or '}'", odd.start()
+    if odd := re.search(r"[{}]", bare):
+        return "topic name must not have unmatched (unbalanced) curly braces '{}'", odd.start()
+    if "~" in name[1:]:
+        return "topic name must not have tilde '~' unless it is the first character", name.index("~", 1)
+    if name.startswith("~") and name != "~" and name[1] != "/":
+        return "topic name must not have a tilde '~' that is not followed by a forward slash '/'", 1
+    if odd := re.search(r"\{[^{}]*[^A-Za-z0-9_{}][^{}]*\}", name):
+        return (
+            "substitution name must not contain characters other than alphanumerics or '_'",
+            odd.start(),
+        )
+    if odd := re.search(r"(^|/)\d", bare):
+        return "topic name token must not start with a number", odd.end() - 1
+    if (at := name.find("//")) >= 0:
+        return "topic name must not contain repeated '/'", at + 1
+    return None
 
 
 def expand_topic_name(name: str, node_name: str, namespace: str) -> str:
@@ -80,15 +176,32 @@ def expand_topic_name(name: str, node_name: str, namespace: str) -> str:
         namespace: the node's namespace, absolute.
 
     Raises:
-        InvalidNameError: it is not valid.
+        InvalidTopicNameError: it is not valid.
     """
-    _check_topic_name(name)
+    return _expand(name, node_name, namespace, InvalidTopicNameError)
+
+
+def expand_service_name(name: str, node_name: str, namespace: str) -> str:
+    """The absolute name of a service or action that a node names; see `expand_topic_name`.
+
+    Raises:
+        InvalidServiceNameError: it is not valid.
+    """
+    return _expand(name, node_name, namespace, InvalidServiceNameError)
+
+
+def _expand(
+    name: str, node_name: str, namespace: str, error: type[InvalidTopicNameError | InvalidServiceNameError]
+) -> str:
+    problem = topic_name_problem(name)
+    if problem is not None:
+        raise error(name, *problem)
     substitutions = {"node": node_name, "ns": namespace, "namespace": namespace}
 
     def substitute(match: re.Match[str]) -> str:
         value = substitutions.get(match[1])
         if value is None:
-            raise InvalidNameError("topic name", name, f"unknown substitution '{{{match[1]}}}'")
+            raise error(name, f"unknown substitution '{{{match[1]}}}'", match.start())
         return value
 
     expanded = _SUBSTITUTION.sub(substitute, name)
@@ -97,64 +210,5 @@ def expand_topic_name(name: str, node_name: str, namespace: str) -> str:
     elif not expanded.startswith("/"):
         expanded = join(namespace, expanded)
     if "//" in expanded:
-        raise InvalidNameError("topic name", name, "topic name must not contain repeated '/'")
+        raise error(name, "topic name must not contain repeated '/'", name.find("{"))
     return expanded
-
-
-def _check_topic_name(name: str) -> None:
-    bare = _SUBSTITUTION.sub("x", name)
-    if not name:
-        reason = "topic name must not be empty string"
-    elif name.endswith("/"):
-        reason = "topic name must not end with a forward slash"
-    elif re.search(r"[^A-Za-z0-9_/~{}]", name):
-        reason = "topic name must not contain characters other than alphanumerics, '_', '~', '{', or '}'"
-    elif "{" in bare or "}" in bare:
-        reason = "topic name must not have unmatched (unbalanced) curly braces '{}'"
-    elif "~" in name[1:]:
-        reason = "topic name must not have tilde '~' unless it is the first character"
-    elif name.startswith("~") and name != "~" and name[1] != "/":
-        reason = "topic name must not have a tilde '~' that is not followed by a forward slash '/'"
-    elif re.search(r"(^|/)\d", bare):
-        reason = "topic name token must not start with a number"
-    elif "//" in name:
-        reason = "topic name must not contain repeated '/'"
-    else:
-        return
-    raise InvalidNameError("topic name", name, reason)
-
-
-class Remappings:
-    """A node's remapping rules, each ``from`` and ``to``; the first that fits is taken.
-
-    ``__node`` (or ``__name``) and ``__ns`` rename the node itself.
-    """
-
-    __slots__ = ("_rules",)
-
-    def __init__(self, rules: Sequence[tuple[str, str]] = ()) -> None:
-        self._rules = tuple(rules)
-
-    def node_name(self, name: str) -> str:
-        """The name the node is to bear instead of the one its code gives."""
-        return self._special(("__node", "__name")) or name
-
-    def namespace(self, namespace: str) -> str:
-        """The namespace the node is to live in instead of the one its code gives."""
-        return self._special(("__ns",)) or namespace
-
-    def topic(self, full_name: str, node_name: str, namespace: str) -> str:
-        """The topic to use instead of an expanded one. Both sides of a rule are expanded as the node's own names are.
-
-        Raises:
-            InvalidNameError: a side of a rule is not a valid topic name.
-        """
-        for source, target in self._rules:
-            if source.startswith("__"):
-                continue
-            if expand_topic_name(source, node_name, namespace) == full_name:
-                return expand_topic_name(target, node_name, namespace)
-        return full_name
-
-    def _special(self, names: tuple[str, ...]) -> str | None:
-        return next((target for source, target in self._rules if source in names), None)

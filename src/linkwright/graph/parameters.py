@@ -1,13 +1,14 @@
-"""Node parameters: typed values that are declared, read, and changed with the node's consent."""
+"""Parameters: their types, and one of them with its value. The names and texts are those of ``rclpy.parameter``."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+import array
 from dataclasses import dataclass
 from enum import Enum
+from types import GenericAlias
 from typing import Any
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean
+PARAMETER_SEPARATOR_STRING = "."
 
 
 class ParameterType(Enum):
@@ -25,46 +26,72 @@ class ParameterType(Enum):
     STRING_ARRAY = 9
 
     @classmethod
-    def of(cls, value: object) -> ParameterType:
-        """The type of a Python value; an empty list counts as one of strings.
+    def from_parameter_value(cls, parameter_value: Any) -> ParameterType:
+        """The type of a Python value; an empty list counts as one of bytes, as in rclpy.
 
         Raises:
             TypeError: a parameter cannot have that value.
         """
-        if value is None:
+        if parameter_value is None:
             return cls.NOT_SET
-        if type(value) in _SCALARS:
-            return _SCALARS[type(value)]
-        if isinstance(value, bytes):
-            return cls.BYTE_ARRAY
-        if isinstance(value, (list, tuple)):
-            element_types = {type(element) for element in value} or {str}
-            if len(element_types) == 1 and (found := _ARRAYS.get(element_types.pop())):
-                return found
-        raise TypeError(f"{value!r} is not a value that a parameter can have")
+        for kind, classes in _SCALARS:
+            if isinstance(parameter_value, classes):
+                return kind
+        if not isinstance(parameter_value, (list, tuple, array.array)):
+            raise TypeError(f"The given value is not one of the allowed types '{parameter_value}'.")
+        for kind, element in _ARRAYS:
+            if all(isinstance(each, element) for each in parameter_value):
+                return kind
+        raise TypeError(f"The given value is not a list of one of the allowed types '{parameter_value}'.")
 
-    def accepts(self, value: object) -> bool:
-        """Whether a parameter of this type may be set to a value; any array takes an empty list."""
-        if value in ([], ()) and self in _ARRAYS.values():
-            return True
-        return ParameterType.of(value) is self
+    def check(self, parameter_value: Any) -> bool:
+        """Whether a parameter of this type can have a value. Every array type takes an empty list."""
+        if self is ParameterType.NOT_SET:
+            return parameter_value is None
+        for kind, classes in _SCALARS:
+            if self is kind and isinstance(parameter_value, classes):
+                return True
+        for kind, element in _ARRAYS:
+            if self is kind and isinstance(parameter_value, (list, tuple, array.array)):
+                return all(isinstance(each, element) for each in parameter_value)
+        return False
+
+    @property
+    def is_array(self) -> bool:
+        """Whether values of the type are lists."""
+        return self.value >= ParameterType.BYTE_ARRAY.value
 
     def __str__(self) -> str:
-        return self.name.lower().replace("not_set", "not set")
+        # The text of rclpy's nested class, which stands in the reasons of refusals.
+        return f"Type.{self.name}"
 
 
-_SCALARS: dict[type, ParameterType] = {
-    bool: ParameterType.BOOL,
-    int: ParameterType.INTEGER,
-    float: ParameterType.DOUBLE,
-    str: ParameterType.STRING,
+_SCALARS = (
+    (ParameterType.BOOL, bool),
+    (ParameterType.INTEGER, int),
+    (ParameterType.DOUBLE, float),
+    (ParameterType.STRING, str),
+    (ParameterType.BYTE_ARRAY, bytes),
+)
+_ARRAYS = (
+    (ParameterType.BYTE_ARRAY, bytes),
+    (ParameterType.BOOL_ARRAY, bool),
+    (ParameterType.INTEGER_ARRAY, int),
+    (ParameterType.DOUBLE_ARRAY, float),
+    (ParameterType.STRING_ARRAY, str),
+)
+FIELDS = {
+    ParameterType.BOOL: "bool_value",
+    ParameterType.INTEGER: "integer_value",
+    ParameterType.DOUBLE: "double_value",
+    ParameterType.STRING: "string_value",
+    ParameterType.BYTE_ARRAY: "byte_array_value",
+    ParameterType.BOOL_ARRAY: "bool_array_value",
+    ParameterType.INTEGER_ARRAY: "integer_array_value",
+    ParameterType.DOUBLE_ARRAY: "double_array_value",
+    ParameterType.STRING_ARRAY: "string_array_value",
 }
-_ARRAYS: dict[type, ParameterType] = {
-    bool: ParameterType.BOOL_ARRAY,
-    int: ParameterType.INTEGER_ARRAY,
-    float: ParameterType.DOUBLE_ARRAY,
-    str: ParameterType.STRING_ARRAY,
-}
+"""The field of rcl_interfaces/msg/ParameterValue for each type."""
 
 
 class Parameter:
@@ -73,7 +100,7 @@ class Parameter:
     Args:
         name: the parameter's name; dots separate levels.
         type_: its type; worked out from the value when left out.
-        value: bool, int, float, str, bytes, a list of one of the first four, or None for one that is not set.
+        value: bool, int, float, str, bytes, a list of one of these, or None for one that is not set.
 
     Raises:
         TypeError: a parameter cannot have that value.
@@ -82,181 +109,131 @@ class Parameter:
 
     Type = ParameterType
 
-    __slots__ = ("name", "type_", "value")
+    __class_getitem__: Any = classmethod(GenericAlias)  # annotations name the type of the value, as in rclpy
+
+    __slots__ = ("_name", "_type_", "_value")
 
     def __init__(self, name: str, type_: ParameterType | None = None, value: Any = None) -> None:
-        if type_ is not None and not type_.accepts(value):
-            raise ValueError(f"parameter '{name}' is of type {type_}, which {value!r} is not")
-        self.name = name
-        self.type_ = ParameterType.of(value) if type_ is None else type_
-        self.value: Any = list(value) if isinstance(value, (list, tuple)) else value
+        if type_ is None:
+            type_ = ParameterType.from_parameter_value(value)
+        if not isinstance(type_, ParameterType):
+            raise TypeError(f"type must be an instance of '{ParameterType!r}'")
+        if not type_.check(value):
+            raise ValueError(f"Type '{type_}' and value '{value}' do not agree")
+        self._name = name
+        self._type_ = type_
+        self._value = value
+
+    @classmethod
+    def from_parameter_msg(cls, param_msg: Any) -> Parameter:
+        """The parameter that an rcl_interfaces/msg/Parameter tells of; lists as Python lists."""
+        type_ = ParameterType(param_msg.value.type)
+        return cls(param_msg.name, type_, parameter_value_to_python(param_msg.value))
+
+    @property
+    def name(self) -> str:
+        """Its name."""
+        return self._name
+
+    @property
+    def type_(self) -> ParameterType:
+        """Its type."""
+        return self._type_
+
+    @property
+    def value(self) -> Any:
+        """Its value; None when it is not set."""
+        return self._value
+
+    def get_parameter_value(self) -> Any:
+        """The value as an rcl_interfaces/msg/ParameterValue."""
+        from linkwright.messages import get_message
+
+        message = get_message("rcl_interfaces/msg/ParameterValue")()
+        message.type = self._type_.value
+        if self._type_ is not ParameterType.NOT_SET:
+            setattr(message, FIELDS[self._type_], self._message_value())
+        return message
+
+    def to_parameter_msg(self) -> Any:
+        """The parameter as an rcl_interfaces/msg/Parameter."""
+        from linkwright.messages import get_message
+
+        return get_message("rcl_interfaces/msg/Parameter")(name=self._name, value=self.get_parameter_value())
+
+    def _message_value(self) -> Any:
+        if self._type_ is ParameterType.BYTE_ARRAY:
+            return [bytes([each]) if isinstance(each, int) else each for each in self._value]
+        return list(self._value) if self._type_.is_array else self._value
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Parameter):
+            return NotImplemented
+        return (self._name, self._type_, self._value) == (other._name, other._type_, other._value)
+
+    __hash__ = None  # type: ignore[assignment]  # its value may be a list
 
     def __repr__(self) -> str:
-        return f"Parameter({self.name!r}, {self.type_.name}, {self.value!r})"
+        return f"Parameter({self._name!r}, {self._type_.name}, {self._value!r})"
 
 
-@dataclass(frozen=True, slots=True)
+def parameter_value_to_python(parameter_value: Any) -> Any:
+    """The Python value of an rcl_interfaces/msg/ParameterValue; None when it is not set.
+
+    Raises:
+        RuntimeError: its ``type`` is none of the known ones (rclpy).
+    """
+    try:
+        type_ = ParameterType(parameter_value.type)
+    except ValueError:
+        raise RuntimeError(f"unexpected parameter type {parameter_value.type}") from None
+    if type_ is ParameterType.NOT_SET:
+        return None
+    value = getattr(parameter_value, FIELDS[type_])
+    return list(value) if type_.is_array else value
+
+
+@dataclass(slots=True)
+class Range:
+    """Which numbers a parameter may have: from `from_value` to `to_value`, in steps unless `step` is 0."""
+
+    from_value: float
+    to_value: float
+    step: float = 0
+
+
+@dataclass(slots=True)
 class ParameterDescriptor:
-    """What a node says of a parameter it declares.
+    """What a node says of a parameter; the fields of rcl_interfaces/msg/ParameterDescriptor, which may stand for it.
 
     Attributes:
-        type: the type, where the default value does not show it (an empty list).
+        name: the parameter's name; filled in when it is declared.
+        type: number of its type; filled in from the default value, which shows it, but for an empty list.
         description: what the parameter is for.
+        additional_constraints: in plain words, what else its values must be.
         read_only: it has the value it was declared with for good.
+        dynamic_typing: values of any type may be set, and it may be undeclared by setting nothing.
+        floating_point_range: at most one `Range`, for DOUBLE.
+        integer_range: at most one `Range`, for INTEGER.
     """
 
-    type: ParameterType | None = None
+    name: str = ""
+    type: int | ParameterType = 0
     description: str = ""
+    additional_constraints: str = ""
     read_only: bool = False
+    dynamic_typing: bool = False
+    floating_point_range: list[Range] | tuple[Range, ...] = ()
+    integer_range: list[Range] | tuple[Range, ...] = ()
+
+    def __post_init__(self) -> None:
+        if isinstance(self.type, ParameterType):
+            self.type = self.type.value
 
 
 @dataclass(frozen=True, slots=True)
 class SetParametersResult:
-    """Whether parameters were set, and why not."""
+    """Whether parameters were set, and why not; rcl_interfaces/msg/SetParametersResult may stand for it."""
 
     successful: bool
     reason: str = ""
-
-
-class ParameterNotDeclaredError(LinkwrightError):
-    """A parameter is read that the node has not declared."""
-
-    def __init__(self, name: str, declared: Iterable[str]) -> None:
-        super().__init__(
-            Diagnostic("GRAPH202", f"parameter '{name}' is not declared", hint=did_you_mean(name, declared))
-        )
-
-
-class ParameterAlreadyDeclaredError(LinkwrightError):
-    """A parameter is declared twice."""
-
-    def __init__(self, name: str) -> None:
-        super().__init__(Diagnostic("GRAPH203", f"parameter '{name}' is already declared"))
-
-
-class InvalidParameterTypeError(LinkwrightError):
-    """A parameter is given a value of another type than the node declares."""
-
-    def __init__(self, name: str, expected: ParameterType, value: object) -> None:
-        reason = _wrong_type(name, expected, value).rstrip(".")
-        hint = f"write {value}.0" if expected is ParameterType.DOUBLE and type(value) is int else None
-        super().__init__(Diagnostic("GRAPH201", f"parameter '{name}' has invalid type: {reason}", hint=hint))
-
-
-class InvalidParameterValueError(LinkwrightError):
-    """A parameter is given a value that the node refuses; the message is the node's reason."""
-
-    def __init__(self, name: str, reason: str) -> None:
-        super().__init__(Diagnostic("GRAPH204", f"parameter '{name}' could not be set: {reason}"))
-        self.reason = reason
-
-
-OnSetParameters = Callable[[list[Parameter]], SetParametersResult]
-PostSetParameters = Callable[[list[Parameter]], object]
-
-_ACCEPTED = SetParametersResult(successful=True)
-
-
-class ParameterStore:
-    """The parameters of one node.
-
-    Args:
-        overrides: values that take the place of defaults when parameters of these names are declared. Mappings in it
-            stand for names with dots: ``{"zeros": {"j": 1.0}}`` gives ``zeros.j``.
-    """
-
-    def __init__(self, overrides: Mapping[str, Any]) -> None:
-        self._overrides = dict(_flattened(overrides))
-        self._parameters: dict[str, Parameter] = {}
-        self._descriptors: dict[str, ParameterDescriptor] = {}
-        self.on_set: list[OnSetParameters] = []
-        self.post_set: list[PostSetParameters] = []
-
-    @property
-    def overrides(self) -> Mapping[str, Any]:
-        """The overrides by full name."""
-        return self._overrides
-
-    def declare(self, name: str, value: Any, descriptor: ParameterDescriptor | None) -> Parameter:
-        """Create a parameter with its override or else the default given; see ``Node.declare_parameter``."""
-        if name in self._parameters:
-            raise ParameterAlreadyDeclaredError(name)
-        descriptor = descriptor or ParameterDescriptor()
-        declared = descriptor.type or ParameterType.of(value)
-        initial = self._overrides.get(name, value)
-        try:
-            agrees = initial is None or declared is ParameterType.NOT_SET or declared.accepts(initial)
-        except TypeError as error:
-            raise InvalidParameterValueError(name, str(error)) from None
-        if not agrees:
-            raise InvalidParameterTypeError(name, declared, initial)
-        parameter = Parameter(name, None if initial is None or declared is ParameterType.NOT_SET else declared, initial)
-        verdict = self._ask([parameter])
-        if not verdict.successful:
-            raise InvalidParameterValueError(name, verdict.reason)
-        self._parameters[name] = parameter
-        self._descriptors[name] = descriptor
-        return parameter
-
-    def get(self, name: str) -> Parameter:
-        """A declared parameter."""
-        parameter = self._parameters.get(name)
-        if parameter is None:
-            raise ParameterNotDeclaredError(name, self._parameters)
-        return parameter
-
-    def names(self) -> list[str]:
-        """Names of all declared parameters, in order of declaration."""
-        return list(self._parameters)
-
-    def with_prefix(self, prefix: str) -> dict[str, Parameter]:
-        """The parameters below a prefix, by the rest of their names after its dot."""
-        start = f"{prefix}."
-        return {name[len(start) :]: parameter for name, parameter in self._parameters.items() if name.startswith(start)}
-
-    def set_together(self, parameters: Sequence[Parameter]) -> SetParametersResult:
-        """Set all of them or, if one cannot be set, none."""
-        for parameter in parameters:
-            objection = self._objection(parameter)
-            if objection:
-                return SetParametersResult(successful=False, reason=objection)
-        verdict = self._ask(list(parameters))
-        if not verdict.successful:
-            return verdict
-        for parameter in parameters:
-            self._parameters[parameter.name] = parameter
-        for callback in tuple(self.post_set):
-            callback(list(parameters))
-        return _ACCEPTED
-
-    def _objection(self, parameter: Parameter) -> str | None:
-        declared = self._parameters.get(parameter.name)
-        if declared is None:
-            return f"parameter '{parameter.name}' cannot be set because it was not declared"
-        if self._descriptors[parameter.name].read_only:
-            return f"parameter '{parameter.name}' cannot be set because it is read-only"
-        if declared.type_ is not ParameterType.NOT_SET and not declared.type_.accepts(parameter.value):
-            return _wrong_type(parameter.name, declared.type_, parameter.value)
-        return None
-
-    def _ask(self, parameters: list[Parameter]) -> SetParametersResult:
-        for callback in tuple(self.on_set):
-            verdict = callback(parameters)
-            if not verdict.successful:
-                return verdict
-        return _ACCEPTED
-
-
-def _wrong_type(name: str, expected: ParameterType, value: object) -> str:
-    return (
-        f"Wrong parameter type, parameter {{{name}}} is of type {{{expected}}}, "
-        f"setting it to {{{ParameterType.of(value)}}} is not allowed."
-    )
-
-
-def _flattened(values: Mapping[str, Any], prefix: str = "") -> Iterable[tuple[str, Any]]:
-    for name, value in values.items():
-        if isinstance(value, Mapping):
-            yield from _flattened(value, f"{prefix}{name}.")
-        else:
-            yield prefix + name, value

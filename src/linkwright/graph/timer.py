@@ -3,28 +3,68 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING
 
-from linkwright.graph.clock import Alarm, Clock
-from linkwright.graph.executor import Executor, run_logged
-from linkwright.graph.log import Logger
+from linkwright.graph.clock import Clock
+from linkwright.graph.dispatch import Alarm, CallbackGroup, Dispatcher
+from linkwright.graph.entity import Entity
+from linkwright.graph.signatures import accepts
+from linkwright.graph.time import Time
+
+if TYPE_CHECKING:
+    from linkwright.graph.node import Node
 
 
-class Timer:
+@dataclass(frozen=True, slots=True)
+class TimerInfo:
+    """When a timer's call was due and when it came (rclpy ``TimerInfo``)."""
+
+    expected_call_time: Time
+    actual_call_time: Time
+
+
+class Timer(Entity):
     """Calls back at a fixed period, counted from its start: a late call does not shift the next.
 
-    Calls that were missed altogether are left out, as rcl does.
+    Calls that were missed altogether are left out, as rcl does. The period is counted on the timer's clock: on
+    simulated time when that is a ROS clock under simulation.
+
+    Args:
+        node: whose it is.
+        callback: called without arguments, or with a `TimerInfo` when it takes one.
+        period_ns: the period; 0 calls whenever there is nothing else to do.
+        clock: what the period is counted on.
+        callback_group: which entities may run beside it.
+        autostart: whether it runs from the start; else `reset` starts it.
+
+    Raises:
+        ValueError: the period is negative.
     """
 
-    def __init__(self, period_ns: int, callback: Callable[[], object], clock: Clock, logger: Logger) -> None:
-        if period_ns <= 0:
-            raise ValueError(f"a timer's period must be positive, not {period_ns} ns")
-        self._period_ns = period_ns
-        self._callback = callback
-        self._clock = clock
-        self._logger = logger
+    def __init__(
+        self,
+        node: Node,
+        callback: Callable[..., object] | None,
+        period_ns: int,
+        clock: Clock,
+        callback_group: CallbackGroup | None = None,
+        *,
+        autostart: bool = True,
+    ) -> None:
+        _check_period(period_ns)
+        super().__init__(node, callback_group)
+        self.callback = callback
+        self.clock = clock
+        self._period_ns = int(period_ns)
         self._alarm: Alarm | None = None
-        self._due_ns = 0
-        self.reset()
+        self._due = False
+        self._running = autostart
+        self._last_ns = clock.timer_ns()
+        self._due_ns = self._last_ns + self._period_ns
+        self._rest_ns = 0
+        clock.add_timer(self)
 
     @property
     def timer_period_ns(self) -> int:
@@ -33,55 +73,186 @@ class Timer:
 
     @timer_period_ns.setter
     def timer_period_ns(self, period_ns: int) -> None:
-        if period_ns <= 0:
-            raise ValueError(f"a timer's period must be positive, not {period_ns} ns")
-        self._period_ns = period_ns
+        _check_period(period_ns)
+        self._period_ns = int(period_ns)
+
+    @property
+    def callback(self) -> Callable[..., object] | None:
+        """What is called; None for a timer that calls nothing."""
+        return self._callback
+
+    @callback.setter
+    def callback(self, callback: Callable[..., object] | None) -> None:
+        self._callback = callback
+        self._wants_info = (
+            callback is not None and not accepts(callback, 0, unknown=True) and accepts(callback, 1, unknown=False)
+        )
+
+    @property
+    def what(self) -> str:
+        """What it is, for messages."""
+        return "timer callback"
 
     def is_canceled(self) -> bool:
         """Whether the timer is stopped."""
-        return self._alarm is None
+        return not self._running
+
+    def is_ready(self) -> bool:
+        """Whether a call is due."""
+        return self._running and self.clock.timer_ns() >= self._due_ns
 
     def cancel(self) -> None:
         """Stop; `reset` starts it again."""
-        if self._alarm is not None:
-            self._alarm.cancel()
-            self._alarm = None
+        self._running = False
+        self._disarm()
 
     def reset(self) -> None:
-        """Start anew: the next call comes one period from now."""
+        """Start anew: the next call comes one period from now.
+
+        Raises:
+            InvalidHandleError: the timer was destroyed.
+        """
+        self.check_alive()
+        self._disarm()
+        self._running = True
+        self._last_ns = self.clock.timer_ns()
+        self._due_ns = self._last_ns + self._period_ns
+        self._arm()
+
+    def time_since_last_call(self) -> int:
+        """Nanoseconds since the last call, or since the start when there was none."""
+        return self.clock.timer_ns() - self._last_ns
+
+    def time_until_next_call(self) -> int | None:
+        """Nanoseconds until the next call, negative when it is late; None for a timer that is stopped."""
+        return self._due_ns - self.clock.timer_ns() if self._running else None
+
+    def destroy(self) -> None:
+        """Stop for good, and leave the node."""
+        self.node.destroy_timer(self)
+
+    def retire(self) -> None:
+        """Never call back again."""
+        super().retire()
         self.cancel()
-        self._due_ns = self._clock.steady_ns() + self._period_ns
-        self._alarm = self._clock.call_at(self._due_ns, self._fire)
+        self.clock.remove_timer(self)
+
+    def set_dispatcher(self, dispatcher: Dispatcher | None) -> None:
+        """Have the calls run by a dispatcher; one that fell due while there was none is made once."""
+        self._disarm()
+        super().set_dispatcher(dispatcher)
+        if self._running:
+            self._arm()
+
+    def has_work(self) -> bool:
+        """Whether a call fell due and was not taken yet."""
+        return self._due
+
+    def take(self) -> Callable[[], object] | None:
+        """The call that is due."""
+        self._announced = False
+        if not self._due:
+            return None
+        self._due = False
+        now_ns = self.clock.timer_ns()
+        expected_ns = self._due_ns
+        self._last_ns = now_ns
+        period_ns = self._period_ns
+        self._due_ns += period_ns
+        if self._due_ns <= now_ns:
+            late_ns = now_ns - self._due_ns
+            self._due_ns = now_ns if period_ns == 0 else self._due_ns + (late_ns // period_ns + 1) * period_ns
+        self._arm()
+        callback = self._callback
+        if callback is None or not self._wants_info:
+            return callback
+        kind = self.clock.clock_type
+        return partial(
+            callback,
+            TimerInfo(Time(nanoseconds=expected_ns, clock_type=kind), Time(nanoseconds=now_ns, clock_type=kind)),
+        )
+
+    def before_switch(self) -> None:
+        """Keep what is left of the period while the clock becomes another one."""
+        self._rest_ns = min(max(self._due_ns - self.clock.timer_ns(), 0), self._period_ns)
+        self._disarm_alarm()
+
+    def after_switch(self) -> None:
+        """Go on by the other clock."""
+        self._due_ns = self.clock.timer_ns() + self._rest_ns
+        self._last_ns = self._due_ns - self._period_ns
+        if self._running and not self._due:
+            self._arm()
+
+    def after_jump_back(self) -> None:
+        """Start the period anew when the clock went back behind the last call, or else wait for the same time."""
+        self._disarm_alarm()
+        now_ns = self.clock.timer_ns()
+        if now_ns < self._last_ns:
+            self._last_ns = now_ns
+            self._due_ns = now_ns + self._period_ns
+        if self._running and not self._due:
+            self._arm()
+
+    def _arm(self) -> None:
+        dispatcher = self.dispatcher
+        if dispatcher is not None:
+            self._alarm = self.clock.call_at(dispatcher, self._due_ns, self._fire)
+
+    def _disarm(self) -> None:
+        self._disarm_alarm()
+        self._due = False
+
+    def _disarm_alarm(self) -> None:
+        alarm, self._alarm = self._alarm, None
+        if alarm is not None:
+            alarm.cancel()
 
     def _fire(self) -> None:
-        now_ns = self._clock.steady_ns()
-        self._due_ns += self._period_ns
-        if self._due_ns <= now_ns:
-            self._due_ns += ((now_ns - self._due_ns) // self._period_ns + 1) * self._period_ns
-        self._alarm = self._clock.call_at(self._due_ns, self._fire)
-        run_logged(self._logger, "timer callback", self._callback)
+        self._alarm = None
+        if self._running:
+            self._due = True
+            self.announce()
 
 
-class GuardCondition:
+def _check_period(period_ns: int) -> None:
+    if period_ns < 0:
+        raise ValueError(f"timer period must be non-negative, not {period_ns} ns")
+
+
+class GuardCondition(Entity):
     """Calls back soon after it was triggered: once, however often it was triggered in between."""
 
-    def __init__(self, callback: Callable[[], object], executor: Executor, logger: Logger) -> None:
-        self._callback: Callable[[], object] | None = callback
-        self._executor = executor
-        self._logger = logger
+    def __init__(
+        self, node: Node, callback: Callable[[], object] | None, callback_group: CallbackGroup | None = None
+    ) -> None:
+        super().__init__(node, callback_group)
+        self.callback = callback
         self._triggered = False
+
+    @property
+    def what(self) -> str:
+        """What it is, for messages."""
+        return "guard condition callback"
 
     def trigger(self) -> None:
         """Have the callback called."""
-        if not self._triggered and self._callback is not None:
+        if not self.destroyed:
             self._triggered = True
-            self._executor.submit(self._run)
+            self.announce()
 
     def destroy(self) -> None:
-        """Never call back again."""
-        self._callback = None
+        """Never call back again, and leave the node."""
+        self.node.destroy_guard_condition(self)
 
-    def _run(self) -> None:
+    def has_work(self) -> bool:
+        """Whether it was triggered."""
+        return self._triggered
+
+    def take(self) -> Callable[[], object] | None:
+        """The callback, if it was triggered."""
+        self._announced = False
+        if not self._triggered or self.destroyed:
+            return None
         self._triggered = False
-        if self._callback is not None:
-            run_logged(self._logger, "guard condition callback", self._callback)
+        return self.callback

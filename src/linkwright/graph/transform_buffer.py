@@ -9,12 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.graph.frame_tree import FrameTree, Poses, Rows
-from linkwright.graph.transform_errors import (
-    TransformArgumentError,
-    TransformConnectivityError,
-    TransformLookupError,
-    TransformLoopError,
-)
+from linkwright.graph.transform_errors import bad_frame_name, loop, not_connected, unknown_frame
 from linkwright.kinematics import IDENTITY, compose, invert
 from linkwright.messages import TFMessage, TransformBatch
 
@@ -128,18 +123,17 @@ class TransformBuffer:
         It takes points given in the source frame to the target frame, as tf2's ``lookupTransform`` does.
 
         Raises:
-            TransformLookupError: one of the frames is not known.
-            TransformConnectivityError: no transforms lead from one to the other.
-            TransformLoopError: the parents of one of them go round in a loop.
-            TransformArgumentError: a name is empty or begins with a slash.
+            LookupException: one of the frames is not known, or its parents go round in a loop.
+            ConnectivityException: no transforms lead from one to the other.
+            InvalidArgumentException: a name is empty or begins with a slash.
         """
         target_row, source_row = self._row("target_frame", target), self._row("source_frame", source)
         roots = self._tree.roots
         for frame, row in ((target, target_row), (source, source_row)):
             if roots[row] < 0:
-                raise TransformLoopError(frame)
+                raise loop(f" Frame '{frame}' is on it or below it.")
         if roots[target_row] != roots[source_row]:
-            raise TransformConnectivityError(target, source)
+            raise not_connected(target, source)
         poses = self._poses_in_roots()
         return compose(invert(poses[target_row]), poses[source_row])
 
@@ -174,13 +168,13 @@ class TransformBuffer:
         self._in_roots = None
 
     def _row(self, argument: str, frame: str) -> int:
-        if not frame:
-            raise TransformArgumentError(argument, frame, "in tf2 frame_ids cannot be empty")
-        if frame.startswith("/"):
-            raise TransformArgumentError(argument, frame, "in tf2 frame_ids cannot start with a '/'")
+        argument = f"lookupTransform argument {argument}"
+        problem = bad_frame_name(argument, frame)
+        if problem is not None:
+            raise problem
         row = self._rows.get(frame)
         if row is None:
-            raise TransformLookupError(argument, frame, self._names)
+            raise unknown_frame(argument, frame, self._names)
         return row
 
     def _poses_in_roots(self) -> Poses:

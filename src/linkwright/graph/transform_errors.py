@@ -1,44 +1,94 @@
-"""Why a transform cannot be given, in tf2's words."""
+"""Why a transform cannot be given: tf2's exceptions, by its names and in its words."""
 
 from __future__ import annotations
+
+from collections.abc import Iterable
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean
 
 
-class TransformError(LinkwrightError):
-    """A transform cannot be given."""
+class TransformException(LinkwrightError):  # noqa: N818  # tf2's name, which users' code catches
+    """A transform cannot be given.
+
+    Args:
+        text: why.
+        hint: how to mend it.
+        code: the diagnostic's code.
+    """
+
+    def __init__(self, text: str = "", *, hint: str | None = None, code: str = "GRAPH307") -> None:
+        super().__init__(Diagnostic(code, text, hint=hint))
 
 
-class TransformLookupError(TransformError):
-    """A frame is not known (tf2 LookupException)."""
+class LookupException(TransformException):
+    """A frame is not known, or the tree has a loop."""
 
-    def __init__(self, argument: str, frame: str, known: tuple[str, ...]) -> None:
-        text = f'"{frame}" passed to lookupTransform argument {argument} does not exist. '
-        super().__init__(Diagnostic("GRAPH301", text, hint=did_you_mean(frame, known)))
-
-
-class TransformConnectivityError(TransformError):
-    """Two frames are in different trees (tf2 ConnectivityException)."""
-
-    def __init__(self, target: str, source: str) -> None:
-        text = (
-            f"Could not find a connection between '{target}' and '{source}' because they are not part of the same "
-            "tree.Tf has two or more unconnected trees."
-        )
-        super().__init__(Diagnostic("GRAPH302", text))
+    def __init__(self, text: str = "", *, hint: str | None = None, code: str = "GRAPH301") -> None:
+        super().__init__(text, hint=hint, code=code)
 
 
-class TransformLoopError(TransformError):
-    """A frame's parents go round in a loop (tf2 LookupException)."""
+class ConnectivityException(TransformException):
+    """Two frames are in different trees."""
 
-    def __init__(self, frame: str) -> None:
-        text = "The tf tree is invalid because it contains a loop."
-        super().__init__(Diagnostic("GRAPH303", f"{text} Frame '{frame}' is on it or below it."))
+    def __init__(self, text: str = "") -> None:
+        super().__init__(text, code="GRAPH302")
 
 
-class TransformArgumentError(TransformError):
-    """A frame name cannot be one (tf2 InvalidArgumentException)."""
+class InvalidArgumentException(TransformException):
+    """A frame name cannot be one."""
 
-    def __init__(self, argument: str, frame: str, reason: str) -> None:
-        text = f'Invalid argument "{frame}" passed to lookupTransform argument {argument} - {reason}'
-        super().__init__(Diagnostic("GRAPH304", text))
+    def __init__(self, text: str = "") -> None:
+        super().__init__(text, code="GRAPH304")
+
+
+class ExtrapolationException(TransformException):
+    """A transform is asked for at a time for which there is no data."""
+
+    def __init__(self, text: str = "") -> None:
+        super().__init__(text, code="GRAPH305")
+
+
+class TimeoutException(TransformException):
+    """A transform did not become available in time."""
+
+    def __init__(self, text: str = "") -> None:
+        super().__init__(text, code="GRAPH306")
+
+
+LOOP = "The tf tree is invalid because it contains a loop."
+
+
+def loop(which: str) -> LookupException:
+    """The error for parents that go round in a loop; `which` tells of the frames."""
+    return LookupException(f"{LOOP}{which}", code="GRAPH303")
+
+
+def unknown_frame(argument: str, frame: str, known: Iterable[str]) -> LookupException:
+    """The error for a frame that does not exist."""
+    text = f'"{frame}" passed to {argument} does not exist. '
+    return LookupException(text, hint=did_you_mean(frame, known))
+
+
+def bad_frame_name(argument: str, frame: str) -> InvalidArgumentException | None:
+    """The error for a name that no frame can have; None when it can be one."""
+    reason = bad_frame_reason(frame)
+    if reason is None:
+        return None
+    return InvalidArgumentException(f'Invalid argument "{frame}" passed to {argument} - {reason}')
+
+
+def bad_frame_reason(frame: str) -> str | None:
+    """Why no frame can have a name; None when one can."""
+    if not frame:
+        return "in tf2 frame_ids cannot be empty"
+    if frame.startswith("/"):
+        return "in tf2 frame_ids cannot start with a '/'"
+    return None
+
+
+def not_connected(target: str, source: str) -> ConnectivityException:
+    """The error for frames of different trees."""
+    return ConnectivityException(
+        f"Could not find a connection between '{target}' and '{source}' because they are not part of the same "
+        "tree.Tf has two or more unconnected trees."
+    )

@@ -2,26 +2,74 @@
 
 from __future__ import annotations
 
-from linkwright.graph.node import Node
-from linkwright.graph.qos import STATIC_TF_SUBSCRIPTION_QOS, TF_QOS
-from linkwright.graph.transform_buffer import TransformBuffer
+from typing import Any, Protocol
+
+from linkwright.graph.qos import STATIC_TF_SUBSCRIPTION_QOS, TF_QOS, QoSProfile
 from linkwright.messages import TFMessage
+
+DEFAULT_TF_TOPIC = "/tf"
+DEFAULT_STATIC_TF_TOPIC = "/tf_static"
+
+
+class FillableBuffer(Protocol):
+    """A buffer that a listener fills."""
+
+    def update(self, message: TFMessage, *, static: bool, now_ns: int) -> None:
+        """Take in a message."""
 
 
 class TransformListener:
     """Subscribes a node to ``/tf`` and ``/tf_static`` for a buffer.
 
     The topic names are absolute, as in tf2_ros: namespaces do not divide the transforms, remappings can.
+
+    Args:
+        buffer: what is filled.
+        node: subscribes.
+        qos: for ``/tf``.
+        static_qos: for ``/tf_static``.
+        static_only: whether only ``/tf_static`` is listened to.
+        tf_topic: instead of ``/tf``.
+        tf_static_topic: instead of ``/tf_static``.
     """
 
-    def __init__(self, buffer: TransformBuffer, node: Node) -> None:
-        self._buffer = buffer
+    def __init__(
+        self,
+        buffer: FillableBuffer,
+        node: Any,
+        *,
+        qos: QoSProfile | int | None = None,
+        static_qos: QoSProfile | int | None = None,
+        static_only: bool = False,
+        tf_topic: str = DEFAULT_TF_TOPIC,
+        tf_static_topic: str = DEFAULT_STATIC_TF_TOPIC,
+    ) -> None:
+        self.buffer = buffer
+        self.node = node
         self._clock = node.get_clock()
-        node.create_subscription(TFMessage, "/tf", self._on_tf, TF_QOS)
-        node.create_subscription(TFMessage, "/tf_static", self._on_tf_static, STATIC_TF_SUBSCRIPTION_QOS)
+        self._subscriptions = [
+            node.create_subscription(
+                TFMessage,
+                tf_static_topic,
+                self.static_callback,
+                STATIC_TF_SUBSCRIPTION_QOS if static_qos is None else static_qos,
+            )
+        ]
+        if not static_only:
+            self._subscriptions.append(
+                node.create_subscription(TFMessage, tf_topic, self.callback, TF_QOS if qos is None else qos)
+            )
 
-    def _on_tf(self, message: TFMessage) -> None:
-        self._buffer.update(message, static=False, now_ns=self._clock.now_ns())
+    def unregister(self) -> None:
+        """Listen no more."""
+        for subscription in self._subscriptions:
+            self.node.destroy_subscription(subscription)
+        self._subscriptions = []
 
-    def _on_tf_static(self, message: TFMessage) -> None:
-        self._buffer.update(message, static=True, now_ns=self._clock.now_ns())
+    def callback(self, data: TFMessage) -> None:
+        """Take in a message of ``/tf``."""
+        self.buffer.update(data, static=False, now_ns=self._clock.now().nanoseconds)
+
+    def static_callback(self, data: TFMessage) -> None:
+        """Take in a message of ``/tf_static``."""
+        self.buffer.update(data, static=True, now_ns=self._clock.now().nanoseconds)

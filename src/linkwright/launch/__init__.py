@@ -1,14 +1,24 @@
 """Launch descriptions: actions, substitutions, conditions, events, and running what they describe."""
 
-from linkwright.launch.run import LaunchOptions, run_launch, show_arguments
+from linkwright.launch.engine.hosted_plan import is_viewer
+from linkwright.launch.program import find_program, run_viewer
+from linkwright.launch.ros.executables import Executable, builtin_packages, executables_of
+from linkwright.launch.run import LaunchOptions, print_description, run_launch, show_arguments
 from linkwright.launch.target import LaunchTarget, parse_launch_words
 from linkwright.launch.view import run_view
 
 __all__ = [
+    "Executable",
     "LaunchOptions",
     "LaunchTarget",
+    "builtin_packages",
+    "executables_of",
+    "find_program",
+    "is_viewer",
     "parse_launch_words",
+    "print_description",
     "run_launch",
     "run_view",
+    "run_viewer",
     "show_arguments",
 ]

@@ -10,6 +10,7 @@ from linkwright.launch.context import LaunchContext
 from linkwright.launch.places import Place, error_at, located
 from linkwright.launch.substitution import (
     SomeSubstitutionsType,
+    describe,
     normalize_to_list_of_substitutions,
     perform_substitutions,
 )
@@ -18,8 +19,20 @@ _TRUE = ("true", "1")
 _FALSE = ("false", "0")
 
 
-class InvalidConditionExpressionError(RuntimeError):
-    """The expression of a condition is neither true nor false."""
+class InvalidConditionExpressionError(Exception):
+    """The expression of a condition is neither true nor false.
+
+    Args:
+        given: its value, and what was accepted as true and as false; or one text.
+    """
+
+    def __init__(self, *given: Any) -> None:
+        self.text = str(given[0]) if given else ""
+        if len(given) > 1:
+            accepted = f"true={list(given[1])}, false={list(given[2])}" if len(given) > 2 else str(given[1])
+            super().__init__(f"invalid condition expression '{self.text}', expected one of: {accepted}")
+        else:
+            super().__init__(*given)
 
 
 class Condition:
@@ -33,6 +46,17 @@ class Condition:
         self._predicate = predicate
         self.place = Place.of_caller()
 
+    def describe(self) -> str:
+        """A short form for listings."""
+        return f"{type(self).__name__}()"
+
+    def __str__(self) -> str:
+        return self.describe()
+
+    def _predicate_func(self, context: LaunchContext) -> bool:
+        """The same as `evaluate`, by the name under which launch files call it that look inside ROS's conditions."""
+        return self.evaluate(context)
+
     def evaluate(self, context: LaunchContext) -> bool:
         """Whether the action runs."""
         if self._predicate is None:
@@ -42,23 +66,34 @@ class Condition:
         except LinkwrightError as error:
             raise located(error, self.place) from error
         except InvalidConditionExpressionError as error:
-            raise error_at(self.place, "LAUNCH127", str(error)) from error
+            raise error_at(self.place, "LAUNCH127", _words(error.text), promises=error) from error
 
 
-class IfCondition(Condition):
+class _OnExpression(Condition):
+    """What asks whether an expression is true."""
+
+    def __init__(self, predicate_expression: Any, wanted: bool) -> None:
+        expression = normalize_to_list_of_substitutions(_text(predicate_expression))
+        super().__init__(predicate=lambda context: evaluate_condition_expression(context, expression) is wanted)
+        self._expression = expression
+
+    def describe(self) -> str:
+        """The expression."""
+        return f"{type(self).__name__}({describe(self._expression)})"
+
+
+class IfCondition(_OnExpression):
     """The action runs if the expression is true."""
 
     def __init__(self, predicate_expression: SomeSubstitutionsType) -> None:
-        expression = normalize_to_list_of_substitutions(predicate_expression)
-        super().__init__(predicate=lambda context: evaluate_condition_expression(context, expression))
+        super().__init__(predicate_expression, True)
 
 
-class UnlessCondition(Condition):
+class UnlessCondition(_OnExpression):
     """The action runs if the expression is false."""
 
     def __init__(self, predicate_expression: SomeSubstitutionsType) -> None:
-        expression = normalize_to_list_of_substitutions(predicate_expression)
-        super().__init__(predicate=lambda context: not evaluate_condition_expression(context, expression))
+        super().__init__(predicate_expression, False)
 
 
 class LaunchConfigurationEquals(Condition):
@@ -94,12 +129,18 @@ def evaluate_condition_expression(context: LaunchContext, expression: Any) -> bo
     Raises:
         InvalidConditionExpressionError: for any other text.
     """
-    text = perform_substitutions(context, normalize_to_list_of_substitutions(expression))
+    text = perform_substitutions(context, normalize_to_list_of_substitutions(_text(expression)))
     folded = text.strip().lower()
     if folded in _TRUE:
         return True
     if folded in _FALSE:
         return False
-    raise InvalidConditionExpressionError(
-        f"the condition is '{text}', which is neither 'true' or '1' nor 'false' or '0'"
-    )
+    raise InvalidConditionExpressionError(text, _TRUE, _FALSE)
+
+
+def _text(expression: Any) -> Any:
+    return str(expression).lower() if isinstance(expression, bool) else expression
+
+
+def _words(text: str) -> str:
+    return f"the condition is '{text}', which is neither 'true' or '1' nor 'false' or '0'"

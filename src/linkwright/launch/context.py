@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 import os
 import sys
-from collections.abc import Iterable, MutableMapping, Sequence
-from types import SimpleNamespace
+from collections import deque
+from collections.abc import Callable, Iterable, MutableMapping, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import Diagnostic, print_diagnostics
@@ -15,8 +17,61 @@ from linkwright.launch.substitution import Substitution, perform
 if TYPE_CHECKING:
     from linkwright.launch.engine.descriptions import Descriptions
     from linkwright.launch.engine.session import LaunchSession
-    from linkwright.launch.event_handlers import EventHandler
+    from linkwright.launch.event_handlers import BaseEventHandler
     from linkwright.launch.events import Event
+
+
+class EventQueue:
+    """The events that wait to be handled.
+
+    Attributes:
+        on_put: called when one is added.
+    """
+
+    def __init__(self) -> None:
+        self._events: deque[Event] = deque()
+        self.on_put: Callable[[], None] | None = None
+
+    def put_nowait(self, event: Event) -> None:
+        """Add an event."""
+        self._events.append(event)
+        if self.on_put is not None:
+            self.on_put()
+
+    def get_nowait(self) -> Event:
+        """Take the oldest event.
+
+        Raises:
+            asyncio.QueueEmpty: when there is none.
+        """
+        if not self._events:
+            raise asyncio.QueueEmpty
+        return self._events.popleft()
+
+    def qsize(self) -> int:
+        """How many events wait."""
+        return len(self._events)
+
+    def empty(self) -> bool:
+        """Whether none waits."""
+        return not self._events
+
+
+class Locals:
+    """The values of the moment as attributes, to be read only."""
+
+    def __init__(self, values: dict[str, Any]) -> None:
+        object.__setattr__(self, "_values", values)
+
+    def __getattr__(self, name: str) -> Any:
+        values = object.__getattribute__(self, "_values")
+        if name not in values:
+            listed = ", ".join(values)
+            raise AttributeError(f"context.locals does not contain attribute '{name}', it contains: [{listed}]")
+        return values[name]
+
+    def __setattr__(self, name: str, value: object) -> None:
+        raise AttributeError(f"can't set attribute '{name}', locals are read-only")
 
 
 class LaunchContext:
@@ -34,6 +89,12 @@ class LaunchContext:
         self.noninteractive = noninteractive
         self.launch_configurations: dict[str, Any] = {}
         self.environment: MutableMapping[str, str] = os.environ
+        self._initial_environment = dict(os.environ)
+        self._event_queue = EventQueue()
+        self._event_handlers: deque[BaseEventHandler] = deque()
+        self._completion_futures: list[asyncio.Future[Any]] = []
+        self._is_shutdown = False
+        self._loop: asyncio.AbstractEventLoop | None = None
         self._locals: list[dict[str, Any]] = [{}]
         self._globals: dict[str, Any] = {}
         self._configurations_stack: list[dict[str, Any]] = []
@@ -47,9 +108,9 @@ class LaunchContext:
     # --- locals ---------------------------------------------------------------------------------------------
 
     @property
-    def locals(self) -> SimpleNamespace:
+    def locals(self) -> Locals:
         """The values of the moment, such as ``event`` while an event is handled."""
-        return SimpleNamespace(**self.get_locals_as_dict())
+        return Locals(self.get_locals_as_dict())
 
     def get_locals_as_dict(self) -> dict[str, Any]:
         """The same values as a dict."""
@@ -62,6 +123,12 @@ class LaunchContext:
         """Set values of the moment."""
         self._locals[-1].update(extensions)
 
+    def remove_locals(self, names: Iterable[str]) -> None:
+        """Forget values of the moment, of this and the moments around it."""
+        for name in names:
+            for layer in self._locals:
+                layer.pop(name, None)
+
     def extend_globals(self, extensions: dict[str, Any]) -> None:
         """Set values that outlast the moment."""
         self._globals.update(extensions)
@@ -71,7 +138,13 @@ class LaunchContext:
         self._locals.append({})
 
     def pop_locals(self) -> None:
-        """End a moment."""
+        """End a moment.
+
+        Raises:
+            RuntimeError: when none has begun.
+        """
+        if len(self._locals) < 2:
+            raise RuntimeError("locals stack unexpectedly empty")
         self._locals.pop()
 
     # --- scopes ---------------------------------------------------------------------------------------------
@@ -81,7 +154,13 @@ class LaunchContext:
         self._configurations_stack.append(dict(self.launch_configurations))
 
     def pop_launch_configurations(self) -> None:
-        """Close it: they are what they were before."""
+        """Close it: they are what they were before.
+
+        Raises:
+            RuntimeError: when none is open.
+        """
+        if not self._configurations_stack:
+            raise RuntimeError("launch_configurations stack unexpectedly empty")
         restored = self._configurations_stack.pop()
         self.launch_configurations.clear()
         self.launch_configurations.update(restored)
@@ -91,11 +170,19 @@ class LaunchContext:
         self._environment_stack.append(dict(self.environment))
 
     def pop_environment(self) -> None:
-        """Close it: they are what they were before."""
+        """Close it: they are what they were before.
+
+        Raises:
+            RuntimeError: when none is open.
+        """
+        if not self._environment_stack:
+            raise RuntimeError("environment stack unexpectedly empty")
         self.reset_environment(self._environment_stack.pop())
 
-    def reset_environment(self, environment: dict[str, str]) -> None:
-        """Make the environment the one given."""
+    def reset_environment(self, environment: dict[str, str] | None = None) -> None:
+        """Make the environment the one given, by default that in which the context was made."""
+        if environment is None:
+            environment = self._initial_environment
         for name in [name for name in self.environment if name not in environment]:
             del self.environment[name]
         self.environment.update(environment)
@@ -107,13 +194,41 @@ class LaunchContext:
         copy._globals = dict(self._globals)
         copy._locals = [self.get_locals_as_dict()]
         copy._session = self._session
+        copy._loop = self._loop
+        copy._event_queue = self._event_queue
+        copy._event_handlers = self._event_handlers
         return copy
+
+    # Users' entities and tests call these by the names that they have in ROS.
+    _push_locals = push_locals
+    _pop_locals = pop_locals
+    _push_launch_configurations = push_launch_configurations
+    _pop_launch_configurations = pop_launch_configurations
+    _push_environment = push_environment
+    _pop_environment = pop_environment
+    _reset_environment = reset_environment
 
     # --- the running launch ---------------------------------------------------------------------------------
 
     def attach(self, session: LaunchSession) -> None:
         """Tie the context to the launch that runs in it."""
         self._session = session
+
+    @property
+    def is_running(self) -> bool:
+        """Whether a launch runs in this context."""
+        return self._session is not None
+
+    def detach(self) -> None:
+        """Untie the context from a launch that is over."""
+        self._session = None
+        self._event_queue.on_put = None
+        self._locals = self._locals[:1]
+
+    @property
+    def runs(self) -> bool:
+        """Whether a launch runs in the context."""
+        return self._session is not None
 
     @property
     def session(self) -> LaunchSession:
@@ -130,6 +245,36 @@ class LaunchContext:
     def descriptions(self) -> Descriptions | None:
         """The robot descriptions of the running launch; None when nothing runs."""
         return None if self._session is None else self._session.descriptions
+
+    def log(self, name: str, level: int, text: str) -> None:
+        """Write a line into the log of the launch.
+
+        Args:
+            name: whose line it is.
+            level: as in ``logging``.
+            text: the line.
+        """
+        if self._session is not None:
+            log = self._session.log
+            if level >= logging.ERROR:
+                log.complain(name, text)
+            elif level >= logging.WARNING:
+                log.caution(name, text)
+            else:
+                (log.say if level >= logging.INFO else log.detail)(name, text)
+        else:
+            from linkwright.launch.engine.user_logging import get_logger
+
+            get_logger(name).log(level, "%s", text)
+
+    @property
+    def log_folder(self) -> Path:
+        """The folder that this launch writes its log into."""
+        if self._session is not None:
+            return self._session.log.folder
+        from linkwright.launch.engine.user_logging import launch_config
+
+        return Path(launch_config.log_dir)
 
     def warn(self, warning: Diagnostic) -> None:
         """Tell the user of something that is no error."""
@@ -148,33 +293,48 @@ class LaunchContext:
     @property
     def is_shutdown(self) -> bool:
         """Whether the launch is ending."""
-        return self._session is not None and self._session.ending
+        return self._is_shutdown or (self._session is not None and self._session.ending)
+
+    def _set_is_shutdown(self, state: bool) -> None:
+        self._is_shutdown = state
 
     @property
     def asyncio_loop(self) -> asyncio.AbstractEventLoop | None:
         """The loop that the launch runs on."""
-        return None if self._session is None else self._session.loop
+        return self._session.loop if self._session is not None and self._session.loop else self._loop
 
-    def register_event_handler(self, event_handler: EventHandler) -> None:
-        """Have a handler asked about every event from now on, before those registered earlier."""
-        self.session.handlers.insert(0, event_handler)
+    def _set_asyncio_loop(self, loop: asyncio.AbstractEventLoop | None) -> None:
+        self._loop = loop
 
-    def unregister_event_handler(self, event_handler: EventHandler) -> None:
+    def add_completion_future(self, completion_future: asyncio.Future[Any]) -> None:
+        """Have the launch not end before something is done."""
+        self._completion_futures.append(completion_future)
+        if self._session is not None:
+            self._session.hold(completion_future)
+
+    def register_event_handler(self, event_handler: BaseEventHandler, append: bool = False) -> None:
+        """Have a handler asked about every event from now on: before those registered earlier, or after them."""
+        if append:
+            self._event_handlers.append(event_handler)
+        else:
+            self._event_handlers.appendleft(event_handler)
+
+    def unregister_event_handler(self, event_handler: BaseEventHandler) -> None:
         """Have a handler asked no longer.
 
         Raises:
             ValueError: if it is not registered.
         """
-        self.session.handlers.remove(event_handler)
+        self._event_handlers.remove(event_handler)
 
     def would_handle_event(self, event: Event) -> bool:
         """Whether any handler is for the event."""
-        return any(handler.matches(event) for handler in self.session.handlers)
+        return any(handler.matches(event) for handler in tuple(self._event_handlers))
 
     def emit_event_sync(self, event: Event) -> None:
         """Put an event into the queue."""
-        self.session.emit(event)
+        self._event_queue.put_nowait(event)
 
     async def emit_event(self, event: Event) -> None:
         """Put an event into the queue."""
-        self.session.emit(event)
+        self._event_queue.put_nowait(event)

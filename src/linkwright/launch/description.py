@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
@@ -13,10 +14,21 @@ if TYPE_CHECKING:
 
 
 class LaunchDescription(LaunchDescriptionEntity):
-    """Entities in the order in which they are visited."""
+    """Entities in the order in which they are visited.
 
-    def __init__(self, initial_entities: Iterable[LaunchDescriptionEntity] | None = None) -> None:
+    Args:
+        initial_entities: the entities.
+        deprecated_reason: why it should not be used any more; said when it is visited.
+    """
+
+    def __init__(
+        self,
+        initial_entities: Iterable[LaunchDescriptionEntity] | None = None,
+        *,
+        deprecated_reason: str | None = None,
+    ) -> None:
         self._entities = list(initial_entities or ())
+        self._deprecated_reason = deprecated_reason
 
     @property
     def entities(self) -> list[LaunchDescriptionEntity]:
@@ -24,6 +36,20 @@ class LaunchDescription(LaunchDescriptionEntity):
         return self._entities
 
     @property
+    def deprecated(self) -> bool:
+        """Whether it should not be used any more."""
+        return self._deprecated_reason is not None
+
+    @property
+    def deprecated_reason(self) -> str | None:
+        """Why it should not be used any more."""
+        return self._deprecated_reason
+
+    def describe(self) -> str:
+        """How many entities it has."""
+        number = len(self._entities)
+        return f"{type(self).__name__}({number} {'entity' if number == 1 else 'entities'})"
+
     def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
         """The entities, as tools that look at a description ask for them."""
         return self._entities
@@ -36,8 +62,14 @@ class LaunchDescription(LaunchDescriptionEntity):
         """Append an action."""
         self._entities.append(action)
 
-    def visit(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity]:  # noqa: ARG002
+    def visit(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity]:
         """The entities, to be visited next."""
+        if self.deprecated:
+            file = context.get_locals_as_dict().get("current_launch_file_path")
+            where = f"launch file [{file}] is" if file else "launch description is"
+            text = f"The {where} deprecated: {self._deprecated_reason}"
+            if hasattr(context, "log"):
+                context.log("launch", logging.WARNING, text)
         return self._entities
 
     def get_launch_arguments(self, conditional_inclusion: bool = False) -> list[DeclareLaunchArgument]:

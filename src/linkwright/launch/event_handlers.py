@@ -2,17 +2,71 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any
 
 from linkwright.launch import events
-from linkwright.launch.context import LaunchContext
-from linkwright.launch.entity import LaunchDescriptionEntity, SomeEntitiesType, as_entities
+from linkwright.launch.entity import Action, LaunchDescriptionEntity, SomeEntitiesType, as_entities
+
+if TYPE_CHECKING:
+    from linkwright.launch.context import LaunchContext
 
 EntitiesOrCallable = SomeEntitiesType | Callable[..., Any] | None
 
 
-class EventHandler:
+class BaseEventHandler:
+    """Reacts to the events that a matcher accepts; users derive from it and override `handle`.
+
+    Args:
+        matcher: called with the event.
+        handle_once: whether it is unregistered after the first event.
+    """
+
+    def __init__(self, *, matcher: Callable[[Any], bool], handle_once: bool = False) -> None:
+        self._matcher = matcher
+        self._handle_once = handle_once
+
+    @property
+    def handle_once(self) -> bool:
+        """Whether it is unregistered after the first event."""
+        return self._handle_once
+
+    @property
+    def handler_description(self) -> str | None:
+        """What it does, for listings."""
+        return None
+
+    @property
+    def matcher_description(self) -> str | None:
+        """Which events it is for, for listings."""
+        return None
+
+    @property
+    def entities(self) -> Any:
+        """The entities that it visits, as far as they are known beforehand."""
+        return None
+
+    def matches(self, event: Any) -> bool:
+        """Whether the handler is for the event."""
+        return self._matcher(event)
+
+    def describe(self) -> tuple[str, list[LaunchDescriptionEntity]]:
+        """What listings say of it, and the entities that it visits."""
+        text = (
+            f"{type(self).__name__}(matcher='{self.matcher_description}', handler='{self.handler_description}', "
+            f"handle_once={self.handle_once})"
+        )
+        return text, list(_listed(self.entities))
+
+    def handle(self, event: Any, context: LaunchContext) -> Any:
+        """Take note of the event; what derives from it returns the entities to be visited."""
+        context.extend_locals({"event": event})
+        if self.handle_once:
+            context.unregister_event_handler(self)
+        return None
+
+
+class EventHandler(BaseEventHandler):
     """Gives entities to be visited when an event comes that its matcher accepts.
 
     Args:
@@ -22,139 +76,228 @@ class EventHandler:
     """
 
     def __init__(
+        self, *, matcher: Callable[[Any], bool], entities: SomeEntitiesType | None = None, handle_once: bool = False
+    ) -> None:
+        super().__init__(matcher=matcher, handle_once=handle_once)
+        self._entities = entities
+
+    @property
+    def entities(self) -> Any:
+        """The entities to be visited."""
+        return self._entities
+
+    def handle(self, event: Any, context: LaunchContext) -> Any:
+        """The entities to be visited for the event."""
+        super().handle(event, context)
+        return self._entities
+
+
+class OnActionEventBase(BaseEventHandler):
+    """A handler for events that come from an action.
+
+    Args:
+        action_matcher: the action, a function of an action, or None for all.
+        on_event: what is visited, or a function of event and context that returns that.
+        target_event_cls: the class of the events.
+        target_action_cls: the class of the actions.
+        handle_once: whether it is unregistered after the first event.
+    """
+
+    def __init__(
         self,
         *,
-        matcher: Callable[[events.Event], bool],
-        entities: SomeEntitiesType | None = None,
+        action_matcher: Any,
+        on_event: EntitiesOrCallable,
+        target_event_cls: type[events.Event],
+        target_action_cls: type[Action],
         handle_once: bool = False,
     ) -> None:
-        self._matcher = matcher
-        self._entities = as_entities(entities)
-        self.handle_once = handle_once
-        self._handled = False
+        if not issubclass(target_event_cls, events.Event):
+            raise TypeError("'target_event_cls' must be a subclass of 'Event'")
+        is_action = isinstance(action_matcher, target_action_cls)
+        if action_matcher is not None and not is_action and not callable(action_matcher):
+            raise TypeError(f"action_matcher must be an '{target_action_cls.__name__}' instance or a callable")
+
+        def matches(event: Any) -> bool:
+            if not isinstance(event, target_event_cls):
+                return False
+            if action_matcher is None:
+                return True
+            source = event.action  # type: ignore[attr-defined]
+            return source is action_matcher if is_action else bool(action_matcher(source))
+
+        super().__init__(matcher=matches, handle_once=handle_once)
+        self._event_name = target_event_cls.__name__
+        self._action_name = None if action_matcher is None else target_action_cls.__name__
+        self._function, self._entities = _reaction(on_event, "on_event")
 
     @property
     def entities(self) -> list[LaunchDescriptionEntity]:
         """The entities to be visited, as far as they are known beforehand."""
         return self._entities
 
-    def matches(self, event: events.Event) -> bool:
-        """Whether the handler is for the event."""
-        return not (self.handle_once and self._handled) and self._matcher(event)
+    @property
+    def handler_description(self) -> str:
+        """The function, or that there are actions."""
+        return "<actions>" if self._function is None else str(self._function)
 
-    def handle(self, event: events.Event, context: LaunchContext) -> Sequence[LaunchDescriptionEntity]:
+    @property
+    def matcher_description(self) -> str:
+        """Which events it is for."""
+        if self._action_name is None:
+            return f"event == {self._event_name}"
+        return f"event == {self._event_name} and {self._action_name}(event.action)"
+
+    def handle(self, event: Any, context: LaunchContext) -> Any:
         """The entities to be visited for the event."""
-        context.extend_locals({"event": event})
-        self._handled = True
-        return self._react(event, context)
-
-    def _react(self, event: events.Event, context: LaunchContext) -> list[LaunchDescriptionEntity]:  # noqa: ARG002
-        return self._entities
+        super().handle(event, context)
+        return self._entities if self._function is None else self._function(event, context)
 
 
-class _Reaction(EventHandler):
-    """A handler that visits entities, or calls a function of event and context that returns entities."""
+def _reaction(given: Any, name: str) -> tuple[Callable[..., Any] | None, list[LaunchDescriptionEntity]]:
+    """A function, or else entities."""
+    if callable(given) and not isinstance(given, LaunchDescriptionEntity):
+        return given, []
+    try:
+        return None, as_entities(given)
+    except TypeError as error:
+        raise TypeError(f"'{name}' must be launch actions or a function that returns them: {error}") from error
+
+
+def _listed(entities: Any) -> Iterable[Any]:
+    if entities is None:
+        return ()
+    return entities if isinstance(entities, Iterable) else (entities,)
+
+
+def _check_target(target_action: Any, handler: str) -> None:
+    """Raise TypeError for a target that no process can be."""
+    from linkwright.launch.actions.execute import ExecuteLocal
+
+    if target_action is None or isinstance(target_action, ExecuteLocal):
+        return
+    if isinstance(target_action, LaunchDescriptionEntity) or not callable(target_action):
+        kind = type(target_action).__name__
+        raise TypeError(f"{handler}: target_action must be an ExecuteProcess or a function of one, got a {kind}")
+
+
+class _OnProcessEvent(OnActionEventBase):
+    """A handler for events of processes."""
 
     def __init__(
         self,
+        event_class: type[events.Event],
         reaction: EntitiesOrCallable,
-        matcher: Callable[[events.Event], bool],
+        target_action: Any,
         handle_once: bool,
     ) -> None:
-        function = callable(reaction) and not isinstance(reaction, LaunchDescriptionEntity)
-        super().__init__(matcher=matcher, entities=None if function else as_entities(reaction), handle_once=handle_once)
-        self._function: Callable[..., Any] | None = reaction if function else None  # type: ignore[assignment]
+        from linkwright.launch.actions.execute import ExecuteLocal
 
-    def _react(self, event: events.Event, context: LaunchContext) -> list[LaunchDescriptionEntity]:
-        if self._function is None:
-            return self._entities
-        return as_entities(self._function(event, context))
-
-
-def _targets(target_action: Any, event_type: type[events.Event]) -> Callable[[events.Event], bool]:
-    """A matcher for events of a type that come from an action: all, one, or those that a function accepts."""
-    if target_action is None:
-        return lambda event: isinstance(event, event_type)
-    if isinstance(target_action, LaunchDescriptionEntity):
-        return lambda event: isinstance(event, event_type) and getattr(event, "action", None) is target_action
-    if callable(target_action):
-        return lambda event: isinstance(event, event_type) and bool(target_action(getattr(event, "action", None)))
-    raise TypeError(f"target_action must be an action or a function of an action, got {target_action!r}")
+        _check_target(target_action, type(self).__name__)
+        super().__init__(
+            action_matcher=target_action,
+            on_event=reaction,
+            target_event_cls=event_class,
+            target_action_cls=ExecuteLocal,
+            handle_once=handle_once,
+        )
 
 
-class OnProcessStart(_Reaction):
+class OnProcessStart(_OnProcessEvent):
     """Reacts when a process has started."""
 
-    def __init__(
-        self,
-        *,
-        on_start: EntitiesOrCallable,
-        target_action: Any = None,
-        handle_once: bool = False,
-    ) -> None:
-        super().__init__(on_start, _targets(target_action, events.ProcessStarted), handle_once)
+    def __init__(self, *, on_start: EntitiesOrCallable, target_action: Any = None, handle_once: bool = False) -> None:
+        super().__init__(events.ProcessStarted, on_start, target_action, handle_once)
 
 
-class OnProcessExit(_Reaction):
+class OnProcessExit(_OnProcessEvent):
     """Reacts when a process has ended."""
 
     def __init__(
-        self,
-        *,
-        on_exit: EntitiesOrCallable,
-        target_action: Any = None,
-        handle_once: bool = False,
+        self, *, on_exit: EntitiesOrCallable = None, target_action: Any = None, handle_once: bool = False
     ) -> None:
-        super().__init__(on_exit, _targets(target_action, events.ProcessExited), handle_once)
+        super().__init__(events.ProcessExited, on_exit, target_action, handle_once)
 
 
-class OnExecutionComplete(_Reaction):
-    """Reacts when an action that takes time has ended."""
-
-    def __init__(
-        self,
-        *,
-        on_completion: EntitiesOrCallable,
-        target_action: Any = None,
-        handle_once: bool = False,
-    ) -> None:
-        super().__init__(on_completion, _targets(target_action, events.ExecutionComplete), handle_once)
-
-
-class OnProcessIO(EventHandler):
+class OnProcessIO(_OnProcessEvent):
     """Reacts when a process writes.
 
     Args:
         target_action: the action whose process is meant; all by default.
+        on_stdin: function of the event, for what is sent to stdin.
         on_stdout: function of the event, for what is written to stdout.
         on_stderr: function of the event, for what is written to stderr.
+        handle_once: whether it is unregistered after the first event.
     """
 
     def __init__(
         self,
         *,
         target_action: Any = None,
-        on_stdout: Callable[[events.ProcessIO], Any] | None = None,
-        on_stderr: Callable[[events.ProcessIO], Any] | None = None,
+        on_stdin: Callable[[Any], Any] | None = None,
+        on_stdout: Callable[[Any], Any] | None = None,
+        on_stderr: Callable[[Any], Any] | None = None,
         handle_once: bool = False,
     ) -> None:
-        targeted = _targets(target_action, events.ProcessIO)
-        self._functions = {1: on_stdout, 2: on_stderr}
+        functions = (on_stdin, on_stdout, on_stderr)
+
+        def react(event: events.ProcessIO, _: LaunchContext) -> Any:
+            function = functions[event.fd]
+            return None if function is None else function(event)
+
+        super().__init__(events.ProcessIO, react, target_action, handle_once)
+
+
+class OnExecutionComplete(OnActionEventBase):
+    """Reacts when an action that takes time has ended."""
+
+    def __init__(
+        self, *, on_completion: EntitiesOrCallable, target_action: Any = None, handle_once: bool = False
+    ) -> None:
         super().__init__(
-            matcher=lambda event: (
-                isinstance(event, events.ProcessIO) and self._functions.get(event.fd) is not None and targeted(event)
-            ),
+            action_matcher=target_action,
+            on_event=on_completion,
+            target_event_cls=events.ExecutionComplete,
+            target_action_cls=Action,
             handle_once=handle_once,
         )
 
-    def _react(self, event: events.Event, context: LaunchContext) -> list[LaunchDescriptionEntity]:  # noqa: ARG002
-        assert isinstance(event, events.ProcessIO)
-        function = self._functions[event.fd]
-        return as_entities(function(event) if function else None)
+
+class OnIncludeLaunchDescription(BaseEventHandler):
+    """Visits the description of each `IncludeLaunchDescription` event."""
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__(matcher=lambda event: isinstance(event, events.IncludeLaunchDescription), **kwargs)
+
+    def handle(self, event: Any, context: LaunchContext) -> Any:
+        """The description."""
+        super().handle(event, context)
+        return event.launch_description
 
 
-class OnShutdown(_Reaction):
+class OnShutdown(BaseEventHandler):
     """Reacts when the launch is to end."""
 
-    def __init__(self, *, on_shutdown: EntitiesOrCallable, handle_once: bool = False) -> None:
-        super().__init__(on_shutdown, lambda event: isinstance(event, events.Shutdown), handle_once)
+    def __init__(self, *, on_shutdown: EntitiesOrCallable, handle_once: bool = False, **_: Any) -> None:
+        super().__init__(matcher=lambda event: isinstance(event, events.Shutdown), handle_once=handle_once)
+        self._function, self._entities = _reaction(on_shutdown, "on_shutdown")
+
+    @property
+    def entities(self) -> list[LaunchDescriptionEntity]:
+        """The entities to be visited, as far as they are known beforehand."""
+        return self._entities
+
+    @property
+    def handler_description(self) -> str:
+        """The function, or that there are actions."""
+        return "<actions>" if self._function is None else str(self._function)
+
+    @property
+    def matcher_description(self) -> str:
+        """Which events it is for."""
+        return "event issubclass of launch.events.Shutdown"
+
+    def handle(self, event: Any, context: LaunchContext) -> Any:
+        """The entities to be visited for the event."""
+        super().handle(event, context)
+        return self._entities if self._function is None else self._function(event, context)

@@ -7,17 +7,27 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from linkwright.launch.actions.execute import ExecuteProcess
+    from linkwright.launch.actions.execute import ExecuteLocal
     from linkwright.launch.actions.timer import TimerAction
     from linkwright.launch.context import LaunchContext
+    from linkwright.launch.description import LaunchDescription
 
-    ProcessMatcher = Callable[[ExecuteProcess], bool]
+    ProcessMatcher = Callable[[ExecuteLocal], bool]
 
 
 class Event:
     """Something that happened or is asked for."""
 
     name = "launch.Event"
+
+
+class IncludeLaunchDescription(Event):
+    """A description is to be visited."""
+
+    name = "launch.events.IncludeLaunchDescription"
+
+    def __init__(self, launch_description: LaunchDescription) -> None:
+        self.launch_description = launch_description
 
 
 class Shutdown(Event):
@@ -35,7 +45,7 @@ class TimerEvent(Event):
 
     name = "launch.events.TimerEvent"
 
-    def __init__(self, *, timer_action: TimerAction, context: LaunchContext) -> None:
+    def __init__(self, *, timer_action: TimerAction, context: LaunchContext | None = None) -> None:
         self.timer_action = timer_action
         self.context = context
 
@@ -66,7 +76,7 @@ class RunningProcessEvent(Event):
     def __init__(
         self,
         *,
-        action: ExecuteProcess,
+        action: ExecuteLocal,
         name: str,
         cmd: Sequence[str],
         cwd: str | None,
@@ -81,7 +91,7 @@ class RunningProcessEvent(Event):
         self.pid = pid
 
     @property
-    def execute_process_action(self) -> ExecuteProcess:
+    def execute_process_action(self) -> ExecuteLocal:
         """The action, by its older name."""
         return self.action
 
@@ -104,7 +114,7 @@ class ProcessExited(RunningProcessEvent):
     def __init__(
         self,
         *,
-        action: ExecuteProcess,
+        action: ExecuteLocal,
         name: str,
         cmd: Sequence[str],
         cwd: str | None,
@@ -131,15 +141,23 @@ class ProcessIO(RunningProcessEvent):
         self,
         *,
         text: bytes,
-        action: ExecuteProcess,
+        action: ExecuteLocal,
         name: str,
         cmd: Sequence[str],
         cwd: str | None,
         env: Mapping[str, str] | None,
         pid: int,
+        fd: int | None = None,
     ) -> None:
         super().__init__(action=action, name=name, cmd=cmd, cwd=cwd, env=env, pid=pid)
         self.text = text
+        if fd is not None:
+            self.fd = fd
+
+    @property
+    def from_stdin(self) -> bool:
+        """Whether it was sent to stdin."""
+        return self.fd == 0
 
     @property
     def from_stdout(self) -> bool:
@@ -166,16 +184,36 @@ class ProcessStderr(ProcessIO):
     fd = 2
 
 
-class ShutdownProcess(Event):
-    """The processes that the matcher accepts are to end."""
+class ProcessTargetedEvent(Event):
+    """Something is asked of the processes that the matcher accepts."""
 
-    name = "launch.events.process.ShutdownProcess"
+    name = "launch.events.process.ProcessTargetedEvent"
 
     def __init__(self, *, process_matcher: ProcessMatcher) -> None:
         self.process_matcher = process_matcher
 
 
-class SignalProcess(Event):
+class ProcessStdin(ProcessTargetedEvent):
+    """Text is to be sent to the processes that the matcher accepts.
+
+    Attributes:
+        text: the bytes.
+    """
+
+    name = "launch.events.process.ProcessStdin"
+
+    def __init__(self, *, text: bytes, process_matcher: ProcessMatcher) -> None:
+        super().__init__(process_matcher=process_matcher)
+        self.text = text
+
+
+class ShutdownProcess(ProcessTargetedEvent):
+    """The processes that the matcher accepts are to end."""
+
+    name = "launch.events.process.ShutdownProcess"
+
+
+class SignalProcess(ProcessTargetedEvent):
     """A signal is to be sent to the processes that the matcher accepts.
 
     Attributes:
@@ -186,12 +224,12 @@ class SignalProcess(Event):
     name = "launch.events.process.SignalProcess"
 
     def __init__(self, *, signal_number: str | int | signals.Signals, process_matcher: ProcessMatcher) -> None:
+        super().__init__(process_matcher=process_matcher)
         if isinstance(signal_number, str):
             self.signal = signals.Signals[signal_number]
         else:
             self.signal = signals.Signals(signal_number)
         self.signal_name = self.signal.name
-        self.process_matcher = process_matcher
 
 
 def matches_action(target_action: object) -> ProcessMatcher:
@@ -212,7 +250,7 @@ def matches_name(name: str) -> ProcessMatcher:
 def matches_executable(executable: str) -> ProcessMatcher:
     """A matcher that accepts processes by the last part of their program's path."""
 
-    def accepts(action: ExecuteProcess) -> bool:
+    def accepts(action: ExecuteLocal) -> bool:
         details = action.process_details
         return details is not None and bool(details["cmd"][0].rsplit("/", 1)[-1] == executable)
 

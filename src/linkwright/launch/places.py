@@ -4,38 +4,122 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import CodeType, FrameType
 
 import linkwright
-from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText, Span
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, SourceText, Span
+from linkwright.launch.promises import keeping
 
 _OURS = str(Path(linkwright.__file__).parent) + os.sep
 _SHIPPED_PACKAGES = _OURS + "robots" + os.sep
 _COMMAND_LINE = _OURS + "cli" + os.sep
 
 
-@dataclass(frozen=True, slots=True)
 class Place:
-    """A point of a running program; its line and column are worked out when a message needs them."""
+    """Where something was written: in a program (`CodePlace`) or in an XML or YAML file (`MarkupPlace`)."""
 
-    code: CodeType
-    instruction: int
-    line: int
+    __slots__ = ()
 
-    @classmethod
-    def of_caller(cls) -> Place | None:
-        """The nearest frame on the stack that is not Linkwright's own; None where there is none.
+    def __deepcopy__(self, _: object) -> Place:
+        """Itself: places do not change."""
+        return self
+
+    @staticmethod
+    def of_caller() -> Place | None:
+        """The markup being read now, else the nearest frame on the stack that is not Linkwright's own; None without.
 
         What our command line was started by (a script, Python itself) is no place of the user's.
         """
+        if _being_read:
+            return _being_read[-1]
         frame: FrameType | None = sys._getframe(1)
         while frame is not None and is_ours(frame.f_code.co_filename):
             if frame.f_code.co_filename.startswith(_COMMAND_LINE):
                 return None
             frame = frame.f_back
-        return None if frame is None else cls(frame.f_code, frame.f_lasti, frame.f_lineno)
+        return None if frame is None else CodePlace(frame.f_code, frame.f_lasti, frame.f_lineno)
+
+    @property
+    def file(self) -> str:
+        """The file."""
+        raise NotImplementedError
+
+    def source(self) -> SourceText | None:
+        """The text of the file; None where it cannot be read again."""
+        raise NotImplementedError
+
+    def span(self, source: SourceText | None = None) -> Span:
+        """The lines and columns, worked out when a message needs them."""
+        raise NotImplementedError
+
+
+@dataclass(frozen=True, slots=True)
+class MarkupPlace(Place):
+    """A piece of an XML or YAML launch file.
+
+    Attributes:
+        text: the whole file.
+        start: character offset of the piece.
+        end: offset of its end, exclusive.
+    """
+
+    text: SourceText
+    start: int
+    end: int
+
+    @property
+    def file(self) -> str:
+        """The file."""
+        return self.text.name
+
+    def source(self) -> SourceText:
+        """The text of the file."""
+        return self.text
+
+    def span(self, source: SourceText | None = None) -> Span:  # noqa: ARG002 - the interface of places
+        """The lines and columns of the piece."""
+        return self.text.span(self.start, self.end)
+
+    def part(self, start: int, end: int) -> MarkupPlace:
+        """A part of the piece, by offsets in its text as it stands in the file."""
+        return MarkupPlace(self.text, min(self.start + start, self.end), min(self.start + end, self.end))
+
+
+_being_read: list[Place | None] = []
+
+
+@contextmanager
+def reading(place: Place | None) -> Iterator[None]:
+    """While this lasts, what is made was written at the place."""
+    _being_read.append(place)
+    try:
+        yield
+    finally:
+        _being_read.pop()
+
+
+@contextmanager
+def not_reading() -> Iterator[None]:
+    """While this lasts, what is made was written where Python's stack says, though markup is being read."""
+    kept = _being_read[:]
+    _being_read.clear()
+    try:
+        yield
+    finally:
+        _being_read[:] = kept
+
+
+@dataclass(frozen=True, slots=True)
+class CodePlace(Place):
+    """A point of a running program."""
+
+    code: CodeType
+    instruction: int
+    line: int
 
     @property
     def file(self) -> str:
@@ -88,9 +172,26 @@ def located(error: LinkwrightError, place: Place | None) -> LinkwrightError:
     return error
 
 
-def error_at(place: Place | None, code: str, message: str, hint: str | None = None) -> LinkwrightError:
-    """A new error about what was written at a place."""
-    return located(LinkwrightError(Diagnostic(code, message, hint=hint)), place)
+def error_at(
+    place: Place | None,
+    code: str,
+    message: str,
+    hint: str | None = None,
+    *,
+    notes: tuple[Note, ...] = (),
+    promises: Exception | None = None,
+) -> LinkwrightError:
+    """A new error about what was written at a place.
+
+    Args:
+        place: where it was written.
+        code: of the diagnostic.
+        message: of the diagnostic.
+        hint: of the diagnostic.
+        notes: of the diagnostic.
+        promises: what ROS raises here; the error is of its class too, and has its text for programs that look at it.
+    """
+    return located(keeping(promises, Diagnostic(code, message, notes=notes, hint=hint)), place)
 
 
 def _nth(positions: object, index: int) -> tuple[int, int, int, int] | None:

@@ -6,16 +6,18 @@ import asyncio
 import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from linkwright.launch.arguments import argument_listing, check_arguments
+from linkwright.launch.context import LaunchContext
 from linkwright.launch.description import LaunchDescription
 from linkwright.launch.engine.descriptions import Descriptions, use_descriptions
 from linkwright.launch.engine.log import LaunchLog
 from linkwright.launch.engine.session import LaunchSession, SessionOptions
 from linkwright.launch.engine.signals import SignalWatch, interruption_text
-from linkwright.launch.python_file import load_python_launch_file
+from linkwright.launch.launch_file import load_launch_file
 from linkwright.launch.target import LaunchTarget
 from linkwright.workspace import PackageFinder, use_finder
 
@@ -28,11 +30,31 @@ class LaunchOptions:
         host: the address that the viewer's server binds to.
         port: its port; None for the default one, or the next that is free.
         open_browser: whether the page is opened in the user's browser.
+        isolate: whether our own nodes run as processes, each by itself.
+        debug: whether it is told in detail what goes on.
+        noninteractive: whether nobody sits at a terminal that would send signals to the processes too.
+        prefix: a command to put before those of processes.
+        prefix_filter: a regular expression for the names of the programs that get it.
     """
 
     host: str = "127.0.0.1"
     port: int | None = None
     open_browser: bool = True
+    isolate: bool = False
+    debug: bool = False
+    noninteractive: bool = False
+    prefix: str | None = None
+    prefix_filter: str | None = None
+
+    @property
+    def configurations(self) -> dict[str, str]:
+        """The launch configurations that say the same."""
+        given = {"launch-prefix": self.prefix, "launch-prefix-filter": self.prefix_filter}
+        return {name: value for name, value in given.items() if value is not None}
+
+    def for_session(self, title: str) -> SessionOptions:
+        """The options of the session."""
+        return SessionOptions(self.host, self.port, self.open_browser, title, isolate=self.isolate)
 
 
 def run_launch(
@@ -58,7 +80,7 @@ def run_launch(
 
     def load(log: LaunchLog) -> tuple[LaunchDescription, dict[str, Any]]:
         path = target.resolve(finder)
-        description = load_python_launch_file(path)
+        description = load_launch_file(path)
         log.diagnostics(check_arguments(description, given))
         return description, {
             "current_launch_file_path": str(path),
@@ -77,7 +99,20 @@ def show_arguments(target: LaunchTarget) -> str:
     """
     finder = target.finder()
     with use_finder(finder):
-        return argument_listing(load_python_launch_file(target.resolve(finder)))
+        return argument_listing(load_launch_file(target.resolve(finder)))
+
+
+def print_description(target: LaunchTarget) -> str:
+    """What ``--print`` prints about a launch file: its entities, and what they lead to.
+
+    Raises:
+        LinkwrightError: what is wrong with the target or the launch file.
+    """
+    from linkwright.launch.introspector import format_launch_description
+
+    finder = target.finder()
+    with use_finder(finder):
+        return format_launch_description(load_launch_file(target.resolve(finder)))
 
 
 def run_description(
@@ -96,12 +131,13 @@ def run_description(
         LinkwrightError: what `load` raises.
     """
     environment = dict(os.environ)
-    log = LaunchLog()
+    log = LaunchLog(debug=options.debug)
     with SignalWatch() as signals, use_finder(finder), use_descriptions(Descriptions(finder)):
         try:
             description, values = load(log)
-            session_options = SessionOptions(options.host, options.port, options.open_browser, title)
-            succeeded = asyncio.run(_run(description, values, configurations, finder, session_options, log, signals))
+            session = partial(LaunchSession, finder, options.for_session(title), log)
+            given = {**options.configurations, **configurations}
+            succeeded = asyncio.run(_run(description, values, given, session, options.noninteractive, signals))
         except KeyboardInterrupt:
             if signals.received is None:  # not in the main thread, or raised by the user's own code
                 raise
@@ -118,13 +154,12 @@ async def _run(
     description: LaunchDescription,
     values: dict[str, Any],
     configurations: Mapping[str, str],
-    finder: PackageFinder,
-    options: SessionOptions,
-    log: LaunchLog,
+    make_session: Callable[[LaunchContext], LaunchSession],
+    noninteractive: bool,
     signals: SignalWatch,
 ) -> bool:
-    session = LaunchSession(finder, options, log)
-    session.context.argv = [f"{name}:={value}" for name, value in configurations.items()]
+    argv = [f"{name}:={value}" for name, value in configurations.items()]
+    session = make_session(LaunchContext(argv=argv, noninteractive=noninteractive))
     session.context.launch_configurations.update(configurations)
     signals.session = session
     return await session.run(description, values)

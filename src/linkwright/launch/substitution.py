@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -26,13 +26,16 @@ class Substitution:
         place: where in the user's program it was made.
     """
 
-    place: Place | None
+    place: Place | None = None
 
     def __new__(cls: type[S], *_: Any, **__: Any) -> S:  # noqa: PYI019 - Self needs Python 3.11
         """Remember the place; done here because substitutions of users need not call our constructor."""
         made = super().__new__(cls)
         made.place = Place.of_caller()
         return made
+
+    def __repr__(self) -> str:
+        return f"<{_public_name(type(self))} {self.describe()}>"
 
     def describe(self) -> str:
         """A short form for listings, as ``ros2 launch --show-args`` prints it."""
@@ -66,6 +69,31 @@ SomeSubstitutionsType = str | Substitution | Iterable[str | Substitution]
 SomeSubstitutionsType_types_tuple = (str, Substitution, Iterable)
 
 
+class Parsed:
+    """What substitutions with a fixed number of arguments share: how ``$(name ...)`` makes them."""
+
+    PARSED_AS = ""
+    ARGUMENTS: tuple[str, ...] = ()
+    OPTIONAL_ARGUMENTS: tuple[str, ...] = ()
+
+    @classmethod
+    def parse(cls, data: Sequence[Any]) -> tuple[type[Any], dict[str, Any]]:
+        """The class and the keyword arguments.
+
+        Args:
+            data: the arguments, each a list of substitutions.
+
+        Raises:
+            TypeError: there are too many or too few.
+        """
+        least, most = len(cls.ARGUMENTS), len(cls.ARGUMENTS) + len(cls.OPTIONAL_ARGUMENTS)
+        if not least <= len(data) <= most:
+            expected = str(most) if least == most else f"{least} or {most}"
+            plural = "" if most == 1 else "s"
+            raise TypeError(f"{cls.PARSED_AS} substitution expects {expected} argument{plural}")
+        return cls, dict(zip((*cls.ARGUMENTS, *cls.OPTIONAL_ARGUMENTS), data, strict=False))
+
+
 def normalize_to_list_of_substitutions(value: Any) -> list[Substitution]:
     """A value of `SomeSubstitutionsType` as a list of substitutions; paths count as text.
 
@@ -93,7 +121,7 @@ def perform(context: LaunchContext, substitution: Substitution) -> str:
     except LinkwrightError as error:
         raise located(error, substitution.place) from error
     except SubstitutionFailure as error:
-        raise error_at(substitution.place, "LAUNCH120", str(error)) from error
+        raise error_at(substitution.place, "LAUNCH120", str(error), promises=error) from error
 
 
 def describe(substitutions: Iterable[Substitution]) -> str:
@@ -107,3 +135,11 @@ def _single(value: Any) -> Substitution:
     if isinstance(value, (str, Path)):
         return TextSubstitution(text=str(value))
     raise TypeError(f"expected a text or a substitution in the list, got {value!r} of type {type(value).__name__}")
+
+
+def _public_name(kind: type) -> str:
+    """The name by which users import a class: ours have those of ``launch``."""
+    if not kind.__module__.startswith("linkwright."):
+        return f"{kind.__module__}.{kind.__qualname__}"
+    module = "".join("_" + each.lower() if each.isupper() else each for each in kind.__name__).lstrip("_")
+    return f"launch.substitutions.{module}.{kind.__name__}"

@@ -12,7 +12,8 @@ from types import FrameType, ModuleType, TracebackType
 from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, SourceText, Span, did_you_mean
-from linkwright.launch.places import Place, is_ours, located, read_source
+from linkwright.launch.places import CodePlace, Place, is_ours, located, read_source
+from linkwright.launch.promises import keeping
 
 _LIBRARY = tuple({sysconfig.get_path("stdlib"), sysconfig.get_path("purelib"), sysconfig.get_path("platlib")})
 _CANNOT_IMPORT = re.compile(r"cannot import name '([^']+)' from '([^']+)'")
@@ -43,9 +44,8 @@ def explain(error: Exception, where: str, fallback: Place | None = None) -> Link
     source = place.source() if place else None
     span = place.span(source) if place else None
     notes = tuple(Note("called from here", each.span(read_source(each.file))) for each in reversed(trail[:-1]))
-    return LinkwrightError(
-        Diagnostic("LAUNCH104", message, span, notes=notes, hint=_hint(error, source, span), source=source)
-    )
+    diagnostic = Diagnostic("LAUNCH104", message, span, notes=notes, hint=_hint(error, source, span), source=source)
+    return keeping(error, diagnostic)
 
 
 def _user_places(traceback: TracebackType | None) -> Iterable[Place]:
@@ -54,12 +54,13 @@ def _user_places(traceback: TracebackType | None) -> Iterable[Place]:
     current: TracebackType | None = traceback
     for frame, line in walk_tb(traceback):
         assert current is not None
-        if _is_users(frame.f_code.co_filename):
-            yield Place(frame.f_code, current.tb_lasti, line)
+        if is_users(frame.f_code.co_filename):
+            yield CodePlace(frame.f_code, current.tb_lasti, line)
         current = current.tb_next
 
 
-def _is_users(filename: str) -> bool:
+def is_users(filename: str) -> bool:
+    """Whether a file of code is the user's own: neither Linkwright's nor of an installed library."""
     if filename.startswith("<") or is_ours(filename):
         return False
     return not filename.startswith(tuple(folder for folder in _LIBRARY if folder))
@@ -156,6 +157,6 @@ def _parameter_names(called: Any) -> Iterable[str]:
 def _innermost_frame(error: Exception, users_only: bool = False) -> FrameType | None:
     frame = None
     for each, _ in walk_tb(error.__traceback__):
-        if not users_only or _is_users(each.f_code.co_filename):
+        if not users_only or is_users(each.f_code.co_filename):
             frame = each
     return frame

@@ -52,6 +52,7 @@ class CMakeFile:
         directories: the folders that it installs, as written, relative to the file.
         files: the files that it installs.
         executables: the names of the programs that it installs or builds.
+        programs: those of them that are files of the package: name -> path relative to the file.
         is_complete: whether it installs nothing but what was read here.
     """
 
@@ -60,6 +61,7 @@ class CMakeFile:
     directories: list[Argument] = field(default_factory=list)
     files: list[Argument] = field(default_factory=list)
     executables: set[str] = field(default_factory=set)
+    programs: dict[str, str] = field(default_factory=dict)
     is_complete: bool = True
     is_ament: bool = False
 
@@ -108,6 +110,7 @@ def _install(file: CMakeFile, command: str, given: list[Argument]) -> None:
             renamed = _following(given, "RENAME")
             names = [renamed] if renamed else [item.text.rpartition("/")[2] for item in items]
             file.executables.update(names)
+            file.programs.update(zip(names, (item.text for item in items), strict=False))
     elif kind == "TARGETS":
         file.executables.update(item.text for item in items)
     elif kind in ("CODE", "SCRIPT"):

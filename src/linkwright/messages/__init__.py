@@ -1,21 +1,47 @@
-"""ROS 2 messages as plain Python classes, with the field names and defaults of their ``.msg`` files."""
+"""ROS 2 messages, services and actions: classes made from their definitions, and their bytes, hashes and texts."""
 
-from linkwright.messages.geometry import Point, Pose, Quaternion, Transform, TransformStamped, Vector3
-from linkwright.messages.message import Message
-from linkwright.messages.sensor import FloatSequence, JointState
-from linkwright.messages.standard import Header, String
-from linkwright.messages.time import Duration, Time
+from linkwright.messages.catalogue import packages as shipped_packages
+from linkwright.messages.cdr import deserialize, serialize
+from linkwright.messages.classes import get_action, get_interface, get_message, get_service
+from linkwright.messages.conversion import to_csv, to_dict
+from linkwright.messages.errors import DefinitionError, FieldValueError, InterfaceNotFoundError, MessageDataError
+from linkwright.messages.field_values import from_dict, set_fields
+from linkwright.messages.hashing import type_hash
+from linkwright.messages.library import find_interfaces_with
+from linkwright.messages.message import ActionType, Message, ServiceType
+from linkwright.messages.presentation import definition_text, interface_names, prototype
 from linkwright.messages.transforms import TFMessage, TransformBatch
+from linkwright.messages.wellknown import (
+    Duration,
+    FloatSequence,
+    Header,
+    JointState,
+    Point,
+    Pose,
+    Quaternion,
+    String,
+    Time,
+    Transform,
+    TransformStamped,
+    Vector3,
+)
+from linkwright.messages.yaml_text import to_yaml
 
 __all__ = [
+    "ActionType",
+    "DefinitionError",
     "Duration",
+    "FieldValueError",
     "FloatSequence",
     "Header",
+    "InterfaceNotFoundError",
     "JointState",
     "Message",
+    "MessageDataError",
     "Point",
     "Pose",
     "Quaternion",
+    "ServiceType",
     "String",
     "TFMessage",
     "Time",
@@ -23,4 +49,21 @@ __all__ = [
     "TransformBatch",
     "TransformStamped",
     "Vector3",
+    "definition_text",
+    "deserialize",
+    "find_interfaces_with",
+    "from_dict",
+    "get_action",
+    "get_interface",
+    "get_message",
+    "get_service",
+    "interface_names",
+    "prototype",
+    "serialize",
+    "set_fields",
+    "shipped_packages",
+    "to_csv",
+    "to_dict",
+    "to_yaml",
+    "type_hash",
 ]

@@ -1,16 +1,155 @@
-"""What every message class has."""
+"""What every message class has, and what the classes of services and actions are."""
 
 from __future__ import annotations
 
-from typing import ClassVar, Protocol
+from typing import Any, ClassVar
+
+from numpy import ndarray
+
+from linkwright.messages.definition import Structure
 
 
-class Message(Protocol):
-    """A ROS 2 message: an object with the fields of its ``.msg`` file and the name of its type.
+class _SlotTypes:
+    """``SLOT_TYPES`` of a class, made when somebody looks."""
 
-    A published message is handed to every subscriber of the process as it is, without a copy: whoever receives one
-    reads it and does not change it.
+    def __get__(self, instance: object, owner: type[Message]) -> tuple[Any, ...]:
+        from linkwright.messages.slot_types import slot_types
+
+        types = slot_types(owner._definition)
+        owner.SLOT_TYPES = types
+        return types
+
+
+class Message:
+    """A ROS 2 message: an object with the fields of its definition, checked on assignment as rclpy's are.
+
+    The value of field ``x`` lies in the slot ``_x`` as in rosidl_generator_py's classes; the property ``x`` is the way
+    to it. A published message is handed to every subscriber of the process as it is, without a copy: whoever receives
+    one reads it and does not change it.
     """
+
+    __slots__: tuple[str, ...] = ()
 
     TYPE_NAME: ClassVar[str]
     """Package, kind and name, such as ``sensor_msgs/msg/JointState``."""
+
+    SLOT_TYPES: ClassVar[Any] = _SlotTypes()
+    """The types of the fields in their order, as rosidl_parser's."""
+
+    _definition: ClassVar[Structure]
+
+    def _write(self) -> bytes:
+        """The message as CDR. The function for the class is compiled when it is first needed, as that of `_read`."""
+        from linkwright.messages.cdr_writer import compile_writer
+
+        cls = type(self)
+        cls._write = compile_writer(cls._definition)  # type: ignore[method-assign, assignment]
+        return self._write()
+
+    @classmethod
+    def _read(cls, data: bytes) -> Any:
+        """The message of bytes with a little-endian header."""
+        from linkwright.messages.cdr_reader import compile_reader
+        from linkwright.messages.classes import class_of
+
+        reader = compile_reader(cls._definition, class_of)
+        cls._read = staticmethod(reader)  # type: ignore[assignment]
+        return reader(data)
+
+    @classmethod
+    def get_fields_and_field_types(cls) -> dict[str, str]:
+        """The fields' names and types, such as ``{'position': 'sequence<double>'}``."""
+        return {field.name: field.type.described() for field in cls._definition.fields}
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, self.__class__):
+            return False
+        for slot in self.__slots__:
+            ours, theirs = getattr(self, slot), getattr(other, slot)
+            if type(ours) is ndarray or type(theirs) is ndarray:
+                if ours.size != theirs.size or not (ours.ravel() == theirs.ravel()).all():
+                    return False
+            elif ours != theirs:
+                return False
+        return True
+
+    __hash__ = None  # type: ignore[assignment]  # a mutable value
+
+    def __repr__(self) -> str:
+        values = []
+        for field in self._definition.fields:
+            value = getattr(self, field.name)
+            text = repr(value)
+            if text.startswith("array('"):  # array('d', [1.0]): the list alone, as rclpy shows it
+                text = text[len("array('d', ") : -1] if len(value) else "[]"
+            values.append(f"{field.name}={text}")
+        module = type(self).__module__.rpartition(".")[0]
+        return f"{module}.{type(self).__name__}({', '.join(values)})"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _remade, (self.TYPE_NAME, tuple(getattr(self, slot) for slot in self.__slots__))
+
+
+def _remade(type_name: str, values: tuple[Any, ...]) -> Message:
+    """A message from its slots' values: how copies and pickles come back, without a look for modules by their names."""
+    from linkwright.messages.classes import get_message
+
+    cls = get_message(type_name)
+    message: Message = object.__new__(cls)
+    for slot, value in zip(cls.__slots__, values, strict=True):
+        setattr(message, slot, value)
+    return message
+
+
+class ServiceType:
+    """A service: the classes of its request and its response; there are no objects of it."""
+
+    TYPE_NAME: ClassVar[str]
+    Request: ClassVar[type[Any]]
+    Response: ClassVar[type[Any]]
+    Event: ClassVar[type[Any]]
+    """What the topic of its introspection carries."""
+
+    def __init__(self) -> None:
+        """Services are not made into objects.
+
+        Raises:
+            NotImplementedError: always, as in rclpy.
+        """
+        raise NotImplementedError("Service classes can not be instantiated")
+
+
+class ActionImplementation:
+    """The services and messages that an action is made of.
+
+    Attributes:
+        SendGoalService: asks to take a goal.
+        GetResultService: answers when a goal has come to its end.
+        FeedbackMessage: feedback, and of which goal.
+        CancelGoalService: ``action_msgs/srv/CancelGoal``.
+        GoalStatusMessage: ``action_msgs/msg/GoalStatusArray``.
+    """
+
+    SendGoalService: ClassVar[type[ServiceType]]
+    GetResultService: ClassVar[type[ServiceType]]
+    FeedbackMessage: ClassVar[type[Any]]
+    CancelGoalService: ClassVar[type[ServiceType]]
+    GoalStatusMessage: ClassVar[type[Any]]
+
+
+class ActionType:
+    """An action: the classes of its goal, result and feedback; there are no objects of it."""
+
+    TYPE_NAME: ClassVar[str]
+    Goal: ClassVar[type[Any]]
+    Result: ClassVar[type[Any]]
+    Feedback: ClassVar[type[Any]]
+    Impl: ClassVar[type[ActionImplementation]]
+
+    def __init__(self) -> None:
+        """Actions are not made into objects.
+
+        Raises:
+            NotImplementedError: always, as in rclpy.
+        """
+        raise NotImplementedError("Action classes can not be instantiated")

@@ -1,48 +1,47 @@
-"""builtin_interfaces: points in time and spans of it."""
+"""What the classes of builtin_interfaces can do beside holding their fields: count in nanoseconds."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, TypeVar
+
+from linkwright.messages.message import Message
 
 NANOSECONDS_PER_SECOND = 1_000_000_000
 
+_Self = TypeVar("_Self", bound="_Nanoseconds")
 
-@dataclass(slots=True)
-class Time:
+
+class _Nanoseconds(Message):
+    __slots__ = ()
+
+    sec: Any
+    nanosec: Any
+
+    @classmethod
+    def from_nanoseconds(cls: type[_Self], nanoseconds: int) -> _Self:  # noqa: PYI019 - Python 3.10 has no Self
+        """The message for a count of nanoseconds.
+
+        Raises:
+            AssertionError: the seconds are more than 32 bits can hold.
+        """
+        message = cls()
+        message.sec, message.nanosec = divmod(nanoseconds, NANOSECONDS_PER_SECOND)
+        return message
+
+    @property
+    def nanoseconds(self) -> int:
+        """All of it in nanoseconds."""
+        count: int = self.sec * NANOSECONDS_PER_SECOND + self.nanosec
+        return count
+
+
+class TimeValue(_Nanoseconds):
     """A point in time: seconds since the epoch and nanoseconds on top of them, from 0 to 999 999 999."""
 
-    TYPE_NAME: ClassVar[str] = "builtin_interfaces/msg/Time"
-
-    sec: int = 0
-    nanosec: int = 0
-
-    @classmethod
-    def from_nanoseconds(cls, nanoseconds: int) -> Time:
-        """The message for a count of nanoseconds since the epoch."""
-        return cls(*divmod(nanoseconds, NANOSECONDS_PER_SECOND))
-
-    @property
-    def nanoseconds(self) -> int:
-        """Nanoseconds since the epoch."""
-        return self.sec * NANOSECONDS_PER_SECOND + self.nanosec
+    __slots__ = ()
 
 
-@dataclass(slots=True)
-class Duration:
+class DurationValue(_Nanoseconds):
     """A span of time: seconds, negative ones too, and nanoseconds on top of them, from 0 to 999 999 999."""
 
-    TYPE_NAME: ClassVar[str] = "builtin_interfaces/msg/Duration"
-
-    sec: int = 0
-    nanosec: int = 0
-
-    @classmethod
-    def from_nanoseconds(cls, nanoseconds: int) -> Duration:
-        """The message for a count of nanoseconds."""
-        return cls(*divmod(nanoseconds, NANOSECONDS_PER_SECOND))
-
-    @property
-    def nanoseconds(self) -> int:
-        """The span in nanoseconds."""
-        return self.sec * NANOSECONDS_PER_SECOND + self.nanosec
+    __slots__ = ()

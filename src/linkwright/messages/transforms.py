@@ -1,22 +1,30 @@
 """tf2_msgs: many transforms at once.
 
 Five hundred joints at 30 Hz are 15 000 transforms a second. As message objects they would cost more than everything
-else in the process together, so a `TFMessage` may carry a `TransformBatch`, the same facts as names and one array,
-and makes the objects only for a reader who asks for them.
+else in the process together, so a `TFMessage` may carry a `TransformBatch`, the same facts as names and one array, or
+the bytes it was received as, and makes the objects only for a reader who asks for them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import ClassVar
+from functools import cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.messages.geometry import Quaternion, Transform, TransformStamped, Vector3
-from linkwright.messages.standard import Header
-from linkwright.messages.time import Time
+from linkwright.messages.library import LIBRARY
+from linkwright.messages.message import Message
+from linkwright.messages.transform_layout import ReceivedTransforms, layout_for, matching_layout
+from linkwright.messages.wellknown import Header, Quaternion, Time, Transform, TransformStamped, Vector3
+
+_FEW = 6
+"""So few transforms are written and read sooner one by one than by a layout."""
+
+_SHORT = 600
+"""Bytes of a message of few transforms."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -52,22 +60,19 @@ class TransformBatch:
     def from_messages(cls, transforms: Iterable[TransformStamped]) -> TransformBatch:
         """The same transforms as one batch, stamped with the newest of their stamps."""
         transforms = list(transforms)
-        rows = [
-            (t.x, t.y, t.z, q.x, q.y, q.z, q.w)
-            for t, q in ((each.transform.translation, each.transform.rotation) for each in transforms)
-        ]
         return cls(
             parents=tuple(each.header.frame_id for each in transforms),
             children=tuple(each.child_frame_id for each in transforms),
             stamp_ns=max((each.header.stamp.nanoseconds for each in transforms), default=0),
-            poses=np.array(rows, dtype=np.float64).reshape(-1, 7),
+            poses=_poses(transforms),
         )
 
     def to_messages(self) -> list[TransformStamped]:
         """The transforms as message objects."""
+        stamp = Time.from_nanoseconds(self.stamp_ns)
         return [
             TransformStamped(
-                Header(Time.from_nanoseconds(self.stamp_ns), parent),
+                Header(Time(stamp.sec, stamp.nanosec), parent),
                 child,
                 Transform(Vector3(*row[:3]), Quaternion(*row[3:])),
             )
@@ -75,25 +80,33 @@ class TransformBatch:
         ]
 
 
-class TFMessage:
-    """Transforms, held as message objects or as a batch; each form is made from the other when it is asked for.
+class TFMessage(Message):
+    """Transforms, held as message objects, as a batch or as they were received; other forms are made on demand.
 
     Args:
         transforms: message objects; none when left out.
         batch: the transforms as arrays, instead of objects.
     """
 
-    TYPE_NAME: ClassVar[str] = "tf2_msgs/msg/TFMessage"
+    __module__ = "tf2_msgs.msg._tf_message"  # what its repr and rclpy's users take it for
 
-    __slots__ = ("_batch", "_transforms")
+    __slots__ = ("_batch", "_list", "_received")
+
+    TYPE_NAME = "tf2_msgs/msg/TFMessage"
+    _definition = LIBRARY.structure("tf2_msgs/msg/TFMessage")
 
     def __init__(
-        self, transforms: Iterable[TransformStamped] | None = None, *, batch: TransformBatch | None = None
+        self, transforms: Iterable[TransformStamped] | None = None, *, batch: TransformBatch | None = None, **other: Any
     ) -> None:
+        if other:
+            raise AssertionError("Invalid arguments passed to constructor: " + ", ".join(sorted(other)))
         if transforms is not None and batch is not None:
             raise ValueError("a TFMessage takes transforms or a batch, not both")
+        self._received: ReceivedTransforms | None = None
         self._batch = batch
-        self._transforms = None if batch is not None else list(transforms or ())
+        self._list: list[TransformStamped] | None = None
+        if batch is None:
+            self.transforms = [] if transforms is None else transforms
 
     @property
     def transforms(self) -> list[TransformStamped]:
@@ -102,28 +115,114 @@ class TFMessage:
         The list of a message made from objects may be changed until it is published, that of one made from a batch
         never.
         """
-        if self._transforms is None:
-            assert self._batch is not None
-            self._transforms = self._batch.to_messages()
-        return self._transforms
+        if self._list is None:
+            if self._received is not None:
+                self._list = _ordinary_reader()(self._received.data)._list
+                self._received = self._batch = None
+            else:
+                assert self._batch is not None
+                self._list = self._batch.to_messages()
+        assert self._list is not None
+        return self._list
 
     @transforms.setter
     def transforms(self, transforms: Iterable[TransformStamped]) -> None:
-        self._transforms = list(transforms)
+        values = transforms if isinstance(transforms, list) else list(transforms)
+        if not all(isinstance(each, TransformStamped) for each in values):
+            raise AssertionError(
+                "The 'transforms' field must be a set or sequence and each value of type 'TransformStamped'"
+            )
+        self._list = values
         self._batch = None
+        self._received = None
+
+    _transforms = transforms  # where rclpy's class has its slot
 
     @property
     def batch(self) -> TransformBatch:
-        """The transforms as arrays. A message made from a batch gives that one; any other makes one of its list."""
+        """The transforms as arrays. A message made of a batch gives that one, any other makes one of what it holds."""
         if self._batch is not None:
             return self._batch
-        assert self._transforms is not None
-        return TransformBatch.from_messages(self._transforms)
+        if self._received is not None:
+            received = self._received
+            self._batch = TransformBatch(
+                received.layout.parents, received.layout.children, received.newest_ns(), received.poses()
+            )
+            return self._batch
+        assert self._list is not None
+        return TransformBatch.from_messages(self._list)
 
-    def __eq__(self, other: object) -> bool:
-        return self.transforms == other.transforms if isinstance(other, TFMessage) else NotImplemented
+    def columns(self) -> tuple[tuple[str, ...], tuple[str, ...], list[int], NDArray[np.float64]] | None:
+        """Parents, children, stamps (nanoseconds since the epoch) and poses, shape (n, 7), of the transforms.
 
-    __hash__ = None  # type: ignore[assignment]  # a mutable value, like the other messages
+        None for a message that holds objects: these are read faster as they are.
+        """
+        if self._received is not None:
+            layout = self._received.layout
+            return layout.parents, layout.children, self._received.stamps_ns().tolist(), self._received.poses()
+        if self._list is None and self._batch is not None:
+            batch = self._batch
+            return batch.parents, batch.children, [batch.stamp_ns] * len(batch), batch.poses
+        return None
 
-    def __repr__(self) -> str:
-        return f"TFMessage(transforms={self.transforms!r})"
+    def _write(self) -> bytes:
+        if self._list is None:
+            if self._received is not None:
+                return self._received.data
+            assert self._batch is not None
+            batch = self._batch
+            return layout_for(batch.parents, batch.children).with_one_stamp(batch.stamp_ns, batch.poses)
+        values: list[Any] = self._list
+        if len(values) < _FEW:
+            return _ordinary_writer()(self)
+        parents = tuple([each._header._frame_id for each in values])
+        children = tuple([each._child_frame_id for each in values])
+        stamps = [(each._header._stamp._sec, each._header._stamp._nanosec) for each in values]
+        return layout_for(parents, children).with_stamps(stamps, _poses(values))
+
+    @classmethod
+    def _read(cls, data: bytes) -> TFMessage:
+        if len(data) < _SHORT:
+            return _ordinary_reader()(data)
+        received = matching_layout(data)
+        if received is None:
+            message = _ordinary_reader()(data)
+            values = message.transforms
+            layout = layout_for(
+                tuple([each.header.frame_id for each in values]), tuple([each.child_frame_id for each in values])
+            )
+            layout.remember()
+            return message
+        message = cls.__new__(cls)
+        message._received = received
+        message._list = message._batch = None
+        return message
+
+
+# What rclpy's users find there; the slots above are fixed by now.
+TFMessage.__slots__ = ("_transforms",)  # type: ignore[assignment]
+
+
+def _poses(transforms: list[Any]) -> NDArray[np.float64]:
+    rows = [
+        (t._x, t._y, t._z, q._x, q._y, q._z, q._w)
+        for t, q in ((each._transform._translation, each._transform._rotation) for each in transforms)
+    ]
+    return np.array(rows, dtype=np.float64).reshape(-1, 7)
+
+
+@cache
+def _ordinary_writer() -> Callable[[Message], bytes]:
+    """What writes the transforms one by one, compiled from the definition on first use."""
+    from linkwright.messages.cdr_writer import compile_writer
+
+    return compile_writer(TFMessage._definition)
+
+
+@cache
+def _ordinary_reader() -> Callable[[bytes], TFMessage]:
+    """What reads the transforms one by one, compiled from the definition on first use."""
+    from linkwright.messages.cdr_reader import compile_reader
+    from linkwright.messages.classes import class_of
+
+    return compile_reader(TFMessage._definition, class_of)

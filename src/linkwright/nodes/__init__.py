@@ -1,23 +1,9 @@
-"""The nodes that come with Linkwright: those of ROS 2 that show and move a robot description."""
+"""The nodes that come with Linkwright: those of ROS 2 that show and move a robot description, and its demos.
+
+Each is in a module of its own, which is imported when it is started.
+"""
 
 from linkwright.nodes.executables import EXECUTABLES
-from linkwright.nodes.joint_panel import JointPanel, JointSlider, PanelChange
-from linkwright.nodes.joint_state_publisher import JointStatePublisher
-from linkwright.nodes.joint_state_publisher_gui import JointStatePublisherGui
-from linkwright.nodes.options import Factory, NodeOptions, RunningNode
-from linkwright.nodes.robot_state_publisher import RobotStatePublisher
-from linkwright.nodes.static_transform_publisher import StaticTransformPublisher
+from linkwright.nodes.options import Factory, FinishingNode, NodeOptions, RunningNode
 
-__all__ = [
-    "EXECUTABLES",
-    "Factory",
-    "JointPanel",
-    "JointSlider",
-    "JointStatePublisher",
-    "JointStatePublisherGui",
-    "NodeOptions",
-    "PanelChange",
-    "RobotStatePublisher",
-    "RunningNode",
-    "StaticTransformPublisher",
-]
+__all__ = ["EXECUTABLES", "Factory", "FinishingNode", "NodeOptions", "RunningNode"]

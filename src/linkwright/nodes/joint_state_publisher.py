@@ -5,11 +5,13 @@ It follows the ROS 2 node of that name (2.4), with these deliberate differences:
 - The parameters ``dependent_joints.*`` come before ``<mimic>`` tags and stay when the description changes.
 - A new description leaves joints that were there before where they are, and the first message comes at once.
 - A parameter that is changed while the node runs takes effect.
+- Descriptions are URDF; SDF and COLLADA, which the ROS node reads too, are named and left aside.
 - Infinite limits become a range that a slider can show, and a description that cannot be used leaves the last one.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Protocol
@@ -31,6 +33,9 @@ from linkwright.nodes.joint_positions import JointPositions
 from linkwright.nodes.joint_settings import JointSettings, declare_settings, settings_from
 from linkwright.nodes.options import NodeOptions, create_node, starting
 from linkwright.urdf import Robot
+
+_OTHER_FORMATS = {"sdf": "SDF", "COLLADA": "COLLADA"}
+_FIRST_ELEMENT = re.compile(r"<([A-Za-z]\w*)")
 
 
 class Watcher(Protocol):
@@ -54,7 +59,7 @@ class JointStatePublisher:
     Raises:
         LinkwrightError: it cannot start: parameters that mean nothing (NODE201), joints that follow each other in a
             circle (NODE202), a file that cannot be read (NODE203, or what is wrong in it), too many arguments
-            (NODE204).
+            (NODE204), a file that is SDF or COLLADA (NODE205).
     """
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
@@ -117,6 +122,15 @@ class JointStatePublisher:
             raise LinkwrightError(Diagnostic("NODE203", f"URDF file '{path}' cannot be read: {reason}")) from error
         reading = self._library.read(text)
         if reading.robot is None:
+            other = _other_format(text)
+            if other:
+                raise LinkwrightError(
+                    Diagnostic(
+                        "NODE205",
+                        f"'{path}' is {other}, and this node reads URDF",
+                        hint="the ROS node reads SDF and COLLADA too; convert the file to URDF",
+                    )
+                )
             raise LinkwrightError(*reading.diagnostics)
         return reading.robot
 
@@ -127,7 +141,9 @@ class JointStatePublisher:
     def _on_description(self, message: String) -> None:
         robot = self._library.read(message.data).robot
         if robot is None:
-            self._node.get_logger().warning("Invalid robot_description given, ignoring")
+            other = _other_format(message.data)
+            why = f": it is {other}, and this node reads URDF" if other else ""
+            self._node.get_logger().warning(f"Invalid robot_description given, ignoring{why}")
             return
         try:
             self._configure(robot)
@@ -146,7 +162,7 @@ class JointStatePublisher:
 
     def _read_settings(self, changed: Sequence[Parameter] = ()) -> JointSettings:
         node = self._node
-        values = {name: node.get_parameter(name).value for name in node.list_parameters()}
+        values = {name: node.get_parameter(name).value for name in node.parameter_names()}
         return settings_from(values | {parameter.name: parameter.value for parameter in changed})
 
     def _check_parameters(self, parameters: list[Parameter]) -> SetParametersResult:
@@ -201,3 +217,9 @@ class JointStatePublisher:
         self._joints.fill(message)
         if message.name:
             self._publisher.publish(message)
+
+
+def _other_format(text: str) -> str | None:
+    """Which other format for robots a text is in, by its first element; None for none."""
+    element = _FIRST_ELEMENT.search(text)
+    return None if element is None else _OTHER_FORMATS.get(element[1])

@@ -2,15 +2,30 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import Graph, Node
-from linkwright.nodes.ros_arguments import split_ros_arguments
-from linkwright.urdf import DescriptionLibrary
+from linkwright.graph.names import absolute_namespace, join
+from linkwright.graph.remapping import Remappings
+from linkwright.graph.ros_arguments import RosArguments, parse
+
+if TYPE_CHECKING:
+    from linkwright.urdf import DescriptionLibrary
+
+
+def _library() -> DescriptionLibrary:
+    from linkwright.urdf import DescriptionLibrary
+
+    return DescriptionLibrary()
+
+
+def _print(line: str) -> None:
+    print(line, flush=True)
 
 
 @dataclass(slots=True)
@@ -24,6 +39,7 @@ class NodeOptions:
         remappings: rules ``(from, to)``.
         arguments: its command line without the program's name; ``--ros-args`` sections count.
         library: the readings of robot descriptions that the process shares.
+        output: takes the lines that a node prints as its result; standard output unless it is said.
     """
 
     name: str | None = None
@@ -31,11 +47,12 @@ class NodeOptions:
     parameters: dict[str, Any] = field(default_factory=dict)
     remappings: list[tuple[str, str]] = field(default_factory=list)
     arguments: list[str] = field(default_factory=list)
-    library: DescriptionLibrary = field(default_factory=DescriptionLibrary)
+    library: DescriptionLibrary = field(default_factory=_library)
+    output: Callable[[str], None] = _print
 
 
 class RunningNode(Protocol):
-    """A node that was started."""
+    """A node that was started. One that ends by itself has an attribute ``finished`` besides; see `FinishingNode`."""
 
     @property
     def node(self) -> Node:
@@ -43,6 +60,13 @@ class RunningNode(Protocol):
 
     def close(self) -> None:
         """End it and take it out of the graph."""
+
+
+class FinishingNode(RunningNode, Protocol):
+    """A node that ends by itself."""
+
+    finished: asyncio.Future[int]
+    """Gets the exit status when the node is done; it is to be closed then."""
 
 
 Factory = Callable[[Graph, NodeOptions], RunningNode]
@@ -55,16 +79,19 @@ def create_node(graph: Graph, options: NodeOptions, default_name: str) -> tuple[
     Raises:
         LinkwrightError: a name, a remapping or a ROS argument is not valid.
     """
-    ros, arguments = split_ros_arguments(options.arguments)
+    ros = parse(options.arguments)
+    name = options.name or default_name
+    remappings = [*ros.remappings_for(name), *options.remappings]
     node = graph.create_node(
-        options.name or default_name,
+        name,
         namespace=options.namespace,
-        parameters={**options.parameters, **ros.parameters},
-        remappings=[*ros.remappings, *options.remappings],
+        parameters={**options.parameters, **ros.parameters_for(_full_name(name, options.namespace, remappings))},
+        remappings=remappings,
+        enclave=ros.enclave or "/",
+        enable_rosout=ros.rosout_logs is not False,
     )
-    if ros.log_level is not None:
-        node.get_logger().level = ros.log_level
-    return node, arguments
+    _set_levels(graph, node, ros)
+    return node, ros.others
 
 
 @contextmanager
@@ -76,3 +103,16 @@ def starting(node: Node) -> Iterator[None]:
         node.get_logger().fatal(error.diagnostics[0].message)
         node.destroy_node()
         raise
+
+
+def _full_name(name: str, namespace: str, remappings: list[tuple[str, str]]) -> str:
+    rules = Remappings(remappings)
+    return join(absolute_namespace(rules.namespace(namespace, name)), rules.node_name(name))
+
+
+def _set_levels(graph: Graph, node: Node, ros: RosArguments) -> None:
+    """Obey ``--log-level``: without a logger's name it is for this node, which may share its process with others."""
+    if ros.log_level is not None:
+        node.get_logger().set_level(ros.log_level)
+    for logger, level in ros.log_levels.items():
+        graph.get_logger(logger).set_level(level)

@@ -16,6 +16,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
+from typing import Literal
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError
 from linkwright.graph import (
@@ -29,6 +30,8 @@ from linkwright.graph import (
     SetParametersResult,
     Timer,
 )
+from linkwright.graph.parameter_qos import QoSOverridingOptions, override_qos
+from linkwright.graph.qos import QoSPolicyKind, QoSProfile
 from linkwright.messages import JointState, String, TFMessage
 from linkwright.nodes.options import NodeOptions, create_node, starting
 from linkwright.nodes.robot_transforms import MOVING_TYPES, RobotTransforms
@@ -57,7 +60,8 @@ class RobotStatePublisher:
 
     Raises:
         LinkwrightError: it cannot start: no description (NODE101), one that cannot be read (NODE102, with what is
-            wrong in it), a frequency out of range (NODE103), or a parameter of the wrong type (GRAPH201).
+            wrong in it), a frequency out of range (NODE103), a parameter of the wrong type (GRAPH201), or an override
+            of a quality of service that is none (GRAPH208).
     """
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
@@ -102,12 +106,21 @@ class RobotStatePublisher:
         self._ignore_timestamp: bool = node.declare_parameter("ignore_timestamp", False).value
         node.declare_parameter("frame_prefix", "")
         self._description_publisher = node.create_publisher(String, "robot_description", DESCRIPTION_QOS)
-        self._tf_publisher = node.create_publisher(TFMessage, "/tf", TF_QOS)
-        self._static_publisher = node.create_publisher(TFMessage, "/tf_static", STATIC_TF_PUBLISHER_QOS)
-        node.create_subscription(JointState, "joint_states", self._on_joint_state, SENSOR_DATA_QOS)
+        self._tf_publisher = node.create_publisher(TFMessage, "/tf", self._qos("publisher", "/tf", TF_QOS))
+        static_qos = self._qos("publisher", "/tf_static", STATIC_TF_PUBLISHER_QOS)
+        self._static_publisher = node.create_publisher(TFMessage, "/tf_static", static_qos)
+        sensor_qos = self._qos("subscription", node.resolve_topic_name("joint_states"), SENSOR_DATA_QOS)
+        node.create_subscription(JointState, "joint_states", self._on_joint_state, sensor_qos)
         node.add_on_set_parameters_callback(self._check_parameters)
         node.add_post_set_parameters_callback(self._apply_parameters)
         self._set_up(text, robot)
+
+    def _qos(self, entity: Literal["publisher", "subscription"], topic: str, qos: QoSProfile) -> QoSProfile:
+        """The profile with what parameters ``qos_overrides.*`` say; the policies are those of the ROS node."""
+        kinds = [QoSPolicyKind.DEPTH, QoSPolicyKind.HISTORY, QoSPolicyKind.RELIABILITY]
+        if topic == "/tf":
+            kinds.append(QoSPolicyKind.DURABILITY)
+        return override_qos(self._node, entity, topic, qos, QoSOverridingOptions(kinds))
 
     def _description_from_file(self, path: str) -> str:
         self._node.get_logger().warning(

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import asyncio
+import secrets
+import string
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import sqrt
@@ -18,6 +21,13 @@ USAGE = (
     "static_transform_publisher [--x X] [--y Y] [--z Z] [--qx QX] [--qy QY] [--qz QZ] [--qw QW] "
     "[--roll ROLL] [--pitch PITCH] [--yaw YAW] --frame-id FRAME_ID --child-frame-id CHILD_FRAME_ID"
 )
+HELP = f"""A command line utility for manually sending a static transform.
+
+usage: {USAGE}
+
+A translation is in metres, angles are in radians. By position, which is deprecated:
+static_transform_publisher X Y Z YAW PITCH ROLL FRAME_ID CHILD_FRAME_ID
+static_transform_publisher X Y Z QX QY QZ QW FRAME_ID CHILD_FRAME_ID"""
 _TRANSLATION = ("--x", "--y", "--z")
 _QUATERNION = ("--qx", "--qy", "--qz", "--qw")
 _ANGLES = ("--roll", "--pitch", "--yaw")
@@ -76,8 +86,12 @@ class StaticTransformPublisher:
     """
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
-        name = graph.unique_node_name("static_transform_publisher", options.namespace)
-        self._node, arguments = create_node(graph, options, name)
+        self._node, arguments = create_node(graph, options, f"static_transform_publisher_{_random_suffix()}")
+        self.finished: asyncio.Future[int] = asyncio.get_running_loop().create_future()
+        if any(word in ("-h", "--help") for word in arguments):
+            options.output(HELP)
+            self.finished.set_result(0)
+            return
         with starting(self._node):
             self._publish(parse_arguments(arguments))
 
@@ -108,6 +122,11 @@ class StaticTransformPublisher:
             f"Spinning until stopped - publishing transform\ntranslation: ({translation})\n"
             f"rotation: ({rotation})\nfrom '{transform.frame_id}' to '{transform.child_frame_id}'"
         )
+
+
+def _random_suffix() -> str:
+    """Letters and digits that tell this node from others of its kind, in whatever process, as in tf2_ros."""
+    return "".join(secrets.choice(string.ascii_letters + string.digits) for _ in range(16))
 
 
 def _split(arguments: Sequence[str]) -> tuple[dict[str, str], list[str]]:

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import importlib
 import sys
+from collections.abc import Mapping, Sequence
+from importlib.machinery import ModuleSpec
 from pathlib import Path
+from types import ModuleType
 
 _FOLDER = Path(__file__).parent / "path"
 
@@ -17,11 +20,14 @@ def activate() -> None:
     """Let launch files be imported; may be called again.
 
     The folder of the stand-ins is the last on ``sys.path``: a module that is installed comes before ours of the same
-    name, with the exception of `LAUNCH_MODULES`.
+    name, with the exception of `LAUNCH_MODULES`. Processes that launch files start find the stand-ins too.
     """
     folder = str(_FOLDER)
     if folder not in sys.path:
         sys.path.append(folder)
+    if not any(isinstance(finder, _InterfacesWhenAsked) for finder in sys.meta_path):
+        sys.meta_path += [_ModulesOfWorkspace(), _InterfacesWhenAsked()]
+    _provide_for_processes()
     missing = [name for name in LAUNCH_MODULES if not _is_ours(name)]
     if not missing:
         return
@@ -33,6 +39,89 @@ def activate() -> None:
             importlib.import_module(name)
     finally:
         sys.path.remove(folder)
+
+
+class _InterfacesWhenAsked:
+    """Loads what makes ``std_msgs.msg`` and the like importable when a module is asked for that no other finder has.
+
+    It is a finder by its method alone: the class of finders takes long to import.
+    """
+
+    def find_spec(
+        self,
+        fullname: str,
+        path: Sequence[str] | None = None,  # noqa: ARG002 - the protocol's
+        target: ModuleType | None = None,  # noqa: ARG002 - the protocol's
+    ) -> ModuleSpec | None:
+        """The module, if it is one of interfaces."""
+        if not _may_be_interfaces(fullname):
+            return None
+        from linkwright.standins import interfaces
+
+        if any(isinstance(finder, interfaces.InterfaceFinder) for finder in sys.meta_path):
+            return None  # which is asked next
+        interfaces.install()
+        return interfaces.find_spec(fullname)
+
+
+class _ModulesOfWorkspace:
+    """Finds the Python modules of packages in the workspace for launch files, and for modules of users' packages."""
+
+    def find_spec(
+        self,
+        fullname: str,
+        path: Sequence[str] | None = None,
+        target: ModuleType | None = None,  # noqa: ARG002 - the protocol's
+    ) -> ModuleSpec | None:
+        """The module, if a user's file asks for it while a launch is read or runs, and a package has it."""
+        from linkwright.workspace.active import active_finder
+
+        finder = active_finder()
+        if finder is None or path is not None or not _asked_by_user():
+            return None
+        from linkwright.launch.ros.python_modules import find_module
+
+        return find_module(finder, fullname)
+
+
+def _asked_by_user() -> bool:
+    """Whether the import that goes on is one of a user's file: libraries try a lot that need not be there."""
+    from linkwright.launch.user_errors import is_users
+
+    frame = sys._getframe(2)
+    while frame.f_back is not None and frame.f_code.co_filename.startswith("<frozen importlib"):
+        frame = frame.f_back
+    return is_users(frame.f_code.co_filename)
+
+
+def _may_be_interfaces(name: str) -> bool:
+    """Whether it is worth loading the message classes to see if a module is one of interfaces."""
+    package, _, kind = name.partition(".")
+    if kind:
+        return kind in ("msg", "srv", "action")
+    messages = sys.modules.get("linkwright.messages")
+    if messages is not None and not getattr(messages.__spec__, "_initializing", False):
+        return not package.startswith("_")
+    return package.endswith(("_msgs", "_interfaces", "_srvs"))
+
+
+def _provide_for_processes() -> None:
+    """Have the launch room start users' processes so that they can import the stand-ins too."""
+    from linkwright.launch.engine import surroundings
+
+    surroundings.provide(_environment, _python_command)
+
+
+def _environment(base: Mapping[str, str]) -> Mapping[str, str]:
+    from linkwright.standins import process  # when the first process is started
+
+    return process.environment(base)
+
+
+def _python_command(arguments: Sequence[str]) -> Sequence[str]:
+    from linkwright.standins import process
+
+    return process.python_command(arguments)
 
 
 def _is_ours(name: str) -> bool:

@@ -17,7 +17,7 @@ from linkwright.viewer.protocol import (
 )
 
 if TYPE_CHECKING:
-    from linkwright.nodes import JointPanel
+    from linkwright.nodes.joint_panel import JointPanel
 
 _LAG = 0.01
 """Seconds by which positions follow a change, so that the transforms it causes go out first."""

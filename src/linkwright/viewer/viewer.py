@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from linkwright._version import __version__
 from linkwright.diagnostics import Diagnostic, Severity
-from linkwright.graph import Graph
+from linkwright.graph import Graph, Parameter, ParameterDescriptor
 from linkwright.urdf import DescriptionLibrary
 from linkwright.viewer.access import Gate
 from linkwright.viewer.audience import Audience, Page
@@ -40,10 +40,12 @@ from linkwright.viewer.wire import encode
 from linkwright.workspace import PackageFinder
 
 if TYPE_CHECKING:
-    from linkwright.nodes import JointPanel
+    from linkwright.nodes.joint_panel import JointPanel
     from linkwright.viewer.server import WebServer
 
 _NAME = "rviz2"
+_FIXED_FRAME = "fixed_frame"
+"""A parameter of the node, by which tools learn what the viewer shows and say what it is to show."""
 
 
 class Viewer:
@@ -82,6 +84,10 @@ class Viewer:
         self._host, self._port, self._title = host, port, title
         self._url = ""
         self._node = graph.create_node(name, namespace=namespace, remappings=remappings)
+        self._node.declare_parameter(
+            _FIXED_FRAME, self._fixed_frame(), ParameterDescriptor(description="the frame that everything is shown in")
+        )
+        self._node.add_post_set_parameters_callback(self._take_parameters)
         self._meshes = MeshFolders()
         self._audience = Audience(self._opening, self._receive, self._node.get_logger())
         self._joints = JointBridge(self._audience.publish)
@@ -263,6 +269,14 @@ class Viewer:
         self._audience.publish(PropertyChanged(message.id, value))
         if name == "Fixed Frame":
             self._stream.refresh()
+            if self._node.get_parameter(_FIXED_FRAME).value != value:
+                self._node.set_parameters([Parameter(_FIXED_FRAME, value=value)])
+
+    def _take_parameters(self, parameters: list[Parameter]) -> None:
+        for parameter in parameters:
+            if parameter.name == _FIXED_FRAME and parameter.value != self._fixed_frame():
+                identity = self.config.options.identity(("Fixed Frame",))
+                self._set_option("Fixed Frame", SetProperty(identity, parameter.value))
 
     # --- frames ------------------------------------------------------------------------------------------------
 
@@ -311,5 +325,5 @@ class Viewer:
     def _report(self, diagnostic: Diagnostic) -> None:
         where = f"{diagnostic.span}: " if diagnostic.span else ""
         logger = self._node.get_logger()
-        say: Callable[[str], None] = logger.error if diagnostic.severity is Severity.ERROR else logger.warning
+        say: Callable[[str], object] = logger.error if diagnostic.severity is Severity.ERROR else logger.warning
         say(where + diagnostic.message)

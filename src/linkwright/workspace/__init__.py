@@ -10,9 +10,10 @@ from linkwright.workspace.ament_functions import (
 )
 from linkwright.workspace.errors import PackageNotFoundError
 from linkwright.workspace.finder import PackageFinder
-from linkwright.workspace.manifest import enclosing_package, package_name
+from linkwright.workspace.manifest import MANIFEST, enclosing_package, package_name
 
 __all__ = [
+    "MANIFEST",
     "PackageFinder",
     "PackageNotFoundError",
     "current_finder",

@@ -16,6 +16,11 @@ def current_finder() -> PackageFinder:
     return _active.get() or PackageFinder()
 
 
+def active_finder() -> PackageFinder | None:
+    """The finder of the innermost `use_finder`, if there is one."""
+    return _active.get()
+
+
 @contextmanager
 def use_finder(finder: PackageFinder) -> Iterator[PackageFinder]:
     """Make `current_finder` return a finder inside a ``with`` block."""

@@ -13,6 +13,9 @@ from linkwright.workspace.errors import PackageNotFoundError
 from linkwright.workspace.manifest import enclosing_package
 from linkwright.workspace.sources import SourceScan
 
+START_VARIABLE = "LINKWRIGHT_START"
+"""The environment variable by which a launcher tells its processes where its own search for packages began."""
+
 
 class PackageFinder:
     """Finds ROS packages the way ROS users lay them out.
@@ -30,7 +33,8 @@ class PackageFinder:
     the package.
 
     Args:
-        start: where the user stands, one folder or several of falling weight; the current folder by default.
+        start: where the user stands, one folder or several of falling weight; by default the current folder, and
+            behind it those that `START_VARIABLE` names.
         environment: the variables to read ``AMENT_PREFIX_PATH`` from; the process's by default.
         extra: package name -> share folder, before everything else.
     """
@@ -42,14 +46,20 @@ class PackageFinder:
         environment: Mapping[str, str] | None = None,
         extra: Mapping[str, str | Path] | None = None,
     ) -> None:
+        self._environment = os.environ if environment is None else environment
         if start is None:
-            start = Path.cwd()
+            given = self._environment.get(START_VARIABLE, "").split(os.pathsep)
+            start = [Path.cwd(), *(Path(folder) for folder in given if folder)]
         starts = [start] if isinstance(start, Path) else start
         self._starts = tuple(dict.fromkeys(_absolute(each) for each in starts))
-        self._environment = os.environ if environment is None else environment
         self._extra = {name: Path(share) for name, share in (extra or {}).items()}
         self._scans: dict[Path, SourceScan] = {}
         self._known: dict[str, Path] = {}
+
+    @property
+    def starts(self) -> tuple[Path, ...]:
+        """Where the search begins."""
+        return self._starts
 
     def find(self, name: str) -> Path | None:
         """The share folder of a package (its source folder where it is not installed), or None."""

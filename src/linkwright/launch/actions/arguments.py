@@ -3,20 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import did_you_mean
 from linkwright.launch.context import LaunchContext
 from linkwright.launch.entity import Action
+from linkwright.launch.frontend.entity import Entity
+from linkwright.launch.frontend.expose import expose_action
 from linkwright.launch.places import error_at
 from linkwright.launch.substitution import (
     SomeSubstitutionsType,
     Substitution,
+    describe,
     normalize_to_list_of_substitutions,
     perform_substitutions,
 )
 
+if TYPE_CHECKING:
+    from linkwright.launch.frontend.parser import Parser
 
+_TRUTHS = ("true", "false", "True", "False", "TRUE", "FALSE")
+
+
+@expose_action("arg")
 class DeclareLaunchArgument(Action):
     """Declares an argument and sets the launch configuration of its name, to the value given or the default.
 
@@ -45,10 +54,32 @@ class DeclareLaunchArgument(Action):
         if self._choices is None:
             return
         if not self._choices:
-            raise error_at(self.place, "LAUNCH112", f"argument '{name}' is declared with an empty list of choices")
+            promised = RuntimeError("Provided choices arg is empty. Use None to ignore the choice list.")
+            message = f"argument '{name}' is declared with an empty list of choices"
+            raise error_at(self.place, "LAUNCH112", message, promises=promised)
         if isinstance(default_value, str) and default_value not in self._choices:
+            text = f'Provided default_value "{default_value}" is not in provided choices "{self._choices}".'
             message = f"the default '{default_value}' of argument '{name}' is none of its choices"
-            raise error_at(self.place, "LAUNCH112", message, self._hint(default_value))
+            hint = self._hint(default_value)
+            raise error_at(self.place, "LAUNCH112", message, hint, promises=RuntimeError(text))
+
+    @classmethod
+    def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
+        """Reads ``name``, ``default``, ``description`` and the ``choice`` inside."""
+        _, kwargs = super().parse(entity, parser)
+        kwargs["name"] = parser.escape_characters(entity.get_attr("name"))
+        default = entity.get_attr("default", optional=True)
+        if default is not None:
+            kwargs["default_value"] = parser.parse_substitution(default)
+        description = entity.get_attr("description", optional=True)
+        if description is not None:
+            kwargs["description"] = parser.escape_characters(description)
+        choices = entity.get_attr("choice", data_type=list[Entity], optional=True)
+        if choices is not None:
+            kwargs["choices"] = [parser.escape_characters(choice.get_attr("value")) for choice in choices]
+            for choice in choices:
+                choice.assert_entity_completely_parsed()
+        return cls, kwargs
 
     @property
     def name(self) -> str:
@@ -75,26 +106,61 @@ class DeclareLaunchArgument(Action):
         """The values it may have, None for any."""
         return self._choices
 
+    @property
+    def _conditionally_included(self) -> bool:
+        """`conditionally_included`, by its name in ROS."""
+        return self.conditionally_included
+
+    def describe(self) -> str:
+        """Name, default and description."""
+        default = "" if self._default is None else f", default_value={describe(self._default)}"
+        return f"{type(self).__name__}('{self._name}'{default}, description='{self.description}')"
+
     def execute(self, context: LaunchContext) -> None:
         """Set the launch configuration if it is not set, and check its value.
 
         Raises:
-            LinkwrightError: LAUNCH112, a value that is no choice; LAUNCH114, a required argument not given.
+            RuntimeError: LAUNCH112, a value that is no choice; LAUNCH114, a required argument not given.
         """
         configurations = context.launch_configurations
         if self._name not in configurations:
             if self._default is None:
                 described = f" ({self._description})" if self._description else ""
                 message = f"argument '{self._name}'{described} is required and was not given"
-                raise error_at(self.place, "LAUNCH114", message, f"add {self._name}:=VALUE")
+                promised = RuntimeError(f'Required launch argument "{self._name}" was not provided.')
+                raise error_at(self.place, "LAUNCH114", message, f"add {self._name}:=VALUE", promises=promised)
             configurations[self._name] = perform_substitutions(context, self._default)
         value = configurations[self._name]
         if self._choices is not None and value not in self._choices:
+            text = f'Argument "{self._name}" provided value "{value}" is not valid. Valid options are: {self._choices}'
             message = f"argument '{self._name}' has the value '{value}', which is none of its choices"
-            raise error_at(self.place, "LAUNCH112", message, self._hint(str(value)))
+            hint = self._hint(str(value))
+            raise error_at(self.place, "LAUNCH112", message, hint, promises=RuntimeError(text))
 
     def _hint(self, value: str) -> str:
         choices = self._choices or []
         listed = "choose from " + ", ".join(f"'{choice}'" for choice in choices)
         near = did_you_mean(value, choices) if len(choices) > 2 else None
         return f"{near} ({listed})" if near else listed
+
+
+@expose_action("bool_arg")
+class DeclareBooleanLaunchArgument(DeclareLaunchArgument):
+    """Declares an argument that is true or false.
+
+    Args:
+        name: the argument's name.
+        default_value: the value where none is given.
+    """
+
+    def __init__(self, name: str, *, default_value: SomeSubstitutionsType | bool | None = None, **kwargs: Any) -> None:
+        default = str(default_value) if isinstance(default_value, bool) else default_value
+        super().__init__(name, default_value=default, choices=_TRUTHS, **kwargs)
+
+    @classmethod
+    def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
+        """Reads what ``arg`` has, without choices."""
+        _, kwargs = super().parse(entity, parser)
+        if "choices" in kwargs:
+            raise ValueError("Cannot specify choices for bool_arg")
+        return cls, kwargs

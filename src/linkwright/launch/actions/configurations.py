@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from linkwright.launch.actions.named import AssigningAction, NamedAction
+from linkwright.launch.actions.named import AssigningAction, NamedAction, normalize_pairs, parse_pairs, perform_pairs
 from linkwright.launch.context import LaunchContext
 from linkwright.launch.entity import Action
-from linkwright.launch.substitution import (
-    SomeSubstitutionsType,
-    normalize_to_list_of_substitutions,
-    perform_substitutions,
-)
+from linkwright.launch.frontend.expose import expose_action
+
+if TYPE_CHECKING:
+    from linkwright.launch.frontend.entity import Entity
+    from linkwright.launch.frontend.parser import Parser
 
 
+@expose_action("let")
 class SetLaunchConfiguration(AssigningAction):
     """Sets a launch configuration."""
 
@@ -23,6 +24,7 @@ class SetLaunchConfiguration(AssigningAction):
         context.launch_configurations[self.resolved_name(context)] = self.resolved_value(context)
 
 
+@expose_action("unset")
 class UnsetLaunchConfiguration(NamedAction):
     """Unsets a launch configuration; one that is not set stays so."""
 
@@ -47,29 +49,29 @@ class PopLaunchConfigurations(Action):
         context.pop_launch_configurations()
 
 
+@expose_action("reset")
 class ResetLaunchConfigurations(Action):
     """Forgets all launch configurations but those given.
 
     Args:
-        launch_configurations: name -> value of what is set afterwards, worked out before the others are
-        forgotten.
+        launch_configurations: name -> value of what is set afterwards, worked out before the others are forgotten.
     """
 
-    def __init__(
-        self,
-        launch_configurations: Mapping[SomeSubstitutionsType, SomeSubstitutionsType] | None = None,
-        **kwargs: Any,
-    ) -> None:
+    def __init__(self, launch_configurations: Mapping[Any, Any] | None = None, **kwargs: Any) -> None:
         super().__init__(**kwargs)
-        self._kept = [
-            (normalize_to_list_of_substitutions(name), normalize_to_list_of_substitutions(value))
-            for name, value in (launch_configurations or {}).items()
-        ]
+        self._kept = normalize_pairs(launch_configurations or {})
+
+    @classmethod
+    def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
+        """Reads the ``keep`` inside."""
+        _, kwargs = super().parse(entity, parser)
+        kept = parse_pairs(entity, parser, "keep")
+        if kept is not None:
+            kwargs["launch_configurations"] = kept
+        return cls, kwargs
 
     def execute(self, context: LaunchContext) -> None:
         """Forget the others."""
-        kept = {
-            perform_substitutions(context, name): perform_substitutions(context, value) for name, value in self._kept
-        }
+        kept = perform_pairs(context, self._kept)
         context.launch_configurations.clear()
         context.launch_configurations.update(kept)

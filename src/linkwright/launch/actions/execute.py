@@ -4,86 +4,85 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from pathlib import Path
-from types import SimpleNamespace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import did_you_mean
 from linkwright.launch import events
-from linkwright.launch.conditions import evaluate_condition_expression
+from linkwright.launch.conditions import InvalidConditionExpressionError, evaluate_condition_expression
 from linkwright.launch.context import LaunchContext
 from linkwright.launch.engine.log import OUTPUT_MODES, output_destinations
 from linkwright.launch.engine.processes import ProcessPlan
 from linkwright.launch.entity import Action, LaunchDescriptionEntity, SomeEntitiesType, as_entities
+from linkwright.launch.executable import Executable
+from linkwright.launch.frontend.expose import expose_action
+from linkwright.launch.frontend.values import normalize_typed_substitution, perform_typed_substitution
 from linkwright.launch.places import error_at
 from linkwright.launch.substitution import (
     SomeSubstitutionsType,
     Substitution,
+    describe,
     normalize_to_list_of_substitutions,
     perform_substitutions,
 )
 
+if TYPE_CHECKING:
+    from linkwright.launch.actions.named import Pairs
+    from linkwright.launch.frontend.entity import Entity
+    from linkwright.launch.frontend.parser import Parser
+
 OnExit = SomeEntitiesType | Callable[..., Any] | None
 
+_DEFAULT_TIMEOUT = "5"
+"""Seconds."""
 
-class ExecuteProcess(Action):
+
+class ExecuteLocal(Action):
     """Starts a process and follows it to its end.
 
     Args:
-        cmd: program and arguments, each a text, a substitution, or a list of these to be joined.
-        name: its name in the log, the program's by default; a number is put behind.
-        cwd: the folder it runs in.
-        env: its whole environment; that of the launcher by default.
-        additional_env: variables set besides.
-        prefix: a command to put before it, such as ``gdb -ex run --args``; the launch configuration
-            ``launch-prefix`` by default.
+        process_description: what is run.
         shell: whether a shell runs it.
-        output: where what it writes goes: ``screen``, ``log``, ``both``, ``own_log``, ``full``, or a mapping
-        of
-            ``stdout``, ``stderr`` and ``both`` to sets of ``screen``, ``log`` and ``own_log``.
+        sigterm_timeout: seconds between SIGINT and SIGTERM when it is to end; by default the launch configuration
+            of this name, else 5.
+        sigkill_timeout: seconds between SIGTERM and SIGKILL; by default the launch configuration of this name, else 5.
+        emulate_tty: whether it shall think that it writes to a terminal; the launch configuration of this name wins.
+        output: where what it writes goes: ``screen``, ``log``, ``both``, ``own_log``, ``full``, or a mapping of
+            ``stdout``, ``stderr`` and ``both`` to sets of ``screen``, ``log`` and ``own_log``. The environment
+            variable ``OVERRIDE_LAUNCH_PROCESS_OUTPUT`` wins.
         output_format: how a line is shown; ``{line}`` and ``{this}`` (the action) can be used.
+        cached_output: whether `get_stdout` and `get_stderr` give what it wrote.
         log_cmd: whether the command is shown before it runs.
         on_exit: what is visited when it has ended, or a function of event and context that returns that.
         respawn: whether it is started again when it ends before the launch does.
         respawn_delay: seconds to wait before that.
         respawn_max_retries: how often at most; any number if negative.
-        sigterm_timeout: seconds between SIGINT and SIGTERM when it is to end.
-        sigkill_timeout: seconds between SIGTERM and SIGKILL.
-        emulate_tty: whether it shall think that it writes to a terminal.
-        cached_output: whether `get_stdout` and `get_stderr` give what it wrote.
-        condition: see `Action`.
+        kwargs: see `Action`.
+
+    Attributes:
+        process_details: ``name``, ``cmd``, ``cwd``, ``env`` and ``pid`` once it runs.
+        return_code: its exit status once it has ended.
     """
 
     def __init__(
         self,
         *,
-        cmd: Iterable[SomeSubstitutionsType],
-        name: SomeSubstitutionsType | None = None,
-        cwd: SomeSubstitutionsType | None = None,
-        env: Mapping[Any, Any] | None = None,
-        additional_env: Mapping[Any, Any] | None = None,
-        prefix: SomeSubstitutionsType | None = None,
+        process_description: Executable,
         shell: bool = False,
+        sigterm_timeout: float | SomeSubstitutionsType | None = None,
+        sigkill_timeout: float | SomeSubstitutionsType | None = None,
+        emulate_tty: bool | SomeSubstitutionsType = False,
         output: SomeSubstitutionsType | Mapping[str, Any] = "log",
         output_format: str = "[{this.process_description.final_name}] {line}",
+        cached_output: bool = False,
         log_cmd: bool = False,
         on_exit: OnExit = None,
         respawn: bool | SomeSubstitutionsType = False,
         respawn_delay: float | None = None,
         respawn_max_retries: int = -1,
-        sigterm_timeout: float | SomeSubstitutionsType | None = None,
-        sigkill_timeout: float | SomeSubstitutionsType | None = None,
-        emulate_tty: bool | SomeSubstitutionsType = False,
-        cached_output: bool = False,
         **kwargs: Any,
     ) -> None:
         super().__init__(**kwargs)
-        self._cmd = [normalize_to_list_of_substitutions(part) for part in _as_parts(cmd)]
-        self._name = _optional(name)
-        self._cwd = _optional(cwd)
-        self._env = _variables(env)
-        self._additional_env = _variables(additional_env)
-        self._prefix = _optional(prefix)
+        self._description = process_description
         self._shell = shell
         self._output = dict(output) if isinstance(output, Mapping) else normalize_to_list_of_substitutions(output)
         self._output_format = output_format
@@ -91,33 +90,23 @@ class ExecuteProcess(Action):
         is_function = callable(on_exit) and not isinstance(on_exit, LaunchDescriptionEntity)
         self._after_exit: Callable[..., Any] | None = on_exit if is_function else None  # type: ignore[assignment]
         self._on_exit = [] if is_function else as_entities(on_exit)
-        self._respawn = normalize_to_list_of_substitutions(_truth_text(respawn))
+        self._respawn = normalize_typed_substitution(_plain(respawn), bool)
         self._respawn_delay = respawn_delay
         self._respawn_max_retries = respawn_max_retries
-        self._sigterm_timeout = _optional(_number_text(sigterm_timeout))
-        self._sigkill_timeout = _optional(_number_text(sigkill_timeout))
-        self._emulate_tty = normalize_to_list_of_substitutions(_truth_text(emulate_tty))
+        self._sigterm_timeout = _timeout(sigterm_timeout, "sigterm_timeout")
+        self._sigkill_timeout = _timeout(sigkill_timeout, "sigkill_timeout")
+        self._emulate_tty = emulate_tty
         self._cached: dict[int, list[bytes]] | None = {1: [], 2: []} if cached_output else None
+        self._started = False
         self.process_details: dict[str, Any] | None = None
         self.return_code: int | None = None
 
     # --- what others read of it -----------------------------------------------------------------------------
 
     @property
-    def cmd(self) -> list[list[Substitution]]:
-        """Program and arguments, as substitutions."""
-        return self._cmd
-
-    @property
-    def name(self) -> str | None:
-        """The process's name in the log once it runs, such as ``talker-1``."""
-        return None if self.process_details is None else self.process_details["name"]
-
-    @property
-    def process_description(self) -> SimpleNamespace:
-        """The process once it runs: ``final_name``, ``final_cmd``."""
-        details = self.process_details or {"name": None, "cmd": None}
-        return SimpleNamespace(final_name=details["name"], final_cmd=details["cmd"])
+    def process_description(self) -> Executable:
+        """What is run."""
+        return self._description
 
     @property
     def shell(self) -> bool:
@@ -125,8 +114,23 @@ class ExecuteProcess(Action):
         return self._shell
 
     @property
+    def emulate_tty(self) -> Any:
+        """Whether it shall think that it writes to a terminal, as it was given."""
+        return self._emulate_tty
+
+    @property
+    def sigterm_timeout(self) -> list[Substitution]:
+        """Seconds between SIGINT and SIGTERM, as substitutions."""
+        return self._sigterm_timeout
+
+    @property
+    def sigkill_timeout(self) -> list[Substitution]:
+        """Seconds between SIGTERM and SIGKILL, as substitutions."""
+        return self._sigkill_timeout
+
+    @property
     def output(self) -> Any:
-        """Where its output goes, as it was given."""
+        """Where its output goes: a mapping, or substitutions."""
         return self._output
 
     def get_stdout(self) -> str:
@@ -141,16 +145,26 @@ class ExecuteProcess(Action):
         """What is visited when it has ended."""
         return self._on_exit
 
+    def describe(self) -> str:
+        """Command, folder, environment and whether a shell runs it."""
+        about = self._description
+        command = ", ".join(describe(part) for part in about.cmd)
+        folder = None if about.cwd is None else describe(about.cwd)
+        pairs = None if about.env is None else [f"{describe(name)}: {describe(value)}" for name, value in about.env]
+        environment = None if pairs is None else "{" + ", ".join(pairs) + "}"
+        return f"{type(self).__name__}(cmd=[{command}], cwd={folder}, env={environment}, shell={self._shell})"
+
     # --- the run --------------------------------------------------------------------------------------------
 
     def execute(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity] | None:
         """Start the process.
 
         Raises:
+            RuntimeError: LAUNCH141, it was started before.
             LinkwrightError: LAUNCH141, what cannot be understood of how it is to run.
         """
         if not context.is_shutdown:
-            self._start(context, self._command(context))
+            self._start(context, [perform_substitutions(context, part) for part in self._description.cmd])
         return None
 
     def exited(self, event: events.ProcessExited, context: LaunchContext) -> list[LaunchDescriptionEntity]:
@@ -165,50 +179,47 @@ class ExecuteProcess(Action):
         if self._cached is not None:
             self._cached[stream].append(text)
 
-    def _start(self, context: LaunchContext, command: list[str]) -> None:
+    def _start(self, context: LaunchContext, command: list[str]) -> str:
+        """Start the process of a command; returns its name in the log."""
+        if self._started:
+            text = f"ExecuteLocal action '{self._description.final_name}': executed more than once: {self.describe()}"
+            message = f"the action of process '{self._description.final_name}' is visited a second time"
+            hint = "make an action for each start, for example in a function"
+            raise error_at(self.place, "LAUNCH141", message, hint, promises=RuntimeError(text))
         plan = self._plan(context, command)
-        session = context.session
-        session.processes.start(plan, session.number_process(plan.name), context)
-
-    def _command(self, context: LaunchContext) -> list[str]:
-        return [perform_substitutions(context, part) for part in self._cmd]
+        name = context.session.number_process(plan.name)
+        about = self._description
+        about.final_name, about.final_cmd = name, list(plan.command)
+        about.final_cwd, about.final_env = plan.folder, dict(plan.environment)
+        self._started = True
+        context.session.processes.start(plan, name, context)
+        return name
 
     def _plan(self, context: LaunchContext, command: list[str]) -> ProcessPlan:
-        def text(substitutions: list[Substitution] | None) -> str | None:
-            return None if substitutions is None else perform_substitutions(context, substitutions)
-
+        about = self._description
         if not command or not command[0].strip():
             raise error_at(self.place, "LAUNCH141", "the command of the process is empty")
-        base_name = text(self._name) or Path(shlex.split(command[0])[0] if self._shell else command[0]).name
-        prefix = text(self._prefix) or context.launch_configurations.get("launch-prefix")
-        environment = dict(context.environment)
-        if self._env is not None:
-            environment = self._evaluated(context, self._env)
-        environment.update(self._evaluated(context, self._additional_env or []))
+        program = [shlex.split(command[0])[0]] if self._shell else command
         return ProcessPlan(
             action=self,
-            name=base_name,
-            command=[*shlex.split(prefix), *command] if prefix else command,
-            folder=text(self._cwd),
-            environment=environment,
+            name=about.base_name(context, program),
+            command=[*about.prefix_words(context, program), *command],
+            folder=None if about.cwd is None else perform_substitutions(context, about.cwd),
+            environment=self._environment(context),
             shell=self._shell,
-            emulate_tty=evaluate_condition_expression(context, self._emulate_tty),
+            emulate_tty=self._truth(context, "emulate_tty", self._emulate_tty),
             destinations=self._destinations(context),
             output_format=self._output_format,
             log_command=self._log_cmd,
-            respawn=evaluate_condition_expression(context, self._respawn),
+            respawn=bool(self._typed(context, "respawn", self._respawn)),
             respawn_delay=self._respawn_delay or 0.0,
             respawn_limit=self._respawn_max_retries,
             seconds_to_sigterm=self._seconds(context, self._sigterm_timeout, "sigterm_timeout"),
             seconds_to_sigkill=self._seconds(context, self._sigkill_timeout, "sigkill_timeout"),
         )
 
-    def _evaluated(
-        self, context: LaunchContext, variables: list[tuple[list[Substitution], list[Substitution]]]
-    ) -> dict[str, str]:
-        return {
-            perform_substitutions(context, name): perform_substitutions(context, value) for name, value in variables
-        }
+    def _environment(self, context: LaunchContext) -> dict[str, str]:
+        return self._description.environment(context)
 
     def _destinations(self, context: LaunchContext) -> dict[int, frozenset[str]]:
         mode: Any = context.environment.get("OVERRIDE_LAUNCH_PROCESS_OUTPUT") or self._output
@@ -220,41 +231,131 @@ class ExecuteProcess(Action):
             wrong = str(error.args[0])
             modes = ", ".join(f"'{each}'" for each in OUTPUT_MODES)
             hint = did_you_mean(wrong, OUTPUT_MODES) or f"use one of {modes}"
-            raise error_at(self.place, "LAUNCH141", f"there is no output '{wrong}'", hint) from error
+            text = f'{wrong} is not a valid standard output config i.e. "screen", "log" or "both"'
+            message = f"there is no output '{wrong}'"
+            raise error_at(self.place, "LAUNCH141", message, hint, promises=ValueError(text)) from error
 
-    def _seconds(self, context: LaunchContext, given: list[Substitution] | None, name: str) -> float:
-        text = perform_substitutions(context, given) if given else context.launch_configurations.get(name, "5")
+    def _truth(self, context: LaunchContext, name: str, given: Any) -> bool:
+        value = context.launch_configurations.get(name, given)
+        try:
+            return value if isinstance(value, bool) else evaluate_condition_expression(context, value)
+        except InvalidConditionExpressionError as error:
+            message = f"'{name}' is '{error.text}', which is neither true nor false"
+            raise error_at(self.place, "LAUNCH141", message, promises=error) from error
+
+    def _typed(self, context: LaunchContext, name: str, value: Any) -> Any:
+        try:
+            return perform_typed_substitution(context, value, bool)
+        except ValueError as error:
+            message = f"'{name}' is '{perform_substitutions(context, value)}', which is neither true nor false"
+            raise error_at(self.place, "LAUNCH141", message, promises=error) from error
+
+    def _seconds(self, context: LaunchContext, given: list[Substitution], name: str) -> float:
+        text = perform_substitutions(context, given)
         try:
             return float(text)
         except ValueError as error:
-            raise error_at(self.place, "LAUNCH141", f"'{name}' is '{text}', which is no number") from error
+            message = f"'{name}' is '{text}', which is no number"
+            raise error_at(self.place, "LAUNCH141", message, promises=error) from error
 
     def _cached_text(self, stream: int) -> str:
         if self._cached is None:
-            raise RuntimeError("the output of the process is not kept: give it cached_output=True")
+            raise RuntimeError("cached output must be true to be able to get stdout: give it cached_output=True")
         return b"".join(self._cached[stream]).decode(errors="replace")
 
 
-def _as_parts(cmd: Any) -> list[Any]:
-    return [cmd] if isinstance(cmd, (str, Substitution, Path)) else list(cmd)
+@expose_action("executable")
+class ExecuteProcess(ExecuteLocal):
+    """Starts a process and follows it to its end.
+
+    Args:
+        cmd: program and arguments, see `Executable`.
+        prefix: see `Executable`.
+        name: see `Executable`.
+        cwd: see `Executable`.
+        env: see `Executable`.
+        additional_env: see `Executable`.
+        kwargs: see `ExecuteLocal`.
+    """
+
+    def __init__(
+        self,
+        *,
+        cmd: Iterable[SomeSubstitutionsType],
+        prefix: SomeSubstitutionsType | None = None,
+        name: SomeSubstitutionsType | None = None,
+        cwd: SomeSubstitutionsType | None = None,
+        env: Mapping[Any, Any] | None = None,
+        additional_env: Mapping[Any, Any] | None = None,
+        **kwargs: Any,
+    ) -> None:
+        described = Executable(cmd=cmd, prefix=prefix, name=name, cwd=cwd, env=env, additional_env=additional_env)
+        super().__init__(process_description=described, **kwargs)
+
+    @classmethod
+    def parse(
+        cls, entity: Entity, parser: Parser, ignore: Sequence[str] | None = None
+    ) -> tuple[type[Action], dict[str, Any]]:
+        """Reads the tag of a process.
+
+        Args:
+            entity: the tag.
+            parser: for the substitutions in it.
+            ignore: names of arguments that are not read.
+        """
+        from linkwright.launch.frontend.process_tag import parse_process
+
+        _, kwargs = super().parse(entity, parser)
+        kwargs.update(parse_process(entity, parser, frozenset(ignore or ())))
+        return cls, kwargs
+
+    @classmethod
+    def _parse_cmdline(cls, cmd: str, parser: Parser) -> list[list[Substitution]]:
+        """The words of a command line, by the name that this has in ROS."""
+        from linkwright.launch.frontend.command_line import parse_command_line
+
+        return parse_command_line(cmd, parser)
+
+    @property
+    def cmd(self) -> list[list[Substitution]]:
+        """Program and arguments, as substitutions."""
+        return self._description.cmd
+
+    @property
+    def name(self) -> Any:
+        """The process's name in the log once it runs, such as ``talker-1``; before that, as substitutions."""
+        return self._description.final_name or self._description.name
+
+    @property
+    def cwd(self) -> Any:
+        """The folder it runs in, once it runs; before that, as substitutions."""
+        return self._description.final_cwd or self._description.cwd
+
+    @property
+    def env(self) -> Any:
+        """The environment it has, once it runs; before that, as substitutions."""
+        return self._description.final_env or self._description.env
+
+    @property
+    def additional_env(self) -> Pairs | None:
+        """Variables that it has besides, as substitutions."""
+        return self._description.additional_env
+
+    @property
+    def _name(self) -> list[Substitution] | None:
+        return self._description.name
 
 
-def _optional(value: Any) -> list[Substitution] | None:
-    return None if value is None else normalize_to_list_of_substitutions(value)
+def _timeout(given: Any, name: str) -> list[Substitution]:
+    from linkwright.launch.substitutions.configuration import LaunchConfiguration
+
+    if given is None:
+        return [LaunchConfiguration(name, default=_DEFAULT_TIMEOUT)]
+    return normalize_to_list_of_substitutions(str(given) if isinstance(given, (int, float)) else given)
 
 
-def _variables(env: Mapping[Any, Any] | None) -> list[tuple[list[Substitution], list[Substitution]]] | None:
-    if env is None:
-        return None
-    return [
-        (normalize_to_list_of_substitutions(name), normalize_to_list_of_substitutions(value))
-        for name, value in env.items()
-    ]
+def _plain(value: Any) -> Any:
+    """A text that says true or false as that; anything else as it is."""
+    from linkwright.launch.frontend.values import coerce_to_type
 
-
-def _truth_text(value: Any) -> Any:
-    return str(value).lower() if isinstance(value, bool) else value
-
-
-def _number_text(value: Any) -> Any:
-    return str(value) if isinstance(value, (int, float)) else value
+    return coerce_to_type(value, bool) if isinstance(value, str) else value

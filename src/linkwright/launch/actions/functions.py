@@ -1,18 +1,14 @@
-"""Actions that call a function or write a line."""
+"""Actions that call a function or begin a coroutine."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+import asyncio
+from collections.abc import Callable, Coroutine, Iterable, Mapping
 from typing import Any
 
+from linkwright.launch import events
 from linkwright.launch.context import LaunchContext
-from linkwright.launch.entity import Action, LaunchDescriptionEntity, as_entities
-from linkwright.launch.substitution import (
-    SomeSubstitutionsType,
-    Substitution,
-    normalize_to_list_of_substitutions,
-    perform_substitutions,
-)
+from linkwright.launch.entity import Action
 
 
 class OpaqueFunction(Action):
@@ -39,23 +35,64 @@ class OpaqueFunction(Action):
         self._args = tuple(args or ())
         self._kwargs = dict(kwargs or {})
 
-    def execute(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity]:
+    def describe(self) -> str:
+        """The function's name."""
+        name = getattr(self._function, "__qualname__", None) or type(self._function).__name__
+        return f"{type(self).__name__}(function={name.rpartition('<locals>.')[2]})"
+
+    def execute(self, context: LaunchContext) -> Any:
         """Call it."""
-        return as_entities(self._function(context, *self._args, **self._kwargs))
+        return self._function(context, *self._args, **self._kwargs)
 
 
-class LogInfo(Action):
-    """Writes a line into the log of the launch."""
+class OpaqueCoroutine(Action):
+    """Begins a coroutine when it is visited; the launch does not end before it has, and its end cancels it.
 
-    def __init__(self, *, msg: SomeSubstitutionsType, **kwargs: Any) -> None:
-        super().__init__(**kwargs)
-        self._msg = normalize_to_list_of_substitutions(msg)
+    Args:
+        coroutine: called as ``coroutine(context, *args, **kwargs)``.
+        args: further arguments.
+        kwargs: further named arguments.
+        ignore_context: whether it is called without the context.
+    """
 
-    @property
-    def msg(self) -> list[Substitution]:
-        """The line, as substitutions."""
-        return self._msg
+    def __init__(
+        self,
+        *,
+        coroutine: Callable[..., Coroutine[Any, Any, Any]],
+        args: Iterable[Any] | None = None,
+        kwargs: Mapping[str, Any] | None = None,
+        ignore_context: bool = False,
+        **others: Any,
+    ) -> None:
+        super().__init__(**others)
+        if not asyncio.iscoroutinefunction(coroutine):
+            kind = type(coroutine).__name__
+            raise TypeError(f"OpaqueCoroutine expected a coroutine function for 'coroutine', got '{kind}'")
+        self._coroutine = coroutine
+        self._args = tuple(args or ())
+        self._kwargs = dict(kwargs or {})
+        self._ignore_context = ignore_context
+        self._task: asyncio.Task[Any] | None = None
 
     def execute(self, context: LaunchContext) -> None:
-        """Write it."""
-        context.session.log.say("launch.user", perform_substitutions(context, self._msg))
+        """Begin it."""
+        from linkwright.launch.event_handlers import OnShutdown
+
+        loop = context.asyncio_loop
+        if loop is None:
+            raise RuntimeError("a coroutine needs a launch that runs")
+        args = self._args if self._ignore_context else (context, *self._args)
+        task = loop.create_task(self._coroutine(*args, **self._kwargs))
+        self._task = task
+        context.register_event_handler(OnShutdown(on_shutdown=lambda *_: self._cancel(task)))
+        # What listens for the end of actions hears of this one.
+        task.add_done_callback(lambda _: context.emit_event_sync(events.ExecutionComplete(action=self)))
+
+    @staticmethod
+    def _cancel(task: asyncio.Task[Any]) -> None:
+        if not task.done():
+            task.cancel()
+
+    def get_asyncio_future(self) -> asyncio.Future[Any] | None:
+        """The coroutine's task, once it has begun."""
+        return self._task

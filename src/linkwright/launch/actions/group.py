@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any
 
 from linkwright.launch.actions.configurations import (
     PopLaunchConfigurations,
@@ -12,18 +12,26 @@ from linkwright.launch.actions.configurations import (
     SetLaunchConfiguration,
 )
 from linkwright.launch.actions.environment import PopEnvironment, PushEnvironment, ResetEnvironment
+from linkwright.launch.actions.named import parse_pairs
 from linkwright.launch.context import LaunchContext
 from linkwright.launch.entity import Action, LaunchDescriptionEntity, as_entities
-from linkwright.launch.substitution import SomeSubstitutionsType
+from linkwright.launch.frontend.expose import expose_action
+
+if TYPE_CHECKING:
+    from linkwright.launch.frontend.entity import Entity
+    from linkwright.launch.frontend.parser import Parser
+
+_KEEP = "keep"
 
 
+@expose_action("group")
 class GroupAction(Action):
     """Actions that are visited together.
 
     Args:
         actions: the actions.
         scoped: whether launch configurations and environment variables set inside end with the group.
-        forwarding: whether those from outside are seen inside.
+        forwarding: whether those from outside are seen inside, in a group with a scope.
         launch_configurations: name -> value of configurations that are set for the group.
     """
 
@@ -33,7 +41,7 @@ class GroupAction(Action):
         *,
         scoped: bool = True,
         forwarding: bool = True,
-        launch_configurations: Mapping[SomeSubstitutionsType, SomeSubstitutionsType] | None = None,
+        launch_configurations: Mapping[Any, Any] | None = None,
         **kwargs: Any,
     ) -> None:
         super().__init__(**kwargs)
@@ -41,11 +49,29 @@ class GroupAction(Action):
         self._scoped = scoped
         self._forwarding = forwarding
         self._configurations = dict(launch_configurations or {})
-        if not scoped and not forwarding:
-            raise ValueError("GroupAction without scope must forward: forwarding=False needs scoped=True")
+        self._following: list[LaunchDescriptionEntity] | None = None
+
+    @classmethod
+    def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
+        """Reads ``scoped``, ``forwarding``, the ``keep`` and the actions inside."""
+        _, kwargs = super().parse(entity, parser)
+        for name in ("scoped", "forwarding"):
+            value = entity.get_attr(name, data_type=bool, optional=True, can_be_str=False)
+            if value is not None:
+                kwargs[name] = value
+        kept = parse_pairs(entity, parser, _KEEP)
+        if kept is not None:
+            kwargs["launch_configurations"] = kept
+        kwargs["actions"] = [parser.parse_action(child) for child in entity.children if child.type_name != _KEEP]
+        return cls, kwargs
 
     def get_sub_entities(self) -> list[LaunchDescriptionEntity]:
         """The actions of the group, with what opens and closes its scope."""
+        if self._following is None:
+            self._following = self._with_scope()
+        return self._following
+
+    def _with_scope(self) -> list[LaunchDescriptionEntity]:
         setting: list[LaunchDescriptionEntity] = [
             SetLaunchConfiguration(name, value) for name, value in self._configurations.items()
         ]
@@ -56,6 +82,6 @@ class GroupAction(Action):
             setting = [ResetEnvironment(), ResetLaunchConfigurations(self._configurations)]
         return [*opening, *setting, *self._actions, PopEnvironment(), PopLaunchConfigurations()]
 
-    def execute(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity]:  # noqa: ARG002
+    def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:  # noqa: ARG002
         """The actions, to be visited next."""
         return self.get_sub_entities()

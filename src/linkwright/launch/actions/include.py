@@ -3,27 +3,36 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import Any
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
-from linkwright.diagnostics import did_you_mean
-from linkwright.launch.actions.configurations import SetLaunchConfiguration
+from linkwright.diagnostics import LinkwrightError, Note, did_you_mean
+from linkwright.launch.actions.configurations import (
+    PopLaunchConfigurations,
+    PushLaunchConfigurations,
+    SetLaunchConfiguration,
+)
+from linkwright.launch.actions.environment import PopEnvironment, PushEnvironment
 from linkwright.launch.actions.functions import OpaqueFunction
+from linkwright.launch.actions.named import Pairs, normalize_pairs
 from linkwright.launch.context import LaunchContext
 from linkwright.launch.declared import declared_arguments
 from linkwright.launch.entity import Action, LaunchDescriptionEntity
+from linkwright.launch.frontend.entity import Entity
+from linkwright.launch.frontend.expose import expose_action
 from linkwright.launch.places import error_at
 from linkwright.launch.sources import AnyLaunchDescriptionSource, LaunchDescriptionSource
-from linkwright.launch.substitution import (
-    SomeSubstitutionsType,
-    Substitution,
-    normalize_to_list_of_substitutions,
-    perform_substitutions,
-)
+from linkwright.launch.substitution import SomeSubstitutionsType, perform_substitutions
+
+if TYPE_CHECKING:
+    from linkwright.launch.frontend.parser import Parser
 
 _FILE = "current_launch_file_path"
 _FOLDER = "current_launch_file_directory"
 
 
+@expose_action("include")
 class IncludeLaunchDescription(Action):
     """Visits the description of another launch file.
 
@@ -37,7 +46,7 @@ class IncludeLaunchDescription(Action):
 
     def __init__(
         self,
-        launch_description_source: LaunchDescriptionSource | SomeSubstitutionsType,
+        launch_description_source: LaunchDescriptionSource | SomeSubstitutionsType | Path,
         *,
         launch_arguments: Iterable[tuple[SomeSubstitutionsType, SomeSubstitutionsType]] | None = None,
         **kwargs: Any,
@@ -46,10 +55,22 @@ class IncludeLaunchDescription(Action):
         if not isinstance(launch_description_source, LaunchDescriptionSource):
             launch_description_source = AnyLaunchDescriptionSource(launch_description_source)
         self._source = launch_description_source
-        self._arguments = [
-            (normalize_to_list_of_substitutions(name), normalize_to_list_of_substitutions(value))
-            for name, value in launch_arguments or ()
-        ]
+        self._arguments = normalize_pairs(launch_arguments or ())
+
+    @classmethod
+    def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
+        """Reads ``file`` and the ``arg`` (or ``let``) inside."""
+        _, kwargs = super().parse(entity, parser)
+        kwargs["launch_description_source"] = parser.parse_substitution(entity.get_attr("file"))
+        arguments = []
+        for tag in ("arg", "let"):
+            for each in entity.get_attr(tag, data_type=list[Entity], optional=True) or ():
+                name, value = each.get_attr("name"), each.get_attr("value")
+                arguments.append((parser.parse_substitution(name), parser.parse_substitution(value)))
+                each.assert_entity_completely_parsed()
+        if arguments:
+            kwargs["launch_arguments"] = arguments
+        return cls, kwargs
 
     @property
     def launch_description_source(self) -> LaunchDescriptionSource:
@@ -57,46 +78,62 @@ class IncludeLaunchDescription(Action):
         return self._source
 
     @property
-    def launch_arguments(self) -> list[tuple[list[Substitution], list[Substitution]]]:
+    def launch_arguments(self) -> Pairs:
         """Names and values of the arguments, as substitutions."""
         return self._arguments
+
+    def describe(self) -> str:
+        """Where the description comes from."""
+        return f"{type(self).__name__}({self._source.location})"
 
     def get_sub_entities(self) -> Sequence[LaunchDescriptionEntity]:
         """The description, if it can be had before the launch runs."""
         description = self._source.try_get_launch_description_without_context()
-        return () if description is None else (description,)
+        return [] if description is None else [description]
 
-    def execute(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity]:
+    def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
         """The description, to be visited next with its arguments set.
 
         Raises:
-            LinkwrightError: LAUNCH114, an argument that it requires is not given; and what its source raises.
+            RuntimeError: LAUNCH114, an argument that it requires is not given.
+            LinkwrightError: what its source raises.
         """
         description = self._source.get_launch_description(context)
         given = [perform_substitutions(context, name) for name, _ in self._arguments]
-        self._check_required(context, declared_arguments(description), given)
+        self._check_required(declared_arguments(description), given)
         outer = context.get_locals_as_dict()
-
-        def enter(context: LaunchContext) -> None:
-            path = self._source.location_path
-            context.extend_locals({_FILE: str(path), _FOLDER: str(path.parent)} if path else {})
+        before = {name: outer[name] for name in (_FILE, _FOLDER) if name in outer}
+        context.extend_locals(self._file_values())
 
         def leave(context: LaunchContext) -> None:
-            context.extend_locals({_FILE: outer.get(_FILE), _FOLDER: outer.get(_FOLDER)})
+            context.remove_locals((_FILE, _FOLDER))
+            context.extend_locals(before)
 
         return [
             *(SetLaunchConfiguration(name, value) for name, value in self._arguments),
-            OpaqueFunction(function=enter),
             description,
             OpaqueFunction(function=leave),
         ]
 
-    def _check_required(self, context: LaunchContext, declared: Sequence[Any], given: list[str]) -> None:
+    def explain_inside(self, error: LinkwrightError) -> LinkwrightError:
+        """An error that happened in what is included, with a note about how it came to be included."""
+        if self.place is not None and self._source.location_path is not None:
+            note = Note("included from here", self.place.span(self.place.source()))
+            error.diagnostics = tuple(replace(each, notes=(*each.notes, note)) for each in error.diagnostics)
+        return error
+
+    def _file_values(self) -> dict[str, str]:
+        """The values of the moment that tell which file is being visited."""
+        path = self._source.location_path
+        if path is None:
+            return {}
+        folder = str(path.parent) if path.exists() else self._source.location
+        return {_FILE: str(path), _FOLDER: folder}
+
+    def _check_required(self, declared: Sequence[Any], given: list[str]) -> None:
         names = [argument.name for argument in declared]
         for argument in declared:
-            if argument.default_value is not None or argument.conditionally_included:
-                continue
-            if argument.name in given or argument.name in context.launch_configurations:
+            if argument.default_value is not None or argument.conditionally_included or argument.name in given:
                 continue
             unknown = [name for name in given if name not in names]
             near = did_you_mean(argument.name, unknown)
@@ -106,4 +143,17 @@ class IncludeLaunchDescription(Action):
                 else (f"add ('{argument.name}', VALUE) to launch_arguments")
             )
             message = f"the included launch file requires argument '{argument.name}', which is not given"
-            raise error_at(self.place, "LAUNCH114", message, hint)
+            text = (
+                f"Included launch description missing required argument '{argument.name}' "
+                f"(description: '{argument.description}'), given: [{', '.join(given)}]"
+            )
+            raise error_at(self.place, "LAUNCH114", message, hint, promises=RuntimeError(text))
+
+
+class IncludeScopedLaunchDescription(IncludeLaunchDescription):
+    """An `IncludeLaunchDescription` whose launch configurations and environment end with it."""
+
+    def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
+        """The description in a scope, to be visited next."""
+        opening: list[LaunchDescriptionEntity] = [PushLaunchConfigurations(), PushEnvironment()]
+        return [*opening, *super().execute(context), PopEnvironment(), PopLaunchConfigurations()]

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from linkwright.launch.engine.log import output_destinations
+
 if TYPE_CHECKING:
-    from linkwright.launch.actions.execute import ExecuteProcess
+    from linkwright.launch.actions.execute import ExecuteLocal
     from linkwright.viewer import RvizConfig
 
 VIEWER = ("rviz2", "rviz2")
@@ -30,9 +32,12 @@ class HostedPlan:
         remappings: rules ``(from, to)``.
         arguments: its command line.
         viewer_config: makes the viewer's configuration; by default the command line says which.
+        destinations: where its lines on stdout (1) and stderr (2) go, see `linkwright.launch.engine.log`.
+        respawns: how often it is started again when it has done its work; without end if negative.
+        respawn_delay: seconds to wait before that.
     """
 
-    action: ExecuteProcess
+    action: ExecuteLocal
     process_name: str
     package: str
     executable: str
@@ -42,11 +47,14 @@ class HostedPlan:
     remappings: list[tuple[str, str]] = field(default_factory=list)
     arguments: list[str] = field(default_factory=list)
     viewer_config: Callable[[], RvizConfig] | None = None
+    destinations: Mapping[int, frozenset[str]] = field(default_factory=lambda: output_destinations("screen"))
+    respawns: int = 0
+    respawn_delay: float = 0.0
 
     @property
     def is_viewer(self) -> bool:
         """Whether it is RViz, for which our viewer stands in."""
-        return (self.package, self.executable) == VIEWER
+        return is_viewer(self.package, self.executable)
 
     @property
     def details(self) -> dict[str, Any]:
@@ -55,9 +63,14 @@ class HostedPlan:
         return {"name": self.process_name, "cmd": command, "cwd": None, "env": None, "pid": os.getpid()}
 
 
+def is_viewer(package: str | None, executable: str) -> bool:
+    """Whether a node is RViz, for which our viewer stands in."""
+    return (package, executable) == VIEWER
+
+
 def is_hosted(package: str | None, executable: str) -> bool:
     """Whether a node is one of ours, which runs in this process."""
-    if (package, executable) == VIEWER:
+    if is_viewer(package, executable):
         return True
     from linkwright.nodes import EXECUTABLES
 

@@ -1,29 +1,30 @@
-"""Nodes that run in the launcher's own process, and the viewer that stands in for RViz."""
+"""Nodes that run in the launcher's own process."""
 
 from __future__ import annotations
 
 import asyncio
 import os
-import sys
-import threading
-from collections.abc import Callable
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, suppress
+from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError
 from linkwright.launch import events
 from linkwright.launch.engine.hosted_plan import HostedPlan
-from linkwright.launch.engine.viewer_arguments import read_viewer_config
+from linkwright.launch.engine.log import output_destinations
+from linkwright.launch.engine.network import Network
+from linkwright.launch.engine.viewer_host import ViewerHost
 
 if TYPE_CHECKING:
-    from linkwright.graph import Graph, LogRecord
-    from linkwright.launch.actions.execute import ExecuteProcess
+    from linkwright.graph import Graph, LogRecord, Node
+    from linkwright.launch.actions.execute import ExecuteLocal
     from linkwright.launch.engine.descriptions import XacroCall
     from linkwright.launch.engine.session import LaunchSession
     from linkwright.nodes import RunningNode
     from linkwright.viewer import Viewer
 
 _DESCRIPTION = "robot_description"
-_CLOSE_SECONDS = 0.8
+_ON_SCREEN = output_destinations("screen")[2]
 
 
 class NodeHost:
@@ -37,13 +38,17 @@ class NodeHost:
         self._session = session
         self._planned: list[HostedPlan] = []
         self._running: dict[str, tuple[HostedPlan, RunningNode]] = {}
-        self._viewers: dict[str, tuple[HostedPlan, Viewer]] = {}
-        self._findings: list[Diagnostic] = []
+        self._viewers = ViewerHost(session)
         self._graph: Graph | None = None
+        self._launcher: Node | None = None
+        self._simulated_time = False
         self._process_of_logger: dict[str, str] = {}
+        self._destinations: dict[str, frozenset[str]] = {}
         self._speaking = "launch"
         self._starting = asyncio.Lock()
         self._closing = False
+        self._closed = asyncio.Event()
+        self.network = Network(session)
 
     @property
     def is_busy(self) -> bool:
@@ -55,52 +60,86 @@ class NodeHost:
         """Whether a viewer runs."""
         return bool(self._viewers)
 
+    @property
+    def graph(self) -> Graph:
+        """The graph of the nodes of this process."""
+        if self._graph is None:
+            from linkwright.graph import Graph
+
+            self._graph = Graph(on_log=self._on_log)
+            self.network.offer(self._graph)
+        return self._graph
+
+    @property
+    def launcher_node(self) -> Node:
+        """The launcher's own node, with which it asks services and follows topics; made when first asked for."""
+        if self._launcher is None:
+            self._launcher = self.graph.create_node(
+                f"launch_ros_{os.getpid()}", enable_rosout=False, parameters={"use_sim_time": self._simulated_time}
+            )
+            self.network.join_soon(with_viewer=self.has_viewer)
+        return self._launcher
+
+    def use_simulated_time(self, value: bool) -> None:
+        """Have the launcher's own node go by ``/clock``, or not."""
+        from linkwright.graph import Parameter
+
+        self._simulated_time = value
+        if self._launcher is not None:
+            self._launcher.set_parameters([Parameter("use_sim_time", value=value)])
+
     def plan(self, plan: HostedPlan) -> None:
-        """Have a node started as soon as the launcher comes to it."""
-        self._planned.append(plan)
+        """Have a node started as soon as the launcher comes to it; none any more once the launch ends."""
+        if not self._closing:
+            self._planned.append(plan)
 
     def forget_planned(self) -> None:
         """Start nothing of what was planned."""
         self._planned.clear()
 
     async def start_planned(self) -> None:
-        """Start what was planned, viewers first."""
+        """Start what was planned, viewers first. Between two nodes the loop gets its turn."""
+        if not self._planned:
+            return
         async with self._starting:
             while self._planned and not self._closing:
                 plan = next((each for each in self._planned if each.is_viewer), self._planned[0])
                 self._planned.remove(plan)
+                self._destinations[plan.process_name] = plan.destinations[2]
                 if plan.is_viewer:
                     await self._start_viewer(plan)
                 else:
                     self._start_node(plan)
+                    await asyncio.sleep(0)
+        if not self._closing:
+            self.network.join_soon(with_viewer=self.has_viewer)
 
     def show_findings(self, findings: list[Diagnostic]) -> None:
         """Show in the viewers what is wrong with the model files now."""
-        self._findings = findings
-        for _, viewer in self._viewers.values():
-            viewer.show_diagnostics(findings)
+        self._viewers.show_findings(findings)
 
-    def stop_matching(self, matcher: Callable[[ExecuteProcess], bool]) -> None:
+    def stop_matching(self, matcher: Callable[[ExecuteLocal], bool]) -> None:
         """End the nodes whose actions a matcher accepts, as a signal would end their processes."""
         for plan, running in tuple(self._running.values()):
             if matcher(plan.action):
                 self._stop_node(plan, running)
-        for plan, viewer in tuple(self._viewers.values()):
+        for plan in self._viewers.plans():
             if matcher(plan.action):
-                del self._viewers[plan.process_name]
-                self._session.spawn(self._stop_viewer(plan, viewer))
+                self._session.spawn(self._stop_viewer(plan, self._viewers.take(plan)))
 
     def close_nodes(self) -> None:
         """End all nodes, and begin to end the viewers."""
         self._closing = True
+        self._closed.set()
         self.forget_planned()
         self.stop_matching(lambda _: True)
 
     async def close(self) -> None:
         """End everything."""
         self.close_nodes()
-        for plan, viewer in tuple(self._viewers.values()):
-            await self._stop_viewer(plan, viewer)
+        for plan in self._viewers.plans():
+            await self._stop_viewer(plan, self._viewers.take(plan))
+        self.network.close()
         if self._graph is not None:
             await self._graph.close()
 
@@ -108,33 +147,38 @@ class NodeHost:
 
     def _start_node(self, plan: HostedPlan) -> None:
         from linkwright.nodes import EXECUTABLES, NodeOptions
+        from linkwright.nodes.component_container import ComponentContainer
 
         session = self._session
-        self._speaking = plan.process_name
         session.log.say(plan.process_name, "started in the launcher's process")
+        options = NodeOptions(
+            name=plan.node_name,
+            namespace=plan.namespace,
+            parameters=dict(plan.parameters),
+            remappings=plan.remappings,
+            arguments=plan.arguments,
+            library=session.descriptions.library,
+        )
         try:
-            running = EXECUTABLES[(plan.package, plan.executable)](
-                self._the_graph(),
-                NodeOptions(
-                    name=plan.node_name,
-                    namespace=plan.namespace,
-                    parameters=plan.parameters,
-                    remappings=plan.remappings,
-                    arguments=plan.arguments,
-                    library=session.descriptions.library,
-                ),
-            )
+            with self._speak_as(plan.process_name):
+                running = EXECUTABLES[(plan.package, plan.executable)](self.graph, options)
         except LinkwrightError as error:
             self._not_started(plan, error)
             return
-        finally:
-            self._speaking = "launch"
         self._running[plan.process_name] = plan, running
-        self._process_of_logger[running.node.get_logger().name] = plan.process_name
-        self._bind_descriptions(plan, running)
-        for _, viewer in self._viewers.values():
-            _attach_panel(viewer, running)
+        self._take_in(plan.process_name, running, plan.parameters)
+        if isinstance(running, ComponentContainer):
+            running.loading = lambda: self._speak_as(plan.process_name)
+            running.on_loaded.append(lambda each, given: self._take_in(plan.process_name, each, given.parameters))
         self._started(plan)
+        finished: asyncio.Future[int] | None = getattr(running, "finished", None)
+        if finished is not None:
+            finished.add_done_callback(lambda done: self._finished(plan, running, done))
+
+    def _take_in(self, process_name: str, running: RunningNode, parameters: Mapping[str, Any]) -> None:
+        self._process_of_logger[running.node.get_logger().name] = process_name
+        self._bind_descriptions(process_name, running, parameters)
+        self._viewers.attach_panel(running)
 
     def _not_started(self, plan: HostedPlan, error: LinkwrightError) -> None:
         """Tell why; a node whose model file is wrong is started as soon as that is repaired."""
@@ -158,30 +202,29 @@ class NodeHost:
         session.reload.bind(call, again)
         session.reload.report(call, error.diagnostics)
 
-    def _bind_descriptions(self, plan: HostedPlan, running: RunningNode) -> None:
+    def _bind_descriptions(self, process_name: str, running: RunningNode, parameters: Mapping[str, Any]) -> None:
         """Give the node every new text of its descriptions, and show what is remarkable about the first."""
+        from linkwright.nodes.robot_state_publisher import RobotStatePublisher
+
         session = self._session
-        for name, value in plan.parameters.items():
+        for name, value in parameters.items():
             call = session.descriptions.call_of(value) if isinstance(value, str) else None
             if call is not None:
-                session.reload.bind(call, lambda text, name=name: self._set(plan, running, name, text))  # type: ignore[misc]
-            if name == _DESCRIPTION and plan.package == "robot_state_publisher":
+                session.reload.bind(call, lambda text, name=name: self._set(process_name, running, name, text))  # type: ignore[misc]
+            if name == _DESCRIPTION and isinstance(running, RobotStatePublisher):
                 reading = session.descriptions.library.read(value)
                 warnings = session.descriptions.warnings_of(call) if call else ()
-                session.reload.report(call or plan.process_name, (*warnings, *reading.diagnostics))
+                session.reload.report(call or process_name, (*warnings, *reading.diagnostics))
 
-    def _set(self, plan: HostedPlan, running: RunningNode, name: str, text: str) -> None:
+    def _set(self, process_name: str, running: RunningNode, name: str, text: str) -> None:
         from linkwright.graph import Parameter
 
-        if plan.process_name not in self._running:
+        if running.node.is_destroyed:
             return
-        self._speaking = plan.process_name
-        try:
+        with self._speak_as(process_name):
             result = running.node.set_parameters([Parameter(name, value=text)])[0]
-        finally:
-            self._speaking = "launch"
         if not result.successful:
-            raise LinkwrightError(Diagnostic("LAUNCH143", f"'{plan.process_name}' refuses the model: {result.reason}"))
+            raise LinkwrightError(Diagnostic("LAUNCH143", f"'{process_name}' refuses the model: {result.reason}"))
 
     def _description_of(self, plan: HostedPlan) -> tuple[str, XacroCall] | None:
         for name, value in plan.parameters.items():
@@ -190,67 +233,45 @@ class NodeHost:
                 return name, call
         return None
 
-    def _stop_node(self, plan: HostedPlan, running: RunningNode) -> None:
+    def _stop_node(self, plan: HostedPlan, running: RunningNode, status: int = 0) -> None:
         del self._running[plan.process_name]
         running.close()
-        self._ended(plan)
+        self._ended(plan, status)
+
+    def _finished(self, plan: HostedPlan, running: RunningNode, done: asyncio.Future[int]) -> None:
+        """End a node that has done its work, and start it again where it respawns."""
+        if plan.process_name not in self._running or done.cancelled():
+            return
+        self._stop_node(plan, running, done.result())
+        if plan.respawns and not self._closing:
+            plan.respawns -= 1
+            self._session.spawn(self._start_again(plan))
+
+    async def _start_again(self, plan: HostedPlan) -> None:
+        with suppress(asyncio.TimeoutError):
+            await asyncio.wait_for(self._closed.wait(), plan.respawn_delay)
+        self.plan(plan)
+        await self.start_planned()
 
     # --- viewers --------------------------------------------------------------------------------------------
 
     async def _start_viewer(self, plan: HostedPlan) -> None:
-        from linkwright.viewer import Viewer
-
         session = self._session
-        self._speaking = plan.process_name
-        node_name = plan.node_name or plan.executable
         try:
-            if plan.viewer_config is not None:
-                config, findings = plan.viewer_config(), list[Diagnostic]()
-            else:
-                config, findings = read_viewer_config(plan.arguments)
-            session.log.diagnostics(findings)
-            viewer = Viewer(
-                self._the_graph(),
-                library=session.descriptions.library,
-                finder=session.finder,
-                config=config,
-                host=session.options.host,
-                port=session.options.port,
-                title=session.options.title,
-                name=node_name,
-                namespace=plan.namespace,
-                remappings=plan.remappings,
-            )
-            await viewer.start()
+            with self._speak_as(plan.process_name):
+                await self._viewers.start(plan, self.graph, [running for _, running in self._running.values()])
         except LinkwrightError as error:
             session.fail(plan)
             session.log.diagnostics(error.diagnostics)
             session.emit(events.ProcessExited(action=plan.action, returncode=1, **plan.details))
             session.emit(events.Shutdown(reason="the viewer has not started"))
             return
-        finally:
-            self._speaking = "launch"
-        self._viewers[plan.process_name] = plan, viewer
-        self._process_of_logger[".".join([*plan.namespace.strip("/").split("/"), node_name]).lstrip(".")] = (
-            plan.process_name
-        )
-        session.log.announce(f"Viewer: {viewer.url}")
-        if session.options.open_browser:
-            _open_in_browser(viewer.url)
-        session.log.say(
-            plan.process_name, "started in the launcher's process: the viewer in the browser stands in for RViz"
-        )
-        viewer.show_diagnostics([*self._findings, *findings])
-        for _, running in self._running.values():
-            _attach_panel(viewer, running)
+        logger = ".".join([*plan.namespace.strip("/").split("/"), plan.node_name or plan.executable]).lstrip(".")
+        self._process_of_logger[logger] = plan.process_name
         self._started(plan)
 
     async def _stop_viewer(self, plan: HostedPlan, viewer: Viewer) -> None:
-        self._viewers.pop(plan.process_name, None)
-        try:
-            await asyncio.wait_for(viewer.close(), _CLOSE_SECONDS)
-        except asyncio.TimeoutError:
-            self._session.log.caution(plan.process_name, "a browser did not let go of its connection in time")
+        await self._viewers.stop(plan, viewer)
         self._ended(plan)
 
     # --- both -----------------------------------------------------------------------------------------------
@@ -259,36 +280,30 @@ class NodeHost:
         plan.action.process_details = plan.details
         self._session.emit(events.ProcessStarted(action=plan.action, **plan.details))
 
-    def _ended(self, plan: HostedPlan) -> None:
-        self._session.log.say(plan.process_name, "has finished cleanly")
-        self._session.emit(events.ProcessExited(action=plan.action, returncode=0, **plan.details))
-
-    def _the_graph(self) -> Graph:
-        if self._graph is None:
-            from linkwright.graph import Graph
-
-            self._graph = Graph(on_log=self._on_log)
-        return self._graph
+    def _ended(self, plan: HostedPlan, status: int = 0) -> None:
+        if status == 0:
+            self._session.log.say(plan.process_name, "has finished cleanly")
+        else:
+            self._session.log.complain(plan.process_name, f"has ended with exit code {status}")
+        self._session.emit(events.ProcessExited(action=plan.action, returncode=status, **plan.details))
 
     def _on_log(self, record: LogRecord) -> None:
-        process = self._process_of_logger.get(record.node, self._speaking)
-        self._session.log.node_record(process, record)
+        process = self._process_of(record.node)
+        self._session.log.node_record(process, record, self._destinations.get(process, _ON_SCREEN))
 
+    @contextmanager
+    def _speak_as(self, process_name: str) -> Iterator[None]:
+        """What loggers that nobody knows yet say meanwhile comes from a process."""
+        before, self._speaking = self._speaking, process_name
+        try:
+            yield
+        finally:
+            self._speaking = before
 
-def _attach_panel(viewer: Viewer, running: RunningNode) -> None:
-    panel = getattr(running, "panel", None)
-    if panel is not None:
-        viewer.attach_joint_panel(panel)
-
-
-def _open_in_browser(url: str) -> None:
-    """Open the page; in a thread, because some browsers take their time to answer.
-
-    Not where there is no display: a browser for the terminal would take ours.
-    """
-    displays = ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER")
-    if sys.platform.startswith("linux") and not any(os.environ.get(name) for name in displays):
-        return
-    import webbrowser
-
-    threading.Thread(target=webbrowser.open, args=(url,), name="linkwright-browser", daemon=True).start()
+    def _process_of(self, logger: str) -> str:
+        """The process that a logger, or the nearest one above it, belongs to."""
+        while logger:
+            if logger in self._process_of_logger:
+                return self._process_of_logger[logger]
+            logger = logger.rpartition(".")[0]
+        return self._speaking

@@ -11,9 +11,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from linkwright.launch import events
+from linkwright.launch.engine.surroundings import process_environment
 
 if TYPE_CHECKING:
-    from linkwright.launch.actions.execute import ExecuteProcess
+    from linkwright.launch.actions.execute import ExecuteLocal
+    from linkwright.launch.engine.guardian import Guardian
     from linkwright.launch.engine.log import LaunchLog
 
 _HAS_GROUPS = hasattr(os, "killpg")
@@ -23,9 +25,9 @@ _LAST_WORDS_SECONDS = 0.2
 
 @dataclass(frozen=True)
 class ProcessPlan:
-    """A process to be started; see `ExecuteProcess` for what the parts mean."""
+    """A process to be started; see `ExecuteLocal` for what the parts mean."""
 
-    action: ExecuteProcess
+    action: ExecuteLocal
     name: str
     command: Sequence[str]
     folder: str | None
@@ -51,6 +53,7 @@ class RunningProcess:
         log: where its lines go.
         emit: takes the events about it.
         wants_output: whether any handler is for what it writes.
+        guardian: ends it should the launcher be killed.
     """
 
     def __init__(
@@ -60,12 +63,14 @@ class RunningProcess:
         log: LaunchLog,
         emit: Callable[[events.Event], None],
         wants_output: Callable[[events.Event], bool],
+        guardian: Guardian,
     ) -> None:
         self.plan = plan
         self.name = name
         self._log = log
         self._emit = emit
         self._wants_output = wants_output
+        self._guardian = guardian
         self._transport: asyncio.SubprocessTransport | None = None
         self._rests = {1: b"", 2: b""}
         self._open_streams = {1, 2}
@@ -97,6 +102,8 @@ class RunningProcess:
             transport.close()
         returncode = transport.get_returncode()
         assert returncode is not None
+        if not self.group_lives():
+            self._guardian.release(transport.get_pid())
         self._flush()
         self._report_end(transport.get_pid(), returncode)
         self._emit(events.ProcessExited(action=plan.action, returncode=returncode, **self._details(transport)))
@@ -155,7 +162,8 @@ class RunningProcess:
     async def _start(self) -> None:
         plan = self.plan
         loop = asyncio.get_running_loop()
-        options: dict[str, Any] = {"cwd": plan.folder, "env": plan.environment, "start_new_session": True}
+        environment = self._guardian.marked(process_environment(plan.environment))
+        options: dict[str, Any] = {"cwd": plan.folder, "env": environment, "start_new_session": True}
         terminals = _pseudo_terminals() if plan.emulate_tty else []
         if terminals:
             options["stdout"], options["stderr"] = (inner for _, inner in terminals)
@@ -179,6 +187,7 @@ class RunningProcess:
     def started(self, transport: asyncio.SubprocessTransport) -> None:
         """Take note that the process runs; nothing of its output comes before this."""
         self._transport = transport
+        self._guardian.watch(transport.get_pid())
         details = self._details(transport)
         self.plan.action.process_details = details
         self._log.say(self.name, f"process started with pid [{transport.get_pid()}]")

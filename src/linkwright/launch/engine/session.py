@@ -9,7 +9,7 @@ from collections.abc import Callable, Coroutine, Sequence
 from dataclasses import dataclass
 from itertools import count
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.launch import events
@@ -19,8 +19,8 @@ from linkwright.launch.engine.hosting import NodeHost
 from linkwright.launch.engine.log import LaunchLog
 from linkwright.launch.engine.process_table import ProcessTable
 from linkwright.launch.engine.reload import LiveReload
-from linkwright.launch.entity import LaunchDescriptionEntity
-from linkwright.launch.event_handlers import EventHandler
+from linkwright.launch.engine.user_logging import launch_config
+from linkwright.launch.entity import LaunchDescriptionEntity, as_entities
 from linkwright.launch.places import located
 from linkwright.launch.user_errors import explain
 from linkwright.workspace import PackageFinder
@@ -28,8 +28,16 @@ from linkwright.workspace import PackageFinder
 if TYPE_CHECKING:
     from tempfile import TemporaryDirectory
 
-_INTERRUPT_GRACE = (1.0, 0.5)
-"""Seconds to SIGTERM and from there to SIGKILL on the user's interrupt: all has to end within two seconds."""
+
+class Scheduled(Protocol):
+    """A call that is to come."""
+
+    def cancel(self) -> None:
+        """Do not call."""
+
+
+Schedule = Callable[[float, Callable[[], None]], Scheduled]
+"""Has a function called once after some seconds."""
 
 
 @dataclass(frozen=True)
@@ -41,12 +49,18 @@ class SessionOptions:
         port: its port; None for the default one, or the next that is free.
         open_browser: whether the page is opened in the user's browser.
         title: what the page is called.
+        isolate: whether our own nodes run as processes, each by itself.
+        network: whether the nodes of this process are to be seen by others.
+        shutdown_when_idle: whether the launch ends when nothing runs any more.
     """
 
     host: str = "127.0.0.1"
     port: int | None = None
     open_browser: bool = True
     title: str = ""
+    isolate: bool = False
+    network: bool = True
+    shutdown_when_idle: bool = True
 
 
 class LaunchSession:
@@ -56,28 +70,33 @@ class LaunchSession:
         finder: where packages are.
         options: how it is run.
         log: what is printed.
+        context: what is known already, with handlers and events that wait; a new one by default.
     """
 
-    def __init__(self, finder: PackageFinder, options: SessionOptions, log: LaunchLog) -> None:
+    def __init__(
+        self, finder: PackageFinder, options: SessionOptions, log: LaunchLog, context: LaunchContext | None = None
+    ) -> None:
         self.finder = finder
         self.options = options
         self.log = log
         self.descriptions = current_descriptions() or Descriptions(finder)
-        self.context = LaunchContext()
+        self.context = LaunchContext() if context is None else context
         self.context.attach(self)
-        self.handlers: list[EventHandler] = []
         self.initial_environment = dict(os.environ)
         self.loop: asyncio.AbstractEventLoop | None = None
         self.ending = False
         self._failures: set[object] = set()
         self._visiting = False
-        self._queue: deque[events.Event] = deque()
+        self._queue = self.context._event_queue
         self._wake = asyncio.Event()
-        self._waiting: set[object] = set()
+        self._queue.on_put = self._wake.set
+        self._held: set[asyncio.Future[Any]] = set()
+        self._waiting: dict[object, Callable[[], None] | None] = {}
         self._tasks: set[asyncio.Task[Any]] = set()
         self._process_numbers = count(1)
         self._crash: BaseException | None = None
         self._scratch: TemporaryDirectory[str] | None = None
+        self._included: deque[LaunchDescriptionEntity] = deque()
         self.processes = ProcessTable(self)
         self.host = NodeHost(self)
         self.reload = LiveReload(self.descriptions, self.host.show_findings, log)
@@ -94,8 +113,11 @@ class LaunchSession:
         """
         self.loop = asyncio.get_running_loop()
         self.context.extend_locals(locals_ or {})
+        self.log.begin()
+        launch_config.share(self.log.folder)
         try:
             self.visit(description, self.context)
+            self._visit_included()
             await self._start_hosted()
             self.reload.start()
             await self._handle_events()
@@ -117,12 +139,17 @@ class LaunchSession:
             self._scratch = tempfile.TemporaryDirectory(prefix="linkwright_launch_")
         return Path(self._scratch.name)
 
+    def include(self, description: LaunchDescriptionEntity) -> None:
+        """Visit a description as soon as the launch comes to it; may be called from any thread, and before the run."""
+        self._included.append(description)
+        if self.loop is not None:
+            self.loop.call_soon_threadsafe(self._visit_included)
+
     # --- what actions ask for -------------------------------------------------------------------------------
 
     def emit(self, event: events.Event) -> None:
         """Put an event into the queue."""
-        self._queue.append(event)
-        self._wake.set()
+        self._queue.put_nowait(event)
 
     def visit(self, entity: LaunchDescriptionEntity, context: LaunchContext) -> None:
         """Visit an entity and all it leads to. An error ends the launch, as in ROS."""
@@ -152,26 +179,41 @@ class LaunchSession:
         return f"{base_name}-{next(self._process_numbers)}"
 
     def call_later(
-        self, seconds: float, event: events.Event, entities: Sequence[LaunchDescriptionEntity]
+        self,
+        seconds: float,
+        event: events.Event,
+        entities: Sequence[LaunchDescriptionEntity],
+        *,
+        cancel_on_shutdown: bool = True,
+        schedule: Schedule | None = None,
     ) -> Callable[[], None]:
-        """Visit entities after a while; returns what cancels that."""
+        """Visit entities after a while, with the values of this moment; returns what cancels that.
+
+        `schedule` has the time counted by something else than the loop.
+        """
         assert self.loop is not None
         token = object()
+        values = self.context.get_locals_as_dict()
 
         def due() -> None:
-            self._waiting.discard(token)
+            self._waiting.pop(token, None)
             self.emit(event)
-            for entity in entities:
-                self.visit(entity, self.context)
+            self.context.push_locals()
+            self.context.extend_locals(values)
+            try:
+                for entity in entities:
+                    self.visit(entity, self.context)
+            finally:
+                self.context.pop_locals()
             self.spawn(self._start_hosted())
 
         def cancel() -> None:
             handle.cancel()
-            self._waiting.discard(token)
+            self._waiting.pop(token, None)
             self._wake.set()
 
-        handle = self.loop.call_later(seconds, due)
-        self._waiting.add(token)
+        handle = (schedule or self.loop.call_later)(seconds, due)
+        self._waiting[token] = cancel if cancel_on_shutdown else None
         return cancel
 
     # --- the end --------------------------------------------------------------------------------------------
@@ -181,7 +223,8 @@ class LaunchSession:
         self.log.caution("launch", reason)
         if self.ending:
             self.processes.kill_all()
-        self.emit(events.Shutdown(reason=reason, due_to_sigint=True))
+        else:
+            self.emit(events.Shutdown(reason=reason, due_to_sigint=True))
 
     # --- visits ---------------------------------------------------------------------------------------------
 
@@ -196,8 +239,14 @@ class LaunchSession:
         except Exception as error:
             name = type(entity).__name__
             raise explain(error, f"launch action {name}", entity.place) from error
-        for each in following or ():
-            self._visit(each, context)
+        future = entity.get_asyncio_future()
+        if future is not None:
+            self.hold(future)
+        try:
+            for each in following or ():
+                self._visit(each, context)
+        except LinkwrightError as error:
+            raise entity.explain_inside(error) from error
 
     def _await_repair(self, entity: LaunchDescriptionEntity, context: LaunchContext, error: DescriptionError) -> None:
         """Visit an entity again as soon as the model file that it needs can be expanded."""
@@ -218,32 +267,30 @@ class LaunchSession:
         while True:
             if self._crash is not None:
                 raise self._crash
-            while self._queue:
-                self._handle(self._queue.popleft())
+            while not self._queue.empty():
+                self._handle(self._queue.get_nowait())
                 await self._start_hosted()
             if not self._is_busy():
                 if self.ending:
                     return
-                self.emit(events.Shutdown(reason="idle"))
-                continue
+                if self.options.shutdown_when_idle:
+                    self.emit(events.Shutdown(reason="idle"))
+                    continue
             self._wake.clear()
             await self._wake.wait()
 
     def _is_busy(self) -> bool:
-        return bool(self.processes.is_busy or self._tasks or self._waiting or self.host.is_busy)
+        return bool(self.processes.is_busy or self._tasks or self._waiting or self._held or self.host.is_busy)
 
     def _handle(self, event: events.Event) -> None:
-        if self.ending and isinstance(event, events.Shutdown):
-            return  # once is enough
+        self.log.detail("launch", f"processing event: '{event.name}'")
         context = self.context
         context.push_locals()
         try:
             entities: list[LaunchDescriptionEntity] = []
-            for handler in tuple(self.handlers):
+            for handler in tuple(context._event_handlers):
                 if handler.matches(event):
-                    entities += handler.handle(event, context)
-                    if handler.handle_once:
-                        self.handlers.remove(handler)
+                    entities += as_entities(handler.handle(event, context))
             if isinstance(event, events.ProcessExited):
                 context.extend_locals({"event": event})
                 entities += event.action.exited(event, context)
@@ -252,7 +299,8 @@ class LaunchSession:
         except Exception as error:  # noqa: BLE001 - handlers are the launch file's code
             self.log.diagnostics(explain(error, "an event handler").diagnostics)
             self.fail(event)
-            self.emit(events.Shutdown(reason="an event handler failed"))
+            if not self.ending and not isinstance(event, events.Shutdown):
+                self.emit(events.Shutdown(reason="an event handler failed"))
         finally:
             context.pop_locals()
         self._react(event)
@@ -260,7 +308,8 @@ class LaunchSession:
     def _react(self, event: events.Event) -> None:
         """What the launcher itself does about an event."""
         if isinstance(event, events.Shutdown):
-            self._begin_end(event)
+            if not self.ending:
+                self._begin_end(event)
         elif isinstance(event, events.ShutdownProcess):
             self.processes.stop_matching(event.process_matcher)
             self.host.stop_matching(event.process_matcher)
@@ -270,16 +319,35 @@ class LaunchSession:
 
     def _begin_end(self, event: events.Shutdown) -> None:
         self.ending = True
-        self._waiting.clear()
+        for cancel in tuple(self._waiting.values()):
+            if cancel is not None:
+                cancel()
         self.reload.close()
         self.host.close_nodes()
-        self.processes.stop_all(_INTERRUPT_GRACE if event.due_to_sigint else None)
+        self.processes.stop_all(at_once=event.due_to_sigint)
+
+    def _visit_included(self) -> None:
+        while self._included:
+            self.visit(self._included.popleft(), self.context)
+            self.spawn(self._start_hosted())
 
     async def _start_hosted(self) -> None:
         await self.host.start_planned()
         waits = any(isinstance(failure, XacroCall) for failure in self._failures)
         if waits and not self.host.has_viewer and not self.ending:
             self.emit(events.Shutdown(reason="the robot cannot be read, and there is no viewer to wait in"))
+
+    def hold(self, future: asyncio.Future[Any]) -> None:
+        """Have the launch not end before something that an entity began is done."""
+        if future.done() or future in self._held:
+            return
+        self._held.add(future)
+
+        def done(future: asyncio.Future[Any]) -> None:
+            self._held.discard(future)
+            self._wake.set()
+
+        future.add_done_callback(done)
 
     def spawn(self, work: Coroutine[Any, Any, None]) -> None:
         """Have something done beside; the launch does not end before it is."""
@@ -302,6 +370,7 @@ class LaunchSession:
             task.cancel()
         await asyncio.gather(*self._tasks, return_exceptions=True)
         await self.host.close()
+        self.processes.close()
         if self._scratch is not None:
             self._scratch.cleanup()
         self.log.close()

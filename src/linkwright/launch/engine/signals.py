@@ -13,7 +13,9 @@ from typing import Any
 from linkwright.launch.engine.session import LaunchSession
 
 _DEADLINE_SECONDS = 1.9
-"""However badly something hangs: this long after the first signal the program is over."""
+"""However badly something hangs: this long after the first signal the program is over, unless a launch file gives its
+processes longer."""
+_MARGIN_SECONDS = 0.4
 _SAME_KEYPRESS_SECONDS = 0.3
 """Signals this close are one wish: a wrapper may pass a terminal's Ctrl-C on."""
 
@@ -64,7 +66,8 @@ class SignalWatch:
                 self._end_at_once()
             return
         self.received, self._received_at = number, now
-        self._deadline = threading.Timer(_DEADLINE_SECONDS, self._end_at_once)
+        needed = 0.0 if self.session is None else self.session.processes.seconds_to_end() + _MARGIN_SECONDS
+        self._deadline = threading.Timer(max(_DEADLINE_SECONDS, needed), self._end_at_once)
         self._deadline.daemon = True
         self._deadline.start()
         session = self.session

@@ -1,49 +1,220 @@
-"""Executables of installed packages."""
+"""Executables of packages: our own, installed ones, and those of packages that are there in their sources only."""
 
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from enum import Enum
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, did_you_mean, display_path
 from linkwright.launch.engine.hosted_plan import hosted_executables
+from linkwright.launch.engine.surroundings import python_command
+from linkwright.launch.promises import keeping
 from linkwright.workspace import PackageFinder, PackageNotFoundError, install_prefix, is_installed
 
+if TYPE_CHECKING:
+    from linkwright.launch.ros.source_programs import EntryPoint
 
-def find_executable(finder: PackageFinder, package: str, executable: str) -> Path:
-    """The path of an executable: ``<prefix>/lib/PACKAGE/EXECUTABLE``, where ROS packages install them.
+# What reads sources and scripts is imported where that is done: a launch of our own nodes does without.
+
+BUILT_IN = "built into Linkwright"
+
+
+class Origin(Enum):
+    """Where an executable comes from."""
+
+    OURS = "ours"
+    INSTALLED = "installed"
+    SOURCE = "source"
+
+
+@dataclass(frozen=True)
+class Executable:
+    """A program of a package.
+
+    Attributes:
+        package: the package.
+        name: its name there.
+        origin: where it comes from.
+        path: its file; None for one of ours, and for an entry point that no file was made for yet.
+        entry_point: the function that it runs, where it is an entry point of sources.
+    """
+
+    package: str
+    name: str
+    origin: Origin
+    path: Path | None = None
+    entry_point: EntryPoint | None = None
+
+    @property
+    def command(self) -> list[str]:
+        """The words that run it."""
+        from linkwright.launch.ros.interpreters import interpreter_words, needs_our_interpreter
+
+        if self.path is None:
+            return python_command(["-m", "linkwright.nodes", self.package, self.name])
+        if needs_our_interpreter(self.path):
+            return python_command([str(self.path)])
+        if os.access(self.path, os.X_OK):
+            return [str(self.path)]
+        words = interpreter_words(self.path)  # of a script that only its installation would make executable
+        return [*words, str(self.path)] if words else python_command([str(self.path)])
+
+    def __str__(self) -> str:
+        return BUILT_IN if self.origin is Origin.OURS else str(self.path or self.entry_point)
+
+
+def builtin_packages() -> set[str]:
+    """The packages whose executables come with us."""
+    return {package for package, _ in hosted_executables()}
+
+
+def executables_of(finder: PackageFinder, package: str) -> dict[str, Executable]:
+    """The programs of a package that can be run, by name: built ones before those of sources, ours before all.
 
     Raises:
-        LinkwrightError: LAUNCH131, with what was looked for and the nearest names.
+        PackageNotFoundError: PKG101, there is no such package.
     """
-    ours: dict[str, list[str]] = {}
-    for owner, name in hosted_executables():
-        ours.setdefault(owner, []).append(name)
+    ours = {name: Executable(package, name, Origin.OURS) for owner, name in hosted_executables() if owner == package}
+    share = finder.find(package) if ours else finder.share(package)
+    if share is None:
+        return ours
+    found: dict[str, Executable] = {}
+    if not is_installed(share):
+        from linkwright.launch.ros.source_programs import source_programs
+
+        programs = source_programs(share)
+        found = {
+            name: Executable(package, name, Origin.SOURCE, entry_point=entry)
+            for name, entry in programs.entry_points.items()
+        }
+        for name, path in programs.scripts.items():
+            found[name] = Executable(package, name, Origin.SOURCE, path)
+    found.update((each.name, each) for each in _installed(package, share))
+    return dict(sorted({**found, **ours}.items()))
+
+
+def installed_executable(finder: PackageFinder, package: str, name: str) -> Executable | None:
+    """A program of a package that was built, even if one of ours has its name; None where there is none."""
+    share = finder.find(package)
+    return None if share is None else next((each for each in _installed(package, share) if each.name == name), None)
+
+
+def find_executable(finder: PackageFinder, package: str, name: str) -> Executable:
+    """A program of a package, with a file to run unless it is one of ours.
+
+    Raises:
+        LinkwrightError: LAUNCH131, with what was looked for and the nearest names; PKG101's PackageNotFoundError in a
+            sense, as launch_ros raises that: the error is a LookupError.
+    """
     try:
-        share = finder.share(package)
+        present = executables_of(finder, package)
     except PackageNotFoundError as error:
-        notes = error.diagnostics[0].notes
-        if package in ours:
-            message = f"package '{package}' has no executable '{executable}' that runs without ROS"
-            advice = did_you_mean(executable, ours[package]) or "there is " + ", ".join(ours[package])
-            raise LinkwrightError(Diagnostic("LAUNCH131", message, notes=notes, hint=advice)) from error
-        hint = did_you_mean(package, (*ours, *finder.packages())) or error.diagnostics[0].hint
-        message = f"package '{package}' of node executable '{executable}' not found"
-        raise LinkwrightError(Diagnostic("LAUNCH131", message, notes=notes, hint=hint)) from error
+        raise _no_package(finder, package, name, error) from error
+    found = present.get(name)
+    if found is None:
+        raise _no_executable(finder, package, name, present)
+    if found.entry_point is not None and found.path is None:
+        return replace(found, path=_script(finder, found))
+    return found
+
+
+def _installed(package: str, share: Path) -> Iterable[Executable]:
     folder = install_prefix(share) / "lib" / package
-    path = folder / executable
-    if path.is_file() and os.access(path, os.X_OK):
-        return path
-    message = f"package '{package}' has no executable '{executable}'"
-    notes = (Note(f"looked for {display_path(path)}"),)
-    present = [each.name for each in folder.iterdir() if os.access(each, os.X_OK)] if folder.is_dir() else []
-    near = did_you_mean(executable, (*present, *ours.get(package, ())))
-    if near is None and not is_installed(share):
-        near = "the package is found in its sources only: build it with 'colcon build' and source install/setup.bash"
-    elif near is None and present:
-        near = "it has: " + ", ".join(sorted(present))
-    elif near is None:
-        near = (
-            "it installs no executables: check entry_points in its setup.py, or install(TARGETS ...) in CMakeLists.txt"
-        )
-    raise LinkwrightError(Diagnostic("LAUNCH131", message, notes=notes, hint=near))
+    for base, folders, files in os.walk(folder):
+        folders[:] = sorted(each for each in folders if not each.startswith(".") and each != "__pycache__")
+        for name in sorted(files):
+            path = Path(base, name)
+            if os.access(path, os.X_OK) and path.suffix not in (".so", ".dylib"):
+                yield Executable(package, name, Origin.INSTALLED, path)
+
+
+def _script(finder: PackageFinder, executable: Executable) -> Path:
+    from linkwright.launch.ros.entry_scripts import script_for
+    from linkwright.launch.ros.source_programs import python_root
+
+    entry = executable.entry_point
+    share = finder.share(executable.package)
+    root = python_root(share, executable.package) or share
+    assert entry is not None
+    _check_module(executable, entry, root)
+    others = (python_root(folder, name) for name, folder in finder.packages().items() if not is_installed(folder))
+    roots = dict.fromkeys([root, *(each for each in others if each is not None)])
+    try:
+        return script_for(executable.package, executable.name, entry, list(roots))
+    except OSError as error:
+        message = f"no file can be made for executable '{executable.name}': {error.strerror or error}"
+        hint = "set XDG_CACHE_HOME to a folder that you may write to"
+        raise LinkwrightError(Diagnostic("LAUNCH131", message, hint=hint)) from error
+
+
+def _check_module(executable: Executable, entry: EntryPoint, root: Path) -> None:
+    """Find out before a process is started that the module of an entry point is not there."""
+    from linkwright.launch.ros.source_programs import module_file
+
+    top = entry.module.partition(".")[0]
+    if module_file(root, entry.module) is not None or not (root / top).is_dir():
+        return
+    folder = root.joinpath(*entry.module.split(".")[:-1])
+    modules = [path.stem for path in folder.glob("*.py")] if folder.is_dir() else []
+    near = did_you_mean(entry.module.rpartition(".")[2], modules)
+    message = (
+        f"executable '{executable.name}' of package '{executable.package}' is the entry point '{entry}', "
+        f"and there is no module '{entry.module}'"
+    )
+    notes = (Note(f"looked for {display_path(root.joinpath(*entry.module.split('.')))}.py"),)
+    raise LinkwrightError(Diagnostic("LAUNCH131", message, notes=notes, hint=near or "check entry_points in setup.py"))
+
+
+_NO_EXECUTABLES = (
+    "it installs no executables: check entry_points in its setup.py, or install(TARGETS ...) in CMakeLists.txt"
+)
+
+# --- what is not there ------------------------------------------------------------------------------------------
+
+
+def _no_package(finder: PackageFinder, package: str, name: str, error: PackageNotFoundError) -> LinkwrightError:
+    hint = did_you_mean(package, (*builtin_packages(), *finder.packages())) or error.diagnostics[0].hint
+    message = f"package '{package}' of node executable '{name}' not found"
+    diagnostic = Diagnostic("LAUNCH131", message, notes=error.diagnostics[0].notes, hint=hint)
+    return keeping(KeyError(message), diagnostic)
+
+
+def _no_executable(finder: PackageFinder, package: str, name: str, present: dict[str, Executable]) -> LinkwrightError:
+    share = finder.find(package)
+    message = f"package '{package}' has no executable '{name}'"
+    notes: tuple[Note, ...] = ()
+    hint = did_you_mean(name, present)
+    if share is None:
+        message += " that runs without ROS"
+    else:
+        if not is_installed(share):
+            return _not_in_sources(package, name, share)
+        notes = (Note(f"looked for {display_path(install_prefix(share) / 'lib' / package / name)}"),)
+    if hint is None:
+        hint = f"it has: {', '.join(present)}" if present else _NO_EXECUTABLES
+    return _lookup_error(message, notes, hint)
+
+
+def _not_in_sources(package: str, name: str, share: Path) -> LinkwrightError:
+    from linkwright.launch.ros.source_programs import source_programs
+
+    programs = source_programs(share)
+    build = f"build it with 'colcon build --packages-select {package}' and source install/setup.bash"
+    if name in programs.compiled:
+        message = f"executable '{name}' of package '{package}' is a compiled program that was not built"
+        return _lookup_error(message, (), f"{build}; that needs a C++ compiler and the ROS 2 libraries it uses")
+    notes = (Note(f"read the entry points and installed programs of {display_path(share)}"),)
+    hint = did_you_mean(name, programs.names())
+    if hint is None and programs.names():
+        hint = "it has: " + ", ".join(programs.names())
+    if hint is None:
+        hint = "name it in entry_points of setup.py, or in install(PROGRAMS ...) of CMakeLists.txt"
+    return _lookup_error(f"package '{package}' has no executable '{name}'", notes, hint)
+
+
+def _lookup_error(message: str, notes: tuple[Note, ...], hint: str) -> LinkwrightError:
+    return keeping(LookupError(message), Diagnostic("LAUNCH131", message, notes=notes, hint=hint))

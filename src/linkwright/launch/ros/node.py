@@ -2,30 +2,47 @@
 
 from __future__ import annotations
 
-import os
+import re
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.launch.actions.execute import ExecuteProcess
 from linkwright.launch.context import LaunchContext
-from linkwright.launch.engine.hosted_plan import HostedPlan, is_hosted
-from linkwright.launch.places import error_at, located
-from linkwright.launch.ros.executables import find_executable
-from linkwright.launch.ros.parameters import EvaluatedParameters, check_parameters, evaluate_parameters
-from linkwright.launch.ros.scoping import NAMESPACE, PARAMETERS, REMAPPINGS, joined_namespace
+from linkwright.launch.engine.hosted_plan import HostedPlan, is_hosted, is_viewer
+from linkwright.launch.engine.processes import ProcessPlan
+from linkwright.launch.entity import Action
+from linkwright.launch.frontend.expose import expose_action
+from linkwright.launch.places import located
+from linkwright.launch.ros.executables import Executable, find_executable
+from linkwright.launch.ros.names import make_namespace_absolute, prefix_namespace, repeated_name
+from linkwright.launch.ros.node_words import Assigned, check_name, check_namespace, listed
+from linkwright.launch.ros.parameter_lists import normalize_parameters
+from linkwright.launch.ros.parameters import NodeParameters, own_parameters, scope_parameters
+from linkwright.launch.ros.parsing import parse_node
+from linkwright.launch.ros.remappings import evaluated_rules, normalize_remap_rules
+from linkwright.launch.ros.scoping import NAMESPACE, PARAMETERS, REMAPPINGS
+from linkwright.launch.ros.substitutions import ExecutableInPackage
+from linkwright.launch.ros.workspace_environment import workspace_environment
 from linkwright.launch.substitution import (
     SomeSubstitutionsType,
-    Substitution,
     normalize_to_list_of_substitutions,
     perform_substitutions,
 )
 
 if TYPE_CHECKING:
+    from linkwright.launch.frontend.entity import Entity
+    from linkwright.launch.frontend.parser import Parser
     from linkwright.viewer import RvizConfig
+    from linkwright.workspace import PackageFinder
+
+_OF_A_PROCESS = re.compile(r"(ROS|RCUTILS|RMW|CYCLONEDDS|LINKWRIGHT)_")
+"""Environment variables that change what a node does, so that one that has its own cannot run in the launcher."""
 
 
+@expose_action("node")
 class Node(ExecuteProcess):
     """Starts a node: one of ours in the launcher's process, any other as a process of its own.
 
@@ -35,10 +52,26 @@ class Node(ExecuteProcess):
         name: the name it is given.
         namespace: where it lives, inside the namespaces of `PushRosNamespace` unless it starts with a slash.
         exec_name: its name in the log.
-        parameters: dictionaries, paths of YAML files, `ParameterFile` and `Parameter` objects; later ones
-        win. remappings: pairs of names. ros_arguments: further arguments after ``--ros-args``. arguments: its
-        command line. kwargs: see `ExecuteProcess`.
+        parameters: dictionaries, paths of YAML files, `ParameterFile` and `Parameter` objects; later ones win.
+        remappings: pairs of names.
+        ros_arguments: further arguments after ``--ros-args``.
+        arguments: its command line.
+        kwargs: see `ExecuteProcess`.
     """
+
+    UNSPECIFIED_NODE_NAME = "<node_name_unspecified>"
+    UNSPECIFIED_NODE_NAMESPACE = "<node_namespace_unspecified>"
+
+    # What is known once it is started. Programs that look into launch_ros know these attributes by their names.
+    __substitutions_performed: bool
+    __expanded_node_name: str
+    __expanded_node_namespace: str
+    __expanded_remappings: list[tuple[str, str]] | None
+    __final_node_name: str | None
+    __node_parameters: NodeParameters
+    __scope_count: int
+    __scratch_folder: Path | None
+    __parameter_words: list[tuple[str, bool]] | None
 
     def __init__(
         self,
@@ -54,39 +87,83 @@ class Node(ExecuteProcess):
         arguments: Iterable[SomeSubstitutionsType] | None = None,
         **kwargs: Any,
     ) -> None:
-        super().__init__(cmd=[executable], name=exec_name, **kwargs)
-        self._executable = normalize_to_list_of_substitutions(executable)
-        self._package = None if package is None else normalize_to_list_of_substitutions(package)
-        self._node_name = None if name is None else normalize_to_list_of_substitutions(name)
-        self._namespace = None if namespace is None else normalize_to_list_of_substitutions(namespace)
-        self._parameters = [] if parameters is None else check_parameters(parameters, self.place)
-        self._remappings = [
-            (normalize_to_list_of_substitutions(source), normalize_to_list_of_substitutions(target))
-            for source, target in remappings or ()
-        ]
-        self._ros_arguments = _listed(ros_arguments)
-        self._arguments = _listed(arguments)
-        self._full_name: str | None = None
+        program = executable if package is None else ExecutableInPackage(package=package, executable=executable)
+        command: list[Any] = [program, *listed(arguments)]
+        if ros_arguments is not None:
+            command += ["--ros-args", *listed(ros_arguments)]
+        command.append("--ros-args")
+        if name is not None:
+            command += ["-r", Assigned("name", lambda: f"__node:={self.__expanded_node_name}")]
+        super().__init__(cmd=command, name=exec_name, **kwargs)
+        self.__package = package
+        self.__node_executable = executable
+        self.__node_name = name
+        self.__node_namespace = namespace
+        self.__parameters = () if parameters is None else normalize_parameters(parameters)
+        self.__remappings = [] if remappings is None else list(normalize_remap_rules(remappings))
+        self.__arguments = arguments
+        self.__ros_arguments = ros_arguments
+        self.__fixed_words = len(self.cmd)
+        self.__own_environment = kwargs.get("env"), kwargs.get("additional_env")
+        self.__forget()
         self.hosted = False
 
-    @property
-    def node_package(self) -> list[Substitution] | None:
-        """The package, as substitutions."""
-        return self._package
+    @classmethod
+    def parse(
+        cls, entity: Entity, parser: Parser, ignore: Sequence[str] | None = None
+    ) -> tuple[type[Action], dict[str, Any]]:
+        """Reads the tag: that of a process, with ``pkg``, ``exec``, ``param``, ``remap`` and so on."""
+        _, kwargs = super().parse(entity, parser, ignore=["cmd", *(ignore or ())])
+        return cls, parse_node(entity, parser, kwargs, cls)
+
+    @staticmethod
+    def parse_nested_parameters(params: list[Entity], parser: Parser) -> list[Any]:
+        """What ``param`` tags say, for ``parameters``."""
+        from linkwright.launch.ros.parsing import parse_parameters
+
+        return parse_parameters(params, parser)
+
+    # --- what others read of it -----------------------------------------------------------------------------
 
     @property
-    def node_executable(self) -> list[Substitution]:
-        """The executable, as substitutions."""
-        return self._executable
+    def node_package(self) -> Any:
+        """The package, as it was given."""
+        return self.__package
+
+    @property
+    def node_executable(self) -> Any:
+        """The executable, as it was given."""
+        return self.__node_executable
 
     @property
     def node_name(self) -> str:
-        """The full name of the node once it is started."""
-        if self._full_name is None:
-            raise RuntimeError("the name of a node is not known before it is started")
-        return self._full_name
+        """The full name of the node, once it is known.
 
-    def execute(self, context: LaunchContext) -> None:
+        Raises:
+            RuntimeError: it is not known yet.
+        """
+        if self.__final_node_name is None:
+            raise RuntimeError("cannot access 'node_name' before executing action")
+        return self.__final_node_name
+
+    @property
+    def expanded_node_namespace(self) -> str:
+        """The namespace, or `UNSPECIFIED_NODE_NAMESPACE` where nobody gave one."""
+        return self.__expanded_node_namespace
+
+    @property
+    def expanded_remapping_rules(self) -> list[tuple[str, str]] | None:
+        """The remappings, those of the scope first; None without any."""
+        return self.__expanded_remappings
+
+    def is_node_name_fully_specified(self) -> bool:
+        """Whether name and namespace were both given."""
+        unspecified = (self.UNSPECIFIED_NODE_NAME, self.UNSPECIFIED_NODE_NAMESPACE)
+        return all(each not in self.node_name for each in unspecified)
+
+    # --- the run --------------------------------------------------------------------------------------------
+
+    def execute(self, context: LaunchContext) -> list[Any] | None:
         """Start it.
 
         Raises:
@@ -94,112 +171,173 @@ class Node(ExecuteProcess):
             LinkwrightError: what else is wrong with it.
         """
         if context.is_shutdown:
-            return
-        package = None if self._package is None else perform_substitutions(context, self._package)
-        executable = perform_substitutions(context, self._executable)
-        self.hosted = is_hosted(package, executable)
-        name = None if self._node_name is None else perform_substitutions(context, self._node_name)
-        namespace = self._evaluated_namespace(context)
-        self._full_name = f"{namespace.rstrip('/')}/{name or executable}"
-        parameters = evaluate_parameters(
-            context,
-            [*context.launch_configurations.get(PARAMETERS, ()), *self._parameters],
-            self._full_name,
-            self.place,
-        )
-        remappings = [
-            *context.launch_configurations.get(REMAPPINGS, ()),
-            *(
-                (perform_substitutions(context, source), perform_substitutions(context, target))
-                for source, target in self._remappings
-            ),
-        ]
-        arguments = [perform_substitutions(context, each) for each in self._arguments]
-        ros_arguments = [perform_substitutions(context, each) for each in self._ros_arguments]
-        session = context.session
+            return None
+        package = None if self.__package is None else _text(context, self.__package)
+        executable = _text(context, self.__node_executable)
+        self.hosted = is_hosted(package, executable) and self._may_be_hosted(context, package, executable)
+        self.__forget()
+        self._perform_substitutions(context)
         if self.hosted:
             assert package is not None
-            if ros_arguments:
-                arguments = [*arguments, "--ros-args", *ros_arguments]
-            base_name = executable if self._name is None else perform_substitutions(context, self._name)
-            session.host.plan(
-                HostedPlan(
-                    self,
-                    session.number_process(base_name),
-                    package,
-                    executable,
-                    name,
-                    namespace,
-                    parameters.values,
-                    remappings,
-                    arguments,
-                    self.viewer_config(context),
-                )
-            )
-            return
-        command = [self._program(context, package, executable), *arguments]
-        command += _ros_arguments(name, namespace, parameters, remappings, ros_arguments, session.scratch_folder)
-        self._start(context, command)
+            process_name = self._host(context, package, executable)
+        else:
+            process_name = self._run(context, package, executable)
+        if self.is_node_name_fully_specified():
+            remark = repeated_name(context, self.node_name)
+            if remark is not None:
+                context.session.log.caution(process_name, remark)
+        return None
 
     def viewer_config(self, context: LaunchContext) -> Callable[[], RvizConfig] | None:  # noqa: ARG002
         """What makes the configuration of a viewer; None has its command line say which."""
         return None
 
-    def _program(self, context: LaunchContext, package: str | None, executable: str) -> str:
-        if package is None:
-            return executable
+    def _perform_substitutions(self, context: LaunchContext) -> None:
+        """Work out name, namespace, parameters and remappings, and with them the rest of the command."""
+        if self.__substitutions_performed:
+            return
         try:
-            return str(find_executable(context.session.finder, package, executable))
+            self._expand_names(context)
+        except LinkwrightError as error:
+            raise located(error, self.place) from error
+        scope = scope_parameters(context.launch_configurations.get(PARAMETERS) or (), context)
+        own = own_parameters(self.__parameters, context)
+        self.__node_parameters = NodeParameters([*scope.sources, *own.sources])
+        self.__scope_count = len(scope.sources)
+        self.__scratch_folder = _scratch_folder(context)
+        rules = [
+            *(context.launch_configurations.get(REMAPPINGS) or ()),
+            *evaluated_rules(context, self.__remappings),
+        ]
+        self.__expanded_remappings = rules or None
+        if not self.hosted:
+            self.__extend_command()
+        self.__substitutions_performed = True
+
+    def __forget(self) -> None:
+        """Begin anew: an action may be visited again, when a model that it needs was repaired."""
+        del self.cmd[self.__fixed_words :]
+        self.__substitutions_performed = False
+        self.__expanded_node_name = self.UNSPECIFIED_NODE_NAME
+        self.__expanded_node_namespace = self.UNSPECIFIED_NODE_NAMESPACE
+        self.__final_node_name = None
+        self.__node_parameters = NodeParameters()
+        self.__scope_count = 0
+        self.__scratch_folder = None
+        self.__parameter_words = None
+        self.__expanded_remappings = None
+
+    def _expand_names(self, context: LaunchContext) -> None:
+        """Work out name and namespace."""
+        if self.__node_name is not None:
+            self.__expanded_node_name = check_name(_text(context, self.__node_name))
+        own = None if self.__node_namespace is None else _text(context, self.__node_namespace)
+        namespace = make_namespace_absolute(prefix_namespace(context.launch_configurations.get(NAMESPACE), own))
+        if namespace is not None:
+            self.__expanded_node_namespace = check_namespace(namespace)
+        self.__final_node_name = f"{self.__expanded_node_namespace.rstrip('/')}/{self.__expanded_node_name}"
+
+    @property
+    def __expanded_parameter_arguments(self) -> list[tuple[str, bool]]:
+        """What a process is told of the parameters; files for it are made when somebody asks.
+
+        Of the scope's parameters only files count here, as in launch_ros.
+        """
+        if self.__parameter_words is None:
+            folder = self.__scratch_folder if self.__scratch_folder and self.__scratch_folder.is_dir() else None
+            node = self.node_name if self.is_node_name_fully_specified() else None
+            self.__parameter_words = self.__node_parameters.arguments(node, folder)
+        scope = self.__parameter_words[: self.__scope_count]
+        return [*(each for each in scope if each[1]), *self.__parameter_words[self.__scope_count :]]
+
+    def __extend_command(self) -> None:
+        words: list[Any] = []
+        if self.__expanded_node_namespace != self.UNSPECIFIED_NODE_NAMESPACE:
+            words += ["-r", Assigned("ns", lambda: f"__ns:={self.__expanded_node_namespace}")]
+        _ = self.__expanded_parameter_arguments
+        for argument, is_file in self.__parameter_words or ():
+            words += ["--params-file" if is_file else "-p", argument]
+        for source, target in self.__expanded_remappings or ():
+            words += ["-r", f"{source}:={target}"]
+        self.cmd.extend(normalize_to_list_of_substitutions(word) for word in words)
+
+    # --- in the launcher's process ----------------------------------------------------------------------------
+
+    def _may_be_hosted(self, context: LaunchContext, package: str | None, executable: str) -> bool:
+        """Whether nothing is asked for that only a process of its own can have."""
+        if is_viewer(package, executable):
+            return True
+        if context.session.options.isolate or self.__own_environment[0] is not None:
+            return False
+        names = (_text(context, name) for name in self.__own_environment[1] or ())
+        if any(_OF_A_PROCESS.match(name) for name in names):
+            return False
+        return not self.process_description.prefix_words(context, [executable])
+
+    def _host(self, context: LaunchContext, package: str, executable: str) -> str:
+        session = context.session
+        namespace = self.__expanded_node_namespace
+        namespace = "/" if namespace == self.UNSPECIFIED_NODE_NAMESPACE else namespace
+        name = None if self.__node_name is None else self.__expanded_node_name
+        arguments = [_text(context, each) for each in listed(self.__arguments)]
+        if self.__ros_arguments is not None:
+            arguments += ["--ros-args", *(_text(context, each) for each in listed(self.__ros_arguments))]
+        base_name = self.process_description.base_name(context, [executable])
+        full_name = f"{namespace.rstrip('/')}/{name or executable}"
+        plan = HostedPlan(
+            self,
+            session.number_process(base_name),
+            package,
+            executable,
+            name,
+            namespace,
+            self.__node_parameters.values(context, full_name),
+            self.__expanded_remappings or [],
+            arguments,
+            self.viewer_config(context),
+            destinations=self._destinations(context),
+            respawns=self._respawn_max_retries if self._typed(context, "respawn", self._respawn) else 0,
+            respawn_delay=self._respawn_delay or 0.0,
+        )
+        self.process_description.final_name = plan.process_name
+        self.process_description.final_cmd = plan.details["cmd"]
+        session.host.plan(plan)
+        return plan.process_name
+
+    # --- as a process -----------------------------------------------------------------------------------------
+
+    def _run(self, context: LaunchContext, package: str | None, executable: str) -> str:
+        arguments = [perform_substitutions(context, word) for word in self.cmd[1:]]
+        return self._start(context, [*self._program(context, package, executable), *arguments])
+
+    def _program(self, context: LaunchContext, package: str | None, executable: str) -> list[str]:
+        if package is None:
+            return [executable]
+        try:
+            return self._executable(context.session.finder, package, executable).command
         except LinkwrightError as error:
             raise located(error, self.place) from error
 
-    def _evaluated_namespace(self, context: LaunchContext) -> str:
-        outer = str(context.launch_configurations.get(NAMESPACE, ""))
-        own = "" if self._namespace is None else perform_substitutions(context, self._namespace)
-        namespace = joined_namespace(outer, own)
-        if " " in namespace:
-            raise error_at(self.place, "LAUNCH134", f"namespace '{namespace}' has a blank in it")
-        return namespace
+    def _executable(self, finder: PackageFinder, package: str, executable: str) -> Executable:
+        return find_executable(finder, package, executable)
+
+    def _plan(self, context: LaunchContext, command: list[str]) -> ProcessPlan:
+        plan = super()._plan(context, command)
+        if self.process_description.name is not None:
+            return plan
+        # By its executable, also where that is run by an interpreter or is one of ours.
+        return replace(plan, name=Path(_text(context, self.__node_executable)).name)
+
+    def _environment(self, context: LaunchContext) -> dict[str, str]:
+        return workspace_environment(context.session.finder, super()._environment(context))
 
 
-def _listed(values: Iterable[SomeSubstitutionsType] | None) -> list[list[Substitution]]:
-    if values is None:
-        return []
-    if isinstance(values, (str, Substitution)):
-        values = [values]
-    return [normalize_to_list_of_substitutions(value) for value in values]
+def _text(context: LaunchContext, value: Any) -> str:
+    return perform_substitutions(context, normalize_to_list_of_substitutions(value))
 
 
-def _ros_arguments(
-    name: str | None,
-    namespace: str,
-    parameters: EvaluatedParameters,
-    remappings: list[tuple[str, str]],
-    further: list[str],
-    scratch_folder: Path,
-) -> list[str]:
-    """The command line that tells a node of another process what it is to be."""
-    words: list[str] = []
-    if name is not None:
-        words += ["-r", f"__node:={name}"]
-    if namespace != "/":
-        words += ["-r", f"__ns:={namespace}"]
-    for source in parameters.sources:
-        path = source if isinstance(source, Path) else _written(source, scratch_folder)
-        words += ["--params-file", str(path)]
-    for pair in remappings:
-        words += ["-r", ":=".join(pair)]
-    words += further
-    return ["--ros-args", *words] if words else []
-
-
-def _written(parameters: dict[str, Any], folder: Path) -> Path:
-    """A parameter file with these values for any node."""
-    import tempfile
-
-    import yaml
-
-    descriptor, path = tempfile.mkstemp(prefix="launch_params_", suffix=".yaml", dir=folder)
-    with os.fdopen(descriptor, "w", encoding="utf-8") as file:
-        yaml.safe_dump({"/**": {"ros__parameters": parameters}}, file, default_flow_style=False)
-    return Path(path)
+def _scratch_folder(context: LaunchContext) -> Path | None:
+    try:
+        return context.session.scratch_folder
+    except (AttributeError, RuntimeError):  # nothing runs in this context
+        return None

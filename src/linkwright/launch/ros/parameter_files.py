@@ -1,28 +1,30 @@
-"""Parameter files: YAML that maps node names to parameters."""
+"""Parameter files for ``parameters`` of a node (``launch_ros.parameter_descriptions.ParameterFile``)."""
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterator, Mapping
+import os
+from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText, display_path
-from linkwright.launch.conditions import evaluate_condition_expression
+from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText, display_path, missing_file_hint
 from linkwright.launch.context import LaunchContext
-from linkwright.launch.places import Place, located
-from linkwright.launch.ros.text_substitutions import substitute_text
+from linkwright.launch.frontend.values import normalize_typed_substitution, perform_typed_substitution
+from linkwright.launch.places import Place, error_at, located
 from linkwright.launch.substitution import (
     SomeSubstitutionsType,
+    Substitution,
+    SubstitutionFailure,
     normalize_to_list_of_substitutions,
     perform_substitutions,
 )
 
-_PARAMETERS = "ros__parameters"
+if TYPE_CHECKING:
+    from linkwright.graph.parameter_rules import ParameterRules
 
 
 class ParameterFile:
-    """A parameter file for ``parameters`` of a node.
+    """A parameter file.
 
     Args:
         param_file: its path.
@@ -31,92 +33,113 @@ class ParameterFile:
 
     def __init__(
         self,
-        param_file: Path | SomeSubstitutionsType,
+        param_file: os.PathLike[str] | SomeSubstitutionsType,
         *,
         allow_substs: bool | SomeSubstitutionsType = False,
     ) -> None:
-        self._param_file = normalize_to_list_of_substitutions(param_file)
-        allow = str(allow_substs).lower() if isinstance(allow_substs, bool) else allow_substs
-        self._allow_substs = normalize_to_list_of_substitutions(allow)
         self.place = Place.of_caller()
+        self._evaluated: Path | None = None
+        self._allowed: bool | None = None
+        self._source: SourceText | None = None
+        self._is_temporary = False
+        given = os.fspath(param_file) if isinstance(param_file, os.PathLike) else param_file
+        try:
+            self._param_file = normalize_to_list_of_substitutions(given)
+            self._allow_substs = normalize_typed_substitution(allow_substs, bool)
+        except (TypeError, ValueError) as error:
+            raise error_at(self.place, "LAUNCH133", f"a parameter file: {error}", promises=error) from error
 
     @property
-    def param_file(self) -> list[Any]:
-        """The path, as substitutions."""
-        return self._param_file
+    def param_file(self) -> list[Substitution] | Path:
+        """The path as substitutions; once it was evaluated, the path of the file with substitutions made."""
+        return self._param_file if self._evaluated is None else self._evaluated
 
-    def read(self, context: LaunchContext) -> tuple[Path, dict[str, Any], bool]:
-        """The path, what is in the file, and whether substitutions were made in it.
+    @property
+    def allow_substs(self) -> Any:
+        """Whether substitutions are made."""
+        return self._allow_substs if self._allowed is None else self._allowed
+
+    def evaluate(self, context: LaunchContext) -> Path:
+        """The path of the file; where substitutions are made, that of a temporary file.
+
+        Raises:
+            LinkwrightError: LAUNCH133, what is wrong with the file, where substitutions are made in it; a
+                SubstitutionFailure too.
+        """
+        if self._evaluated is None:
+            path = Path(perform_substitutions(context, self._param_file))
+            self._allowed = bool(perform_typed_substitution(context, self._allow_substs, bool))
+            self._evaluated = self._substituted(path, context) if self._allowed else path
+        return self._evaluated
+
+    def rules(self, context: LaunchContext) -> ParameterRules:
+        """What is in the file.
 
         Raises:
             LinkwrightError: LAUNCH133, what is wrong with the file.
         """
-        path = Path(perform_substitutions(context, self._param_file))
-        substitutes = evaluate_condition_expression(context, self._allow_substs)
+        from linkwright.graph.parameter_files import parse_parameters
+
+        path = self.evaluate(context)
+        source = self._source or _read(path, self.place)
         try:
-            return path, _load(path, context if substitutes else None), substitutes
+            return parse_parameters(source)
         except LinkwrightError as error:
             raise located(error, self.place) from error
 
+    def cleanup(self) -> None:
+        """Delete the temporary file, if one was made."""
+        if self._is_temporary and self._evaluated is not None:
+            with suppress(OSError):
+                self._evaluated.unlink()
+            self._evaluated, self._is_temporary = None, False
 
-def parameters_for(content: Mapping[str, Any], node: str) -> dict[str, Any]:
-    """The parameters that a file has for a node, nested mappings as they stand.
+    def __del__(self) -> None:
+        if getattr(self, "_is_temporary", False):
+            self.cleanup()
 
-    Args:
-        content: what is in the file: names of nodes, or parts of such names one in another, with ``*`` for
-        any one
-            part and ``**`` for any number of them.
-        node: the node's full name, such as ``/robot/talker``.
-    """
-    found: dict[str, Any] = {}
-    for pattern, parameters in _sections(content, ""):
-        if _matches(pattern, node):
-            found.update(parameters)
-    return found
+    def _substituted(self, path: Path, context: LaunchContext) -> Path:
+        import tempfile
+
+        from linkwright.launch.ros.text_substitutions import substitute_text
+
+        source = _read(path, self.place)
+        try:
+            text = substitute_text(source, context)
+        except LinkwrightError as error:
+            raise located(error, self.place) from error
+        self._check_yaml(SourceText(source.name, text))
+        self._source = SourceText(source.name, text)
+        descriptor, name = tempfile.mkstemp(prefix="launch_params_", suffix=".yaml")
+        with os.fdopen(descriptor, "w", encoding="utf-8") as file:
+            file.write(text)
+        self._is_temporary = True
+        return Path(name)
+
+    def _check_yaml(self, source: SourceText) -> None:
+        import yaml
+
+        try:
+            for _ in yaml.parse(source.text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader)):
+                pass
+        except yaml.YAMLError as error:
+            mark = getattr(error, "problem_mark", None)
+            problem = getattr(error, "problem", None) or str(error)
+            span = source.span(source.offset(mark.line + 1, mark.column + 1)) if mark else None
+            message = f"parameter file is not YAML once substitutions are made in it: {problem}"
+            failure = SubstitutionFailure("The substituted parameter file is not a valid yaml file")
+            found = error_at(None, "LAUNCH133", message, promises=failure)
+            found.diagnostics = (Diagnostic("LAUNCH133", message, span, source=source),)
+            raise located(found, self.place) from error
 
 
-def _sections(content: Mapping[str, Any], above: str) -> Iterator[tuple[str, Mapping[str, Any]]]:
-    for name, value in content.items():
-        path = f"{above}/{str(name).strip('/')}"
-        if isinstance(value, Mapping):
-            if isinstance(value.get(_PARAMETERS), Mapping):
-                yield path, value[_PARAMETERS]
-            yield from _sections({key: each for key, each in value.items() if key != _PARAMETERS}, path)
-
-
-def _matches(pattern: str, node: str) -> bool:
-    expression = re.escape(pattern).replace(r"/\*\*", "(/[^/]+)*").replace(r"\*", "[^/]+")
-    return re.fullmatch(expression, node) is not None
-
-
-def _load(path: Path, context: LaunchContext | None) -> dict[str, Any]:
-    import yaml
-
+def _read(path: Path, place: Place | None) -> SourceText:
     shown = display_path(path)
     try:
-        text = path.read_text(encoding="utf-8")
+        return SourceText(str(path), path.read_text(encoding="utf-8"))
     except FileNotFoundError as error:
-        raise _error(f"parameter file '{shown}' does not exist") from error
+        message, hint = f"parameter file '{shown}' does not exist", missing_file_hint(path)
+        raise error_at(place, "LAUNCH133", message, hint, promises=error) from error
     except (OSError, UnicodeDecodeError) as error:
-        raise _error(f"parameter file '{shown}' cannot be read: {error}") from error
-    source = SourceText(str(path), text)
-    if context is not None:
-        text = substitute_text(text, context, source)
-    try:
-        content = yaml.safe_load(text)
-    except yaml.YAMLError as error:
-        mark = getattr(error, "problem_mark", None)
-        problem = getattr(error, "problem", None) or str(error)
-        span = source.span(source.offset(mark.line + 1, mark.column + 1)) if mark else None
-        message = f"parameter file is not YAML: {problem}"
-        raise LinkwrightError(Diagnostic("LAUNCH133", message, span, source=source)) from error
-    if content is None:
-        return {}
-    if not isinstance(content, dict) or not any(True for _ in _sections(content, "")):
-        message = f"parameter file '{shown}' names no node with '{_PARAMETERS}' below it"
-        raise _error(message, f"write it as NODE_NAME: {{{_PARAMETERS}: {{name: value}}}}")
-    return content
-
-
-def _error(message: str, hint: str | None = None) -> LinkwrightError:
-    return LinkwrightError(Diagnostic("LAUNCH133", message, hint=hint))
+        reason = getattr(error, "strerror", None) or error
+        raise error_at(place, "LAUNCH133", f"parameter file '{shown}' cannot be read: {reason}") from error

@@ -1,17 +1,18 @@
-"""Values of node parameters, which may be known only when the launch runs.
+"""Values of node parameters, which may be known only when the launch runs (``launch_ros.parameter_descriptions``).
 
-A substitution is text; which type the parameter gets is decided by ``value_type``, or by YAML's rules where
-that is not given, as in launch_ros.
+A substitution is text; which type the parameter gets is decided by ``value_type``, or by YAML's rules where that is not
+given, as in launch_ros.
 """
 
 from __future__ import annotations
 
-import typing
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
+from linkwright.diagnostics import LinkwrightError
 from linkwright.launch.context import LaunchContext
-from linkwright.launch.places import Place, error_at
+from linkwright.launch.frontend.values import normalize_typed_substitution, perform_typed_substitution
+from linkwright.launch.places import Place, error_at, located
 from linkwright.launch.substitution import (
     SomeSubstitutionsType,
     Substitution,
@@ -20,6 +21,15 @@ from linkwright.launch.substitution import (
 )
 
 SCALARS = (bool, int, float, str)
+AS_TEXT = "say that it is text: ParameterValue(VALUE, value_type=str), from launch_ros.parameter_descriptions"
+
+_UNIFORM = (
+    "Expected a non-empty sequence, with items of uniform type. Allowed sequence item types are bool, int, float, str."
+)
+_ALLOWED = (
+    "Allowed value types are bytes, bool, int, float, str, Sequence[bool], Sequence[int], Sequence[float], "
+    "Sequence[str]. Got {}."
+)
 
 
 class ParameterValue:
@@ -27,149 +37,162 @@ class ParameterValue:
 
     Args:
         value: the value, or substitutions that give it as text.
-        value_type: bool, int, float, str, or a list of one of these such as ``List[int]``; None for YAML's
-        rules.
+        value_type: bool, int, float, str, or a list of one of these such as ``List[int]``; None for YAML's rules.
+
+    Raises:
+        TypeError: the value cannot be of that type.
     """
 
     def __init__(self, value: Any, *, value_type: Any = None) -> None:
-        self._value = normalize_to_list_of_substitutions(value) if is_substitution(value) else value
-        self._value_type = value_type
         self.place = Place.of_caller()
+        try:
+            self._value = normalize_typed_substitution(value, value_type)
+        except (TypeError, ValueError) as error:
+            raise error_at(self.place, "LAUNCH132", f"the value of a parameter: {error}", promises=error) from error
+        self._value_type = value_type
+        self._evaluated: Any = None
 
     @property
     def value(self) -> Any:
-        """The value; substitutions as a list."""
-        return self._value
+        """The value as it was given, with substitutions as lists; once it was evaluated, what came out."""
+        return self._value if self._evaluated is None else self._evaluated
 
     @property
     def value_type(self) -> Any:
         """The type it is to have."""
         return self._value_type
 
-    def evaluate(self, context: LaunchContext) -> Any:
+    def evaluate(self, context: LaunchContext, name: str | None = None) -> Any:
         """The value in its type.
 
+        Args:
+            context: where substitutions are performed.
+            name: of the parameter, for messages.
+
         Raises:
-            LinkwrightError: LAUNCH132, if the text is no such value.
+            LinkwrightError: LAUNCH132, if the text is no such value; ValueError or TypeError too, as launch_ros has it.
         """
-        if isinstance(self._value, list) and self._value and isinstance(self._value[0], Substitution):
-            text = perform_substitutions(context, self._value)
-            return typed_value(text, self._value_type, "value", self.place)
-        return checked_value(self._value, self._value_type, self.place)
+        called = f"parameter '{name}'" if name else "the value of a parameter"
+        try:
+            self._evaluated = perform_typed_substitution(context, self._value, self._value_type)
+        except LinkwrightError as error:
+            raise located(error, self.place) from error
+        except (TypeError, ValueError) as error:
+            expected = getattr(self._value_type, "__name__", None) or str(self._value_type)
+            if self._value_type is None:
+                message = f"{called} is read as YAML, because its type is not said: {error}"
+                raise error_at(self.place, "LAUNCH132", message, AS_TEXT, promises=error) from error
+            message = f"{called} is not the {expected} that is asked for: {error}"
+            raise error_at(self.place, "LAUNCH132", message, promises=error) from error
+        return self._evaluated
 
 
-class Parameter(ParameterValue):
-    """A name and a value, for ``parameters`` of a node."""
+class Parameter:
+    """A name and a value, for ``parameters`` of a node.
+
+    Args:
+        name: the name.
+        value: see `ParameterValue`.
+        value_type: see `ParameterValue`.
+    """
 
     def __init__(self, name: SomeSubstitutionsType, value: Any, *, value_type: Any = None) -> None:
-        super().__init__(value, value_type=value_type)
         self._name = normalize_to_list_of_substitutions(name)
+        self._parameter_value = ParameterValue(value, value_type=value_type)
+        self._rule: tuple[str, Any] | None = None
 
     @property
-    def name(self) -> list[Substitution]:
-        """The name, as substitutions."""
-        return self._name
+    def place(self) -> Place | None:
+        """Where it was written."""
+        return self._parameter_value.place
 
-    def named_value(self, context: LaunchContext) -> tuple[str, Any]:
+    @property
+    def name(self) -> list[Substitution] | str:
+        """The name as substitutions; once it was evaluated, as text."""
+        return self._name if self._rule is None else self._rule[0]
+
+    @property
+    def value(self) -> Any:
+        """The value, see `ParameterValue.value`."""
+        return self._parameter_value.value
+
+    @property
+    def value_type(self) -> Any:
+        """The type it is to have."""
+        return self._parameter_value.value_type
+
+    def evaluate(self, context: LaunchContext) -> tuple[str, Any]:
         """Name and value.
 
         Raises:
             LinkwrightError: LAUNCH132, if the text is no such value.
         """
-        return perform_substitutions(context, self._name), self.evaluate(context)
-
-
-def is_substitution(value: Any) -> bool:
-    """Whether a value is text that is known only later: a substitution, or a list of texts with one in it."""
-    if isinstance(value, Substitution):
-        return True
-    return (
-        isinstance(value, (list, tuple))
-        and any(isinstance(each, Substitution) for each in value)
-        and all(isinstance(each, (str, Substitution)) for each in value)
-    )
-
-
-def typed_value(text: str, value_type: Any, name: str, place: Place | None) -> Any:
-    """A text as a value of a type, by YAML's rules unless the type is str.
-
-    Raises:
-        LinkwrightError: LAUNCH132, if it is no such value.
-    """
-    if value_type is str:
-        return text
-    value = yaml_value(text, name, place)
-    if value_type is None:
-        return value
-    if value_type is float and type(value) is int:
-        return float(value)
-    if typing.get_origin(value_type) in (list, typing.List):  # noqa: UP006 - launch files write either
-        (item_type,) = typing.get_args(value_type) or (str,)
-        if isinstance(value, list):
-            return [
-                float(item)
-                if item_type is float and type(item) is int
-                else checked_value(str(item) if item_type is str else item, item_type, place)
-                for item in value
-            ]
-    return checked_value(value, value_type, place)
-
-
-def checked_value(value: Any, value_type: Any, place: Place | None) -> Any:
-    """A value that is there already, after a look at its type.
-
-    Raises:
-        LinkwrightError: LAUNCH132, if it has another type than is asked for.
-    """
-    if value_type is None or (typing.get_origin(value_type) is not None and isinstance(value, (list, tuple))):
-        return list(value) if isinstance(value, tuple) else value
-    if type(value) is value_type:
-        return value
-    expected = getattr(value_type, "__name__", str(value_type))
-    raise error_at(place, "LAUNCH132", f"the value {value!r} is {_kind(value)}, not the {expected} that is asked for")
+        if self._rule is None:
+            name = perform_substitutions(context, self._name)
+            self._rule = name, self._parameter_value.evaluate(context, name)
+        return self._rule
 
 
 def yaml_value(text: str, name: str, place: Place | None) -> Any:
-    """A text by YAML's rules, as launch_ros reads parameters whose type is not said.
+    """A text by YAML's rules, as launch_ros reads parameters whose type is not said; lists become tuples.
 
     Raises:
-        LinkwrightError: LAUNCH132, if it is not YAML, or gives something that no parameter can be.
+        LinkwrightError: LAUNCH132, it is not YAML, or gives something that no parameter can be; a TypeError too, as
+            launch_ros has it.
     """
+    value = _loaded(text, name, place)
+    if value is None:
+        return ""
+    if isinstance(value, str):
+        # YAML folds the lines of a text. XML means the same either way, and positions in it stay right like this.
+        return text if text.lstrip().startswith("<") else value
+    if isinstance(value, (*SCALARS, bytes)):
+        return value
+    if isinstance(value, list):
+        return uniform(value, name, place)
+    kind = _kind(value)
+    message = f"parameter '{name}' is read as YAML, because its type is not said, and becomes {kind}"
+    promised = TypeError(_ALLOWED.format(type(value)))
+    raise error_at(place, "LAUNCH132", f"{message}, which no parameter can be", AS_TEXT, promises=promised)
+
+
+def uniform(items: Sequence[Any], name: str, place: Place | None) -> tuple[Any, ...]:
+    """Items of one type, of those that lists of parameters may have.
+
+    Raises:
+        LinkwrightError: LAUNCH132, they are not, or there is none; a TypeError too, as launch_ros has it.
+    """
+    kinds = {type(item) for item in items}
+    if len(kinds) == 1 and kinds <= set(SCALARS):
+        return tuple(items)
+    if not items:
+        found = "an empty list, whose type nobody can tell"
+    else:
+        listed = sorted(kind.__name__ for kind in kinds)
+        found = (
+            f"a list of mixed items ({', '.join(listed)})" if len(kinds) > 1 else f"a list of items of type {listed[0]}"
+        )
+    message = f"parameter '{name}' becomes {found}, which no parameter can be"
+    raise error_at(
+        place, "LAUNCH132", message, "give all items one type: bool, int, float or str", promises=TypeError(_UNIFORM)
+    )
+
+
+def _loaded(text: str, name: str, place: Place | None) -> Any:
     import yaml
 
-    fix = "say that it is text: ParameterValue(VALUE, value_type=str), from launch_ros.parameter_descriptions"
     try:
-        value = yaml.safe_load(text)
+        return yaml.load(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))  # noqa: S506 - the safe one, in C
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         problem = getattr(error, "problem", None) or str(error).splitlines()[0]
         at = f" in its line {mark.line + 1}, column {mark.column + 1}" if mark else ""
         message = f"parameter '{name}' is read as YAML, because its type is not said, and is none: {problem}{at}"
-        raise error_at(place, "LAUNCH132", message, fix) from error
-    if isinstance(value, str):
-        # YAML folds the lines of a text. XML means the same either way, and positions in it stay right like
-        # this.
-        return text if text.lstrip().startswith("<") else value
-    if isinstance(value, SCALARS) or (isinstance(value, list) and _is_uniform(value)):
-        return value
-    message = f"parameter '{name}' is read as YAML, because its type is not said, and becomes {_kind(value)}"
-    raise error_at(place, "LAUNCH132", f"{message}, which no parameter can be", fix)
-
-
-def _is_uniform(values: Sequence[Any]) -> bool:
-    kinds = {type(value) for value in values}
-    return len(kinds) <= 1 and kinds <= set(SCALARS)
-
-
-def uniform_list(values: Iterable[Any]) -> list[Any]:
-    """A list as launch_ros makes its items alike: floats where numbers are mixed, else texts."""
-    items = list(values)
-    kinds = {type(item) for item in items}
-    if kinds <= {int, float} and len(kinds) == 2:
-        return [float(item) for item in items]
-    if len(kinds) <= 1:
-        return items
-    return [str(item).lower() if isinstance(item, bool) else str(item) for item in items]
+        promised = TypeError(
+            f"Unable to parse the value of parameter {name} as yaml. If the parameter is meant to be a string, try "
+            "wrapping it in launch_ros.parameter_descriptions.ParameterValue(value, value_type=str)"
+        )
+        raise error_at(place, "LAUNCH132", message, AS_TEXT, promises=promised) from error
 
 
 def _kind(value: Any) -> str:

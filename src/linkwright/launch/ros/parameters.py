@@ -1,142 +1,125 @@
-"""The ``parameters`` of a node: dictionaries, files and single parameters, evaluated in the order given."""
+"""The parameters of one node as they reach it: from its scope, from files, and its own, in the order that counts."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+import os
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from linkwright.launch.context import LaunchContext
-from linkwright.launch.places import Place, error_at
-from linkwright.launch.ros.parameter_files import ParameterFile, parameters_for
-from linkwright.launch.ros.parameter_values import (
-    Parameter,
-    ParameterValue,
-    is_substitution,
-    typed_value,
-    uniform_list,
-    yaml_value,
-)
-from linkwright.launch.substitution import (
-    Substitution,
-    normalize_to_list_of_substitutions,
-    perform_substitutions,
-)
+from linkwright.launch.ros.parameter_files import ParameterFile
+from linkwright.launch.ros.parameter_lists import evaluate_parameters
+from linkwright.launch.ros.parameter_values import Parameter
+
+ANY_NODE = "/**"
+
+
+@dataclass(frozen=True)
+class FileSource:
+    """A parameter file; `file` reads it, and `path` is what another process reads."""
+
+    file: ParameterFile
+    path: Path
 
 
 @dataclass
-class EvaluatedParameters:
-    """Parameters as they reach a node.
+class NodeParameters:
+    """The parameters of a node.
 
     Attributes:
-        values: full name with dots -> value, as a node of this process takes them; later ones win.
-        sources: the same in order, as another process takes them: values by name, or the path of a file.
+        sources: in order, later ones win: a file, a dictionary of values, or a single `(name, value)`.
     """
 
-    values: dict[str, Any] = field(default_factory=dict)
-    sources: list[dict[str, Any] | Path] = field(default_factory=list)
+    sources: list[FileSource | dict[str, Any] | tuple[str, Any]] = field(default_factory=list)
 
-    def add(self, values: Mapping[str, Any]) -> None:
-        """Add values by name."""
-        self.values.update(values)
-        if self.sources and isinstance(self.sources[-1], dict):
-            self.sources[-1].update(values)
+    def values(self, context: LaunchContext, node: str) -> dict[str, Any]:
+        """Values by name, as a node of this process takes them.
+
+        Args:
+            context: where the files were evaluated.
+            node: the node's full name, by which files are read.
+
+        Raises:
+            LinkwrightError: LAUNCH133 and GRAPH212, what is wrong with a file.
+        """
+        found: dict[str, Any] = {}
+        for source in self.sources:
+            if isinstance(source, FileSource):
+                found.update(source.file.rules(context).for_node(node))
+            elif isinstance(source, tuple):
+                found[source[0]] = source[1]
+            else:
+                found.update(source)
+        return {name: list(value) if isinstance(value, tuple) else value for name, value in found.items()}
+
+    def arguments(self, node: str | None, folder: Path | None) -> list[tuple[str, bool]]:
+        """What a node of another process is told, each a file's path (True) or a rule ``name:=value`` (False).
+
+        Args:
+            node: the node's full name; None where it is not known.
+            folder: where files for dictionaries are written; None for the system's folder of temporary files.
+        """
+        told: list[tuple[str, bool]] = []
+        for source in self.sources:
+            if isinstance(source, FileSource):
+                told.append((str(source.path), True))
+            elif isinstance(source, tuple):
+                told.append((rule(*source), False))
+            else:
+                told.append((written(source, node, folder), True))
+        return told
+
+
+def scope_parameters(given: Iterable[Any], context: LaunchContext) -> NodeParameters:
+    """The parameters that the scope of a node gives it, of what `SetParameter` and `SetParametersFromFile` left."""
+    found = NodeParameters()
+    for item in given:
+        if isinstance(item, tuple):
+            found.sources.append(item)
         else:
-            self.sources.append(dict(values))
+            file = item if isinstance(item, ParameterFile) else ParameterFile(item)
+            found.sources.append(FileSource(file, Path(os.path.abspath(file.evaluate(context)))))  # noqa: PTH100
+    return found
 
 
-def check_parameters(parameters: Any, place: Place | None) -> list[Any]:
-    """The ``parameters`` argument of a node, after a look at its form.
-
-    Raises:
-        LinkwrightError: LAUNCH132, if it is no list, or has items that cannot be parameters.
-    """
-    if isinstance(parameters, (str, Mapping)) or not isinstance(parameters, Sequence):
-        hint = "put it into a list: parameters=[...]"
-        raise error_at(place, "LAUNCH132", "'parameters' of a node must be a list", hint)
-    allowed = (Mapping, str, Path, Substitution, ParameterFile, Parameter, list, tuple)
-    for item in parameters:
-        if not isinstance(item, allowed):
-            message = f"'parameters' of a node has an item of type {type(item).__name__}"
-            raise error_at(place, "LAUNCH132", message, "items are dictionaries and paths of YAML files")
-    return list(parameters)
-
-
-def evaluate_parameters(
-    context: LaunchContext, parameters: Sequence[Any], node: str, place: Place | None
-) -> EvaluatedParameters:
-    """Evaluate the parameters of a node.
-
-    Args:
-        context: where substitutions are performed.
-        parameters: dictionaries, paths, `ParameterFile` and `Parameter` objects.
-        node: the node's full name, by which parameter files are read.
-        place: the node's, for messages.
+def own_parameters(normalized: Sequence[Any], context: LaunchContext) -> NodeParameters:
+    """The parameters of a node itself, of what `normalize_parameters` gave.
 
     Raises:
         LinkwrightError: LAUNCH132 or LAUNCH133, what is wrong with a value or a file.
     """
-    evaluated = EvaluatedParameters()
-    for item in parameters:
-        if isinstance(item, Parameter):
-            name, value = item.named_value(context)
-            evaluated.add({name: value})
-        elif isinstance(item, Mapping):
-            evaluated.add(dict(_evaluated_items(context, item, "", place)))
+    found = NodeParameters()
+    for item, evaluated in zip(normalized, evaluate_parameters(context, normalized), strict=True):
+        if isinstance(evaluated, Parameter):
+            found.sources.append(evaluated.evaluate(context))
+        elif isinstance(evaluated, Path):
+            file = item if isinstance(item, ParameterFile) else ParameterFile(evaluated)
+            found.sources.append(FileSource(file, evaluated))
         else:
-            file = item if isinstance(item, ParameterFile) else ParameterFile(item)
-            file.place = file.place or place
-            path, content, substituted = file.read(context)
-            chosen = dict(_flattened(parameters_for(content, node)))
-            if substituted:
-                evaluated.add(chosen)
-            else:
-                evaluated.values.update(chosen)
-                evaluated.sources.append(path)
-    return evaluated
+            found.sources.append(evaluated)
+    return found
 
 
-def _evaluated_items(
-    context: LaunchContext, parameters: Mapping[Any, Any], prefix: str, place: Place | None
-) -> Iterator[tuple[str, Any]]:
-    for key, value in parameters.items():
-        name = prefix + perform_substitutions(context, normalize_to_list_of_substitutions(key))
-        if isinstance(value, Mapping):
-            yield from _evaluated_items(context, value, f"{name}.", place)
-        else:
-            yield name, _evaluate(context, name, value, place)
+def rule(name: str, value: Any) -> str:
+    """A parameter as the command line has it: ``name:=value``, the value in YAML."""
+    import yaml
+
+    value = list(value) if isinstance(value, tuple) else value
+    text = yaml.safe_dump(value, default_flow_style=True, width=float("inf"), allow_unicode=True)
+    return f"{name}:={text.removesuffix(chr(10)).removesuffix(chr(10) + '...')}"
 
 
-def _evaluate(context: LaunchContext, name: str, value: Any, place: Place | None) -> Any:
-    if isinstance(value, ParameterValue):
-        if is_substitution(value.value):
-            text = perform_substitutions(context, value.value)
-            return typed_value(text, value.value_type, name, value.place or place)
-        return value.evaluate(context)
-    if is_substitution(value):
-        substitutions = normalize_to_list_of_substitutions(value)
-        return yaml_value(perform_substitutions(context, substitutions), name, substitutions[0].place or place)
-    if isinstance(value, (bool, int, float, str, bytes)):
-        return value
-    if isinstance(value, (list, tuple)):
-        items = (
-            perform_substitutions(context, normalize_to_list_of_substitutions(item))
-            if isinstance(item, (list, tuple, Substitution))
-            else item
-            for item in value
-        )
-        return uniform_list(items)
-    if isinstance(value, Path):
-        raise error_at(place, "LAUNCH132", f"parameter '{name}' is a Path", "give it as text: str(PATH)")
-    raise error_at(
-        place, "LAUNCH132", f"parameter '{name}' is of type {type(value).__name__}, which no parameter can be"
-    )
+def written(parameters: dict[str, Any], node: str | None, folder: Path | None) -> str:
+    """The path of a new file with these values for a node; for any node where its name is not known."""
+    import tempfile
 
+    import yaml
 
-def _flattened(parameters: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
-    for name, value in parameters.items():
-        if isinstance(value, Mapping):
-            yield from _flattened(value, f"{prefix}{name}.")
-        else:
-            yield f"{prefix}{name}", value
+    plain = {str(name): str(value) if isinstance(value, str) else value for name, value in parameters.items()}
+    descriptor, path = tempfile.mkstemp(prefix="launch_params_", suffix=".yaml", dir=folder)
+    with os.fdopen(descriptor, "w", encoding="utf-8") as file:
+        # With tuples as tuples, as launch_ros writes them; readers of parameter files pass over such tags.
+        yaml.dump({node or ANY_NODE: {"ros__parameters": plain}}, file, default_flow_style=False)
+    return path

@@ -5,32 +5,38 @@ They are kept in launch configurations, as in launch_ros, so that groups end the
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from linkwright.launch.context import LaunchContext
+from linkwright.launch.engine.log_folder import log_base
 from linkwright.launch.entity import Action
-from linkwright.launch.ros.parameter_files import ParameterFile
-from linkwright.launch.ros.parameter_values import Parameter
+from linkwright.launch.frontend.expose import expose_action
+from linkwright.launch.places import error_at
+from linkwright.launch.ros.names import make_namespace_absolute, prefix_namespace
+from linkwright.launch.ros.node_words import check_namespace
+from linkwright.launch.ros.parameter_lists import evaluate_parameter_dict, normalize_parameter_dict
 from linkwright.launch.substitution import (
     SomeSubstitutionsType,
+    Substitution,
     normalize_to_list_of_substitutions,
     perform_substitutions,
 )
+
+if TYPE_CHECKING:
+    from linkwright.launch.frontend.entity import Entity
+    from linkwright.launch.frontend.parser import Parser
 
 NAMESPACE = "ros_namespace"
 PARAMETERS = "global_params"
 REMAPPINGS = "ros_remaps"
 
-
-def joined_namespace(outer: str, inner: str) -> str:
-    """A namespace inside another; one that starts with a slash stands for itself."""
-    if inner.startswith("/"):
-        return inner.rstrip("/") or "/"
-    joined = f"/{outer.strip('/')}/{inner.strip('/')}".replace("//", "/")
-    return joined.rstrip("/") or "/"
+Parsed = tuple[type[Action], dict[str, Any]]
 
 
+@expose_action("push_ros_namespace")
+@expose_action("push-ros-namespace")
 class PushRosNamespace(Action):
     """Puts a namespace before those of the nodes that follow."""
 
@@ -38,27 +44,69 @@ class PushRosNamespace(Action):
         super().__init__(**kwargs)
         self._namespace = normalize_to_list_of_substitutions(namespace)
 
+    @classmethod
+    def parse(cls, entity: Entity, parser: Parser) -> Parsed:
+        """Reads ``namespace``."""
+        _, kwargs = super().parse(entity, parser)
+        kwargs["namespace"] = parser.parse_substitution(entity.get_attr("namespace"))
+        return cls, kwargs
+
+    @property
+    def namespace(self) -> list[Substitution]:
+        """The namespace, as substitutions."""
+        return self._namespace
+
     def execute(self, context: LaunchContext) -> None:
-        """Put it."""
+        """Put it.
+
+        Raises:
+            LinkwrightError: LAUNCH134, it is no valid namespace.
+        """
         inner = perform_substitutions(context, self._namespace)
-        outer = context.launch_configurations.get(NAMESPACE, "")
-        context.launch_configurations[NAMESPACE] = joined_namespace(outer, inner)
+        outer = context.launch_configurations.get(NAMESPACE)
+        namespace = make_namespace_absolute(prefix_namespace(outer, inner))
+        assert namespace is not None
+        context.launch_configurations[NAMESPACE] = check_namespace(namespace)
 
 
+@expose_action("set_parameter")
 class SetParameter(Action):
     """Gives a parameter to all nodes that follow; one of the node's own wins."""
 
     def __init__(self, name: SomeSubstitutionsType, value: Any, **kwargs: Any) -> None:
         super().__init__(**kwargs)
-        self._parameter = Parameter(name, value)
-        self._parameter.place = self.place
+        name = normalize_to_list_of_substitutions(name)
+        self._parameters = normalize_parameter_dict({tuple(name): value})
+
+    @classmethod
+    def parse(cls, entity: Entity, parser: Parser) -> Parsed:
+        """Reads ``name`` and ``value``."""
+        _, kwargs = super().parse(entity, parser)
+        kwargs["name"] = parser.parse_substitution(entity.get_attr("name"))
+        kwargs["value"] = parser.parse_if_substitutions(entity.get_attr("value", data_type=None))
+        return cls, kwargs
+
+    @property
+    def name(self) -> tuple[Substitution, ...]:
+        """The name, as substitutions."""
+        return next(iter(self._parameters))
+
+    @property
+    def value(self) -> Any:
+        """The value, normalized."""
+        return next(iter(self._parameters.values()))
 
     def execute(self, context: LaunchContext) -> None:
-        """Give it."""
-        name, value = self._parameter.named_value(context)
-        _append(context, PARAMETERS, Parameter(name, value))
+        """Give it.
+
+        Raises:
+            LinkwrightError: LAUNCH132, what is wrong with the value.
+        """
+        for rule in evaluate_parameter_dict(context, self._parameters).items():
+            _append(context, PARAMETERS, rule)
 
 
+@expose_action("set_parameters_from_file")
 class SetParametersFromFile(Action):
     """Gives the parameters of a file to all nodes that follow that it names."""
 
@@ -66,13 +114,24 @@ class SetParametersFromFile(Action):
         super().__init__(**kwargs)
         self._filename = normalize_to_list_of_substitutions(filename)
 
+    @classmethod
+    def parse(cls, entity: Entity, parser: Parser) -> Parsed:
+        """Reads ``filename``."""
+        _, kwargs = super().parse(entity, parser)
+        kwargs["filename"] = parser.parse_substitution(entity.get_attr("filename"))
+        return cls, kwargs
+
+    @property
+    def filename(self) -> list[Substitution]:
+        """The path, as substitutions."""
+        return self._filename
+
     def execute(self, context: LaunchContext) -> None:
         """Give them."""
-        file = ParameterFile(perform_substitutions(context, self._filename))
-        file.place = self.place
-        _append(context, PARAMETERS, file)
+        _append(context, PARAMETERS, perform_substitutions(context, self._filename))
 
 
+@expose_action("set_remap")
 class SetRemap(Action):
     """Gives a remapping to all nodes that follow."""
 
@@ -81,10 +140,96 @@ class SetRemap(Action):
         self._source = normalize_to_list_of_substitutions(src)
         self._destination = normalize_to_list_of_substitutions(dst)
 
+    @classmethod
+    def parse(cls, entity: Entity, parser: Parser) -> Parsed:
+        """Reads ``from`` and ``to``."""
+        _, kwargs = super().parse(entity, parser)
+        kwargs["src"] = parser.parse_substitution(entity.get_attr("from"))
+        kwargs["dst"] = parser.parse_substitution(entity.get_attr("to"))
+        return cls, kwargs
+
+    @property
+    def src(self) -> list[Substitution]:
+        """The name that is replaced, as substitutions."""
+        return self._source
+
+    @property
+    def dst(self) -> list[Substitution]:
+        """The name that replaces it, as substitutions."""
+        return self._destination
+
     def execute(self, context: LaunchContext) -> None:
         """Give it."""
         rule = perform_substitutions(context, self._source), perform_substitutions(context, self._destination)
         _append(context, REMAPPINGS, rule)
+
+
+@expose_action("set_use_sim_time")
+class SetUseSimTime(SetParameter):
+    """Has all nodes that follow go by the time of ``/clock``, or not."""
+
+    def __init__(self, value: bool | SomeSubstitutionsType, **kwargs: Any) -> None:
+        super().__init__("use_sim_time", value, **kwargs)
+
+    @classmethod
+    def parse(cls, entity: Entity, parser: Parser) -> Parsed:
+        """Reads ``value``."""
+        _, kwargs = Action.parse.__func__(cls, entity, parser)  # type: ignore[attr-defined]
+        kwargs["value"] = parser.parse_if_substitutions(entity.get_attr("value", data_type=bool, can_be_str=True))
+        return cls, kwargs
+
+    def execute(self, context: LaunchContext) -> None:
+        """Have them, and the launcher's own timers.
+
+        Raises:
+            LinkwrightError: LAUNCH132, the value is neither true nor false.
+        """
+        super().execute(context)
+        value = context.launch_configurations[PARAMETERS][-1][1]
+        if not isinstance(value, bool):
+            message = f"'use_sim_time' must be true or false, not {value!r}"
+            raise error_at(self.place, "LAUNCH132", message, promises=ValueError(message))
+        if getattr(context, "is_running", False):
+            context.session.host.use_simulated_time(value)
+
+
+@expose_action("set_ros_log_dir")
+class SetROSLogDir(Action):
+    """Changes the folder that the processes started from here on write their logs to.
+
+    Args:
+        new_log_dir: the folder; a relative one lies in the folder that held so far.
+    """
+
+    def __init__(self, new_log_dir: SomeSubstitutionsType, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self._log_dir = normalize_to_list_of_substitutions(new_log_dir)
+
+    @classmethod
+    def parse(cls, entity: Entity, parser: Parser) -> Parsed:
+        """Reads ``new_log_dir``."""
+        _, kwargs = super().parse(entity, parser)
+        kwargs["new_log_dir"] = parser.parse_substitution(entity.get_attr("new_log_dir"))
+        return cls, kwargs
+
+    @property
+    def log_dir(self) -> list[Substitution]:
+        """The folder, as substitutions."""
+        return self._log_dir
+
+    def execute(self, context: LaunchContext) -> None:
+        """Change it.
+
+        Raises:
+            LinkwrightError: LAUNCH136, the folder that held so far is relative itself.
+        """
+        folder = Path(log_base(context.environment), perform_substitutions(context, self._log_dir))
+        if not folder.is_absolute():
+            message = f"the log folder '{folder}' is no absolute path"
+            raise error_at(
+                self.place, "LAUNCH136", message, "make ROS_LOG_DIR absolute", promises=AssertionError(message)
+            )
+        context.environment["ROS_LOG_DIR"] = os.fspath(folder)
 
 
 def _append(context: LaunchContext, name: str, item: Any) -> None:

@@ -2,90 +2,64 @@
 
 from __future__ import annotations
 
-import os
 import re
-import shlex
-from collections.abc import Callable
-from pathlib import Path
+from collections.abc import Iterator
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText, did_you_mean
+from linkwright.diagnostics import LinkwrightError, SourceText
 from linkwright.launch.context import LaunchContext
-from linkwright.workspace import current_finder
+from linkwright.launch.frontend.entity import PlacedText
+from linkwright.launch.frontend.grammar import parse_substitution
+from linkwright.launch.frontend.parser import Parser
+from linkwright.launch.places import MarkupPlace, located
+from linkwright.launch.substitution import perform_substitutions
 
-_SUBSTITUTION = re.compile(r"\$\(([^()$]*)\)")
+_OPENING = re.compile(r"(?<!\\)\$\(")
+_COMMENT = re.compile(r"(?:^|(?<=\s))#[^\n]*", re.MULTILINE)
+_QUOTED = re.compile(r"\"(?:[^\"\\\n]|\\.)*\"|'(?:[^'\n]|'')*'")
 
 
-def substitute_text(text: str, context: LaunchContext, source: SourceText) -> str:
-    """The text with its substitutions made, those inside others first.
+def substitute_text(source: SourceText, context: LaunchContext) -> str:
+    """The text of a YAML file with its substitutions made; comments are left alone.
 
     Raises:
-        LinkwrightError: LAUNCH133 for one that is unknown, or that has no value; with its place in the
-        source.
+        LinkwrightError: LAUNCH119 and others, for one that is unknown, or that has no value; with its place.
     """
-
-    def replaced(match: re.Match[str]) -> str:
+    Parser.load_launch_extensions()
+    text = source.text
+    comments = list(_comments(text))
+    parts: list[str] = []
+    done = 0
+    for opening in _OPENING.finditer(text):
+        start = opening.start()
+        if start < done or any(begin <= start < end for begin, end in comments):
+            continue
+        end = _end_of(text, start)
+        place = MarkupPlace(source, start, end)
         try:
-            return _perform(match.group(1), context, source)
+            value = perform_substitutions(context, parse_substitution(PlacedText(text[start:end], place)))
         except LinkwrightError as error:
-            start = source.text.find(match.group(0))
-            span = source.span(start, start + len(match.group(0))) if start >= 0 else None
-            first = error.diagnostics[0]
-            raise LinkwrightError(
-                Diagnostic(first.code, first.message, span, notes=first.notes, hint=first.hint, source=source)
-            ) from error
-
-    previous = None
-    while previous != text:
-        previous, text = text, _SUBSTITUTION.sub(replaced, text)
-    return text
+            raise located(error, place) from error
+        parts += [text[done:start], value]
+        done = end
+    return "".join([*parts, text[done:]])
 
 
-def _perform(inside: str, context: LaunchContext, source: SourceText) -> str:
-    try:
-        name, *arguments = shlex.split(inside)
-    except ValueError:
-        name, arguments = "", []
-    function = _FUNCTIONS.get(name)
-    if function is None:
-        raise _error(f"substitution '$({inside})' is unknown", did_you_mean(name, _FUNCTIONS))
-    if not arguments and name != "dirname":
-        raise _error(f"substitution '$({inside})' needs a name")
-    return function(arguments, context, source)
+def _end_of(text: str, start: int) -> int:
+    """Where the substitution that starts at an offset ends; the end of its line if it is never closed."""
+    depth = 0
+    for offset in range(start, len(text)):
+        if text[offset] == "(":
+            depth += 1
+        elif text[offset] == ")":
+            depth -= 1
+            if depth == 0:
+                return offset + 1
+    line_end = text.find("\n", start)
+    return line_end if line_end >= 0 else len(text)
 
 
-def _variable(arguments: list[str], context: LaunchContext, _: SourceText) -> str:
-    known = context.launch_configurations
-    if arguments[0] in known:
-        return str(known[arguments[0]])
-    if len(arguments) > 1:
-        return arguments[1]
-    raise _error(f"launch configuration '{arguments[0]}' is not set", did_you_mean(arguments[0], known))
-
-
-def _environment(arguments: list[str], context: LaunchContext, _: SourceText) -> str:
-    if arguments[0] in context.environment:
-        return context.environment[arguments[0]]
-    if len(arguments) > 1:
-        return arguments[1]
-    raise _error(f"environment variable '{arguments[0]}' is not set")
-
-
-def _package_share(arguments: list[str], _: LaunchContext, __: SourceText) -> str:
-    return str(current_finder().share(arguments[0]))
-
-
-def _folder(_: list[str], context: LaunchContext, source: SourceText) -> str:
-    folder = context.get_locals_as_dict().get("current_launch_file_directory")
-    return str(folder or os.fspath(Path(source.name).parent))
-
-
-_FUNCTIONS: dict[str, Callable[[list[str], LaunchContext, SourceText], str]] = {
-    "var": _variable,
-    "env": _environment,
-    "find-pkg-share": _package_share,
-    "dirname": _folder,
-}
-
-
-def _error(message: str, hint: str | None = None) -> LinkwrightError:
-    return LinkwrightError(Diagnostic("LAUNCH133", message, hint=hint))
+def _comments(text: str) -> Iterator[tuple[int, int]]:
+    quoted = [match.span() for match in _QUOTED.finditer(text)]
+    for comment in _COMMENT.finditer(text):
+        if not any(begin < comment.start() < end for begin, end in quoted):
+            yield comment.span()

@@ -2,6 +2,7 @@
 
 from linkwright.launch.substitutions.command import Command
 from linkwright.launch.substitutions.configuration import (
+    AnonName,
     EnvironmentVariable,
     LaunchConfiguration,
     LaunchLogDir,
@@ -9,6 +10,7 @@ from linkwright.launch.substitutions.configuration import (
     ThisLaunchFile,
     ThisLaunchFileDir,
 )
+from linkwright.launch.substitutions.expression import PythonExpression
 from linkwright.launch.substitutions.logic import (
     AllSubstitution,
     AndSubstitution,
@@ -18,28 +20,49 @@ from linkwright.launch.substitutions.logic import (
     NotEqualsSubstitution,
     NotSubstitution,
     OrSubstitution,
-    PythonExpression,
 )
-from linkwright.launch.substitutions.paths import FileContent, FindExecutable, PathJoinSubstitution
+from linkwright.launch.substitutions.loops import ForEachVar, ForLoopIndex
+from linkwright.launch.substitutions.paths import (
+    FileContent,
+    FindExecutable,
+    FindLaunchfile,
+    PathJoinSubstitution,
+    PathSubstitution,
+)
+from linkwright.launch.substitutions.strings import (
+    IsEmptySubstitution,
+    NotEmptySubstitution,
+    StringJoinSubstitution,
+    StringStripSubstitution,
+)
 
 __all__ = [
     "AllSubstitution",
     "AndSubstitution",
+    "AnonName",
     "AnySubstitution",
     "Command",
     "EnvironmentVariable",
     "EqualsSubstitution",
     "FileContent",
     "FindExecutable",
+    "FindLaunchfile",
+    "ForEachVar",
+    "ForLoopIndex",
     "IfElseSubstitution",
+    "IsEmptySubstitution",
     "LaunchConfiguration",
     "LaunchLogDir",
     "LocalSubstitution",
+    "NotEmptySubstitution",
     "NotEqualsSubstitution",
     "NotSubstitution",
     "OrSubstitution",
     "PathJoinSubstitution",
+    "PathSubstitution",
     "PythonExpression",
+    "StringJoinSubstitution",
+    "StringStripSubstitution",
     "ThisLaunchFile",
     "ThisLaunchFileDir",
 ]

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import shlex
 import subprocess
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity
 from linkwright.launch.context import LaunchContext
 from linkwright.launch.engine.descriptions import Descriptions, parse_xacro_words
+from linkwright.launch.frontend.expose import expose_substitution
 from linkwright.launch.places import error_at, located
 from linkwright.launch.substitution import (
     SomeSubstitutionsType,
     Substitution,
+    SubstitutionFailure,
     describe,
     normalize_to_list_of_substitutions,
     perform_substitutions,
@@ -26,6 +29,7 @@ if TYPE_CHECKING:
 _ON_STDERR = ("fail", "warn", "ignore", "capture")
 
 
+@expose_substitution("command")
 class Command(Substitution):
     """What a command writes to stdout.
 
@@ -36,9 +40,20 @@ class Command(Substitution):
             or ``capture`` (the text is given after that of stdout).
     """
 
-    def __init__(self, command: SomeSubstitutionsType, *, on_stderr: SomeSubstitutionsType = "fail") -> None:
+    def __init__(self, command: SomeSubstitutionsType | Path, *, on_stderr: SomeSubstitutionsType = "fail") -> None:
         self._command = normalize_to_list_of_substitutions(command)
         self._on_stderr = normalize_to_list_of_substitutions(on_stderr)
+
+    @classmethod
+    def parse(cls, data: Sequence[Any]) -> tuple[type[Substitution], dict[str, Any]]:
+        """The class and its arguments, for a command and perhaps the rule for stderr.
+
+        Raises:
+            ValueError: there are none, or more.
+        """
+        if len(data) not in (1, 2):
+            raise ValueError("command substitution expects 1 or 2 arguments")
+        return cls, {"command": data[0]} if len(data) == 1 else {"command": data[0], "on_stderr": data[1]}
 
     @property
     def command(self) -> list[Substitution]:
@@ -88,21 +103,31 @@ class Command(Substitution):
         rule = perform_substitutions(context, self._on_stderr)
         if rule not in _ON_STDERR:
             message = f"'on_stderr' is '{rule}', not one of 'fail', 'warn', 'ignore', 'capture'"
-            raise error_at(self.place, "LAUNCH129", message)
+            promised = SubstitutionFailure(
+                f"expected 'on_stderr' to be one of: ['fail', 'ignore', 'warn', 'capture'], got '{rule}'"
+            )
+            raise error_at(self.place, "LAUNCH129", message, promises=promised)
         try:
             done = subprocess.run(  # noqa: S603 - running what the launch file says is the task
                 words, check=False, capture_output=True, text=True, errors="replace", env=dict(context.environment)
             )
         except OSError as error:
             message = f"command '{text}' cannot be run: {error.strerror or error}: '{words[0]}'"
-            raise error_at(self.place, "LAUNCH129", message) from error
+            promised = SubstitutionFailure(f"file not found: {error}")
+            raise error_at(self.place, "LAUNCH129", message, promises=promised) from error
         if done.returncode != 0:
             message = f"command '{text}' failed with exit status {done.returncode}{_quoted(done.stderr)}"
-            raise error_at(self.place, "LAUNCH129", message)
+            promised = SubstitutionFailure(
+                f"executed command failed. Command: {text}\nCaptured stderr output: {done.stderr}"
+            )
+            raise error_at(self.place, "LAUNCH129", message, promises=promised)
         if done.stderr and rule == "fail":
             message = f"command '{text}' wrote to stderr{_quoted(done.stderr)}"
             hint = "if that is no error, give Command the argument on_stderr='warn'"
-            raise error_at(self.place, "LAUNCH129", message, hint)
+            promised = SubstitutionFailure(
+                f"executed command showed stderr output. Command: {text}\nCaptured stderr output:\n{done.stderr}"
+            )
+            raise error_at(self.place, "LAUNCH129", message, hint, promises=promised)
         if done.stderr and rule == "warn":
             self._warn(context, "LAUNCH129", f"command '{text}' wrote to stderr{_quoted(done.stderr)}")
         return done.stdout + done.stderr if rule == "capture" else done.stdout

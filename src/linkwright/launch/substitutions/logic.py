@@ -1,87 +1,30 @@
-"""Substitutions that compute: Python expressions, comparisons, boolean logic."""
+"""Substitutions that compare and combine truth values."""
 
 from __future__ import annotations
 
-import importlib
 import math
-from collections.abc import Iterable
+from collections.abc import Sequence
 from typing import Any
 
-from linkwright.diagnostics import LinkwrightError
 from linkwright.launch.context import LaunchContext
+from linkwright.launch.frontend.expose import expose_substitution
+from linkwright.launch.frontend.values import coerce_to_type
 from linkwright.launch.places import error_at
 from linkwright.launch.substitution import (
+    Parsed,
     SomeSubstitutionsType,
     Substitution,
+    SubstitutionFailure,
     describe,
     normalize_to_list_of_substitutions,
     perform_substitutions,
 )
 
 
-class PythonExpression(Substitution):
-    """The value of a Python expression, as text.
-
-    Args:
-        expression: the expression.
-        python_modules: modules whose names the expression may use, ``math`` by default (its members also
-        bare).
-    """
-
-    def __init__(
-        self,
-        expression: SomeSubstitutionsType,
-        python_modules: SomeSubstitutionsType | Iterable[SomeSubstitutionsType] = ("math",),
-    ) -> None:
-        self._expression = normalize_to_list_of_substitutions(expression)
-        if isinstance(python_modules, (str, Substitution)):
-            python_modules = [python_modules]
-        self._modules = [normalize_to_list_of_substitutions(module) for module in python_modules]
-
-    @property
-    def expression(self) -> list[Substitution]:
-        """The expression, as substitutions."""
-        return self._expression
-
-    @property
-    def python_modules(self) -> list[list[Substitution]]:
-        """The modules, as substitutions."""
-        return self._modules
-
-    def describe(self) -> str:
-        """The expression."""
-        return f"PythonExpr({describe(self._expression)})"
-
-    def perform(self, context: LaunchContext) -> str:
-        """The value.
-
-        The expression runs with all the rights of the launch file it is written in: that is a program anyway.
-
-        Raises:
-            LinkwrightError: LAUNCH126, with what Python says.
-        """
-        expression = perform_substitutions(context, self._expression)
-        names: dict[str, Any] = {}
-        try:
-            for module in self._modules:
-                name = perform_substitutions(context, module)
-                names[name] = importlib.import_module(name)
-            if "math" in names:
-                names.update({name: value for name, value in vars(math).items() if not name.startswith("_")})
-            return str(eval(expression, {}, names))  # noqa: S307 - launch files are programs by design
-        except LinkwrightError:
-            raise
-        except Exception as error:
-            problem = f"{type(error).__name__}: {error}"
-            message = f"Python expression '{expression}' cannot be evaluated ({problem})"
-            hint = None
-            if isinstance(error, NameError):
-                hint = "put quotes around the parts that are text: [\"'\", LaunchConfiguration('x'), \"' == 'y'\"]"
-            raise error_at(self.place, "LAUNCH126", message, hint) from error
-
-
-class _TwoSided(Substitution):
+class _TwoSided(Parsed, Substitution):
     """What compares or joins two sides."""
+
+    ARGUMENTS = ("left", "right")
 
     def __init__(self, left: list[Substitution], right: list[Substitution]) -> None:
         self._left = left
@@ -102,8 +45,11 @@ class _TwoSided(Substitution):
         return f"{type(self).__name__}({describe(self._left)} {describe(self._right)})"
 
 
+@expose_substitution("equals")
 class EqualsSubstitution(_TwoSided):
     """``true`` if two texts are equal, by number or truth value where both are such."""
+
+    PARSED_AS = "equals"
 
     def __init__(self, left: Any, right: Any) -> None:
         super().__init__(_operand(left), _operand(right))
@@ -115,27 +61,32 @@ class EqualsSubstitution(_TwoSided):
     def _equal(self, context: LaunchContext) -> bool:
         left = perform_substitutions(context, self._left)
         right = perform_substitutions(context, self._right)
-        if left == right:
-            return True
-        truths = [_truth(text) for text in (left, right)]
+        truths = [_WORDS.get(text.strip().lower()) for text in (left, right)]
         if None not in truths:
             return truths[0] == truths[1]
         try:
             return math.isclose(float(left), float(right))
         except ValueError:
-            return False
+            return left == right
 
 
+@expose_substitution("not-equals")
 class NotEqualsSubstitution(EqualsSubstitution):
     """``true`` if two texts differ."""
+
+    PARSED_AS = "not-equals"
 
     def perform(self, context: LaunchContext) -> str:
         """``true`` or ``false``."""
         return _text(not self._equal(context))
 
 
-class NotSubstitution(Substitution):
+@expose_substitution("not")
+class NotSubstitution(Parsed, Substitution):
     """The opposite of a truth value."""
+
+    PARSED_AS = "not"
+    ARGUMENTS = ("value",)
 
     def __init__(self, value: SomeSubstitutionsType) -> None:
         self._value = normalize_to_list_of_substitutions(value)
@@ -154,8 +105,11 @@ class NotSubstitution(Substitution):
         return _text(not _boolean(self, context, self._value))
 
 
+@expose_substitution("and")
 class AndSubstitution(_TwoSided):
     """Whether both values are true."""
+
+    PARSED_AS = "and"
 
     def __init__(self, left: SomeSubstitutionsType, right: SomeSubstitutionsType) -> None:
         super().__init__(normalize_to_list_of_substitutions(left), normalize_to_list_of_substitutions(right))
@@ -168,44 +122,77 @@ class AndSubstitution(_TwoSided):
         return [_boolean(self, context, side) for side in (self._left, self._right)]
 
 
+@expose_substitution("or")
 class OrSubstitution(AndSubstitution):
     """Whether one of two values is true."""
+
+    PARSED_AS = "or"
 
     def perform(self, context: LaunchContext) -> str:
         """``true`` or ``false``."""
         return _text(any(self._truths(context)))
 
 
-class AnySubstitution(Substitution):
-    """Whether any of several values is true."""
+class _Several(Substitution):
+    """What combines any number of values."""
 
-    def __init__(self, *values: SomeSubstitutionsType) -> None:
-        self._values = [normalize_to_list_of_substitutions(value) for value in values]
+    def __init__(self, *args: SomeSubstitutionsType) -> None:
+        self._values = [normalize_to_list_of_substitutions(value) for value in args]
 
     @property
-    def substitutions(self) -> list[list[Substitution]]:
+    def args(self) -> list[list[Substitution]]:
         """The values, as substitutions."""
         return self._values
 
     def describe(self) -> str:
         """The values."""
-        return f"{type(self).__name__}({', '.join(map(describe, self._values))})"
+        return f"{type(self).__name__}({' '.join(map(describe, self._values))})"
+
+    def _truths(self, context: LaunchContext) -> list[bool]:
+        return [_boolean(self, context, value) for value in self._values]
+
+
+def _parsed_any(data: Sequence[Any]) -> tuple[Any, dict[str, Any]]:
+    return lambda: AnySubstitution(*data), {}
+
+
+def _parsed_all(data: Sequence[Any]) -> tuple[Any, dict[str, Any]]:
+    return lambda: AllSubstitution(*data), {}
+
+
+expose_substitution("any")(_parsed_any)
+expose_substitution("all")(_parsed_all)
+
+
+class AnySubstitution(_Several):
+    """Whether any of several values is true."""
 
     def perform(self, context: LaunchContext) -> str:
         """``true`` or ``false``."""
-        return _text(any(_boolean(self, context, value) for value in self._values))
+        return _text(any(self._truths(context)))
 
 
-class AllSubstitution(AnySubstitution):
+class AllSubstitution(_Several):
     """Whether all of several values are true."""
 
     def perform(self, context: LaunchContext) -> str:
         """``true`` or ``false``."""
-        return _text(all(_boolean(self, context, value) for value in self._values))
+        return _text(all(self._truths(context)))
 
 
-class IfElseSubstitution(Substitution):
-    """One text or another, by a truth value."""
+@expose_substitution("if")
+class IfElseSubstitution(Parsed, Substitution):
+    """One text or another, by a truth value.
+
+    Args:
+        condition: the truth value.
+        if_value: the text where it is true.
+        else_value: the text where it is false.
+    """
+
+    PARSED_AS = "if"
+    ARGUMENTS = ("condition", "if_value")
+    OPTIONAL_ARGUMENTS = ("else_value",)
 
     def __init__(
         self,
@@ -213,9 +200,32 @@ class IfElseSubstitution(Substitution):
         if_value: SomeSubstitutionsType = "",
         else_value: SomeSubstitutionsType = "",
     ) -> None:
+        if not if_value and not else_value and (if_value, else_value) == ("", ""):
+            text = "One of if_value and else_value must be specified"
+            raise error_at(
+                self.place,
+                "LAUNCH127",
+                "IfElseSubstitution needs an 'if_value' or an 'else_value'",
+                promises=RuntimeError(text),
+            )
         self._condition = normalize_to_list_of_substitutions(condition)
         self._if_value = normalize_to_list_of_substitutions(if_value)
         self._else_value = normalize_to_list_of_substitutions(else_value)
+
+    @property
+    def condition(self) -> list[Substitution]:
+        """The truth value, as substitutions."""
+        return self._condition
+
+    @property
+    def if_value(self) -> list[Substitution]:
+        """The text where it is true, as substitutions."""
+        return self._if_value
+
+    @property
+    def else_value(self) -> list[Substitution]:
+        """The text where it is false, as substitutions."""
+        return self._else_value
 
     def describe(self) -> str:
         """All three parts."""
@@ -228,6 +238,9 @@ class IfElseSubstitution(Substitution):
         return perform_substitutions(context, chosen)
 
 
+_WORDS = {"true": True, "1": True, "false": False, "0": False}
+
+
 def _operand(value: Any) -> list[Substitution]:
     if value is None:
         value = ""
@@ -236,17 +249,17 @@ def _operand(value: Any) -> list[Substitution]:
     return normalize_to_list_of_substitutions(value)
 
 
-def _truth(text: str) -> bool | None:
-    return {"true": True, "1": True, "false": False, "0": False}.get(text.strip().lower())
-
-
 def _boolean(substitution: Substitution, context: LaunchContext, value: list[Substitution]) -> bool:
     text = perform_substitutions(context, value)
-    truth = _truth(text)
-    if truth is None:
+    word = _WORDS.get(text.strip().lower())
+    if word is not None:
+        return word
+    try:
+        return bool(coerce_to_type(text, bool))
+    except ValueError as error:
         name = type(substitution).__name__
-        raise error_at(substitution.place, "LAUNCH127", f"{name} needs 'true' or 'false', not '{text}'")
-    return truth
+        message = f"{name} needs 'true' or 'false', not '{text}'"
+        raise error_at(substitution.place, "LAUNCH127", message, promises=SubstitutionFailure(str(error))) from error
 
 
 def _text(value: bool) -> str:

@@ -1,17 +1,30 @@
 """Stands in for ``launch``, the launch system of ROS 2."""
 
-from launch import actions, conditions, event_handlers, events, launch_description_sources, logging, substitutions
+from launch import (
+    actions,
+    conditions,
+    descriptions,
+    event_handlers,
+    events,
+    frontend,
+    launch_description_sources,
+    logging,
+    substitutions,
+)
 from linkwright.launch.conditions import Condition
 from linkwright.launch.context import LaunchContext
 from linkwright.launch.description import LaunchDescription
-from linkwright.launch.entity import Action, LaunchDescriptionEntity, SomeEntitiesType
-from linkwright.launch.event_handlers import EventHandler
+from linkwright.launch.entity import Action, LaunchDescriptionEntity, SomeEntitiesType, SomeEntitiesType_types_tuple
+from linkwright.launch.event_handlers import BaseEventHandler, EventHandler
 from linkwright.launch.events import Event
+from linkwright.launch.introspector import LaunchIntrospector
+from linkwright.launch.service import LaunchService
 from linkwright.launch.sources import LaunchDescriptionSource
 from linkwright.launch.substitution import SomeSubstitutionsType, SomeSubstitutionsType_types_tuple, Substitution
 
 __all__ = [
     "Action",
+    "BaseEventHandler",
     "Condition",
     "Event",
     "EventHandler",
@@ -19,8 +32,20 @@ __all__ = [
     "LaunchDescription",
     "LaunchDescriptionEntity",
     "LaunchDescriptionSource",
+    "LaunchIntrospector",
+    "LaunchService",
     "SomeEntitiesType",
+    "SomeEntitiesType_types_tuple",
     "SomeSubstitutionsType",
     "SomeSubstitutionsType_types_tuple",
     "Substitution",
+    "actions",
+    "conditions",
+    "descriptions",
+    "event_handlers",
+    "events",
+    "frontend",
+    "launch_description_sources",
+    "logging",
+    "substitutions",
 ]

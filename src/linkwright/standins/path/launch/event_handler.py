@@ -1,5 +1,5 @@
 """Stands in for ``launch.event_handler``."""
 
-from linkwright.launch.event_handlers import EventHandler
+from linkwright.launch.event_handlers import BaseEventHandler, EventHandler
 
-__all__ = ["EventHandler"]
+__all__ = ["BaseEventHandler", "EventHandler"]

@@ -1,5 +1,25 @@
-"""Stands in for ``launch_ros``, the ROS 2 part of the launch system."""
+"""Stands in for ``launch_ros``."""
 
-from launch_ros import actions, descriptions, parameter_descriptions, substitutions
+from launch_ros import (
+    actions,
+    descriptions,
+    event_handlers,
+    events,
+    parameter_descriptions,
+    parameters_type,
+    remap_rule_type,
+    substitutions,
+    utilities,
+)
 
-__all__ = ["actions", "descriptions", "parameter_descriptions", "substitutions"]
+__all__ = [
+    "actions",
+    "descriptions",
+    "event_handlers",
+    "events",
+    "parameter_descriptions",
+    "parameters_type",
+    "remap_rule_type",
+    "substitutions",
+    "utilities",
+]

@@ -1,5 +1,28 @@
 """Stands in for ``launch.launch_description_sources``."""
 
-from linkwright.launch.sources import AnyLaunchDescriptionSource, PythonLaunchDescriptionSource
+from launch.launch_description_sources.any_launch_file_utilities import get_launch_description_from_any_launch_file
+from launch.launch_description_sources.frontend_launch_file_utilities import (
+    get_launch_description_from_frontend_launch_file,
+)
+from launch.launch_description_sources.python_launch_file_utilities import (
+    get_launch_description_from_python_launch_file,
+    load_python_launch_file_as_module,
+)
+from linkwright.launch.invalid_file import InvalidFrontendLaunchFileError, InvalidPythonLaunchFileError
+from linkwright.launch.sources import (
+    AnyLaunchDescriptionSource,
+    FrontendLaunchDescriptionSource,
+    PythonLaunchDescriptionSource,
+)
 
-__all__ = ["AnyLaunchDescriptionSource", "PythonLaunchDescriptionSource"]
+__all__ = [
+    "AnyLaunchDescriptionSource",
+    "FrontendLaunchDescriptionSource",
+    "InvalidFrontendLaunchFileError",
+    "InvalidPythonLaunchFileError",
+    "PythonLaunchDescriptionSource",
+    "get_launch_description_from_any_launch_file",
+    "get_launch_description_from_frontend_launch_file",
+    "get_launch_description_from_python_launch_file",
+    "load_python_launch_file_as_module",
+]

@@ -1,5 +1,5 @@
 """Stands in for ``launch.substitutions.path_join_substitution``."""
 
-from linkwright.launch.substitutions import PathJoinSubstitution
+from linkwright.launch.substitutions import PathJoinSubstitution, PathSubstitution
 
-__all__ = ["PathJoinSubstitution"]
+__all__ = ["PathJoinSubstitution", "PathSubstitution"]

@@ -1,6 +1,37 @@
 """Stands in for ``launch_ros.actions``."""
 
-from linkwright.launch.ros import Node, PushRosNamespace, SetParameter, SetParametersFromFile, SetRemap
+from linkwright.launch.ros import (
+    ComposableNodeContainer,
+    LifecycleNode,
+    LifecycleTransition,
+    LoadComposableNodes,
+    Node,
+    PushRosNamespace,
+    RosTimer,
+    SetParameter,
+    SetParametersFromFile,
+    SetRemap,
+    SetROSLogDir,
+    SetUseSimTime,
+)
 from linkwright.launch.ros import PushRosNamespace as PushROSNamespace
+from linkwright.launch.ros import RosTimer as ROSTimer
+from linkwright.launch.ros import SetROSLogDir as SetRosLogDir
 
-__all__ = ["Node", "PushROSNamespace", "PushRosNamespace", "SetParameter", "SetParametersFromFile", "SetRemap"]
+__all__ = [
+    "ComposableNodeContainer",
+    "LifecycleNode",
+    "LifecycleTransition",
+    "LoadComposableNodes",
+    "Node",
+    "PushROSNamespace",
+    "PushRosNamespace",
+    "ROSTimer",
+    "RosTimer",
+    "SetParameter",
+    "SetParametersFromFile",
+    "SetROSLogDir",
+    "SetRemap",
+    "SetRosLogDir",
+    "SetUseSimTime",
+]

@@ -1,6 +1,6 @@
 """Stands in for ``launch_ros.substitutions``."""
 
-from linkwright.launch.ros import ExecutableInPackage, FindPackagePrefix, FindPackageShare
-from linkwright.launch.ros import FindPackagePrefix as FindPackage
+from linkwright.launch.ros import ExecutableInPackage, FindPackage, FindPackagePrefix, FindPackageShare
+from linkwright.launch.ros import ParameterSubstitution as Parameter
 
-__all__ = ["ExecutableInPackage", "FindPackage", "FindPackagePrefix", "FindPackageShare"]
+__all__ = ["ExecutableInPackage", "FindPackage", "FindPackagePrefix", "FindPackageShare", "Parameter"]

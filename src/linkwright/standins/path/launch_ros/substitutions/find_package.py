@@ -1,6 +1,5 @@
 """Stands in for ``launch_ros.substitutions.find_package``."""
 
-from linkwright.launch.ros import FindPackagePrefix, FindPackageShare
-from linkwright.launch.ros import FindPackagePrefix as FindPackage
+from linkwright.launch.ros import FindPackage, FindPackagePrefix, FindPackageShare
 
 __all__ = ["FindPackage", "FindPackagePrefix", "FindPackageShare"]

@@ -1,0 +1,142 @@
+"""The two processes of a measurement over DDS: one sends, one receives; each prints what it found as JSON.
+
+``python -m benchmarks.dds_sides send|receive ours|plain joints|transforms|images SECONDS RATE``; a rate of 0 is as fast
+as it goes. `plain` stands for `cyclonedds` alone with its own IdlStructs.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from linkwright.graph import Graph
+from linkwright.graph.dds import join
+from linkwright.graph.qos import HistoryPolicy, QoSProfile
+from linkwright.messages import get_message
+
+JOINTS = 12
+TRANSFORMS = 100
+WIDTH, HEIGHT = 640, 480
+LOSSLESS = QoSProfile(history=HistoryPolicy.KEEP_ALL)
+TOPIC = "/measured"
+
+
+@dataclass
+class Result:
+    """What a side has found.
+
+    Attributes:
+        count: messages sent or received.
+        seconds: from the first message to the last.
+        cores: processor time by that span.
+    """
+
+    count: int
+    seconds: float
+    cores: float
+
+
+def ours(kind: str) -> Any:
+    """A message as Linkwright has it."""
+    if kind == "joints":
+        message = get_message("sensor_msgs/msg/JointState")()
+        message.name = [f"joint_{number}" for number in range(JOINTS)]
+        message.position = [0.1] * JOINTS
+        message.velocity = [0.2] * JOINTS
+        message.effort = [0.3] * JOINTS
+    elif kind == "transforms":
+        message = get_message("tf2_msgs/msg/TFMessage")()
+        for number in range(TRANSFORMS):
+            transform = get_message("geometry_msgs/msg/TransformStamped")()
+            transform.header.frame_id = "base_link"
+            transform.child_frame_id = f"link_{number}"
+            message.transforms.append(transform)
+    else:
+        message = get_message("sensor_msgs/msg/Image")()
+        message.width, message.height, message.step, message.encoding = WIDTH, HEIGHT, 3 * WIDTH, "rgb8"
+        message.data = bytes(3 * WIDTH * HEIGHT)
+    return message
+
+
+def paced(send: Callable[[], object], seconds: float, rate: float) -> Result:
+    """Send for a time, so many times a second."""
+    count, begin, cpu = 0, time.perf_counter(), time.process_time()
+    while time.perf_counter() - begin < seconds:
+        send()
+        count += 1
+        if rate:
+            time.sleep(max(0.0, begin + count / rate - time.perf_counter()))
+    passed = time.perf_counter() - begin
+    return Result(count, passed, (time.process_time() - cpu) / passed)
+
+
+def send_ours(kind: str, seconds: float, rate: float) -> Result:
+    """Publish through a graph."""
+    graph = Graph(threads=True)
+    message = ours(kind)
+    publisher = graph.create_node("sender").create_publisher(type(message), TOPIC, LOSSLESS)
+    transport = join(graph)
+    assert transport is not None
+    while not publisher.get_subscription_count():
+        time.sleep(0.01)
+    result = paced(lambda: publisher.publish(message), seconds, rate)
+    graph.close_now()
+    return result
+
+
+async def receive_ours(kind: str, seconds: float) -> Result:
+    """Receive as the launcher does, in an event loop; each message is read as an object."""
+    graph = Graph()
+    message_class = type(ours(kind))
+    count, first, last, cpu = 0, 0.0, 0.0, 0.0
+
+    def received(_message: Any) -> None:
+        nonlocal count, first, last, cpu
+        last = time.perf_counter()
+        if not count:
+            first, cpu = last, time.process_time()
+        count += 1
+
+    graph.create_node("receiver").create_subscription(message_class, TOPIC, received, LOSSLESS)
+    join(graph)
+    await _until_quiet(lambda: count, seconds)
+    result = Result(count, last - first, (time.process_time() - cpu) / max(last - first, 1e-9))
+    await graph.close()
+    return result
+
+
+async def _until_quiet(count: Callable[[], int], seconds: float) -> None:
+    """Until messages came for so long and then no more, or none for too long."""
+    limit, seen = time.monotonic() + seconds + 20, 0
+    while time.monotonic() < limit:
+        await asyncio.sleep(0.7)
+        if count() and count() == seen:
+            return
+        seen = count()
+
+
+def main() -> None:
+    """Run one side."""
+    side, library, kind, seconds, rate = sys.argv[1:6]
+    if library == "plain":
+        from benchmarks import dds_plain
+
+        run = dds_plain.send if side == "send" else dds_plain.receive
+        result = run(kind, float(seconds), float(rate))
+    elif side == "send":
+        result = send_ours(kind, float(seconds), float(rate))
+    else:
+        result = asyncio.run(receive_ours(kind, float(seconds)))
+    print(json.dumps(vars(result)))
+    sys.stdout.flush()
+    os._exit(0)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,353 @@
+"""``python -m benchmarks.soak [--minutes 60]``: several processes, an hour long; does anything grow, get lost or hang?
+
+Programs over rclpy publish at several rates, ask services, actions and parameters, and let nodes come and go; a launch
+has a process that is killed with -9 and comes back; commands look at the graph from outside. At the end a table tells
+memory, threads and file descriptors of each process, and what was lost. The status is 1 when a bound is broken.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import signal
+import statistics
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import psutil
+
+from benchmarks.measure import LINKWRIGHT, ROOT
+
+PARTS = ("listener", "talker", "server", "client", "guests")
+SAMPLE_SECONDS = 2.0
+KILL_SECONDS = 15.0
+COMMAND_SECONDS = 12.0
+BACK_WITHIN = 8.0
+"""Seconds in which what was killed is heard again."""
+
+GROWTH_MB = 3.0
+GROWTH_SHARE = 0.03
+"""How much memory may grow between the end of the warm-up and the end: the larger of the two."""
+
+SPREAD = 3
+"""How many threads or file descriptors more than after the warm-up are still none too many."""
+
+P99_MS = 100.0
+COMMANDS = (
+    ("topic", "list", "-t"),
+    ("topic", "echo", "/soak/rate_50", "--once"),
+    ("node", "list"),
+    ("service", "call", "/soak/add", "example_interfaces/srv/AddTwoInts", "{a: 1, b: 2}"),
+    ("param", "get", "/soak_server", "speed"),
+    ("node", "info", "/soak_listener"),
+)
+LAUNCH = """
+import sys
+from launch import LaunchDescription
+from launch.actions import ExecuteProcess
+from launch.substitutions import Command, PathJoinSubstitution
+from launch_ros.actions import Node
+from launch_ros.parameter_descriptions import ParameterValue
+from launch_ros.substitutions import FindPackageShare
+
+
+def generate_launch_description():
+    model = PathJoinSubstitution([FindPackageShare("my_robot_description"), "urdf", "mbot_base.urdf"])
+    return LaunchDescription([
+        Node(package="robot_state_publisher", executable="robot_state_publisher",
+             parameters=[{"robot_description": ParameterValue(Command(["cat ", model]), value_type=str)}]),
+        Node(package="joint_state_publisher", executable="joint_state_publisher"),
+        Node(package="rviz2", executable="rviz2"),
+        ExecuteProcess(cmd=[sys.executable, "-m", "benchmarks.soak_parts", "victim"], respawn=True),
+    ])
+"""
+
+
+@dataclass
+class Watched:
+    """A process and what was seen of it.
+
+    Attributes:
+        name: its role.
+        process: the process.
+        errors: the file of its standard error.
+        samples: (seconds since the start, MB resident, threads, file descriptors).
+        told: the last line of JSON that it printed.
+        delays: 99th percentiles of its latencies, ms.
+    """
+
+    name: str
+    process: subprocess.Popen[str]
+    errors: Path
+    samples: list[tuple[float, float, int, int]] = field(default_factory=list)
+    told: dict[str, Any] = field(default_factory=dict)
+    delays: list[float] = field(default_factory=list)
+
+    def sample(self, since: float) -> None:
+        """Look at it."""
+        with suppress(psutil.Error):
+            seen = psutil.Process(self.process.pid)
+            memory = seen.memory_info().rss / 1e6
+            self.samples.append((time.monotonic() - since, memory, seen.num_threads(), seen.num_fds()))
+
+    def listen(self) -> None:
+        """Read what it prints, to the end."""
+        assert self.process.stdout is not None
+        for line in self.process.stdout:
+            with suppress(ValueError):
+                self.told = json.loads(line)
+                if "p99_ms" in self.told:
+                    self.delays.append(self.told["p99_ms"])
+
+    def seen(self, what: str) -> int:
+        """A count that it has told."""
+        return int(self.told.get("seen", {}).get(what, 0))
+
+
+class Soak:
+    """The run.
+
+    Args:
+        seconds: how long.
+        warm_up: after how many seconds things should have their size.
+        domain: the DDS domain.
+    """
+
+    def __init__(self, seconds: float, warm_up: float, domain: str) -> None:
+        from linkwright.standins.process import environment
+
+        self._seconds, self._warm_up = seconds, warm_up
+        self._environment = {**environment(os.environ), "ROS_DOMAIN_ID": domain}
+        self._watched: list[Watched] = []
+        self.faults: list[str] = []
+        self._kills = self._commands = 0
+        self._begin = time.monotonic()
+
+    def run(self) -> int:
+        """Run it, print the table; the exit status."""
+        with tempfile.TemporaryDirectory() as folder, self._processes(Path(folder)):
+            self._begin = time.monotonic()
+            helpers = [threading.Thread(target=work, daemon=True) for work in (self._kill, self._command)]
+            for helper in helpers:
+                helper.start()
+            while (passed := time.monotonic() - self._begin) < self._seconds:
+                time.sleep(SAMPLE_SECONDS)
+                for each in self._watched:
+                    each.sample(self._begin)
+                self._look(passed)
+            for helper in helpers:
+                helper.join(60.0)
+        self._judge()
+        self._print()
+        return 1 if self.faults else 0
+
+    @contextmanager
+    def _processes(self, folder: Path) -> Iterator[None]:
+        launch = folder / "soak.launch.py"
+        launch.write_text(LAUNCH, encoding="utf-8")
+        words = [LINKWRIGHT, "launch", str(launch), "--no-open"]
+        self._start("launcher", words, {"PYTHONUNBUFFERED": "1", "ROS_LOG_DIR": str(folder)})
+        for part in PARTS:
+            self._start(part, [sys.executable, "-m", "benchmarks.soak_parts", part], {"ROS_LOG_DIR": str(folder)})
+        try:
+            yield
+        finally:
+            # The talker first, and some time for what is on its way: the listener must then have all of it.
+            for each in sorted(self._watched, key=lambda each: each.name != "talker"):
+                self._end(each)
+                if each.name == "talker":
+                    time.sleep(4.0)
+
+    def _start(self, name: str, words: list[str], more: Mapping[str, str]) -> None:
+        environment = {**self._environment, **more}
+        errors = Path(more["ROS_LOG_DIR"], f"{name}-errors")
+        with errors.open("w") as stream:
+            process = subprocess.Popen(
+                words, cwd=ROOT, env=environment, stdout=subprocess.PIPE, stderr=stream, text=True
+            )
+        watched = Watched(name, process, errors)
+        threading.Thread(target=watched.listen, daemon=True).start()
+        self._watched.append(watched)
+
+    def _end(self, watched: Watched) -> None:
+        below = _descendants(watched.process.pid)
+        if watched.process.poll() is not None:
+            self.faults.append(f"{watched.name} had ended with status {watched.process.returncode}")
+            return
+        watched.process.send_signal(signal.SIGINT)
+        try:
+            status = watched.process.wait(10.0)
+        except subprocess.TimeoutExpired:
+            self.faults.append(f"{watched.name} did not end within 10 s")
+            watched.process.kill()
+            watched.process.wait()
+            return
+        if status != (130 if watched.name == "launcher" else 0):
+            self.faults.append(f"{watched.name} ended with status {status}")
+        _, left = psutil.wait_procs(below, timeout=3.0)
+        for orphan in left:
+            self.faults.append(f"{watched.name} left process {orphan.pid} behind")
+            orphan.kill()
+
+    def _is_over(self) -> bool:
+        return time.monotonic() - self._begin > self._seconds - BACK_WITHIN
+
+    def _kill(self) -> None:
+        """Kill the launch's process now and then, and wait until its successor is heard."""
+        launcher, listener = self._of("launcher"), self._of("listener")
+        while not self._is_over():
+            time.sleep(KILL_SECONDS)
+            victims = [each for each in _descendants(launcher.process.pid) if "victim" in _words(each)]
+            if len(victims) != 1:
+                self.faults.append(f"{len(victims)} processes are there to be killed instead of one")
+                continue
+            victims[0].kill()
+            self._kills += 1
+            time.sleep(1.0)
+            heard, limit = listener.seen("/soak/phoenix"), time.monotonic() + BACK_WITHIN
+            while listener.seen("/soak/phoenix") <= heard:
+                if time.monotonic() > limit:
+                    self.faults.append(f"what was killed was not heard again within {BACK_WITHIN:g} s")
+                    break
+                time.sleep(0.2)
+
+    def _command(self) -> None:
+        """Look at the graph from outside."""
+        while not self._is_over():
+            words = COMMANDS[self._commands % len(COMMANDS)]
+            self._commands += 1
+            try:
+                done = subprocess.run(
+                    [LINKWRIGHT, *words],
+                    env=self._environment,
+                    capture_output=True,
+                    text=True,
+                    timeout=20,
+                    check=False,
+                )
+                if done.returncode != 0:
+                    self.faults.append(f"'{' '.join(words)}' ended with {done.returncode}: {done.stderr.strip()}")
+            except subprocess.TimeoutExpired:
+                self.faults.append(f"'{' '.join(words)}' did not end within 20 s")
+            time.sleep(COMMAND_SECONDS)
+
+    def _look(self, passed: float) -> None:
+        for each in self._watched:
+            if each.process.poll() is not None:
+                said = each.errors.read_text()[-2000:]
+                raise SystemExit(f"{said}\n{each.name} ended with {each.process.returncode} after {passed:.0f} s")
+        if sys.stderr.isatty():
+            listener = self._of("listener")
+            text = f"{passed:6.0f} s, {listener.seen('/soak/rate_1000')} messages, {listener.seen('lost')} lost"
+            print(f"\r{text}, {self._kills} kills, {len(self.faults)} faults", end="", file=sys.stderr)
+
+    def _of(self, name: str) -> Watched:
+        return next(each for each in self._watched if each.name == name)
+
+    def _judge(self) -> None:
+        talker, listener = self._of("talker"), self._of("listener")
+        for each in self._watched:
+            for failure in each.told.get("failures", ()):
+                self.faults.append(f"{each.name}: {failure}")
+            growth = _growth(each, self._warm_up)
+            if growth is not None:
+                self._judge_growth(each, growth)
+        for name, count in talker.told.get("seen", {}).items():
+            if listener.seen(name) != count:
+                self.faults.append(f"of {count} messages of {name} the last that came was {listener.seen(name)}")
+        if not listener.delays or statistics.median(listener.delays) > P99_MS:
+            self.faults.append(f"latency: 99 of 100 messages come within more than {P99_MS:g} ms")
+        for name, what in (("client", "sums"), ("client", "goals"), ("listener", "transforms"), ("guests", "guests")):
+            if not self._of(name).seen(what):
+                self.faults.append(f"{name} has no {what}")
+
+    def _judge_growth(self, each: Watched, growth: Growth) -> None:
+        if growth.megabytes > max(GROWTH_MB, GROWTH_SHARE * growth.last_megabytes):
+            self.faults.append(f"{each.name}: memory grew by {growth.megabytes:.1f} MB")
+        if growth.threads > SPREAD:
+            self.faults.append(f"{each.name}: {growth.threads:g} threads more")
+        if growth.descriptors > SPREAD:
+            self.faults.append(f"{each.name}: {growth.descriptors:g} file descriptors more")
+
+    def _print(self) -> None:
+        print(f"{'process':10} {'memory':>9} {'growth':>9} {'slope':>11} {'threads':>9} {'files':>8}  seen")
+        for each in self._watched:
+            growth = _growth(each, self._warm_up)
+            if growth is None:
+                print(f"{each.name:10} too short a run to tell")
+                continue
+            seen = ", ".join(f"{name.rpartition('/')[2]} {count}" for name, count in each.told.get("seen", {}).items())
+            print(
+                f"{each.name:10} {growth.last_megabytes:6.1f} MB {growth.megabytes:+6.2f} MB {growth.slope:+6.2f} MB/h "
+                f"{growth.last_threads:4.0f}{growth.threads:+5.0f} "
+                f"{growth.last_descriptors:4.0f}{growth.descriptors:+4.0f}  {seen}"
+            )
+        delays = self._of("listener").delays
+        latency = f"99 of 100 messages within {statistics.median(delays):.2f} ms (median of 2 s)" if delays else "-"
+        print(f"{self._seconds / 60:.1f} minutes, {self._kills} kills, {self._commands} commands; {latency}")
+        for fault in self.faults:
+            print(f"FAULT: {fault}")
+        print("nothing lost, nothing grows" if not self.faults else f"{len(self.faults)} faults")
+
+
+@dataclass(frozen=True)
+class Growth:
+    """How a process has changed between the end of the warm-up and the end: medians of a fifth of the time each."""
+
+    megabytes: float
+    slope: float
+    threads: float
+    descriptors: float
+    last_megabytes: float
+    last_threads: float
+    last_descriptors: float
+
+
+def _growth(watched: Watched, warm_up: float) -> Growth | None:
+    samples = [each for each in watched.samples if each[0] >= warm_up]
+    share = len(samples) // 5
+    if share < 2:
+        return None
+
+    def medians(part: list[tuple[float, float, int, int]]) -> list[float]:
+        return [statistics.median(column) for column in zip(*part, strict=True)]
+
+    first, last = medians(samples[:share]), medians(samples[-share:])
+    slope = (last[1] - first[1]) / (last[0] - first[0]) * 3600
+    return Growth(last[1] - first[1], slope, last[2] - first[2], last[3] - first[3], last[1], last[2], last[3])
+
+
+def _descendants(pid: int) -> list[psutil.Process]:
+    with suppress(psutil.Error):
+        return psutil.Process(pid).children(recursive=True)
+    return []
+
+
+def _words(process: psutil.Process) -> list[str]:
+    with suppress(psutil.Error):
+        return process.cmdline()
+    return []
+
+
+def main() -> int:
+    """Read the arguments and run."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.soak", description=__doc__)
+    parser.add_argument("--minutes", type=float, default=60.0, help="how long (default 60)")
+    parser.add_argument("--warm-up", type=float, metavar="MINUTES", help="default: a fifth of it, at most 5")
+    parser.add_argument("--domain", default="96", help="the DDS domain (default 96)")
+    arguments = parser.parse_args()
+    warm_up = min(5.0, arguments.minutes / 5.0) if arguments.warm_up is None else arguments.warm_up
+    return Soak(arguments.minutes * 60.0, warm_up * 60.0, arguments.domain).run()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

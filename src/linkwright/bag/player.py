@@ -1,0 +1,229 @@
+"""Playing: publishes the messages of a recording at the distances at which they were received."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from linkwright.bag.qos import profile_for_playing
+from linkwright.bag.reading import BagReader
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph import Node, Publisher, QoSProfile
+from linkwright.graph.dispatch import Alarm
+from linkwright.messages import Time, get_message
+
+_NANOSECONDS_PER_SECOND = 1_000_000_000
+_AT_ONCE = 200
+"""Messages that are due are published this many at a time, so that the loop can serve others in between."""
+
+
+@dataclass(frozen=True)
+class PlayOptions:
+    """How a recording is played.
+
+    Attributes:
+        rate: how fast; 2.0 is twice as fast as it was recorded.
+        topics: only these; all when empty.
+        without: none of these.
+        loop: begin anew at the end, for ever.
+        clock_hz: publish the time of the recording on ``/clock`` so often; 0 for not at all.
+        delay: seconds to wait at the beginning of each round.
+        start_offset: seconds from the start of the recording to begin at.
+        duration: seconds of the recording to play; None for all.
+        paused: whether it begins paused.
+        qos_overrides: topic -> profile to publish with.
+    """
+
+    rate: float = 1.0
+    topics: Sequence[str] = ()
+    without: Sequence[str] = ()
+    loop: bool = False
+    clock_hz: float = 0.0
+    delay: float = 0.0
+    start_offset: float = 0.0
+    duration: float | None = None
+    paused: bool = False
+    qos_overrides: Mapping[str, QoSProfile] = field(default_factory=dict)
+
+
+class Player:
+    """Plays a recording; everything happens on the dispatcher of its node.
+
+    Args:
+        node: the node that publishes; its log tells what happens.
+        bag: the recording, which stays open as long as it is played.
+        options: how it is played.
+
+    Raises:
+        LinkwrightError: BAG103, a topic is not in the recording.
+    """
+
+    def __init__(self, node: Node, bag: BagReader, options: PlayOptions) -> None:
+        self._node = node
+        self._bag = bag
+        self._options = options
+        self._logger = node.get_logger()
+        self._publishers = self._make_publishers()
+        self._start_clock()
+        self._begin_ns = bag.start_ns + round(options.start_offset * _NANOSECONDS_PER_SECOND)
+        self._end_ns = (
+            None if options.duration is None else self._begin_ns + round(options.duration * _NANOSECONDS_PER_SECOND)
+        )
+        self._stream: Iterator[tuple[str, int, bytes]] = iter(())
+        self._next: tuple[str, int, bytes] | None = None
+        self._alarm: Alarm | None = None
+        self._rate = options.rate
+        self._paused = options.paused
+        self._position_ns = self._begin_ns
+        self._since_ns = 0
+        self.finished = False
+        """Whether everything was played, or the player was closed."""
+        self.message_count = 0
+        """How many messages were published."""
+
+    @property
+    def publishers(self) -> tuple[Publisher[Any], ...]:
+        """What it publishes with."""
+        return tuple(self._publishers.values())
+
+    @property
+    def rate(self) -> float:
+        """How fast it plays."""
+        return self._rate
+
+    @property
+    def paused(self) -> bool:
+        """Whether it is paused."""
+        return self._paused
+
+    def start(self) -> None:
+        """Begin to play."""
+        self._begin()
+
+    def toggle_paused(self) -> None:
+        """Pause, or go on."""
+        self._anchor()
+        self._paused = not self._paused
+        self._logger.info("Pausing play." if self._paused else "Resuming play.")
+        self._schedule()
+
+    def set_rate(self, rate: float) -> None:
+        """Play faster or slower from now on.
+
+        Raises:
+            ValueError: the rate is not positive.
+        """
+        if rate <= 0:
+            raise ValueError(f"a rate must be positive, not {rate}")
+        self._anchor()
+        self._rate = rate
+        self._logger.info(f"Set rate to {rate:.2f}")
+        self._schedule()
+
+    def play_next(self) -> None:
+        """While it is paused: publish one more message."""
+        if self._paused and self._next is not None:
+            self._position_ns = max(self._position_ns, self._next[1])
+            self._publish_next()
+            self._end_or_schedule()
+
+    def close(self) -> None:
+        """Play no further."""
+        self.finished = True
+        if self._alarm is not None:
+            self._alarm.cancel()
+            self._alarm = None
+
+    def now_ns(self) -> int:
+        """The time in the recording that is played now, nanoseconds since the epoch."""
+        if self._paused:
+            return self._position_ns
+        return self._position_ns + max(0, round((self._steady_ns() - self._since_ns) * self._rate))
+
+    # --- the round ------------------------------------------------------------------------------------------------
+
+    def _begin(self) -> None:
+        topics = list(self._publishers)
+        self._stream = self._bag.messages(topics, self._begin_ns) if topics else iter(())
+        self._next = next(self._stream, None)
+        self._position_ns = self._begin_ns
+        self._since_ns = self._steady_ns() + round(self._options.delay * _NANOSECONDS_PER_SECOND)
+        self._end_or_schedule()
+
+    def _run(self) -> None:
+        self._alarm = None
+        if self.finished or self._paused:
+            return
+        now = self.now_ns()
+        for _ in range(_AT_ONCE):
+            if self._next is None or self._next[1] > now or self._is_beyond_end():
+                break
+            self._publish_next()
+        self._end_or_schedule()
+
+    def _publish_next(self) -> None:
+        assert self._next is not None
+        topic, _, data = self._next
+        self._publishers[topic].publish(data)
+        self.message_count += 1
+        self._next = next(self._stream, None)
+
+    def _end_or_schedule(self) -> None:
+        if self._next is not None and not self._is_beyond_end():
+            self._schedule()
+        elif self._options.loop and self.message_count:
+            self._begin()
+        else:
+            self.close()
+
+    def _is_beyond_end(self) -> bool:
+        return self._end_ns is not None and self._next is not None and self._next[1] > self._end_ns
+
+    def _schedule(self) -> None:
+        if self._alarm is not None:
+            self._alarm.cancel()
+            self._alarm = None
+        if self.finished or self._paused or self._next is None:
+            return
+        wait_ns = round((self._next[1] - self._position_ns) / self._rate)
+        assert self._node.dispatcher is not None
+        self._alarm = self._node.dispatcher.call_at(self._since_ns + max(0, wait_ns), self._run)
+
+    def _anchor(self) -> None:
+        """Count from here: what follows changes how fast time goes."""
+        self._position_ns = self.now_ns()
+        self._since_ns = self._steady_ns()
+
+    def _steady_ns(self) -> int:
+        return self._node.timebase.steady_ns()
+
+    # --- publishers -----------------------------------------------------------------------------------------------
+
+    def _make_publishers(self) -> dict[str, Publisher[Any]]:
+        options = self._options
+        topics = {topic.name: topic for topic in self._bag.topics}
+        self._bag.messages(list(options.topics))  # a name that is not there is told before anything is played
+        made: dict[str, Publisher[Any]] = {}
+        for name in options.topics or topics:
+            if name in options.without:
+                continue
+            topic = topics[name]
+            try:
+                message_class = get_message(topic.type_name)
+            except LinkwrightError as error:
+                self._logger.warning(f"Topic '{name}' is not played: {error}")
+                continue
+            qos = options.qos_overrides.get(name) or profile_for_playing(topic.offered_qos)
+            made[name] = self._node.create_publisher(message_class, name, qos)
+        return made
+
+    def _start_clock(self) -> None:
+        if not self._options.clock_hz:
+            return
+        clock_class = get_message("rosgraph_msgs/msg/Clock")
+        publisher: Publisher[Any] = self._node.create_publisher(clock_class, "/clock", 10)
+        self._node.create_timer(
+            1.0 / self._options.clock_hz,
+            lambda: publisher.publish(clock_class(clock=Time.from_nanoseconds(self.now_ns()))),
+        )

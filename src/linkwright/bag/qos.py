@@ -1,0 +1,152 @@
+"""Quality of service in recordings: as they store it, and as recording and playing derive it.
+
+The rules by which profiles are derived are those of rosbag2 (``rosbag2_transport/qos.cpp``).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean
+from linkwright.graph import (
+    DurabilityPolicy,
+    Duration,
+    HistoryPolicy,
+    LivelinessPolicy,
+    QoSProfile,
+    ReliabilityPolicy,
+)
+
+if TYPE_CHECKING:
+    from rosbags.interfaces import Qos
+
+_NANOSECONDS_PER_SECOND = 1_000_000_000
+_RECORDING_DEPTH = 1000
+"""How many messages may wait to be written. rosbag2 has 10, and a queue of its own behind it in C++."""
+
+_POLICIES: Mapping[str, Any] = {
+    "history": HistoryPolicy,
+    "reliability": ReliabilityPolicy,
+    "durability": DurabilityPolicy,
+    "liveliness": LivelinessPolicy,
+}
+_DURATIONS = ("deadline", "lifespan", "liveliness_lease_duration")
+
+
+def to_bag(qos: QoSProfile) -> Qos:
+    """A profile as the library writes it into a recording."""
+    from rosbags.interfaces import Qos, QosDurability, QosHistory, QosLiveliness, QosReliability, QosTime
+
+    def time(duration: Duration) -> QosTime:
+        return QosTime(*divmod(duration.nanoseconds, _NANOSECONDS_PER_SECOND))
+
+    return Qos(
+        QosHistory[qos.history.name],
+        qos.depth,
+        QosReliability[qos.reliability.name],
+        QosDurability[qos.durability.name],
+        time(qos.deadline),
+        time(qos.lifespan),
+        QosLiveliness[qos.liveliness.name],
+        time(qos.liveliness_lease_duration),
+        qos.avoid_ros_namespace_conventions,
+    )
+
+
+def from_bag(qos: Qos) -> QoSProfile:
+    """A profile that a recording gives."""
+
+    def policy(kind: Any, value: Any) -> Any:
+        return kind.__members__.get(value.name, kind.SYSTEM_DEFAULT)
+
+    def duration(value: Any) -> Duration:
+        return Duration(nanoseconds=value.sec * _NANOSECONDS_PER_SECOND + value.nsec)
+
+    history = policy(HistoryPolicy, qos.history)
+    return QoSProfile(
+        history=HistoryPolicy.KEEP_LAST if history is HistoryPolicy.UNKNOWN else history,
+        depth=max(qos.depth, 1),
+        reliability=policy(ReliabilityPolicy, qos.reliability),
+        durability=policy(DurabilityPolicy, qos.durability),
+        deadline=duration(qos.deadline),
+        lifespan=duration(qos.lifespan),
+        liveliness=policy(LivelinessPolicy, qos.liveliness),
+        liveliness_lease_duration=duration(qos.liveliness_lease_duration),
+        avoid_ros_namespace_conventions=qos.avoid_ros_namespace_conventions,
+    )
+
+
+def profile_for_recording(offered: Sequence[QoSProfile]) -> QoSProfile:
+    """What to subscribe with, so that every publisher of a topic is heard.
+
+    Reliable and transient local are asked for where all publishers offer them.
+
+    Args:
+        offered: the profiles of the publishers.
+    """
+    reliable = all(qos.reliability is not ReliabilityPolicy.BEST_EFFORT for qos in offered)
+    latched = bool(offered) and all(qos.durability is DurabilityPolicy.TRANSIENT_LOCAL for qos in offered)
+    return QoSProfile(
+        depth=_RECORDING_DEPTH,
+        reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
+        durability=DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE,
+    )
+
+
+def profile_for_playing(recorded: Sequence[QoSProfile]) -> QoSProfile:
+    """What to publish with: what was recorded where all recorded publishers agree, else the default."""
+    if recorded and all(qos == recorded[0] for qos in recorded):
+        return recorded[0]
+    return QoSProfile(depth=10)
+
+
+def overrides_of(document: object, source: str) -> dict[str, QoSProfile]:
+    """The profiles of a ``--qos-profile-overrides-path`` file: topic -> policies by name.
+
+    Args:
+        document: what the YAML file says.
+        source: the file's name, for errors.
+
+    Raises:
+        LinkwrightError: BAG106, it has not that form.
+    """
+    if not isinstance(document, Mapping) or not all(isinstance(each, Mapping) for each in document.values()):
+        raise _wrong(source, "it does not map topics to policies", "write a topic, and below it `reliability: ...`")
+    return {str(topic): _profile(policies, str(topic), source) for topic, policies in document.items()}
+
+
+def _profile(policies: Mapping[str, Any], topic: str, source: str) -> QoSProfile:
+    values: dict[str, Any] = {}
+    for name, value in policies.items():
+        if name in _POLICIES:
+            kind = _POLICIES[name]
+            if str(value).upper() not in kind.__members__:
+                known = kind.short_keys()
+                hint = did_you_mean(str(value).lower(), known) or "there are " + ", ".join(known)
+                raise _wrong(source, f"'{value}' is no {name} (topic '{topic}')", hint)
+            values[name] = kind[str(value).upper()]
+        elif name in _DURATIONS:
+            if not isinstance(value, Mapping) or set(value) - {"sec", "nsec"}:
+                raise _wrong(
+                    source, f"{name} of topic '{topic}' is no duration", "write `sec: 1` and `nsec: 0` below it"
+                )
+            values[name] = Duration(seconds=value.get("sec", 0), nanoseconds=value.get("nsec", 0))
+        elif _is_plain(name, value):
+            values[name] = value
+        else:
+            known = [*_POLICIES, *_DURATIONS, "depth", "avoid_ros_namespace_conventions"]
+            raise _wrong(source, f"policy '{name}' of topic '{topic}' is not valid", did_you_mean(str(name), known))
+    if "depth" not in values and values.get("history") is not HistoryPolicy.KEEP_ALL:
+        values["depth"] = 10
+    return QoSProfile(**values)
+
+
+def _is_plain(name: str, value: object) -> bool:
+    if name == "depth":
+        return type(value) is int and value > 0
+    return name == "avoid_ros_namespace_conventions" and isinstance(value, bool)
+
+
+def _wrong(source: str, reason: str, hint: str | None = None) -> LinkwrightError:
+    return LinkwrightError(Diagnostic("BAG106", f"'{source}' cannot be used as QoS overrides: {reason}", hint=hint))

@@ -1,0 +1,180 @@
+"""Reading a recording: what is in it, and its messages in the order of their times."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from types import TracebackType
+from typing import TYPE_CHECKING, Any
+
+from linkwright.bag.qos import from_bag
+from linkwright.bag.unfinished import finished_copy, is_unfinished
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, did_you_mean, display_path
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
+
+    from linkwright.graph import QoSProfile
+
+_SUFFIXES = {".mcap": "mcap", ".db3": "sqlite3"}
+
+
+@dataclass(frozen=True, slots=True)
+class BagTopic:
+    """A topic of a recording.
+
+    Attributes:
+        name: absolute.
+        type_name: such as ``std_msgs/msg/String``.
+        count: how many messages of it there are.
+        serialization_format: ``cdr``.
+        offered_qos: the profiles of the publishers that were recorded; none where that was not kept.
+    """
+
+    name: str
+    type_name: str
+    count: int
+    serialization_format: str
+    offered_qos: tuple[QoSProfile, ...]
+
+
+class BagReader:
+    """An open recording; close it, or use it in a ``with`` statement.
+
+    Args:
+        path: a folder with a ``metadata.yaml``, or a single ``.mcap`` or ``.db3`` file. Of a recording that was killed,
+            which has neither ``metadata.yaml`` nor an index, everything is read that was written.
+
+    Raises:
+        LinkwrightError: BAG101 there is nothing there, BAG102 it is not a recording or a damaged one.
+    """
+
+    def __init__(self, path: str | Path) -> None:
+        from rosbags.rosbag2 import Reader
+
+        self.path = Path(path)
+        self._open = ExitStack()
+        target = _storage_target(self.path)
+        try:
+            self._reader = Reader(self._finished(target))
+            self._reader.open()
+            self._open.callback(self._reader.close)
+        except Exception as error:  # the library raises whatever a damaged file brings about
+            self._open.close()
+            raise _unreadable(self.path, error) from error
+        self.storage = _storage_of(target)
+        self.topics = [
+            BagTopic(
+                name,
+                info.msgtype or "",
+                info.msgcount,
+                getattr(info.connections[0].ext, "serialization_format", "cdr"),
+                tuple(from_bag(qos) for each in info.connections for qos in _profiles(each)),
+            )
+            for name, info in self._reader.topics.items()
+        ]
+
+    def _finished(self, target: Path) -> Path:
+        """What is to be opened: the target, or a copy of it with an end where that is missing."""
+        files = sorted(target.glob("*.mcap")) if target.is_dir() else [target]
+        if len(files) != 1 or files[0].suffix != ".mcap" or not is_unfinished(files[0]):
+            return target
+        scratch = self._open.enter_context(TemporaryDirectory(prefix="linkwright_bag_"))
+        return finished_copy(files[0], Path(scratch))
+
+    @property
+    def files(self) -> list[Path]:
+        """The files with the messages."""
+        if self.path.is_file():
+            return [self.path]
+        return sorted(each for each in self.path.iterdir() if _SUFFIXES.keys() & set(each.suffixes))
+
+    @property
+    def start_ns(self) -> int:
+        """When the first message was received, nanoseconds since the epoch; 0 where there is none."""
+        return self._reader.start_time if self._reader.message_count else 0
+
+    @property
+    def end_ns(self) -> int:
+        """When the last message was received, nanoseconds since the epoch; 0 where there is none."""
+        return self._reader.end_time - 1 if self._reader.message_count else 0
+
+    def messages(self, topics: Collection[str] = (), start_ns: int | None = None) -> Iterator[tuple[str, int, bytes]]:
+        """The messages in the order of their times: topic, nanoseconds since the epoch, CDR bytes.
+
+        Args:
+            topics: only these; all when empty.
+            start_ns: nothing from before this time.
+
+        Raises:
+            LinkwrightError: BAG102, the rest cannot be read; BAG103, a topic is not in the recording.
+        """
+        for name in topics:
+            if name not in self._reader.topics:
+                hint = did_you_mean(name, self._reader.topics)
+                raise LinkwrightError(
+                    Diagnostic("BAG103", f"there is no topic '{name}' in '{display_path(self.path)}'", hint=hint)
+                )
+        connections = [each for each in self._reader.connections if not topics or each.topic in topics]
+        return self._read(self._reader.messages(connections, start=start_ns))
+
+    def _read(self, stream: Iterator[tuple[Any, int, bytes]]) -> Iterator[tuple[str, int, bytes]]:
+        while True:
+            try:
+                connection, stamp_ns, data = next(stream)
+            except StopIteration:
+                return
+            except Exception as error:
+                raise _unreadable(self.path, error) from error
+            yield connection.topic, stamp_ns, data
+
+    def close(self) -> None:
+        """Close its files. A second call does nothing."""
+        self._open.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+
+def _storage_target(path: Path) -> Path:
+    """What the library is to open: the folder, or its only file where the metadata are missing."""
+    if not path.exists():
+        raise LinkwrightError(Diagnostic("BAG101", f"there is no recording '{display_path(path)}'"))
+    if path.is_file() or (path / "metadata.yaml").exists():
+        return path
+    files = sorted(each for each in path.iterdir() if each.suffix in _SUFFIXES)
+    if len(files) == 1:
+        return files[0]
+    found = ", ".join(each.name for each in files) or "none"
+    raise LinkwrightError(
+        Diagnostic(
+            "BAG102",
+            f"'{display_path(path)}' is not a recording: it has no metadata.yaml",
+            notes=(Note(f"files with messages in it: {found}"),),
+            hint="name one of those files instead" if files else None,
+        )
+    )
+
+
+def _storage_of(target: Path) -> str:
+    if target.is_file():
+        return _SUFFIXES.get(target.suffix, target.suffix.lstrip("."))
+    suffixes = {suffix for each in target.iterdir() for suffix in each.suffixes}
+    return next((name for suffix, name in _SUFFIXES.items() if suffix in suffixes), "")
+
+
+def _profiles(connection: Any) -> list[Any]:
+    return list(getattr(connection.ext, "offered_qos_profiles", ()))
+
+
+def _unreadable(path: Path, error: Exception) -> LinkwrightError:
+    reason = str(error).strip().rstrip(".") or type(error).__name__
+    return LinkwrightError(Diagnostic("BAG102", f"'{display_path(path)}' cannot be read as a recording: {reason}"))

@@ -1,0 +1,125 @@
+"""Recording: subscribes to topics as they appear and writes down what comes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from linkwright.bag.qos import profile_for_recording
+from linkwright.bag.selection import TopicSelection
+from linkwright.bag.writing import BagWriter
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph import Node, QoSProfile
+from linkwright.graph.transport import MessageInfo
+from linkwright.messages import get_message
+
+_FLUSH_SECONDS = 1.0
+_POLL_SECONDS = 0.1
+
+
+class Recorder:
+    """Writes the messages of topics into a recording until it is closed.
+
+    Every second what was received is given to the operating system, so that little is lost when the process is killed.
+
+    Args:
+        node: the node that subscribes; its log tells what happens.
+        selection: which topics.
+        writer: where the messages go; it is closed together with the recorder.
+        overrides: topic -> the profile to subscribe with, instead of one that suits the publishers.
+        discover: whether topics that appear later are recorded too.
+        polling_seconds: how often it is looked for them.
+        without_publishers: whether topics that have subscriptions only are recorded too.
+        paused: whether messages are dropped until `toggle_paused`.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        selection: TopicSelection,
+        writer: BagWriter,
+        *,
+        overrides: Mapping[str, QoSProfile] | None = None,
+        discover: bool = True,
+        polling_seconds: float = _POLL_SECONDS,
+        without_publishers: bool = False,
+        paused: bool = False,
+    ) -> None:
+        self._node = node
+        self._selection = selection
+        self._writer = writer
+        self._overrides = dict(overrides or {})
+        self._without_publishers = without_publishers
+        self._by_clock = bool(node.get_parameter("use_sim_time").value)
+        self._logger = node.get_logger()
+        self._refused: set[str] = set()
+        self._count = 0
+        self.paused = paused
+        self._logger.info("Listening for topics...")
+        self._looking = node.create_timer(polling_seconds, self._look) if discover else None
+        self._flushing = node.create_timer(_FLUSH_SECONDS, writer.flush)
+        self._look()
+
+    @property
+    def message_count(self) -> int:
+        """How many messages were written."""
+        return self._count
+
+    def toggle_paused(self) -> None:
+        """Pause, or go on."""
+        self.paused = not self.paused
+        self._logger.info("Pausing recording." if self.paused else "Resuming recording.")
+
+    def close(self) -> None:
+        """Write the rest and close the recording."""
+        self._flushing.cancel()
+        if self._looking is not None:
+            self._looking.cancel()
+        self._writer.close()
+        self._logger.info("Recording stopped")
+
+    def _look(self) -> None:
+        for name, types in self._node.get_topic_names_and_types():
+            if name in self._writer.topics or name in self._refused:
+                continue
+            if len(types) > 1:
+                self._refuse(name, f"Topic '{name}' has several types: {', '.join(types)}. It is not recorded.")
+            elif self._selection.takes(name, types[0]):
+                self._subscribe(name, types[0])
+        wanted = self._selection.is_complete_with
+        if self._looking is not None and wanted is not None and wanted <= set(self._writer.topics):
+            self._looking.cancel()
+            self._looking = None
+            self._logger.info("All requested topics are subscribed. Stopping discovery...")
+
+    def _subscribe(self, name: str, type_name: str) -> None:
+        offered = [info.qos_profile for info in self._node.get_publishers_info_by_topic(name)]
+        if not offered and not self._without_publishers:
+            return
+        try:
+            message_class = get_message(type_name)
+        except LinkwrightError as error:
+            self._refuse(name, f"Topic '{name}' is not recorded: {error}")
+            return
+        self._writer.add_topic(name, type_name, offered)
+        self._node.create_subscription(
+            message_class,
+            name,
+            lambda data, info: self._write(name, data, info),
+            self._overrides.get(name) or profile_for_recording(offered),
+            raw=True,
+        )
+        self._logger.info(f"Subscribed to topic '{name}'")
+
+    def _refuse(self, name: str, why: str) -> None:
+        self._refused.add(name)
+        self._logger.warning(why)
+
+    def _write(self, name: str, data: Any, info: MessageInfo) -> None:
+        if self.paused:
+            return
+        stamp = self._node.get_clock().now().nanoseconds if self._by_clock else info.received_timestamp
+        if self._by_clock and stamp == 0:
+            return  # nobody has told the time yet
+        self._writer.write(name, stamp, data)
+        self._count += 1

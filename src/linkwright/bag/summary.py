@@ -1,0 +1,57 @@
+"""What ``bag info`` prints."""
+
+from __future__ import annotations
+
+from datetime import datetime
+
+from linkwright.bag.reading import BagReader
+
+_NANOSECONDS_PER_SECOND = 1_000_000_000
+
+
+def summary_text(bag: BagReader, *, topic_names_only: bool = False) -> str:
+    """Files, times and topics of a recording, in the layout of ``ros2 bag info``.
+
+    Args:
+        bag: the recording.
+        topic_names_only: only the names, one a line.
+    """
+    if topic_names_only:
+        return "".join(f"{topic.name}\n" for topic in bag.topics)
+    start, end = bag.start_ns, bag.end_ns
+    topics = [
+        f"Topic: {topic.name} | Type: {topic.type_name} | Count: {topic.count} | "
+        f"Serialization Format: {topic.serialization_format}"
+        for topic in bag.topics
+    ]
+    rows = [
+        ("Files:", "\n".join(file.name for file in bag.files)),
+        ("Bag size:", _size(sum(file.stat().st_size for file in bag.files))),
+        ("Storage id:", bag.storage),
+        ("Duration:", f"{_seconds(end - start)}s"),
+        ("Start:", _moment(start)),
+        ("End:", _moment(end)),
+        ("Messages:", str(sum(topic.count for topic in bag.topics))),
+        ("Topic information:", "\n".join(topics)),
+    ]
+    blank = " " * 19
+    return "\n" + "".join(f"{name:19}{text.replace(chr(10), chr(10) + blank)}".rstrip() + "\n" for name, text in rows)
+
+
+def _moment(stamp_ns: int) -> str:
+    seconds, rest = divmod(stamp_ns, _NANOSECONDS_PER_SECOND)
+    day = datetime.fromtimestamp(seconds).astimezone()
+    return f"{day:%b} {day.day:2} {day:%Y %H:%M:%S}.{rest:09d} ({seconds}.{rest:09d})"
+
+
+def _seconds(duration_ns: int) -> str:
+    seconds, rest = divmod(duration_ns, _NANOSECONDS_PER_SECOND)
+    return f"{seconds}.{rest:09d}"
+
+
+def _size(size: float) -> str:
+    for unit in ("B", "KiB", "MiB", "GiB"):
+        if size < 1024 or unit == "GiB":
+            return f"{size:.0f} B" if unit == "B" else f"{size:.1f} {unit}"
+        size /= 1024
+    raise AssertionError

@@ -1,0 +1,109 @@
+"""Writing a recording."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Collection
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+from linkwright.bag.qos import to_bag
+from linkwright.bag.schema import schema_of
+from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path
+from linkwright.messages import type_hash
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
+
+    from linkwright.graph import QoSProfile
+
+STORAGES = ("mcap", "sqlite3")
+"""The file formats; the first is the default, as in ROS 2 from Iron on."""
+
+_VERSION: Literal[8] = 8
+"""Of the folder's metadata; Humble reads 8 and below but for fields it does not know, Jazzy writes 9."""
+
+
+class BagWriter:
+    """A recording that is being written; close it, or use it in a ``with`` statement.
+
+    Args:
+        path: the folder to make.
+        storage: one of `STORAGES`.
+        compressed: whether chunks of messages are compressed (zstd); MCAP only.
+
+    Raises:
+        LinkwrightError: BAG105, the folder exists already or cannot be made.
+    """
+
+    def __init__(self, path: str | Path, storage: str = STORAGES[0], *, compressed: bool = False) -> None:
+        from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
+        from rosbags.rosbag2.errors import WriterError
+
+        self.path = Path(path)
+        try:
+            self._writer = Writer(self.path, version=_VERSION, storage_plugin=StoragePlugin[storage.upper()])
+            if compressed:
+                self._writer.set_compression(CompressionMode.STORAGE, CompressionFormat.ZSTD)
+            self._writer.open()
+        except (OSError, WriterError) as error:
+            reason = "it exists already" if self.path.exists() else str(error)
+            raise LinkwrightError(
+                Diagnostic(
+                    "BAG105",
+                    f"recording '{display_path(self.path)}' cannot be made: {reason}",
+                    hint="name another folder with -o",
+                )
+            ) from error
+        self._connections: dict[str, Any] = {}
+
+    @property
+    def topics(self) -> Collection[str]:
+        """The topics added so far."""
+        return self._connections.keys()
+
+    def add_topic(self, name: str, type_name: str, offered_qos: Collection[QoSProfile] = ()) -> None:
+        """Make room for a topic; its messages may follow.
+
+        Raises:
+            LinkwrightError: MSG101, the type is not known.
+        """
+        self._connections[name] = self._writer.add_connection(
+            name,
+            type_name,
+            msgdef=schema_of(type_name),
+            rihs01=type_hash(type_name),
+            offered_qos_profiles=[to_bag(qos) for qos in offered_qos],
+        )
+
+    def write(self, topic: str, stamp_ns: int, data: bytes | memoryview) -> None:
+        """Add a message.
+
+        Args:
+            topic: a topic that was added.
+            stamp_ns: when it was received, nanoseconds since the epoch.
+            data: CDR bytes with their header of four.
+        """
+        self._writer.write(self._connections[topic], stamp_ns, data)
+
+    def flush(self) -> None:
+        """Have what was written so far survive the end of this process, however it ends."""
+        storage: Any = self._writer.storage
+        if hasattr(storage, "close_chunk"):
+            if storage.chunk.msgs:
+                storage.close_chunk()
+            storage.bio.flush()
+        else:
+            storage.conn.commit()
+
+    def close(self) -> None:
+        """Write the index and the metadata. A second call does nothing."""
+        if self._writer.storage is not None:
+            self._writer.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        with contextlib.suppress(OSError):
+            self.close()

@@ -1,0 +1,23 @@
+"""``linkwright bag info``: what a recording holds."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+
+HELP = "print files, times and topics of a recording"
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    parser.add_argument("bag", metavar="BAG", help="the folder of a recording, or one .mcap or .db3 file")
+    parser.add_argument("-t", "--topic-name", action="store_true", help="only the names of the topics")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Print it."""
+    from linkwright.bag import BagReader, summary_text
+
+    with BagReader(arguments.bag) as bag:
+        sys.stdout.write(summary_text(bag, topic_names_only=arguments.topic_name))
+    return 0

@@ -1,0 +1,52 @@
+"""Single keys from the terminal while an event loop runs."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+
+SPACE, UP, DOWN, RIGHT = " ", "\x1b[A", "\x1b[B", "\x1b[C"
+"""What a terminal sends for the keys (ECMA-48)."""
+
+
+@contextmanager
+def listening(actions: Mapping[str, Callable[[], object]]) -> Iterator[bool]:
+    """While this is entered, keys call what stands for them.
+
+    Args:
+        actions: key -> what it does.
+
+    Yields:
+        Whether keys are listened to: standard input has to be a terminal that we are in the foreground of.
+    """
+    if not _can_listen():
+        yield False
+        return
+    import termios
+    import tty
+
+    descriptor = sys.stdin.fileno()
+    before = termios.tcgetattr(descriptor)
+
+    def read() -> None:
+        text = os.read(descriptor, 64).decode(errors="replace")
+        for key, act in actions.items():
+            if text == key:
+                act()
+
+    tty.setcbreak(descriptor)
+    asyncio.get_running_loop().add_reader(descriptor, read)
+    try:
+        yield True
+    finally:
+        asyncio.get_running_loop().remove_reader(descriptor)
+        termios.tcsetattr(descriptor, termios.TCSADRAIN, before)
+
+
+def _can_listen() -> bool:
+    if sys.platform == "win32" or sys.stdin is None or not sys.stdin.isatty():
+        return False
+    return os.getpgrp() == os.tcgetpgrp(sys.stdin.fileno())

@@ -1,0 +1,42 @@
+"""The option ``--qos-profile-overrides-path`` of recording and playing."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError
+
+if TYPE_CHECKING:
+    from linkwright.graph import QoSProfile
+
+
+def add_overrides_argument(parser: argparse.ArgumentParser) -> None:
+    """Declare the option."""
+    parser.add_argument(
+        "--qos-profile-overrides-path",
+        metavar="FILE",
+        help="a YAML file that maps topics to QoS policies, instead of those that suit what is there",
+    )
+
+
+def read_overrides(arguments: argparse.Namespace) -> dict[str, QoSProfile]:
+    """What the file says; nothing without one.
+
+    Raises:
+        LinkwrightError: BAG106, it cannot be read or has another form.
+    """
+    path = arguments.qos_profile_overrides_path
+    if path is None:
+        return {}
+    import yaml
+
+    from linkwright.bag.qos import overrides_of
+
+    try:
+        document = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
+        reason = error.strerror if isinstance(error, OSError) else str(error)
+        raise LinkwrightError(Diagnostic("BAG106", f"'{path}' cannot be read as QoS overrides: {reason}")) from error
+    return overrides_of(document, path)

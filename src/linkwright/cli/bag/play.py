@@ -1,0 +1,136 @@
+"""``linkwright bag play``: publish what a recording holds."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from typing import TYPE_CHECKING
+
+from linkwright.cli.bag.overrides import add_overrides_argument, read_overrides
+from linkwright.diagnostics import Diagnostic, LinkwrightError
+
+if TYPE_CHECKING:
+    from linkwright.cli.session import Session
+
+HELP = "publish the messages of a recording again"
+
+_STEP = 0.1
+_DEFAULT_CLOCK_HZ = 40.0
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    parser.add_argument("bag", metavar="BAG", help="the folder of a recording, or one .mcap or .db3 file")
+    parser.add_argument(
+        "-s", "--storage", choices=("mcap", "sqlite3"), help="accepted for ros2's sake; the files tell their format"
+    )
+    parser.add_argument("-r", "--rate", metavar="FACTOR", type=_positive, default=1.0, help="how fast, default 1.0")
+    parser.add_argument("--topics", metavar="TOPIC", nargs="+", default=[], help="only these topics")
+    parser.add_argument("--exclude-topics", metavar="TOPIC", nargs="+", default=[], help="none of these topics")
+    parser.add_argument("-l", "--loop", action="store_true", help="begin anew at the end, until Ctrl-C")
+    parser.add_argument(
+        "-m", "--remap", metavar="FROM:=TO", nargs="+", default=[], help="publish topics under other names"
+    )
+    parser.add_argument(
+        "--clock",
+        metavar="HZ",
+        type=_positive,
+        nargs="?",
+        const=_DEFAULT_CLOCK_HZ,
+        default=0.0,
+        help="publish the recording's time on /clock, 40 times a second or as often as said",
+    )
+    parser.add_argument(
+        "-d", "--delay", metavar="SECONDS", type=_not_negative, default=0.0, help="wait before each round"
+    )
+    parser.add_argument(
+        "--start-offset", metavar="SECONDS", type=_not_negative, default=0.0, help="leave out the beginning"
+    )
+    parser.add_argument(
+        "--playback-duration", metavar="SECONDS", type=_not_negative, help="stop after so much of the recording"
+    )
+    parser.add_argument("-p", "--start-paused", action="store_true", help="begin paused; the space key goes on")
+    parser.add_argument(
+        "--wait-for-all-acked",
+        metavar="MILLISECONDS",
+        type=_not_negative,
+        default=1000.0,
+        help="how long to wait at the end until reliable subscriptions have everything, default 1000",
+    )
+    parser.add_argument("--disable-keyboard-controls", action="store_true", help="do not listen to keys")
+    add_overrides_argument(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Play until the end, or until the user ends it."""
+    from linkwright.bag import BagReader, PlayOptions
+    from linkwright.cli.session import run_in_graph
+
+    options = PlayOptions(
+        rate=arguments.rate,
+        topics=[_absolute(name) for name in arguments.topics],
+        without=[_absolute(name) for name in arguments.exclude_topics],
+        loop=arguments.loop,
+        clock_hz=arguments.clock,
+        delay=arguments.delay,
+        start_offset=arguments.start_offset,
+        duration=arguments.playback_duration,
+        paused=arguments.start_paused,
+        qos_overrides=read_overrides(arguments),
+    )
+    remappings = [_remapping(rule) for rule in arguments.remap]
+
+    with BagReader(arguments.bag) as bag:
+
+        async def job(session: Session) -> int:
+            from linkwright.bag import Player
+            from linkwright.cli.bag.keys import DOWN, RIGHT, SPACE, UP, listening
+            from linkwright.graph import Duration
+
+            player = Player(session.node, bag, options)
+            keys = {
+                SPACE: player.toggle_paused,
+                RIGHT: player.play_next,
+                UP: lambda: player.set_rate(player.rate + _STEP),
+                DOWN: lambda: player.set_rate(max(_STEP, player.rate - _STEP)),
+            }
+            with listening({} if arguments.disable_keyboard_controls else keys) as heard:
+                if heard and not arguments.disable_keyboard_controls:
+                    logger = session.node.get_logger()
+                    logger.info("Press SPACE for Pause/Resume, CURSOR_RIGHT for the next message while paused")
+                    logger.info("Press CURSOR_UP and CURSOR_DOWN to play 10 % faster and slower")
+                player.start()
+                await session.until(lambda: player.finished)
+            for publisher in player.publishers:
+                publisher.wait_for_all_acked(Duration(seconds=arguments.wait_for_all_acked / 1000))
+            return 0
+
+        return run_in_graph(arguments, job, node_name="rosbag2_player", remappings=remappings)
+
+
+def _absolute(name: str) -> str:
+    return f"/{name.lstrip('/')}"
+
+
+def _remapping(rule: str) -> tuple[str, str]:
+    source, separator, target = rule.partition(":=")
+    if not separator or not source or not target:
+        raise LinkwrightError(Diagnostic("CLI109", f"'{rule}' is not a remapping", hint="write FROM:=TO"))
+    return source, target
+
+
+def _positive(text: str) -> float:
+    value = _not_negative(text)
+    if value == 0:
+        raise argparse.ArgumentTypeError(f"{text} is not positive")
+    return value
+
+
+def _not_negative(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value) or value < 0:
+        raise argparse.ArgumentTypeError(f"'{text}' is not a number of at least 0")
+    return value

@@ -1,0 +1,132 @@
+"""``linkwright bag record``: write down what topics carry."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from datetime import datetime
+from typing import TYPE_CHECKING
+
+from linkwright.cli.bag.overrides import add_overrides_argument, read_overrides
+
+if TYPE_CHECKING:
+    from linkwright.bag import TopicSelection
+    from linkwright.cli.session import Session
+
+HELP = "record topics until Ctrl-C"
+
+_USAGE = 2
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    parser.add_argument("names", metavar="TOPIC", nargs="*", help="the topics to record")
+    parser.add_argument("--topics", metavar="TOPIC", nargs="+", default=[], help="the same, as newer ROS 2 spells it")
+    parser.add_argument(
+        "--topic-types", metavar="TYPE", nargs="+", default=[], help="record every topic of these types"
+    )
+    parser.add_argument("-a", "--all", action="store_true", help="record every topic but hidden ones")
+    parser.add_argument("--all-topics", action="store_true", help="the same")
+    parser.add_argument(
+        "-e", "--regex", metavar="PATTERN", default="", help="record topics in whose name the expression is found"
+    )
+    parser.add_argument(
+        "-x", "--exclude", "--exclude-regex", metavar="PATTERN", default="", help="but none in whose name this is found"
+    )
+    parser.add_argument("--exclude-topics", metavar="TOPIC", nargs="+", default=[], help="and none of these")
+    parser.add_argument("--exclude-topic-types", metavar="TYPE", nargs="+", default=[], help="and none of these types")
+    parser.add_argument("--include-hidden-topics", action="store_true", help="hidden topics count as others")
+    parser.add_argument(
+        "--include-unpublished-topics", action="store_true", help="record topics that have subscriptions only, too"
+    )
+    parser.add_argument("--no-discovery", action="store_true", help="record only what is there at the start")
+    parser.add_argument(
+        "-p",
+        "--polling-interval",
+        metavar="MILLISECONDS",
+        type=int,
+        default=100,
+        help="how often to look for new topics, default 100",
+    )
+    parser.add_argument(
+        "-o", "--output", metavar="FOLDER", help="the folder to make, default rosbag2_ and the date and time"
+    )
+    parser.add_argument(
+        "-s", "--storage", choices=("mcap", "sqlite3"), default="mcap", help="the file format, default mcap"
+    )
+    parser.add_argument(
+        "--compression-mode",
+        choices=("none", "storage"),
+        default="none",
+        help="whether chunks of an MCAP file are compressed with zstd",
+    )
+    parser.add_argument("--start-paused", action="store_true", help="begin paused; the space key goes on")
+    parser.add_argument("--use-sim-time", action="store_true", help="write down the times that /clock tells")
+    parser.add_argument(
+        "--node-name", metavar="NAME", default="rosbag2_recorder", help="the node's name, default rosbag2_recorder"
+    )
+    parser.add_argument("--disable-keyboard-controls", action="store_true", help="do not listen to keys")
+    add_overrides_argument(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Record until the user ends it."""
+    from linkwright.cli.session import run_in_graph
+
+    selection = _selection(arguments)
+    if selection.is_empty:
+        print("linkwright bag record: name topics, or -a for all, or --regex", file=sys.stderr)
+        return _USAGE
+    if arguments.storage != "mcap" and arguments.compression_mode != "none":
+        print("linkwright bag record: only MCAP files can be compressed here", file=sys.stderr)
+        return _USAGE
+    if arguments.polling_interval <= 0:
+        print("linkwright bag record: the polling interval must be positive", file=sys.stderr)
+        return _USAGE
+    overrides = read_overrides(arguments)
+
+    async def job(session: Session) -> int:
+        from linkwright.bag import BagWriter, Recorder
+        from linkwright.cli.bag.keys import SPACE, listening
+
+        folder = arguments.output or f"rosbag2_{datetime.now().astimezone():%Y_%m_%d-%H_%M_%S}"
+        with BagWriter(folder, arguments.storage, compressed=arguments.compression_mode == "storage") as writer:
+            recorder = Recorder(
+                session.node,
+                selection,
+                writer,
+                overrides=overrides,
+                discover=not arguments.no_discovery,
+                polling_seconds=arguments.polling_interval / 1000,
+                without_publishers=arguments.include_unpublished_topics,
+                paused=arguments.start_paused,
+            )
+            keys = {} if arguments.disable_keyboard_controls else {SPACE: recorder.toggle_paused}
+            try:
+                with listening(keys) as heard:
+                    if heard and keys:
+                        session.node.get_logger().info("Press SPACE for pausing/resuming")
+                    return await session.finished() or 0
+            finally:
+                recorder.close()
+
+    try:
+        return run_in_graph(arguments, job, node_name=arguments.node_name)
+    except KeyboardInterrupt:
+        return 0  # that is how a recording is ended
+
+
+def _selection(arguments: argparse.Namespace) -> TopicSelection:
+    from linkwright.bag import TopicSelection
+
+    names = [f"/{name.lstrip('/')}" for name in (*arguments.names, *arguments.topics)]
+    return TopicSelection(
+        everything=arguments.all or arguments.all_topics,
+        names=names,
+        types=arguments.topic_types,
+        pattern=arguments.regex,
+        without_names=[f"/{name.lstrip('/')}" for name in arguments.exclude_topics],
+        without_types=arguments.exclude_topic_types,
+        without_pattern=arguments.exclude,
+        hidden=arguments.include_hidden_topics,
+    )

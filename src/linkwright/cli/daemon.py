@@ -1,0 +1,25 @@
+"""``linkwright daemon``: accepted, because scripts for ROS 2 start and stop ros2's daemon. There is none here."""
+
+from __future__ import annotations
+
+import argparse
+
+NAME = "daemon"
+HELP = "accepted for ros2's sake: there is no daemon, and none is needed"
+
+_SAYS = {
+    "start": "The daemon is not needed: each command finds the nodes itself",
+    "status": "The daemon is not running",
+    "stop": "The daemon is not running",
+}
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    parser.add_argument("verb", metavar="{start,status,stop}", choices=_SAYS, help="nothing is done")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Say that there is none."""
+    print(_SAYS[arguments.verb])
+    return 0

@@ -1,0 +1,97 @@
+"""``linkwright doctor``: what is wrong with the running graph, why, and how to mend it."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from typing import TYPE_CHECKING
+
+from linkwright.cli.numbers import positive_float
+from linkwright.cli.session import run_in_graph
+from linkwright.diagnostics import Severity, display_path, print_diagnostics
+from linkwright.diagnostics.formats import FORMATS, format_diagnostics
+
+if TYPE_CHECKING:
+    from linkwright.cli.session import Session
+    from linkwright.graph.doctor import FixedFrame, Observation
+
+NAME = "doctor"
+HELP = "explain what is wrong with the running nodes, topics and frames"
+
+_SECONDS = 3.0
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    parser.add_argument(
+        "--seconds",
+        metavar="SECONDS",
+        type=positive_float,
+        default=_SECONDS,
+        help="for how long to look (default: %(default)g)",
+    )
+    parser.add_argument(
+        "--rviz",
+        metavar="FILE",
+        action="append",
+        default=[],
+        help="a viewer's .rviz file, to look at its Fixed Frame too",
+    )
+    parser.add_argument("--fixed-frame", metavar="FRAME", action="append", default=[], help="a Fixed Frame to look for")
+    parser.add_argument("--format", choices=FORMATS, default="text", help="how to print what is found (default: text)")
+    parser.add_argument(
+        "-r", "--report", action="store_true", help="print what is here as well: computer, network, versions, topics"
+    )
+    parser.add_argument("--report-failed", "-rf", action="store_true", help="print that only when something is wrong")
+    parser.add_argument("--include-warnings", "-iw", action="store_true", help="accepted for ros2's sake; they are")
+    parser.add_argument("--exclude-packages", "-ep", action="store_true", help="accepted for ros2's sake")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Look, and print what is found; 1 when there is something to mend."""
+    from linkwright.graph.doctor import examine, observe, report
+
+    frames = _fixed_frames(arguments)
+
+    async def job(session: Session) -> int:
+        if arguments.format == "text":
+            print(f"looking at the running graph for {arguments.seconds:g} s ...", file=sys.stderr)
+        seen = await observe(session.graph, session.node, arguments.seconds, fixed_frames=frames)
+        found = examine(seen)
+        failed = any(each.severity is not Severity.INFO for each in found)
+        if arguments.report or (arguments.report_failed and failed):
+            print(report(seen))
+        if arguments.format == "text":
+            print_diagnostics(found, sys.stderr)
+            print(_summary(seen, len(found)))
+        else:
+            sys.stdout.write(format_diagnostics(found, arguments.format))
+        return 1 if failed else 0
+
+    return run_in_graph(arguments, job)
+
+
+def _fixed_frames(arguments: argparse.Namespace) -> list[FixedFrame]:
+    from linkwright.graph.doctor import FixedFrame
+
+    frames = [FixedFrame(name, "the command line") for name in arguments.fixed_frame]
+    if arguments.rviz:
+        from linkwright.viewer.rviz_config import RvizConfig
+
+        frames += [
+            FixedFrame(RvizConfig.load(file).options.text("Fixed Frame"), f"'{display_path(file)}'")
+            for file in arguments.rviz
+        ]
+    return frames
+
+
+def _summary(seen: Observation, findings: int) -> str:
+    frames = {name for each in seen.transforms for name in (each.parent, each.child)}
+    topics = {each.name for each in seen.endpoints if each.kind.value in ("publisher", "subscription")}
+    counted = ", ".join(
+        f"{count} {name}{'' if count == 1 else 's'}"
+        for count, name in ((len(seen.nodes), "node"), (len(topics), "topic"), (len(frames), "frame"))
+    )
+    if not findings:
+        return f"All is well: {counted}"
+    return f"{findings} finding{'' if findings == 1 else 's'}; {counted}"

@@ -1,0 +1,61 @@
+"""``linkwright node info``."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from typing import TYPE_CHECKING
+
+from linkwright.cli.calls import node_names
+from linkwright.cli.lookup import NamesAndTypes, absolute_or_given, unknown, visible
+from linkwright.cli.session import add_session_arguments, run_in_graph
+
+if TYPE_CHECKING:
+    from linkwright.cli.session import Session
+
+HELP = "say what a node publishes, subscribes to, serves and calls"
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    add_session_arguments(parser)
+    parser.add_argument("node_name", metavar="NODE", help="such as /robot_state_publisher")
+    parser.add_argument("--include-hidden", action="store_true", help="show hidden topics, services and actions too")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Print what the node has, as ros2 does."""
+    full = absolute_or_given(arguments.node_name)
+    hidden = arguments.include_hidden
+
+    async def job(session: Session) -> int:
+        names = node_names(session, hidden=hidden)
+        count = names.count(full)
+        if not count:
+            message = f"Unable to find node '{arguments.node_name}'"
+            raise unknown("CLI423", message, full, names, "`linkwright node list` lists them")
+        if count > 1:
+            print(
+                f"There are {count} nodes in the graph with the exact name '{full}'."
+                " You are seeing information about only one of them.",
+                file=sys.stderr,
+            )
+        node = session.node
+        namespace, _, name = full.rpartition("/")
+        who = (name, namespace or "/")
+        print(full)
+        _section("Subscribers", node.get_subscriber_names_and_types_by_node(*who), hidden)
+        _section("Publishers", node.get_publisher_names_and_types_by_node(*who), hidden)
+        _section("Service Servers", node.get_service_names_and_types_by_node(*who), hidden)
+        _section("Service Clients", node.get_client_names_and_types_by_node(*who), hidden)
+        _section("Action Servers", session.graph.get_action_server_names_and_types_by_node(*who), hidden)
+        _section("Action Clients", session.graph.get_action_client_names_and_types_by_node(*who), hidden)
+        return 0
+
+    return run_in_graph(arguments, job)
+
+
+def _section(title: str, found: NamesAndTypes, hidden: bool) -> None:
+    print(f"  {title}:")
+    lines = [f"    {name}: {', '.join(types)}" for name, types in visible(found, hidden=hidden)]
+    print("\n".join(lines))

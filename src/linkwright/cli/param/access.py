@@ -1,0 +1,143 @@
+"""The parameters of a running node, asked of its services, and their values as text."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from linkwright.cli.calls import call, find_node
+from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean
+
+if TYPE_CHECKING:
+    from linkwright.cli.session import Session
+
+TYPE_NAMES = {
+    0: "not set",
+    1: "boolean",
+    2: "integer",
+    3: "double",
+    4: "string",
+    5: "byte array",
+    6: "boolean array",
+    7: "integer array",
+    8: "double array",
+    9: "string array",
+}
+"""What ros2 calls the types, by their numbers in rcl_interfaces/msg/ParameterType."""
+
+
+class RemoteParameters:
+    """The parameters of one node.
+
+    Args:
+        session: of the verb.
+        node: the node's full name.
+        timeout: how long to wait for each answer, in seconds; as long as it takes when None.
+    """
+
+    def __init__(self, session: Session, node: str, timeout: float | None = None) -> None:
+        self._session = session
+        self.node = node
+        self._timeout = timeout
+
+    @classmethod
+    async def of(cls, session: Session, arguments: argparse.Namespace) -> RemoteParameters:
+        """Those of the node that the command line names.
+
+        Raises:
+            LinkwrightError: CLI423, it is not running.
+        """
+        node = await find_node(
+            session, arguments.node_name, hidden=arguments.include_hidden_nodes, timeout=arguments.timeout
+        )
+        return cls(session, node, arguments.service_timeout)
+
+    async def names(self, prefixes: Sequence[str] = ()) -> list[str]:
+        """Names of the declared parameters, sorted; only those below prefixes where some are given."""
+        response = await self._call("ListParameters", "list_parameters", prefixes=list(prefixes))
+        return sorted(response.result.names)
+
+    async def values(self, names: Sequence[str]) -> list[Any]:
+        """Values (rcl_interfaces/msg/ParameterValue) in the order of the names."""
+        response = await self._call("GetParameters", "get_parameters", names=list(names))
+        return list(response.values)
+
+    async def descriptors(self, names: Sequence[str]) -> list[Any]:
+        """Descriptors (rcl_interfaces/msg/ParameterDescriptor) in the order of the names."""
+        response = await self._call("DescribeParameters", "describe_parameters", names=list(names))
+        return list(response.descriptors)
+
+    async def set(self, parameters: Sequence[Any]) -> list[Any]:
+        """Set parameters (rcl_interfaces/msg/Parameter) one by one; a result for each."""
+        response = await self._call("SetParameters", "set_parameters", parameters=list(parameters))
+        return list(response.results)
+
+    async def set_together(self, parameters: Sequence[Any]) -> Any:
+        """Set all parameters or none; the result."""
+        response = await self._call("SetParametersAtomically", "set_parameters_atomically", parameters=list(parameters))
+        return response.result
+
+    async def must_have(self, names: Sequence[str]) -> None:
+        """Make sure that parameters are declared.
+
+        Raises:
+            LinkwrightError: CLI424 for each that is not.
+        """
+        there = await self.names()
+        missing = [
+            Diagnostic(
+                "CLI424",
+                f"Parameter not set: node '{self.node}' has no parameter '{name}'",
+                hint=did_you_mean(name, there) or f"`linkwright param list {self.node}` lists them",
+            )
+            for name in names
+            if name not in there
+        ]
+        if missing:
+            raise LinkwrightError(*missing)
+
+    async def _call(self, kind: str, service: str, **fields: Any) -> Any:
+        from linkwright.messages import get_service
+
+        name = f"rcl_interfaces/srv/{kind}"
+        request = get_service(name).Request(**fields)
+        return await call(self._session, name, f"{self.node}/{service}", request, timeout=self._timeout)
+
+
+def parameter_of(name: str, text: str) -> Any:
+    """A parameter (rcl_interfaces/msg/Parameter) with the value that a word stands for, read as YAML as ros2 does."""
+    import yaml
+
+    from linkwright.graph.parameters import Parameter, ParameterType
+
+    try:
+        value = yaml.safe_load(text)
+    except (yaml.YAMLError, ValueError):
+        value = text
+    if isinstance(value, (bool, int, float)):
+        return Parameter(name, value=value).to_parameter_msg()
+    if isinstance(value, list):
+        for kind, element in (
+            (ParameterType.BOOL_ARRAY, bool),
+            (ParameterType.INTEGER_ARRAY, int),
+            (ParameterType.DOUBLE_ARRAY, float),
+            (ParameterType.STRING_ARRAY, str),
+        ):
+            if all(isinstance(each, element) for each in value):
+                return Parameter(name, kind, value).to_parameter_msg()
+    return Parameter(name, ParameterType.STRING, text).to_parameter_msg()
+
+
+def plain_value(value: Any) -> Any:
+    """A parameter's value as plain Python data; arrays as lists."""
+    from linkwright.graph.parameters import parameter_value_to_python
+
+    found = parameter_value_to_python(value)
+    return found if found is None or isinstance(found, (bool, int, float, str)) else list(found)
+
+
+def result_text(result: Any, good: str, bad: str) -> str:
+    """What is said of a result: one of two texts, and the reason where there is one."""
+    text = good if result.successful else bad
+    return f"{text}: {result.reason}" if result.reason else text

@@ -1,0 +1,31 @@
+"""The verb ``param`` and the verbs below it."""
+
+from __future__ import annotations
+
+import argparse
+
+from linkwright.cli.nested import configure_nested, run_nested
+
+NAME = "param"
+HELP = "list, read and set parameters of nodes"
+
+_MODULES = {
+    "delete": "delete",
+    "describe": "describe",
+    "dump": "dump",
+    "get": "get",
+    "list": "listing",
+    "load": "load",
+    "set": "set",
+}
+VERBS = tuple(_MODULES)
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    configure_nested(parser, __package__, _MODULES)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the verb that was named."""
+    return run_nested(arguments)

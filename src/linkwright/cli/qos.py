@@ -1,0 +1,126 @@
+"""The options ``--qos-...`` of ``topic echo``, ``pub`` and others, and the profile that they ask for."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from copy import copy
+from typing import TYPE_CHECKING
+
+from linkwright.cli.numbers import unsigned_int
+
+if TYPE_CHECKING:
+    from linkwright.graph import Node, QoSProfile
+
+_PROFILES = (
+    "unknown",
+    "default",
+    "system_default",
+    "sensor_data",
+    "services_default",
+    "parameters",
+    "parameter_events",
+    "action_status_default",
+    "best_available",
+)
+_HISTORY = ("system_default", "keep_last", "keep_all", "unknown")
+_RELIABILITY = ("system_default", "reliable", "best_effort", "unknown", "best_available")
+_DURABILITY = ("system_default", "transient_local", "volatile", "unknown", "best_available")
+_LIVELINESS = ("system_default", "automatic", "manual_by_topic", "unknown", "best_available")
+
+_BURST = 100
+"""How many messages may wait for a verb, where the user does not say."""
+_SINGLE = ("qos_reliability", "qos_durability", "qos_depth", "qos_history", "qos_liveliness")
+_LEASE = "qos_liveliness_lease_duration_seconds"
+
+
+def add_qos_arguments(parser: argparse.ArgumentParser, action: str, default: str, extra: str = "") -> None:
+    """Declare the options.
+
+    Args:
+        parser: of the verb.
+        action: ``publish`` or ``subscribe``, for the help.
+        default: the profile without ``--qos-profile``.
+        extra: what the help says of reliability and durability beside.
+    """
+    group = parser.add_argument_group("quality of service")
+    group.add_argument(
+        "--qos-profile",
+        metavar="PROFILE",
+        choices=_PROFILES,
+        default=default,
+        help=f"the profile to {action} with (default: {default}): {', '.join(_PROFILES)}",
+    )
+    group.add_argument("--qos-depth", metavar="N", type=unsigned_int, help="the length of the queue")
+    for name, values, meaning in (
+        ("history", _HISTORY, "which samples are kept"),
+        ("reliability", _RELIABILITY, f"whether each message must arrive{extra}"),
+        ("durability", _DURABILITY, f"whether late comers get what was sent{extra}"),
+        ("liveliness", _LIVELINESS, "how a publisher is known to be alive"),
+    ):
+        help_text = f"{meaning}: {', '.join(values)}"
+        group.add_argument(f"--qos-{name}", metavar="POLICY", choices=values, help=help_text)
+    group.add_argument(
+        "--qos-liveliness-lease-duration-seconds",
+        metavar="SECONDS",
+        type=float,
+        help="how long a publisher may be silent before it counts as gone",
+    )
+
+
+def profile(arguments: argparse.Namespace) -> QoSProfile:
+    """The profile that the options ask for."""
+    from linkwright.graph import qos
+    from linkwright.graph.time import Duration
+
+    chosen = copy(qos.QoSPresetProfiles.get_from_short_key(arguments.qos_profile))
+    if arguments.qos_history is not None:
+        chosen.history = qos.HistoryPolicy[arguments.qos_history.upper()]
+    if arguments.qos_reliability is not None:
+        chosen.reliability = qos.ReliabilityPolicy[arguments.qos_reliability.upper()]
+    if arguments.qos_durability is not None:
+        chosen.durability = qos.DurabilityPolicy[arguments.qos_durability.upper()]
+    if arguments.qos_liveliness is not None:
+        chosen.liveliness = qos.LivelinessPolicy[arguments.qos_liveliness.upper()]
+    lease = getattr(arguments, _LEASE)
+    if lease is not None and lease >= 0:
+        chosen.liveliness_lease_duration = Duration(seconds=lease)
+    if arguments.qos_depth:
+        chosen.depth = arguments.qos_depth
+    elif chosen.durability is qos.DurabilityPolicy.TRANSIENT_LOCAL and chosen.depth == 0:
+        chosen.depth = 1
+    return chosen
+
+
+def fitting_profile(node: Node, topic: str, arguments: argparse.Namespace) -> QoSProfile:
+    """The profile to subscribe with: as asked for, else the strongest that all publishers of the topic offer.
+
+    That is what ros2cli does: reliable and transient local where all are, so that what was published once is shown.
+    Where no depth is asked for, the queue is longer than ros2's, so that a burst is counted and shown in full.
+    """
+    from linkwright.graph.qos import DurabilityPolicy, ReliabilityPolicy
+
+    chosen = profile(arguments)
+    if any(getattr(arguments, name) is not None for name in (*_SINGLE, _LEASE)):
+        return chosen
+    chosen.depth = max(chosen.depth, _BURST)
+    offers = [info.qos_profile for info in node.get_publishers_info_by_topic(topic)]
+    if not offers:
+        return chosen
+    reliable = sum(offer.reliability is ReliabilityPolicy.RELIABLE for offer in offers)
+    lasting = sum(offer.durability is DurabilityPolicy.TRANSIENT_LOCAL for offer in offers)
+    _say_of_some(reliable, len(offers), "QoSReliabilityPolicy.RELIABLE", "QoSReliabilityPolicy.BEST_EFFORT")
+    _say_of_some(lasting, len(offers), "QoSDurabilityPolicy.TRANSIENT_LOCAL", "QoSDurabilityPolicy.VOLATILE")
+    everybody = len(offers)
+    chosen.reliability = ReliabilityPolicy.RELIABLE if reliable == everybody else ReliabilityPolicy.BEST_EFFORT
+    chosen.durability = DurabilityPolicy.TRANSIENT_LOCAL if lasting == everybody else DurabilityPolicy.VOLATILE
+    return chosen
+
+
+def _say_of_some(count: int, all_of: int, offered: str, taken: str) -> None:
+    if 0 < count < all_of:
+        print(
+            f"Some, but not all, publishers are offering {offered}. Falling back to {taken} as it will connect to all "
+            "publishers",
+            file=sys.stderr,
+        )

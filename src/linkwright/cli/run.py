@@ -1,0 +1,66 @@
+"""``linkwright run``: run an executable of a package, as ``ros2 run`` does."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shlex
+import subprocess
+import sys
+
+from linkwright.cli.launch import add_viewer_options
+
+NAME = "run"
+HELP = "run an executable of a package: ours, a built one, or an entry point of its sources"
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    parser.usage = f"{parser.prog} [options] PACKAGE EXECUTABLE [ARGUMENT ...] [--ros-args ...]"
+    parser.add_argument(
+        "--prefix", metavar="COMMAND", help="put a command before the executable, such as 'gdb -ex run --args'"
+    )
+    add_viewer_options(parser)
+    parser.add_argument("package", metavar="PACKAGE", help="the package")
+    parser.add_argument("executable", metavar="EXECUTABLE", help="its executable")
+    parser.add_argument(
+        "words",
+        metavar="ARGUMENT",
+        nargs=argparse.REMAINDER,
+        help="what the executable is given, ROS arguments included",
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run it; returns its exit status. Signals are the executable's, because it takes the place of this process."""
+    from linkwright import standins
+    from linkwright.launch import LaunchOptions, find_program, is_viewer, run_viewer
+    from linkwright.workspace import PackageFinder
+
+    words = list(arguments.words)
+    if is_viewer(arguments.package, arguments.executable):
+        options = LaunchOptions(arguments.host, arguments.port, not arguments.no_open)
+        return run_viewer(words, options)
+    standins.activate()
+    program = find_program(PackageFinder(), arguments.package, arguments.executable)
+    prefix = shlex.split(arguments.prefix) if arguments.prefix else []
+    if program.is_ours and not prefix:
+        from linkwright.nodes.process import main
+
+        return main(arguments.package, arguments.executable, words)
+    return _become([*prefix, *program.command, *words], program.environment)
+
+
+def _become(command: list[str], environment: dict[str, str]) -> int:
+    """Go on as another program."""
+    sys.stdout.flush()
+    sys.stderr.flush()
+    try:
+        if os.name == "posix":
+            os.execvpe(command[0], command, environment)  # noqa: S606 - what the user asks to run
+        return subprocess.run(command, env=environment, check=False).returncode  # noqa: S603 - as above
+    except OSError as error:
+        from linkwright.diagnostics import Diagnostic, LinkwrightError
+
+        message = f"'{command[0]}' cannot be run: {error.strerror or error}"
+        raise LinkwrightError(Diagnostic("CLI110", message)) from error

@@ -1,0 +1,27 @@
+"""``linkwright shell``: a shell with the commands of ROS 2 in it."""
+
+from __future__ import annotations
+
+import argparse
+
+NAME = "shell"
+HELP = "open a shell in which ros2, xacro, check_urdf, urdf_to_graphviz, rviz2 and colcon exist"
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    parser.usage = "linkwright shell [-h] [-- COMMAND ...]"
+    parser.add_argument(
+        "command",
+        metavar="COMMAND",
+        nargs=argparse.REMAINDER,
+        help="one command to run there instead, with its words; Linkwright ends with its exit status",
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the shell or the command; the exit status is its own."""
+    from linkwright.shell import run_shell
+
+    words = arguments.command
+    return run_shell(words[1:] if words[:1] == ["--"] else words)

@@ -1,0 +1,86 @@
+"""What each of the commands of ROS 2 does here; arguments, output and exit statuses are those of the originals."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Sequence
+
+from linkwright.cli.command import FINE
+from linkwright.cli.command import main as linkwright
+from linkwright.cli.tools.ros2 import ros2
+from linkwright.diagnostics import LinkwrightError, print_diagnostics
+
+_FAILED = 255
+"""What the programs of urdfdom end with: ``return -1``."""
+
+
+def main(name: str, words: Sequence[str]) -> int:
+    """Run one of the commands.
+
+    Args:
+        name: a key of `TOOLS`.
+        words: its arguments.
+
+    Returns:
+        Its exit status.
+    """
+    return TOOLS[name](words)
+
+
+def _xacro(words: Sequence[str]) -> int:
+    return linkwright(["xacro", *words], program="")
+
+
+def _check_urdf(words: Sequence[str]) -> int:
+    """Print what urdfdom's program prints; findings that do not hinder urdfdom are left to ``linkwright check``."""
+    if not words:
+        print("Expect URDF xml file to parse", file=sys.stderr)
+        return _FAILED
+    from linkwright.urdf import examine, tree_text
+
+    try:
+        reading = examine(words[0])
+    except LinkwrightError as error:
+        print_diagnostics(error.diagnostics, sys.stderr)
+        return _FAILED
+    print_diagnostics(reading.diagnostics, sys.stderr)
+    if reading.robot is None:
+        print("ERROR: Model Parsing the xml failed", file=sys.stderr)
+        return _FAILED
+    print(tree_text(reading.robot), end="")
+    return FINE
+
+
+def _urdf_to_graphviz(words: Sequence[str]) -> int:
+    if not 1 <= len(words) <= 2:
+        print(
+            "Usage: urdf_to_graphviz input.xml [OUTPUT]\n"
+            "  Will create either $ROBOT_NAME.gv & $ROBOT_NAME.pdf in CWD\n"
+            "  or OUTPUT.gv & OUTPUT.pdf.",
+            file=sys.stderr,
+        )
+        return _FAILED
+    return linkwright(["diagram", *words])
+
+
+def _rviz2(words: Sequence[str]) -> int:
+    return linkwright(["run", "rviz2", "rviz2", *words])
+
+
+def _colcon(words: Sequence[str]) -> int:
+    from colcon_core.command import main as colcon  # type: ignore[import-untyped]  # it ships no types
+
+    sys.argv[0] = "colcon"
+    status = colcon(argv=list(words))
+    return status if isinstance(status, int) else FINE
+
+
+TOOLS: dict[str, Callable[[Sequence[str]], int]] = {
+    "ros2": ros2,
+    "xacro": _xacro,
+    "check_urdf": _check_urdf,
+    "urdf_to_graphviz": _urdf_to_graphviz,
+    "rviz2": _rviz2,
+    "colcon": _colcon,
+}
+"""Name -> what takes its arguments and gives its exit status."""

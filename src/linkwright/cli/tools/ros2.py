@@ -1,0 +1,72 @@
+"""``ros2`` as ROS users type it: each of its commands is a verb of ours."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+
+from linkwright.cli.command import FINE, USAGE, verb
+from linkwright.cli.command import main as linkwright
+from linkwright.diagnostics import did_you_mean
+
+COMMANDS = (
+    "action",
+    "bag",
+    "component",
+    "daemon",
+    "doctor",
+    "interface",
+    "launch",
+    "lifecycle",
+    "node",
+    "param",
+    "pkg",
+    "run",
+    "service",
+    "topic",
+    "wtf",
+)
+"""The commands of ``ros2`` that exist here, as it lists them."""
+
+_OTHER_NAMES = {"wtf": "doctor"}
+_ONLY_IN_ROS = {
+    "control": "it talks to a controller_manager of ros2_control",
+    "extension_points": "it lists plugins of ros2cli",
+    "extensions": "it lists plugins of ros2cli",
+    "multicast": "it tests the network below DDS",
+    "security": "it makes the keys of SROS 2",
+}
+
+
+def ros2(words: Sequence[str]) -> int:
+    """Run a command of ``ros2``; returns its exit status."""
+    rest = [word for word in words if word != "--use-python-default-buffering"]
+    if not rest or rest[0] in ("-h", "--help"):
+        print(_overview())
+        return FINE
+    name = rest[0]
+    if name in COMMANDS:
+        return linkwright([_OTHER_NAMES.get(name, name), *rest[1:]], program="ros2")
+    if name in _ONLY_IN_ROS:
+        problem = f"'{name}' needs a real ROS 2: {_ONLY_IN_ROS[name]}"
+    else:
+        hint = did_you_mean(name, COMMANDS) or "`ros2 --help` lists the commands"
+        problem = f"there is no command '{name}'; {hint}"
+    print(f"ros2: {problem}", file=sys.stderr)
+    return USAGE
+
+
+def _overview() -> str:
+    width = max(map(len, COMMANDS))
+    lines = [
+        "usage: ros2 [-h] COMMAND ...",
+        "",
+        "The commands of ROS 2, by Linkwright: no ROS 2 is installed here.",
+        "",
+        "Commands:",
+    ]
+    for name in COMMANDS:
+        ours = _OTHER_NAMES.get(name)
+        lines.append(f"  {name:{width}}  {f'the same as {ours}' if ours else verb(name).HELP}")
+    lines += ["", "`ros2 COMMAND -h` says more."]
+    return "\n".join(lines)

@@ -1,0 +1,79 @@
+"""``linkwright topic delay``."""
+
+from __future__ import annotations
+
+import argparse
+import struct
+from typing import TYPE_CHECKING, Any
+
+from linkwright.cli.lookup import absolute, topic_type
+from linkwright.cli.numbers import positive_int
+from linkwright.cli.qos import add_qos_arguments, fitting_profile
+from linkwright.cli.session import add_session_arguments, run_in_graph
+from linkwright.cli.topic.rates import DelayWindow
+from linkwright.diagnostics import Diagnostic, LinkwrightError
+
+if TYPE_CHECKING:
+    from linkwright.cli.session import Session
+
+HELP = "measure how old messages are when they come, by the stamp in their header"
+
+_WINDOW = 10_000
+_PERIOD = 1.0
+_STAMP = {0: struct.Struct(">iI"), 1: struct.Struct("<iI")}
+"""Seconds and nanoseconds, by the second byte of the CDR header, which tells the order of bytes."""
+_CDR_HEADER = 4
+_SECOND = 1_000_000_000
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    add_session_arguments(parser)
+    parser.add_argument("topic_name", metavar="TOPIC", help="a topic whose messages have a header")
+    parser.add_argument(
+        "-w",
+        "--window",
+        metavar="N",
+        type=positive_int,
+        default=_WINDOW,
+        help="over how many messages it is taken (default: %(default)s)",
+    )
+    add_qos_arguments(parser, "subscribe", "sensor_data", "; as the publishers have it, if they agree")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Print the delay each second until the user ends it."""
+    name = absolute(arguments.topic_name)
+
+    async def job(session: Session) -> int:
+        kind = await topic_type(session, name, wait=True)
+        fields = kind.get_fields_and_field_types()
+        if fields.get("header") != "std_msgs/Header":
+            message = f"msg does not have header: topic '{name}' carries {kind.TYPE_NAME}"
+            hint = "only messages with a std_msgs/Header say when they were made"
+            raise LinkwrightError(Diagnostic("CLI413", message, hint=hint))
+        # Where the header comes first its stamp is read from the bytes, and the rest is left alone.
+        raw = next(iter(fields)) == "header"
+        window = DelayWindow(arguments.window)
+        clock = session.node.get_clock()
+
+        def count(message: Any) -> None:
+            if raw:
+                seconds, nanoseconds = _STAMP[message[1] & 1].unpack_from(message, _CDR_HEADER)
+            else:
+                seconds, nanoseconds = message.header.stamp.sec, message.header.stamp.nanosec
+            window.add(clock.now_ns(), seconds * _SECOND + nanoseconds)
+
+        session.node.create_subscription(
+            kind, name, session.receiver(count), fitting_profile(session.node, name, arguments), raw=raw
+        )
+
+        def report() -> None:
+            text = window.text()
+            if text is not None:
+                print(text)
+
+        session.every(_PERIOD, report)
+        return await session.finished() or 0
+
+    return run_in_graph(arguments, job)

@@ -1,0 +1,98 @@
+"""``linkwright topic echo``."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from typing import TYPE_CHECKING, Any
+
+from linkwright.cli.lookup import absolute, topic_type
+from linkwright.cli.numbers import positive_float, unsigned_int
+from linkwright.cli.qos import add_qos_arguments, fitting_profile
+from linkwright.cli.session import add_session_arguments, run_in_graph
+from linkwright.cli.topic.echo_output import EchoFormat, field_path, lost_text, select
+from linkwright.cli.topic.filters import compile_filter
+
+if TYPE_CHECKING:
+    from linkwright.cli.session import Session
+    from linkwright.graph.transport import MessageInfo
+
+HELP = "print the messages of a topic"
+
+_TRUNCATE = 128
+_CLEAR = "\x1b[H\x1b[2J\x1b[3J"
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    add_session_arguments(parser)
+    parser.add_argument("topic_name", metavar="TOPIC", help="such as /chatter")
+    parser.add_argument("message_type", metavar="TYPE", nargs="?", help="such as std_msgs/msg/String; the topic's own")
+    parser.add_argument("--csv", action="store_true", help="print the values separated by commas")
+    parser.add_argument("--field", metavar="NAMES", help="print only a part, such as pose.pose.position")
+    parser.add_argument("-f", "--full-length", action="store_true", help="do not cut long arrays and texts")
+    parser.add_argument(
+        "-l",
+        "--truncate-length",
+        metavar="N",
+        type=unsigned_int,
+        default=_TRUNCATE,
+        help="cut arrays and texts after so many elements (default: %(default)s)",
+    )
+    parser.add_argument("--no-arr", action="store_true", help="do not print the elements of arrays")
+    parser.add_argument("--no-str", action="store_true", help="do not print texts")
+    parser.add_argument("--flow-style", action="store_true", help="print each message on one line")
+    parser.add_argument("--lost-messages", action="store_true", help="accepted for ros2's sake; lost ones are told of")
+    parser.add_argument("--no-lost-messages", action="store_true", help="do not tell when messages were lost")
+    parser.add_argument("--raw", action="store_true", help="print the bytes that travel")
+    parser.add_argument("--filter", metavar="EXPR", help="print only messages 'm' for which this holds: 'm.data > 3'")
+    parser.add_argument("--once", action="store_true", help="end after the first message")
+    parser.add_argument("--timeout", metavar="SECONDS", type=positive_float, help="end after so long")
+    parser.add_argument("-i", "--include-message-info", action="store_true", help="print when each was sent")
+    parser.add_argument("--clear", action="store_true", help="clear the terminal before each message")
+    add_qos_arguments(parser, "subscribe", "sensor_data", "; as the publishers have it, if they agree")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Print messages until the user ends it."""
+    name = absolute(arguments.topic_name)
+    fits = None if arguments.filter is None else compile_filter(arguments.filter)
+    form = EchoFormat(
+        field=() if arguments.raw else field_path(arguments.field),
+        csv=arguments.csv,
+        truncate_length=None if arguments.full_length else arguments.truncate_length,
+        no_arr=arguments.no_arr,
+        no_str=arguments.no_str,
+        flow_style=arguments.flow_style,
+        message_info=arguments.include_message_info,
+    )
+
+    async def job(session: Session) -> int:
+        from linkwright.graph.events import SubscriptionEventCallbacks
+
+        kind = await topic_type(session, name, arguments.message_type)
+        select(kind(), form.field)
+        write = sys.stdout.write
+
+        def show(message: Any, info: MessageInfo) -> None:
+            if fits is not None and not fits(select(message, form.field)):
+                return
+            text = form.text(message, info)
+            write(_CLEAR + text if arguments.clear else text)
+            if arguments.once:
+                session.finish()
+
+        events = SubscriptionEventCallbacks(
+            message_lost=None if arguments.no_lost_messages else session.guarded(lambda lost: write(lost_text(lost)))
+        )
+        session.node.create_subscription(
+            kind,
+            name,
+            session.receiver(show),
+            fitting_profile(session.node, name, arguments),
+            raw=arguments.raw,
+            event_callbacks=events,
+        )
+        return await session.finished(arguments.timeout) or 0
+
+    return run_in_graph(arguments, job)

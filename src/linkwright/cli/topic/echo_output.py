@@ -1,0 +1,113 @@
+"""What ``topic echo`` prints of each message, as text."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean
+
+if TYPE_CHECKING:
+    from linkwright.graph.transport import MessageInfo
+
+_SEPARATOR = "---\n"
+
+
+@dataclass(frozen=True, slots=True)
+class EchoFormat:
+    """How messages are printed.
+
+    Attributes:
+        field: the names that lead to the part to print; empty for the whole message.
+        csv: values separated by commas, instead of YAML.
+        truncate_length: after how many elements or characters arrays and texts are cut; None for never.
+        no_arr: print no array's elements.
+        no_str: print no text.
+        flow_style: YAML on one line for each message.
+        message_info: print when a message was sent and received before it.
+    """
+
+    field: tuple[str, ...] = ()
+    csv: bool = False
+    truncate_length: int | None = 128
+    no_arr: bool = False
+    no_str: bool = False
+    flow_style: bool = False
+    message_info: bool = False
+
+    def text(self, message: Any, info: MessageInfo | None = None) -> str:
+        """What is printed of a message, which may be one as bytes.
+
+        Raises:
+            LinkwrightError: CLI414, the message has no such field.
+        """
+        part = select(message, self.field)
+        if not hasattr(part, "get_fields_and_field_types"):
+            return f"{self._info(info)}{part}\n{_SEPARATOR}"
+        from linkwright.messages import to_csv, to_yaml
+
+        if self.csv:
+            before = f"{info.source_timestamp},{info.received_timestamp}," if self.message_info and info else ""
+            shown = to_csv(part, truncate_length=self.truncate_length, no_arr=self.no_arr, no_str=self.no_str)
+            return f"{before}{shown}\n"
+        shown = to_yaml(
+            part,
+            truncate_length=self.truncate_length,
+            no_arr=self.no_arr,
+            no_str=self.no_str,
+            flow_style=self.flow_style,
+        )
+        return f"{self._info(info)}{shown}{_SEPARATOR}"
+
+    def _info(self, info: MessageInfo | None) -> str:
+        if not self.message_info or info is None:
+            return ""
+        return f"received_timestamp: {info.received_timestamp}\nsource_timestamp: {info.source_timestamp}\n{_SEPARATOR}"
+
+
+def field_path(text: str | None) -> tuple[str, ...]:
+    """The names of ``--field``, such as ``pose.pose.position``.
+
+    Raises:
+        LinkwrightError: CLI414, a name is missing between dots.
+    """
+    if text is None:
+        return ()
+    names = tuple(text.split("."))
+    if not all(names):
+        raise LinkwrightError(Diagnostic("CLI414", f"Invalid field '{text}'", hint="names are separated by one dot"))
+    return names
+
+
+def select(message: Any, path: Sequence[str]) -> Any:
+    """The part of a message that names lead to.
+
+    Raises:
+        LinkwrightError: CLI414, there is no such part.
+    """
+    part = message
+    for name in path:
+        fields: dict[str, str] = getattr(part, "get_fields_and_field_types", dict)()
+        if name not in fields:
+            whole = ".".join(path)
+            what = getattr(part, "TYPE_NAME", type(part).__name__)
+            nothing = f"its fields are {', '.join(fields)}" if fields else "it has no fields"
+            raise LinkwrightError(
+                Diagnostic(
+                    "CLI414",
+                    f"Invalid field '{whole}': {what} has no field '{name}'",
+                    hint=did_you_mean(name, fields) or nothing,
+                )
+            )
+        part = getattr(part, name)
+    return part
+
+
+def lost_text(event: Any) -> str:
+    """What is printed when messages were lost (rclpy ``QoSMessageLostInfo``)."""
+    return (
+        "A message was lost!!!\n"
+        f"\ttotal count change:{event.total_count_change}\n"
+        f"\ttotal count: {event.total_count}{_SEPARATOR}"
+    )

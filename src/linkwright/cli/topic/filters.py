@@ -1,0 +1,64 @@
+"""The Python expression of ``--filter``, which says of a message ``m`` whether it counts."""
+
+from __future__ import annotations
+
+import ast
+import math
+from collections.abc import Callable
+from typing import Any
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText
+
+_NAME = "<filter>"
+_FORBIDDEN = (ast.Lambda, ast.Await, ast.Yield, ast.YieldFrom, ast.NamedExpr)
+_FUNCTIONS: dict[str, Any] = {
+    function.__name__: function
+    for function in (abs, all, any, bool, bytes, float, int, len, list, max, min, round, set, sorted, str, sum, tuple)
+}
+_NAMES: dict[str, Any] = {**_FUNCTIONS, "math": math, "True": True, "False": False, "None": None}
+
+
+def compile_filter(text: str) -> Callable[[Any], bool]:
+    """What tells whether a message fits an expression such as ``m.data > 3``.
+
+    The expression sees the message as ``m``, the module ``math`` and a few functions, and no name that begins with an
+    underscore.
+
+    Raises:
+        LinkwrightError: CLI407, it is no such expression. The function raises it too, for one that cannot be worked
+            out for a message.
+    """
+    source = SourceText(_NAME, text)
+
+    def fault(message: str, column: int | None = None, hint: str | None = None) -> LinkwrightError:
+        span = source.span(0, len(text)) if column is None else source.span(column)
+        return LinkwrightError(Diagnostic("CLI407", message, span, hint=hint, source=source))
+
+    try:
+        tree = ast.parse(text.strip(), _NAME, "eval")
+    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
+        column = getattr(error, "offset", None)
+        raise fault(
+            f"the filter is not a Python expression: {getattr(error, 'msg', error)}", column and column - 1
+        ) from None
+    for node in ast.walk(tree):
+        if isinstance(node, _FORBIDDEN):
+            raise fault(f"a filter cannot hold {type(node).__name__.lower()}", node.col_offset)
+        if isinstance(node, ast.Attribute) and node.attr.startswith("_"):
+            raise fault(f"a filter cannot use '{node.attr}'", node.col_offset)
+        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load) and node.id not in (*_NAMES, "m"):
+            bound = {
+                each.id for each in ast.walk(tree) if isinstance(each, ast.Name) and isinstance(each.ctx, ast.Store)
+            }
+            if node.id not in bound:
+                raise fault(f"a filter knows no '{node.id}'", node.col_offset, "the message is 'm', as in 'm.data > 3'")
+    code = compile(tree, _NAME, "eval")
+
+    def fits(message: Any) -> bool:
+        try:
+            # The tree was looked through above: no private names, no functions but those listed.
+            return bool(eval(code, {"__builtins__": {}, **_NAMES, "m": message}))  # noqa: S307
+        except Exception as error:  # noqa: BLE001 - whatever the user's expression raises
+            raise fault(f"the filter fails: {error}") from None
+
+    return fits

@@ -1,0 +1,143 @@
+"""``linkwright topic pub``."""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import sys
+from collections.abc import Callable
+from itertools import cycle
+from typing import TYPE_CHECKING, Any
+
+from linkwright.cli.lookup import absolute
+from linkwright.cli.numbers import positive_float, unsigned_int
+from linkwright.cli.qos import add_qos_arguments, profile
+from linkwright.cli.session import add_session_arguments, run_in_graph
+from linkwright.cli.values import fill, parse_values, read_values
+
+if TYPE_CHECKING:
+    from linkwright.cli.session import Session
+    from linkwright.graph import Publisher
+
+HELP = "publish messages to a topic"
+
+_KEEP_ALIVE = 0.1
+_TELL_WAITING = 1.0
+
+_Filled = tuple[Any, list[Callable[[Any], None]]]
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    add_session_arguments(parser)
+    parser.add_argument("topic_name", metavar="TOPIC", help="such as /chatter")
+    parser.add_argument("message_type", metavar="TYPE", help="such as std_msgs/msg/String")
+    group = parser.add_mutually_exclusive_group()
+    group.add_argument(
+        "values",
+        metavar="VALUES",
+        nargs="?",
+        default="{}",
+        help="the message in YAML, such as 'data: hello'; fields left out have their defaults, 'header: auto' and"
+        " 'stamp: now' stand for the time of publishing",
+    )
+    group.add_argument("--stdin", action="store_true", help="read the values from standard input")
+    group.add_argument("--yaml-file", metavar="FILE", help="publish the messages of a file, as topic echo prints them")
+    parser.add_argument("-r", "--rate", metavar="N", type=positive_float, default=1.0, help="hertz, default 1")
+    parser.add_argument(
+        "-p", "--print", metavar="N", type=unsigned_int, default=1, help="print only each N-th message (default: 1)"
+    )
+    times = parser.add_mutually_exclusive_group()
+    times.add_argument("-1", "--once", action="store_true", help="publish one message and end")
+    times.add_argument("-t", "--times", metavar="N", type=unsigned_int, default=0, help="publish N messages and end")
+    parser.add_argument(
+        "-w",
+        "--wait-matching-subscriptions",
+        metavar="N",
+        type=unsigned_int,
+        help="begin when there are so many subscriptions (default: 1 with --once and --times, else 0)",
+    )
+    parser.add_argument(
+        "--max-wait-time-secs", metavar="SECONDS", type=positive_float, help="wait no longer than this for them"
+    )
+    parser.add_argument(
+        "--keep-alive",
+        metavar="SECONDS",
+        type=float,
+        default=_KEEP_ALIVE,
+        help="stay so long after the last message (default: %(default)s)",
+    )
+    parser.add_argument("-n", "--node-name", metavar="NODE", help="the name of the publishing node")
+    add_qos_arguments(parser, "publish", "default")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Publish until the user ends it, or as often as was asked for."""
+    from linkwright.messages import get_message
+
+    name = absolute(arguments.topic_name)
+    kind = get_message(arguments.message_type)
+    text = read_values(arguments)
+    filled: list[_Filled] = []
+    for values in parse_values(text):
+        message = kind()
+        filled.append((message, fill(message, values, text)))
+    times = 1 if arguments.once else arguments.times
+    if arguments.yaml_file is not None and not times:
+        times = len(filled)
+
+    async def job(session: Session) -> int:
+        publisher = session.node.create_publisher(kind, name, profile(arguments))
+        wanted = arguments.wait_matching_subscriptions
+        if wanted is None:
+            wanted = 1 if arguments.once or arguments.times else 0
+        if not await _wait_for(session, publisher, wanted, arguments.max_wait_time_secs):
+            print(f"Timed out waiting for {wanted} matching subscription(s)", file=sys.stderr)
+            return 1
+        print("publisher: beginning loop")
+        await _publish(session, publisher, filled, times, arguments)
+        await asyncio.sleep(arguments.keep_alive)
+        return 0
+
+    return run_in_graph(arguments, job, node_name=arguments.node_name)
+
+
+async def _wait_for(session: Session, publisher: Publisher[Any], wanted: int, longest: float | None) -> bool:
+    """Wait for subscriptions, telling so each second."""
+    waited = 0.0
+    while publisher.get_subscription_count() < wanted:
+        if longest is not None and waited >= longest:
+            return False
+        print(f"Waiting for at least {wanted} matching subscription(s)...")
+        step = _TELL_WAITING if longest is None else min(_TELL_WAITING, longest - waited)
+        await session.until(lambda: publisher.get_subscription_count() >= wanted, step)
+        waited += step
+    return True
+
+
+async def _publish(
+    session: Session, publisher: Publisher[Any], filled: list[_Filled], times: int, arguments: argparse.Namespace
+) -> None:
+    clock = session.node.get_clock()
+    messages = cycle(filled)
+    count = 0
+
+    def publish() -> None:
+        nonlocal count
+        message, stamps = next(messages)
+        if stamps:
+            now = clock.now().to_msg()
+            for stamp in stamps:
+                stamp(now)
+        count += 1
+        if arguments.print and count % arguments.print == 0:
+            print(f"publishing #{count}: {message!r}\n")
+        publisher.publish(message)
+        if count == times:
+            session.finish()
+
+    publish()
+    if count != times:
+        timer = session.node.create_timer(1.0 / arguments.rate, session.guarded(publish))
+        await session.finished()
+        session.node.destroy_timer(timer)

@@ -1,0 +1,177 @@
+"""How often, how late and how much: the figures of ``topic hz``, ``topic delay`` and ``topic bw``, and their texts."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+
+_SECOND = 1_000_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class Spread:
+    """What is told of a window of durations, all in nanoseconds.
+
+    Attributes:
+        mean: their average.
+        least: the shortest.
+        most: the longest.
+        deviation: the standard deviation.
+        count: how many there are.
+    """
+
+    mean: float
+    least: float
+    most: float
+    deviation: float
+    count: int
+
+    @classmethod
+    def of(cls, durations: Iterable[float]) -> Spread:
+        """The figures of at least one duration."""
+        values = list(durations)
+        mean = sum(values) / len(values)
+        deviation = math.sqrt(sum((value - mean) ** 2 for value in values) / len(values))
+        return cls(mean, min(values), max(values), deviation, len(values))
+
+    @property
+    def rate(self) -> float:
+        """How many there are in a second, were these the times between messages."""
+        return _SECOND / self.mean if self.mean > 0 else 0.0
+
+    def bounds(self) -> str:
+        """The second line that ``topic hz`` and ``topic delay`` print."""
+        return (
+            f"\tmin: {self.least / _SECOND:.3f}s max: {self.most / _SECOND:.3f}s "
+            f"std dev: {self.deviation / _SECOND:.5f}s window: {self.count}"
+        )
+
+
+class RateWindow:
+    """The times between the last messages of a topic.
+
+    Args:
+        size: how many are kept.
+    """
+
+    def __init__(self, size: int) -> None:
+        self._times: deque[int] = deque(maxlen=size)
+        self._last: int | None = None
+        self._new = False
+
+    def add(self, now_ns: int) -> bool:
+        """Count a message; True when time went back, and counting began anew."""
+        last, self._last, self._new = self._last, now_ns, True
+        if last is None:
+            return False
+        if now_ns < last:
+            self._times.clear()
+            return True
+        self._times.append(now_ns - last)
+        return False
+
+    def spread(self) -> Spread | None:
+        """The figures; None when no message came since they were last asked for."""
+        if not self._new or not self._times:
+            return None
+        self._new = False
+        return Spread.of(self._times)
+
+
+class DelayWindow:
+    """How old the last messages of a topic were when they came.
+
+    Args:
+        size: how many are kept.
+    """
+
+    def __init__(self, size: int) -> None:
+        self._delays: deque[int] = deque(maxlen=size)
+        self._last: int | None = None
+        self._new = False
+
+    def add(self, now_ns: int, stamp_ns: int) -> None:
+        """Count a message."""
+        if self._last is not None and now_ns < self._last:
+            self._delays.clear()
+        self._last, self._new = now_ns, True
+        self._delays.append(now_ns - stamp_ns)
+
+    def text(self) -> str | None:
+        """What ``topic delay`` prints; None before the first message."""
+        if not self._delays:
+            return None
+        if not self._new:
+            return "no new messages"
+        self._new = False
+        spread = Spread.of(self._delays)
+        return f"average delay: {spread.mean / _SECOND:.3f}\n{spread.bounds()}"
+
+
+class BandwidthWindow:
+    """The sizes of the last messages of a topic.
+
+    Args:
+        size: how many are kept.
+    """
+
+    def __init__(self, size: int) -> None:
+        self._messages: deque[tuple[int, int]] = deque(maxlen=size)
+
+    def add(self, now_ns: int, size: int) -> None:
+        """Count a message of `size` bytes."""
+        self._messages.append((now_ns, size))
+
+    def text(self, now_ns: int) -> str | None:
+        """What ``topic bw`` prints; None while there are fewer than two messages."""
+        if len(self._messages) < 2:
+            return None
+        first = self._messages[0][0]
+        if now_ns <= first:
+            self._messages.clear()
+            return None
+        sizes = [size for _, size in self._messages]
+        rate = sum(sizes) * _SECOND / (now_ns - first)
+        write = _unit_for(rate)
+        shown = {"mean": sum(sizes) / len(sizes), "min": min(sizes), "max": max(sizes)}
+        figures = " ".join(f"{name}: {write(value)}" for name, value in shown.items())
+        return f"{write(rate)}/s from {len(sizes)} messages\n\tMessage size {figures}"
+
+
+def _unit_for(bytes_each_second: float) -> Callable[[float], str]:
+    """What writes numbers of bytes in the unit that suits a rate, as ros2 does."""
+    scale, digits, name = next(unit for limit, unit in _UNITS if bytes_each_second < limit)
+    return lambda size: f"{size / scale:.{digits}f} {name}"
+
+
+_UNITS = ((1e3, (1.0, 0, "B")), (1e6, (1e3, 2, "KB")), (math.inf, (1e6, 2, "MB")))
+
+
+def rate_text(spread: Spread) -> str:
+    """What ``topic hz`` prints of one topic."""
+    return f"average rate: {spread.rate:.3f}\n{spread.bounds()}"
+
+
+_HEADER = ("topic", "rate", "min_delta", "max_delta", "stddev", "window")
+
+
+def rate_table(spreads: Mapping[str, Spread]) -> str:
+    """What ``topic hz`` prints of several topics."""
+    rows = [
+        (
+            topic,
+            f"{each.rate:.3f}",
+            f"{each.least / _SECOND:.3f}",
+            f"{each.most / _SECOND:.3f}",
+            f"{each.deviation / _SECOND:.5f}",
+            str(each.count),
+        )
+        for topic, each in spreads.items()
+    ]
+    widths = [max(len(name), *(len(row[at]) for row in rows)) for at, name in enumerate(_HEADER)]
+    head = "   ".join(name.center(width + 2) for name, width in zip(_HEADER, widths, strict=True))
+    line = "=" * (sum(widths) + 3 * (len(_HEADER) - 1))
+    body = ["   ".join(cell.ljust(width + 2) for cell, width in zip(row, widths, strict=True)) for row in rows]
+    return "\n".join([head, line, *body, ""])

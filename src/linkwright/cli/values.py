@@ -1,0 +1,220 @@
+"""Values that a user types for a message, a request or a goal: YAML, checked against the type, with places."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, SourceText, Span, did_you_mean
+
+if TYPE_CHECKING:
+    import yaml
+
+    from linkwright.messages import Message
+
+_NAME = "<values>"
+_FAULTS = (AssertionError, TypeError, ValueError, AttributeError, OverflowError)
+"""What assignment to a field raises for a value that the field cannot have, as rosidl's generated classes do."""
+
+_AUTOMATIC = ("auto", "now")
+
+
+def read_values(arguments: Any) -> str:
+    """The text of the values: from the command line, from a file, or from standard input."""
+    if getattr(arguments, "stdin", False):
+        return sys.stdin.read()
+    file = getattr(arguments, "yaml_file", None)
+    if file is None:
+        return str(arguments.values)
+    from pathlib import Path
+
+    try:
+        return Path(file).read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise LinkwrightError(Diagnostic("CLI404", f"'{file}' cannot be read: {reason}")) from None
+
+
+def parse_values(text: str) -> list[dict[str, Any]]:
+    """The mappings that a text holds: one, or one for each document of a YAML stream.
+
+    Raises:
+        LinkwrightError: CLI402, it is no YAML; CLI403, it is no mapping.
+    """
+    import yaml
+
+    source = SourceText(_NAME, text)
+    try:
+        documents = list(yaml.safe_load_all(text))
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        span = None if mark is None else source.span(mark.index)
+        what = error.problem or error.context
+        notes = (Note(error.context),) if error.context and error.problem else ()
+        hint = "quote the values for the shell, and write a blank after each colon and comma: \"{a: 1, b: 'x'}\""
+        raise LinkwrightError(
+            Diagnostic("CLI402", f"the values are not YAML: {what}", span, notes=notes, hint=hint, source=source)
+        ) from None
+    except (yaml.YAMLError, ValueError, RecursionError) as error:
+        raise LinkwrightError(Diagnostic("CLI402", f"the values are not YAML: {error}", source=source)) from None
+    documents = [document for document in documents if document is not None] or [{}]
+    for document in documents:
+        if not isinstance(document, dict):
+            raise LinkwrightError(_no_mapping(document, source))
+    return documents
+
+
+def _no_mapping(document: object, source: SourceText) -> Diagnostic:
+    hint = "write 'field: value', or '{field: value, other: value}'"
+    if isinstance(document, str) and ":" in document:
+        name, _, value = document.partition(":")
+        if name.isidentifier():
+            hint = f"YAML wants a blank after the colon: '{name}: {value}'"
+    message = "The passed value needs to be a dictionary in YAML format"
+    return Diagnostic("CLI403", message, source.span(0, len(source.text)), hint=hint, source=source)
+
+
+def check_values(message: Message, values: Mapping[str, Any], text: str = "") -> None:
+    """Make sure that a message takes values; all that it does not take is reported together.
+
+    Args:
+        message: of the type to fill; left as it is.
+        values: as `parse_values` gives them.
+        text: what they were read from, to show places in it.
+
+    Raises:
+        LinkwrightError: CLI405, there is no such field; CLI406, a field cannot have the value.
+    """
+    places = _Places(text)
+    faults = list(_faults(message, values, (), places))
+    if faults:
+        raise LinkwrightError(*faults)
+
+
+def fill(message: Message, values: Mapping[str, Any], text: str = "") -> list[Callable[[Any], None]]:
+    """Set the fields of a message.
+
+    ``header: auto`` and ``stamp: now`` (of a std_msgs/Header and a builtin_interfaces/Time) stand for the time of
+    publishing, as ``ros2 topic pub`` has it.
+
+    Returns:
+        What sets those, each called with a Time message.
+    """
+    from linkwright.messages import set_fields
+
+    check_values(message, values, text)
+    plain, setters = _split(message, dict(values))
+    set_fields(message, plain)
+    return setters
+
+
+def _split(message: Any, values: dict[str, Any]) -> tuple[dict[str, Any], list[Callable[[Any], None]]]:
+    """The values without those that stand for the time of publishing, and what sets the latter."""
+    setters: list[Callable[[Any], None]] = []
+    plain: dict[str, Any] = {}
+    for name, value in values.items():
+        field = getattr(message, name)
+        kind = getattr(field, "TYPE_NAME", "")
+        if value == "auto" and kind == "std_msgs/msg/Header":
+            setters.append(_setter(field, "stamp"))
+        elif value == "now" and kind == "builtin_interfaces/msg/Time":
+            setters.append(_setter(message, name))
+        elif isinstance(value, dict) and kind:
+            plain[name], below = _split(field, value)
+            setters += below
+        else:
+            plain[name] = value
+    return plain, setters
+
+
+def _setter(owner: Any, name: str) -> Callable[[Any], None]:
+    return lambda stamp: setattr(owner, name, stamp)
+
+
+class _Places:
+    """Finds where in the text a value stands, by the names and indices that lead to it."""
+
+    def __init__(self, text: str) -> None:
+        self.source = SourceText(_NAME, text)
+        self._root: yaml.Node | None = None
+        if text:
+            import yaml
+
+            try:
+                self._root = yaml.compose(text, yaml.SafeLoader)
+            except yaml.YAMLError:  # several documents: their places are not told
+                self._root = None
+
+    def span(self, path: tuple[str | int, ...], *, key: bool = False) -> Span | None:
+        """The place of a value, or of the name before it."""
+        import yaml
+
+        node, at = self._root, None
+        for step in path:
+            at = None
+            if isinstance(node, yaml.MappingNode):
+                for name, value in node.value:
+                    if name.value == str(step):
+                        at, node = name, value
+            elif isinstance(node, yaml.SequenceNode) and isinstance(step, int) and step < len(node.value):
+                at = node = node.value[step]
+            if at is None:
+                return None
+        found = at if key else node
+        if found is None:
+            return None
+        return self.source.span(found.start_mark.index, found.end_mark.index)
+
+
+def _faults(
+    message: Any, values: Mapping[str, Any], path: tuple[str | int, ...], places: _Places
+) -> Iterator[Diagnostic]:
+    from linkwright.messages import set_fields
+
+    fields = message.get_fields_and_field_types()
+    for name, value in values.items():
+        here = (*path, name)
+        if name not in fields:
+            yield Diagnostic(
+                "CLI405",
+                f"{message.TYPE_NAME} has no field '{name}'",
+                places.span(here, key=True),
+                hint=did_you_mean(str(name), fields) or f"its fields are {', '.join(fields)}" if fields else None,
+                source=places.source,
+            )
+            continue
+        field = getattr(message, name)
+        if hasattr(field, "get_fields_and_field_types") and isinstance(value, dict):
+            yield from _faults(field, value, here, places)
+            continue
+        if hasattr(field, "get_fields_and_field_types") and value in _AUTOMATIC:
+            continue
+        try:
+            set_fields(type(message)(), {name: value})
+        except (*_FAULTS, LinkwrightError) as error:
+            yield Diagnostic(
+                "CLI406",
+                f"field '{'.'.join(map(str, here))}' is of type {fields[name]} and cannot be {_shown(value)}",
+                places.span(here),
+                notes=(Note(str(error)),) if str(error) else (),
+                hint=_type_hint(fields[name], value),
+                source=places.source,
+            )
+
+
+def _shown(value: object) -> str:
+    text = repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+def _type_hint(kind: str, value: object) -> str | None:
+    if kind == "string" and isinstance(value, (bool, int, float)):
+        return f"quote it, so that YAML takes it as text: '\"{str(value).lower()}\"'"
+    if kind.startswith(("float", "double")) and isinstance(value, str):
+        return "write a number, such as 1.0"
+    if kind.startswith(("int", "uint")) and isinstance(value, float):
+        return "write a whole number"
+    if ("sequence" in kind or "[" in kind) and not isinstance(value, (list, str)):
+        return "write a list: [1, 2, 3]"
+    return None

@@ -1,0 +1,238 @@
+"""Asks a service."""
+
+from __future__ import annotations
+
+import threading
+from collections import deque
+from collections.abc import Callable
+from functools import partial
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+from linkwright.graph.copies import copy_of
+from linkwright.graph.dispatch import CallbackGroup
+from linkwright.graph.endpoint import Endpoint
+from linkwright.graph.entity import Entity
+from linkwright.graph.future import Future
+from linkwright.graph.qos import QoSProfile
+from linkwright.graph.transport import EndpointKind, OutsideService
+
+if TYPE_CHECKING:
+    from linkwright.graph.node import Node
+    from linkwright.graph.service import Service
+
+Request = TypeVar("Request")
+Response = TypeVar("Response")
+
+
+class Client(Endpoint, Entity, Generic[Request, Response]):
+    """Asks a service; made by ``Node.create_client``.
+
+    A request that is made while no server is there waits for one, up to the depth of the quality of service. Where
+    several servers have the name, the one of this process that is there longest is asked, else one outside.
+    """
+
+    kind = EndpointKind.CLIENT
+    unblockable = True
+
+    def __init__(
+        self,
+        node: Node,
+        srv_type: Any,
+        srv_name: str,
+        qos_profile: QoSProfile,
+        callback_group: CallbackGroup | None = None,
+    ) -> None:
+        Entity.__init__(self, node, callback_group)
+        self._describe(node, srv_type, srv_name, qos_profile)
+        self.outside: OutsideService | None = None
+        """What takes requests out of the process, while a server there matches; see `set_outside`."""
+        self._server: Service[Request, Response] | None = None
+        self._lock = threading.RLock()
+        self._unsent: deque[tuple[Future[Response], Request]] = deque(maxlen=qos_profile.queue_length)
+        self._pending: dict[Future[Response], Callable[[], None]] = {}
+        self._answers: deque[tuple[Future[Response], Response]] = deque()
+
+    @property
+    def what(self) -> str:
+        """What it is, for messages."""
+        return f"client of service '{self.name}'"
+
+    @property
+    def srv_name(self) -> str:
+        """The service's absolute name."""
+        return self.name
+
+    @property
+    def service_name(self) -> str:
+        """The service's absolute name."""
+        return self.name
+
+    @property
+    def srv_type(self) -> Any:
+        """The class of the service."""
+        return self.interface
+
+    def service_is_ready(self) -> bool:
+        """Whether a server is there.
+
+        Raises:
+            InvalidHandleError: the client was destroyed.
+        """
+        self.check_alive()
+        return self._server is not None or self.outside is not None
+
+    def wait_for_service(self, timeout_sec: float | None = None) -> bool:
+        """Block the calling thread until a server is there.
+
+        Args:
+            timeout_sec: seconds to wait at most; None for any time.
+
+        Returns:
+            Whether one is there. False also when the graph is closed meanwhile.
+        """
+        return self.node.graph.wait_until(self.service_is_ready, timeout_sec)
+
+    def call_async(self, request: Request) -> Future[Response]:
+        """Ask; the future gets the response.
+
+        Raises:
+            TypeError: the request is not of the service's type.
+            InvalidHandleError: the client was destroyed.
+        """
+        self.check_alive()
+        if not isinstance(request, self.srv_type.Request):
+            raise TypeError(f"Expected {self.srv_type.Request}, got {type(request)}: the request of '{self.name}'")
+        if self.node.copies_messages:
+            request = copy_of(request)
+        future: Future[Response] = Future()
+        self._pending[future] = _nothing
+        if not self._send(future, request):
+            with self._lock:
+                self._unsent.append((future, request))
+            self._send_waiting()
+        return future
+
+    def call(self, request: Request, timeout_sec: float | None = None) -> Response | None:
+        """Ask, and block the calling thread until the response is there. Another thread must run the node's callbacks.
+
+        Args:
+            request: the request.
+            timeout_sec: seconds to wait at most; None for any time.
+
+        Returns:
+            The response.
+
+        Raises:
+            TypeError: the request is not of the service's type.
+            TimeoutError: no response came in time.
+            RuntimeError: the calling thread is the one that would have to receive the response.
+        """
+        is_own_thread = getattr(self.dispatcher, "is_own_thread", None)
+        if is_own_thread is not None and is_own_thread():
+            raise RuntimeError(
+                f"call() of service '{self.name}' would block the event loop that receives the response; "
+                "await call_async() instead"
+            )
+        future = self.call_async(request)
+        if not future.wait(timeout_sec):
+            self.remove_pending_request(future)
+            raise TimeoutError(f"no response of service '{self.name}' in time")
+        return future.result()
+
+    def remove_pending_request(self, future: Future[Any]) -> None:
+        """Give a request up: its future gets no response any more."""
+        with self._lock:
+            forget = self._pending.pop(future, None)
+            self._unsent = deque((each for each in self._unsent if each[0] is not future), maxlen=self._unsent.maxlen)
+        if forget is not None:
+            forget()
+
+    def destroy(self) -> None:
+        """Leave the graph and the node; pending futures stay as they are."""
+        self.node.destroy_client(self)
+
+    def __enter__(self) -> Client[Request, Response]:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.destroy()
+
+    # --- for dispatchers ---------------------------------------------------------------------------------------------
+
+    def has_work(self) -> bool:
+        """Whether responses wait."""
+        return bool(self._answers)
+
+    def take(self) -> Callable[[], object] | None:
+        """The handing over of the response that waits longest."""
+        self._announced = False
+        try:
+            future, response = self._answers.popleft()
+        except IndexError:
+            return None
+        if self._answers:
+            self.announce()
+        return partial(self._hand_over, future, response)
+
+    def retire(self) -> None:
+        """Ask no more, and take no more answers."""
+        with self._lock:
+            pending, self._pending = self._pending, {}
+            self._unsent.clear()
+        for forget in pending.values():
+            forget()
+        super().retire()
+        self._answers.clear()
+        self._server = None
+        self.outside = None
+
+    # --- for the bus and the transport ---------------------------------------------------------------------------
+
+    def set_server(self, server: Service[Request, Response] | None) -> None:
+        """Ask a service of this process from now on, or none."""
+        self._server = server
+        self._send_waiting()
+
+    def set_outside(self, outside: OutsideService | None) -> None:
+        """For the transport: ask a server outside, where this process has none, or none."""
+        self.outside = outside
+        self._send_waiting()
+        self.node.graph.notify_change()
+
+    def _send_waiting(self) -> None:
+        while self._server is not None or self.outside is not None:
+            with self._lock:
+                if not self._unsent:
+                    return
+                future, request = self._unsent.popleft()
+            if not self._send(future, request):
+                with self._lock:
+                    self._unsent.appendleft((future, request))
+
+    def _send(self, future: Future[Response], request: Request) -> bool:
+        server, outside = self._server, self.outside
+        answer = partial(self._receive, future)
+        if server is not None:
+            server.receive(request, answer)
+        elif outside is not None:
+            forget = outside.send(request, answer)
+            if future in self._pending:
+                self._pending[future] = forget
+        else:
+            return False
+        return True
+
+    def _receive(self, future: Future[Response], response: Response) -> None:
+        if self._pending.pop(future, None) is not None:
+            self._answers.append((future, response))
+            self.announce()
+
+    def _hand_over(self, future: Future[Response], response: Response) -> None:
+        if not future.ended():
+            if hasattr(self.dispatcher, "create_task"):
+                future.set_executor(self.dispatcher)
+            future.set_result(response)
+
+
+def _nothing() -> None:
+    """What forgets a request of this process."""

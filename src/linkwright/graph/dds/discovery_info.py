@@ -1,0 +1,126 @@
+"""The message of ``ros_discovery_info`` as bytes: which nodes a participant has, and which endpoints belong to each.
+
+It is read and written by hand because its layout depends on the peer: a gid has 24 bytes up to Humble and 16 from Iron
+on (`rmw_dds_common/msg/Gid`), and both may be heard in one process.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+OLD_GID_SIZE = 24
+"""Up to Humble: the 16 bytes of the GUID and eight zeros."""
+
+GID_SIZE = 16
+"""From Iron on."""
+
+_HEADER = b"\x00\x01\x00\x00"
+
+
+@dataclass(frozen=True, slots=True)
+class NodeEntities:
+    """A node and the GUIDs of its endpoints, 16 bytes each."""
+
+    namespace: str
+    name: str
+    readers: Sequence[bytes] = ()
+    writers: Sequence[bytes] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class ParticipantEntities:
+    """What a participant says of itself."""
+
+    participant: bytes
+    nodes: Sequence[NodeEntities] = field(default=())
+
+
+def encode(info: ParticipantEntities, gid_size: int) -> bytes:
+    """The sample as CDR with its header."""
+    parts = bytearray(info.participant.ljust(gid_size, b"\0"))
+    padding = bytes(gid_size - GID_SIZE)
+    _count(parts, len(info.nodes))
+    for node in info.nodes:
+        _string(parts, node.namespace)
+        _string(parts, node.name)
+        for gids in (node.readers, node.writers):
+            _count(parts, len(gids))
+            for gid in gids:
+                parts += gid + padding
+    parts += bytes(-len(parts) % 4)
+    return _HEADER + bytes(parts)
+
+
+def decode(data: bytes) -> ParticipantEntities | None:
+    """A sample of either layout; None when it is neither.
+
+    The layout is the one that fits to the last byte; where both do, there are no gids in it and they say the same.
+    """
+    for gid_size in (OLD_GID_SIZE, GID_SIZE):
+        try:
+            reader = _Reader(data, gid_size)
+            info = reader.participant()
+        except (struct.error, IndexError, UnicodeDecodeError):
+            continue
+        if reader.at_end():
+            return info
+    return None
+
+
+def _count(parts: bytearray, count: int) -> None:
+    parts += bytes(-len(parts) % 4) + struct.pack("<I", count)
+
+
+def _string(parts: bytearray, text: str) -> None:
+    encoded = text.encode() + b"\0"
+    _count(parts, len(encoded))
+    parts += encoded
+
+
+class _Reader:
+    def __init__(self, data: bytes, gid_size: int) -> None:
+        self._data = data[4:]
+        self._order = "<" if data[1] & 1 else ">"
+        self._gid_size = gid_size
+        self._offset = 0
+
+    def participant(self) -> ParticipantEntities:
+        gid = self._gid()
+        return ParticipantEntities(gid, [self._node() for _ in range(self._count())])
+
+    def at_end(self) -> bool:
+        return 0 <= len(self._data) - self._offset < 4
+
+    def _node(self) -> NodeEntities:
+        return NodeEntities(self._string(), self._string(), self._gids(), self._gids())
+
+    def _gids(self) -> list[bytes]:
+        return [self._gid() for _ in range(self._count())]
+
+    def _gid(self) -> bytes:
+        gid = self._bytes(self._gid_size)
+        if any(gid[GID_SIZE:]):
+            raise IndexError("the bytes behind a GUID are zeros")
+        return gid[:GID_SIZE]
+
+    def _string(self) -> str:
+        return self._bytes(self._count(limit=1))[:-1].decode()
+
+    def _count(self, limit: int = 4) -> int:
+        """A length, at most as many as could follow."""
+        self._offset += -self._offset % 4
+        (count,) = struct.unpack_from(self._order + "I", self._data, self._offset)
+        self._offset += 4
+        if count * limit > len(self._data) - self._offset:
+            raise IndexError("longer than the sample")
+        return int(count)
+
+    def _bytes(self, size: int) -> bytes:
+        end = self._offset + size
+        if end > len(self._data):
+            raise IndexError("longer than the sample")
+        found = self._data[self._offset : end]
+        self._offset = end
+        return found

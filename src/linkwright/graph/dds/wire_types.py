@@ -1,0 +1,129 @@
+"""Descriptions of ROS types for Cyclone, which checks samples against them and tells other tools about them.
+
+Cyclone compares types structurally when both sides describe theirs, so they are described member by member, as
+rmw_cyclonedds_cpp does where it does (final, keyless; ``byte`` and ``char`` are unsigned octets; an empty message has
+the member that rosidl gives it). The content of samples never goes through these classes: it is CDR from
+`linkwright.messages`.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from threading import RLock
+from typing import Any
+
+from linkwright.graph.dds.wire_names import dds_type
+from linkwright.messages import get_message
+from linkwright.messages.definition import Container, FieldType, Structure
+
+HEADER_MEMBERS = ("client_guid", "sequence_number")
+"""What rmw_cyclonedds_cpp puts before requests and replies: an unsigned and a signed integer of 64 bits."""
+
+_OCTETS = ("byte", "char")
+
+
+class UndescribableError(Exception):
+    """A type has a member that Cyclone's Python package has no word for (wide strings)."""
+
+
+class WireTypes:
+    """Makes the descriptions, each once; may be used from any thread."""
+
+    def __init__(self) -> None:
+        self._made: dict[tuple[str, str], Any] = {}
+        self._lock = RLock()
+
+    def message(self, structure: Structure) -> Any:
+        """The description of a message type."""
+        return self._described("", structure)
+
+    def with_header(self, structure: Structure) -> Any:
+        """The description of a request or reply with the header that goes before it."""
+        return self._described("header", structure)
+
+    def discovery(self, gid_size: int) -> Any:
+        """The description of ``rmw_dds_common/msg/ParticipantEntitiesInfo`` with gids of a size in bytes."""
+        key = (f"gid{gid_size}", "ParticipantEntitiesInfo")
+        with self._lock:
+            if key not in self._made:
+                self._made[key] = _discovery(gid_size)
+            return self._made[key]
+
+    def _described(self, variant: str, structure: Structure) -> Any:
+        key = (variant, structure.type_name)
+        with self._lock:
+            if key not in self._made:
+                self._made[key] = struct_class(dds_type(structure.type_name), self._members(structure, variant))
+            return self._made[key]
+
+    def _members(self, structure: Structure, variant: str) -> dict[str, Any]:
+        types = _idl_types()
+        members: dict[str, Any] = {}
+        if variant == "header":
+            members = dict(zip(HEADER_MEMBERS, (types.uint64, types.int64), strict=True))
+        try:
+            for field in structure.wire_fields:
+                members[field.name] = self._member(field.type)
+        except UndescribableError:
+            return {}  # goes by its name alone with what does not describe itself either, such as real ROS 2 nodes
+        return members
+
+    def _member(self, field: FieldType) -> Any:
+        types = _idl_types()
+        element = self._element(field)
+        if field.container is Container.ARRAY:
+            return types.array[element, field.size]
+        if field.container is Container.SEQUENCE:
+            return types.sequence[element] if field.size is None else types.sequence[element, field.size]
+        return element
+
+    def _element(self, field: FieldType) -> Any:
+        types = _idl_types()
+        if field.base == "string":
+            return str if field.string_bound is None else types.bounded_str[field.string_bound]
+        if field.base == "wstring":
+            raise UndescribableError(field.base)
+        if field.base == "bool":
+            return bool
+        if "/" in field.base:
+            return self._described("", get_message(field.base)._definition)
+        return getattr(types, "uint8" if field.base in _OCTETS else field.base)
+
+
+def struct_class(type_name: str, members: dict[str, Any]) -> Any:
+    """A class that describes a structure.
+
+    Args:
+        type_name: its DDS name.
+        members: their names and `cyclonedds.idl.types`.
+    """
+    from cyclonedds.idl import make_idl_struct
+
+    short = type_name.rpartition("::")[2]
+    described: Any = make_idl_struct(short, type_name.replace("::", "."), members, dataclassify=False)
+    described.__idl__.populate()
+    described.__idl__.fill_type_data()
+    return described
+
+
+def _idl_types() -> Any:
+    """`cyclonedds.idl.types`, whose classes are subscripted in ways of their own."""
+    return import_module("cyclonedds.idl.types")
+
+
+def _discovery(gid_size: int) -> Any:
+    types = _idl_types()
+    prefix = "rmw_dds_common::msg::dds_::"
+    gid = struct_class(prefix + "Gid_", {"data": types.array[types.uint8, gid_size]})
+    node = struct_class(
+        prefix + "NodeEntitiesInfo_",
+        {
+            "node_namespace": types.bounded_str[256],
+            "node_name": types.bounded_str[256],
+            "reader_gid_seq": types.sequence[gid],
+            "writer_gid_seq": types.sequence[gid],
+        },
+    )
+    return struct_class(
+        prefix + "ParticipantEntitiesInfo_", {"gid": gid, "node_entities_info_seq": types.sequence[node]}
+    )

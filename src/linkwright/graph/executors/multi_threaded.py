@@ -1,0 +1,144 @@
+"""The executor that runs callbacks in a pool of threads."""
+
+from __future__ import annotations
+
+import os
+import threading
+import time
+import warnings
+from collections import deque
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from linkwright.graph.executors.errors import (
+    ConditionReachedException,
+    ExternalShutdownException,
+    ShutdownException,
+    TimeoutException,
+)
+from linkwright.graph.executors.executor import Context, Executor, deadline_after
+from linkwright.graph.executors.workers import Workers
+from linkwright.graph.future import Future
+
+_NANOSECONDS_PER_SECOND = 1_000_000_000
+
+
+class MultiThreadedExecutor(Executor):
+    """Runs callbacks in a pool of threads, as far as their groups allow (rclpy ``MultiThreadedExecutor``).
+
+    The thread that spins gives out the work, at most as much as there are threads; the rest waits with its entities,
+    by their quality of service. What a callback raises leaves ``spin`` in the thread that spins.
+
+    Args:
+        num_threads: how many threads; as many as the process has processors when None.
+        context: see `Executor`.
+    """
+
+    def __init__(self, num_threads: int | None = None, *, context: Context | None = None) -> None:
+        super().__init__(context=context)
+        if num_threads is None:
+            num_threads = _processors()
+        if num_threads == 1:
+            warnings.warn(
+                "MultiThreadedExecutor is used with a single thread.\nUse the SingleThreadedExecutor instead.",
+                stacklevel=2,
+            )
+        self._workers = Workers(num_threads, "executor", self._work.wake)
+        self._faults: deque[BaseException] = deque()
+        self._goes_on = False
+        self._admission = threading.Lock()
+
+    def spin(self) -> None:
+        """Run callbacks until the executor or the context is shut down."""
+        self._spinner_begins()
+        self._goes_on = True
+        try:
+            while not self._is_shutdown and self._context_ok():
+                self._give_out_one(None, None)
+        finally:
+            self._goes_on = False
+            self._spinner_ends()
+
+    def spin_once(self, timeout_sec: float | None = None) -> None:
+        """Wait for one callback and give it to a thread; its end is not waited for. See ``Executor.spin_once``."""
+        self._spin_once(timeout_sec, None)
+
+    def spin_once_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
+        """As `spin_once`, but the wait ends when the future is done, too."""
+        future.add_waiter(self.wake)
+        self._spin_once(timeout_sec, future.ended)
+
+    def shutdown(self, timeout_sec: float | None = None, *, wait_for_threads: bool = True) -> bool:
+        """Run no further callbacks; wait for those that run, and for the threads to end.
+
+        Args:
+            timeout_sec: the longest wait, in seconds; no limit when None or negative.
+            wait_for_threads: False to leave the threads to end by themselves.
+
+        Returns:
+            Whether all have ended.
+        """
+        deadline_ns = deadline_after(timeout_sec)
+        ended = super().shutdown(timeout_sec)
+        if not wait_for_threads:
+            self._workers.close(0.0)
+            return ended
+        left = None if deadline_ns is None else max(deadline_ns - time.monotonic_ns(), 0) / _NANOSECONDS_PER_SECOND
+        return self._workers.close(left) and ended
+
+    def _spin_once(self, timeout_sec: float | None, condition: Callable[[], bool] | None) -> None:
+        self._spinner_begins()
+        try:
+            self._give_out_one(deadline_after(timeout_sec), condition)
+        finally:
+            self._spinner_ends()
+
+    def _give_out_one(self, deadline_ns: int | None, condition: Callable[[], bool] | None) -> None:
+        while not self._workers.has_room and not self._faults:
+            if self._is_shutdown or not self._context_ok() or (condition is not None and condition()):
+                return
+            if deadline_ns is not None and time.monotonic_ns() >= deadline_ns:
+                return
+            self._work.wait_for_wake(deadline_ns)
+        self._raise_faults()
+        try:
+            item = self._next(deadline_ns, partial(self._ends_wait, condition))
+        except (ExternalShutdownException, ShutdownException, TimeoutException, ConditionReachedException):
+            pass
+        else:
+            self._workers.submit(partial(self._run, item))
+        self._raise_faults()
+
+    def _ends_wait(self, condition: Callable[[], bool] | None) -> bool:
+        return bool(self._faults) or (condition is not None and condition())
+
+    def _raise_faults(self) -> None:
+        if self._faults:
+            raise self._faults.popleft()
+
+    def _run(self, item: Any) -> None:
+        """Run something and, while the executor spins on, what is ready after it, which spares a change of threads."""
+        while item is not None:
+            try:
+                self._execute(item)
+            except BaseException as fault:  # noqa: BLE001  # raised in the thread that spins
+                self._faults.append(fault)
+            item = self._next_of_worker() if self._goes_on else None
+
+    def _next_of_worker(self) -> Any:
+        while not (self._is_shutdown or self._faults) and self._context_ok():
+            item = self._work.take()
+            if item is None or self._admit(item):
+                return item
+        return None
+
+    def _admit(self, item: Any, *, begin: bool = True) -> bool:
+        with self._admission:
+            return super()._admit(item, begin=begin)
+
+
+def _processors() -> int:
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 2

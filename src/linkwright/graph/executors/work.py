@@ -1,0 +1,158 @@
+"""What an executor has to do: things that are ready, alarms that make others ready, and the wait for either."""
+
+from __future__ import annotations
+
+import heapq
+import os
+import threading
+import time
+from collections import deque
+from collections.abc import Callable
+from typing import Any
+
+_LONGEST_WAIT_S = 0.1 if os.name == "nt" else 3600.0
+"""Where a wait does not end by itself when a signal comes (Windows), it is cut into pieces."""
+
+_NANOSECONDS_PER_SECOND = 1_000_000_000
+_MANY_CANCELLED = 64
+
+
+class ScheduledCall:
+    """A callback that the queue will call; see ``WorkQueue.call_at``."""
+
+    __slots__ = ("_queue", "callback", "number", "steady_ns")
+
+    def __init__(self, queue: WorkQueue, steady_ns: int, number: int, callback: Callable[[], None]) -> None:
+        self._queue = queue
+        self.steady_ns = steady_ns
+        self.number = number
+        self.callback: Callable[[], None] | None = callback
+
+    def cancel(self) -> None:
+        """Do not call it."""
+        if self.callback is not None:
+            self.callback = None
+            self._queue.forget_one()
+
+    def __lt__(self, other: ScheduledCall) -> bool:
+        return (self.steady_ns, self.number) < (other.steady_ns, other.number)
+
+
+class WorkQueue:
+    """A queue that any thread may add to. Whoever takes from it also sets off the alarms that are due.
+
+    Adding to it takes no lock while nobody waits, so that a message handed to the own thread costs next to nothing.
+    """
+
+    def __init__(self) -> None:
+        self._ready: deque[Any] = deque()
+        self._alarms: list[ScheduledCall] = []
+        self._numbers = 0
+        self._cancelled = 0
+        self._condition = threading.Condition(threading.RLock())
+        self._waiting = 0
+        self._woken = False
+
+    def add(self, item: Any) -> None:
+        """Put something at the end."""
+        self._ready.append(item)
+        if self._waiting:
+            with self._condition:
+                self._condition.notify_all()
+
+    def add_first(self, items: list[Any]) -> None:
+        """Put things back at the beginning, in their order."""
+        self._ready.extendleft(reversed(items))
+        if self._waiting:
+            with self._condition:
+                self._condition.notify_all()
+
+    def take(self) -> Any:
+        """The first thing that is ready, after the alarms that are due have made theirs so; None without any."""
+        if self._alarms and self._alarms[0].steady_ns <= time.monotonic_ns():
+            self._call_due()
+        try:
+            return self._ready.popleft()
+        except IndexError:
+            return None
+
+    def wait(self, deadline_ns: int | None) -> None:
+        """Wait until something may be ready, an alarm is due, somebody calls `wake`, or `deadline_ns` has come.
+
+        It may also return for no reason.
+        """
+        with self._condition:
+            self._waiting += 1
+            try:
+                if self._ready or self._woken:
+                    return
+                if self._alarms and (deadline_ns is None or self._alarms[0].steady_ns < deadline_ns):
+                    deadline_ns = self._alarms[0].steady_ns
+                seconds = _LONGEST_WAIT_S
+                if deadline_ns is not None:
+                    seconds = min((deadline_ns - time.monotonic_ns()) / _NANOSECONDS_PER_SECOND, seconds)
+                if seconds > 0:
+                    self._condition.wait(seconds)
+            finally:
+                self._waiting -= 1
+                self._woken = False
+
+    def wait_for_wake(self, deadline_ns: int | None) -> None:
+        """Wait until somebody calls `wake`, or `deadline_ns` has come; what is ready stays."""
+        with self._condition:
+            self._waiting += 1
+            try:
+                seconds = _LONGEST_WAIT_S
+                if deadline_ns is not None:
+                    seconds = min((deadline_ns - time.monotonic_ns()) / _NANOSECONDS_PER_SECOND, seconds)
+                if seconds > 0 and not self._woken:
+                    self._condition.wait(seconds)
+            finally:
+                self._waiting -= 1
+                self._woken = False
+
+    def wake(self) -> None:
+        """End the wait of whoever waits, or the next one."""
+        self._woken = True
+        if self._waiting:
+            with self._condition:
+                self._condition.notify_all()
+
+    def call_at(self, steady_ns: int, callback: Callable[[], None]) -> ScheduledCall:
+        """Have something called, by whoever takes from the queue, once ``time.monotonic_ns`` has come to a value."""
+        with self._condition:
+            self._numbers += 1
+            call = ScheduledCall(self, steady_ns, self._numbers, callback)
+            heapq.heappush(self._alarms, call)
+            if self._waiting and self._alarms[0] is call:
+                self._condition.notify_all()
+        return call
+
+    def forget_one(self) -> None:
+        """Take note that an alarm was cancelled; many of them are cleared away."""
+        self._cancelled += 1
+        if self._cancelled > _MANY_CANCELLED:
+            with self._condition:
+                if self._cancelled * 2 > len(self._alarms):
+                    self._alarms = [call for call in self._alarms if call.callback is not None]
+                    heapq.heapify(self._alarms)
+                    self._cancelled = 0
+
+    def clear(self) -> None:
+        """Forget everything."""
+        with self._condition:
+            self._ready.clear()
+            self._alarms.clear()
+            self._cancelled = 0
+
+    def _call_due(self) -> None:
+        while True:
+            with self._condition:
+                if not self._alarms or self._alarms[0].steady_ns > time.monotonic_ns():
+                    return
+                call = heapq.heappop(self._alarms)
+                callback, call.callback = call.callback, None
+                if callback is None:
+                    self._cancelled -= 1
+                    continue
+            callback()

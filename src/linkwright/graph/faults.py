@@ -1,0 +1,26 @@
+"""Errors of a program that uses the graph wrongly, with the classes that rclpy raises as their patterns."""
+
+from __future__ import annotations
+
+
+class InvalidHandleError(RuntimeError):
+    """Something is used that was destroyed (rclpy ``InvalidHandle``)."""
+
+    def __init__(self, text: str = "cannot use Destroyable because destruction was requested") -> None:
+        super().__init__(text)
+
+
+class InterruptedWaitError(Exception):
+    """A wait or sleep was ended because the graph is closed (rclpy ``ROSInterruptException``)."""
+
+    def __init__(self, text: str = "rclpy.shutdown() has been called") -> None:
+        super().__init__(text)
+
+
+class NodeNotFoundError(RuntimeError):
+    """There is no node of a name (rclpy ``NodeNameNonExistentError``)."""
+
+    def __init__(self, name: str, namespace: str) -> None:
+        super().__init__(f"Cannot get the names and types of node '{name}' in namespace '{namespace}': there is none")
+        self.name = name
+        self.namespace = namespace

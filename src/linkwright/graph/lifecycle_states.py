@@ -1,0 +1,121 @@
+"""The state machine of managed nodes: states and transitions with the numbers and labels of lifecycle_msgs.
+
+Its design is that of "Managed nodes" (design.ros2.org), its tables those of rcl_lifecycle.
+"""
+
+from __future__ import annotations
+
+from enum import IntEnum
+from typing import NamedTuple
+
+
+class TransitionCallbackReturn(IntEnum):
+    """What a callback says of its transition; numbers of lifecycle_msgs/msg/Transition."""
+
+    SUCCESS = 97
+    FAILURE = 98
+    ERROR = 99
+
+    def to_label(self) -> str:
+        """The label by which the outcome is triggered."""
+        return f"transition_{self.name.lower()}"
+
+
+class LifecycleState(NamedTuple):
+    """A state, as callbacks get it."""
+
+    label: str
+    state_id: int
+
+
+UNKNOWN = LifecycleState("unknown", 0)
+UNCONFIGURED = LifecycleState("unconfigured", 1)
+INACTIVE = LifecycleState("inactive", 2)
+ACTIVE = LifecycleState("active", 3)
+FINALIZED = LifecycleState("finalized", 4)
+CONFIGURING = LifecycleState("configuring", 10)
+CLEANINGUP = LifecycleState("cleaningup", 11)
+SHUTTINGDOWN = LifecycleState("shuttingdown", 12)
+ACTIVATING = LifecycleState("activating", 13)
+DEACTIVATING = LifecycleState("deactivating", 14)
+ERRORPROCESSING = LifecycleState("errorprocessing", 15)
+
+STATES = (
+    UNKNOWN,
+    UNCONFIGURED,
+    INACTIVE,
+    ACTIVE,
+    FINALIZED,
+    CONFIGURING,
+    CLEANINGUP,
+    SHUTTINGDOWN,
+    ACTIVATING,
+    DEACTIVATING,
+    ERRORPROCESSING,
+)
+
+
+class Transition(NamedTuple):
+    """A way from one state to another.
+
+    Attributes:
+        transition_id: its number.
+        label: what sets it off: what is asked for, or ``transition_success`` and the like for how that went.
+        start: where it begins.
+        goal: where it ends.
+    """
+
+    transition_id: int
+    label: str
+    start: LifecycleState
+    goal: LifecycleState
+
+
+def _endings(
+    number: int, through: LifecycleState, success: LifecycleState, failure: LifecycleState, error: LifecycleState
+) -> list[Transition]:
+    """The three ways in which a transition ends."""
+    ends = (("success", success), ("failure", failure), ("error", error))
+    return [Transition(number + place, f"transition_{name}", through, end) for place, (name, end) in enumerate(ends)]
+
+
+def _asked(
+    number: int, label: str, start: LifecycleState, through: LifecycleState, goal: LifecycleState
+) -> list[Transition]:
+    """A transition that users ask for, with its endings, whose numbers begin with ten times its own."""
+    return [
+        Transition(number, label, start, through),
+        *_endings(number * 10, through, goal, start, ERRORPROCESSING),
+    ]
+
+
+TRANSITIONS = (
+    *_asked(1, "configure", UNCONFIGURED, CONFIGURING, INACTIVE),
+    *_asked(2, "cleanup", INACTIVE, CLEANINGUP, UNCONFIGURED),
+    *_asked(3, "activate", INACTIVE, ACTIVATING, ACTIVE),
+    *_asked(4, "deactivate", ACTIVE, DEACTIVATING, INACTIVE),
+    Transition(5, "shutdown", UNCONFIGURED, SHUTTINGDOWN),
+    Transition(6, "shutdown", INACTIVE, SHUTTINGDOWN),
+    Transition(7, "shutdown", ACTIVE, SHUTTINGDOWN),
+    *_endings(50, SHUTTINGDOWN, FINALIZED, FINALIZED, ERRORPROCESSING),
+    *_endings(60, ERRORPROCESSING, UNCONFIGURED, FINALIZED, FINALIZED),
+)
+
+
+class StateMachine:
+    """Where a managed node stands."""
+
+    def __init__(self) -> None:
+        self.state = UNCONFIGURED
+
+    def available(self) -> list[Transition]:
+        """The transitions that begin where the node stands."""
+        return [each for each in TRANSITIONS if each.start == self.state]
+
+    def by_id(self, transition_id: int) -> Transition | None:
+        """The available transition of a number; None when there is none."""
+        return next((each for each in self.available() if each.transition_id == transition_id), None)
+
+    def by_label(self, label: str) -> Transition | None:
+        """The available transition of a label; None when there is none."""
+        return next((each for each in self.available() if each.label == label), None)

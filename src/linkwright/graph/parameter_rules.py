@@ -1,0 +1,59 @@
+"""Values for parameters of nodes that are named by patterns: what parameter files and ``-p`` say together."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from functools import lru_cache
+from typing import Any
+
+ANY_NODE = "/**"
+
+
+class ParameterRules:
+    """Parameter values by node name pattern.
+
+    A pattern is a node's full name, in which ``*`` stands for one part and ``**`` for any number of parts. As in rcl
+    the patterns count in the order in which they came up first, and for a node the later of two that fit it wins.
+    """
+
+    def __init__(self) -> None:
+        self._values: dict[str, dict[str, Any]] = {}
+
+    def __bool__(self) -> bool:
+        return bool(self._values)
+
+    def __iter__(self) -> Iterator[tuple[str, Mapping[str, Any]]]:
+        """Patterns with their values by parameter name."""
+        return iter(self._values.items())
+
+    def set(self, pattern: str, name: str, value: Any) -> None:
+        """Give a parameter a value, instead of the one that the same pattern gave it before."""
+        self.section(pattern)[name] = value
+
+    def section(self, pattern: str) -> dict[str, Any]:
+        """The values of a pattern, to which may be added; a missing leading slash is added."""
+        return self._values.setdefault(pattern if pattern.startswith("/") else f"/{pattern}", {})
+
+    def add(self, other: ParameterRules) -> None:
+        """Add rules that come after these."""
+        for pattern, values in other:
+            self.section(pattern).update(values)
+
+    def for_node(self, full_name: str) -> dict[str, Any]:
+        """The values for a node, by parameter name.
+
+        Args:
+            full_name: its namespace and name, such as ``/robot/talker``.
+        """
+        found: dict[str, Any] = {}
+        for pattern, values in self._values.items():
+            if _expression(pattern).fullmatch(full_name):
+                found.update(values)
+        return found
+
+
+@lru_cache(maxsize=256)
+def _expression(pattern: str) -> re.Pattern[str]:
+    escaped = re.escape(pattern).replace(r"/\*\*", r"(/\w+)*").replace(r"/\*", r"(/\w+)")
+    return re.compile(escaped)

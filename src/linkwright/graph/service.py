@@ -1,0 +1,141 @@
+"""Answers the requests to a service."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Awaitable, Callable
+from functools import partial
+from inspect import isawaitable
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+from linkwright.graph.copies import copy_of
+from linkwright.graph.dispatch import CallbackGroup
+from linkwright.graph.endpoint import Endpoint
+from linkwright.graph.entity import Entity
+from linkwright.graph.qos import QoSProfile
+from linkwright.graph.transport import EndpointKind, MessageInfo
+
+if TYPE_CHECKING:
+    from linkwright.graph.node import Node
+
+Request = TypeVar("Request")
+Response = TypeVar("Response")
+
+Reply = Callable[[Any], None]
+"""Sends a response to whoever asked; from any thread, once."""
+
+
+class Service(Endpoint, Entity, Generic[Request, Response]):
+    """Answers the requests to a service; made by ``Node.create_service``.
+
+    Args:
+        callback: called with a request and an empty response, and gives the response; it may be a coroutine function.
+        replying: whether the callback is given, in place of the empty response, what sends the response, whenever
+            that may be.
+    """
+
+    kind = EndpointKind.SERVICE
+
+    def __init__(
+        self,
+        node: Node,
+        srv_type: Any,
+        srv_name: str,
+        qos_profile: QoSProfile,
+        callback: Callable[[Request, Response], Response | Awaitable[Response]],
+        callback_group: CallbackGroup | None = None,
+        *,
+        replying: bool = False,
+    ) -> None:
+        Entity.__init__(self, node, callback_group)
+        self._describe(node, srv_type, srv_name, qos_profile)
+        self.callback: Callable[[Any, Any], Any] = callback
+        self._replying = replying
+        self._waiting: deque[tuple[Request, Reply, MessageInfo | None]] = deque(maxlen=qos_profile.queue_length)
+
+    @property
+    def what(self) -> str:
+        """What it is, for messages."""
+        return f"callback of service '{self.name}'"
+
+    @property
+    def srv_name(self) -> str:
+        """The service's absolute name."""
+        return self.name
+
+    @property
+    def service_name(self) -> str:
+        """The service's absolute name."""
+        return self.name
+
+    @property
+    def srv_type(self) -> Any:
+        """The class of the service."""
+        return self.interface
+
+    def receive(self, request: Request, reply: Reply, info: MessageInfo | None = None) -> None:
+        """Have a request answered, from any thread.
+
+        Args:
+            request: the request.
+            reply: called with the response, from any thread, or never.
+            info: where it comes from; needed where that is another process.
+        """
+        self._waiting.append((request, reply, info))
+        self.announce()
+
+    def has_work(self) -> bool:
+        """Whether requests wait."""
+        return bool(self._waiting)
+
+    def take(self) -> Callable[[], object] | None:
+        """The answering of the request that waits longest."""
+        self._announced = False
+        try:
+            request, reply, _ = self._waiting.popleft()
+        except IndexError:
+            return None
+        if self._waiting:
+            self.announce()
+        return partial(self._answer, request, reply)
+
+    def send_response(self, response: Response, header: Reply) -> None:
+        """Send a response.
+
+        Args:
+            response: the response.
+            header: what came with the request.
+
+        Raises:
+            TypeError: the response is not of the service's type.
+        """
+        if not isinstance(response, self.srv_type.Response):
+            raise TypeError(f"Expected {self.srv_type.Response}, got {type(response)}: the response of '{self.name}'")
+        header(copy_of(response) if self.node.copies_messages else response)
+
+    def destroy(self) -> None:
+        """Leave the graph and the node."""
+        self.node.destroy_service(self)
+
+    def retire(self) -> None:
+        """Answer no more."""
+        super().retire()
+        self._waiting.clear()
+
+    def __enter__(self) -> Service[Request, Response]:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.destroy()
+
+    def _answer(self, request: Request, reply: Reply) -> object:
+        if self._replying:
+            return self.callback(request, partial(self.send_response, header=reply))
+        response = self.callback(request, self.srv_type.Response())
+        if isawaitable(response):
+            return self._answer_later(response, reply)
+        self.send_response(response, reply)
+        return None
+
+    async def _answer_later(self, response: Awaitable[Response], reply: Reply) -> None:
+        self.send_response(await response, reply)

@@ -1,0 +1,286 @@
+"""Receives the messages of a topic."""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum
+from functools import partial
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph.dispatch import CallbackGroup, Dispatcher
+from linkwright.graph.endpoint import Endpoint
+from linkwright.graph.entity import Entity
+from linkwright.graph.qos import QoSProfile
+from linkwright.graph.signatures import accepts
+from linkwright.graph.transport import EndpointKind, MessageInfo
+from linkwright.messages import deserialize, serialize
+
+if TYPE_CHECKING:
+    from linkwright.graph.events import SubscriptionEventCallbacks, SubscriptionEvents
+    from linkwright.graph.node import Node
+    from linkwright.graph.publisher import Publisher
+
+M = TypeVar("M")
+
+
+@dataclass(slots=True)
+class Detailed:
+    """A message that waits with what is known of it.
+
+    Attributes:
+        message: the message, or its CDR bytes.
+        info: where and when it came from.
+        expires_ns: when it is worth nothing any more, by the graph's steady count; None for never.
+    """
+
+    message: Any
+    info: MessageInfo | None = None
+    expires_ns: int | None = None
+
+
+class CallbackType(Enum):
+    """What a callback takes (rclpy ``Subscription.CallbackType``)."""
+
+    MessageOnly = 0
+    WithMessageInfo = 1
+
+
+class Subscription(Endpoint, Entity, Generic[M]):
+    """Receives the messages of a topic; made by ``Node.create_subscription``.
+
+    Messages wait in a queue as long as the quality of service says; when one comes that is too many, the oldest is
+    dropped.
+    """
+
+    kind = EndpointKind.SUBSCRIPTION
+    CallbackType = CallbackType
+
+    def __init__(
+        self,
+        node: Node,
+        msg_type: type[M] | str,
+        topic_name: str,
+        qos_profile: QoSProfile,
+        callback: Callable[..., object],
+        callback_group: CallbackGroup | None = None,
+        *,
+        raw: bool = False,
+        event_callbacks: SubscriptionEventCallbacks | None = None,
+    ) -> None:
+        Entity.__init__(self, node, callback_group)
+        self._describe(node, msg_type, topic_name, qos_profile)
+        self.raw = raw
+        self.malformed = 0
+        """How many messages from outside could not be read."""
+        self._waiting: deque[Any] = deque(maxlen=qos_profile.queue_length)
+        self._as_it_is: type | None = None
+        self._wants_info = False
+        self.callback = callback
+        self.event_callbacks = event_callbacks
+        self.events: SubscriptionEvents | None = None
+        self._outside_count = 0
+        self._publishers: dict[Publisher[Any], None] = {}
+
+    @property
+    def what(self) -> str:
+        """What it is, for messages."""
+        return f"callback of topic '{self.name}'"
+
+    @property
+    def topic_name(self) -> str:
+        """The topic's absolute name."""
+        return self.name
+
+    @property
+    def topic(self) -> str:
+        """The topic's absolute name."""
+        return self.name
+
+    @property
+    def msg_type(self) -> type[M]:
+        """The message class."""
+        return self.interface  # type: ignore[no-any-return]  # made from the name of a type
+
+    @property
+    def callback(self) -> Callable[..., object]:
+        """What is called: with the message, or, when it takes two arguments, with the message and a `MessageInfo`.
+
+        Raises:
+            RuntimeError: what is assigned takes neither one argument nor two.
+        """
+        return self._callback
+
+    @callback.setter
+    def callback(self, callback: Callable[..., object]) -> None:
+        if accepts(callback, 1, unknown=True):
+            self._wants_info = False
+        elif accepts(callback, 2, unknown=False):
+            self._wants_info = True
+        else:
+            raise RuntimeError(
+                "Subscription.__init__(): callback should be either be callable with one argument (to get only the "
+                "message) or two (to get message and message info)"
+            )
+        self._callback = callback
+        self._as_it_is = None
+
+    @property
+    def _callback_type(self) -> Enum:
+        return CallbackType.WithMessageInfo if self._wants_info else CallbackType.MessageOnly
+
+    @property
+    def wants_info(self) -> bool:
+        """Whether the callback takes a `MessageInfo`."""
+        return self._wants_info
+
+    def get_publisher_count(self) -> int:
+        """How many publishers it receives from."""
+        return len(self._publishers) + self._outside_count
+
+    def set_outside_count(self, count: int) -> None:
+        """For the transport: how many publishers outside match."""
+        before, self._outside_count = self._outside_count, count
+        if self.events is not None and count != before:
+            self.events.matched(count - before)
+
+    def incompatible_outside(self, policy: str, remote_name: str) -> None:
+        """For the transport: a publisher outside offers less than this asks for."""
+        from linkwright.graph.matching import tell_subscription
+
+        tell_subscription(self, policy, f"'{remote_name}' is outside")
+
+    def lost_outside(self, count: int) -> None:
+        """For the transport: messages from outside were lost."""
+        if self.events is not None:
+            self.events.lost(count)
+
+    def receive(self, message: M | bytes | Detailed, info: MessageInfo | None = None) -> None:
+        """Have the callback called with a message, from any thread.
+
+        Args:
+            message: the message, or its CDR bytes, which are read when the callback's turn comes.
+            info: where it comes from; needed where that is another process.
+        """
+        self._waiting.append(message if info is None else Detailed(message, info))
+        if not self._announced:
+            dispatcher = self.dispatcher
+            if dispatcher is not None:
+                self._announced = True
+                dispatcher.ready(self)
+
+    def receiver(self, publisher: Publisher[Any]) -> Callable[[Any], None]:
+        """What a publisher of this process calls with each message."""
+        lifespan_ns = publisher.lifespan_ns
+        if not self._wants_info and lifespan_ns is None and self.events is None:
+            return self.receive
+
+        def receive(message: Any) -> None:
+            info = None
+            if self._wants_info:
+                now_ns = self.node.timebase.now_ns()
+                info = MessageInfo(now_ns, now_ns, publisher.gid)
+            expires_ns = None if lifespan_ns is None else self.node.timebase.steady_ns() + lifespan_ns
+            if self.events is not None:
+                self.events.received(len(self._waiting) == self._waiting.maxlen)
+            self.receive(Detailed(message, info, expires_ns))
+
+        return receive
+
+    def connected(self, publisher: Publisher[Any]) -> None:
+        """Take note of a publisher of this process that sends here."""
+        self._publishers[publisher] = None
+        if self.events is not None:
+            self.events.matched(1)
+
+    def disconnected(self, publisher: Publisher[Any]) -> None:
+        """Take note that a publisher sends here no longer."""
+        if self._publishers.pop(publisher, self) is None and self.events is not None:
+            self.events.matched(-1)
+
+    def has_work(self) -> bool:
+        """Whether messages wait."""
+        return bool(self._waiting)
+
+    def take(self) -> Callable[[], object] | None:
+        """The callback with the message that waits longest."""
+        self._announced = False
+        waiting = self._waiting
+        try:
+            message = waiting.popleft()
+        except IndexError:
+            return None
+        if waiting:
+            self.announce()
+        if type(message) is self._as_it_is:
+            return partial(self._callback, message)
+        return self._prepared(message)
+
+    def set_dispatcher(self, dispatcher: Dispatcher | None) -> None:
+        """Have the calls run by a dispatcher from now on."""
+        super().set_dispatcher(dispatcher)
+        if self.events is not None:
+            self.events.set_dispatcher(dispatcher)
+
+    def discard(self) -> None:
+        """Drop what waits."""
+        self._waiting.clear()
+
+    def destroy(self) -> None:
+        """Leave the topic and the node."""
+        self.node.destroy_subscription(self)
+
+    def retire(self) -> None:
+        """Never call back again."""
+        super().retire()
+        self.discard()
+        if self.events is not None:
+            self.events.retire()
+
+    def __enter__(self) -> Subscription[M]:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.destroy()
+
+    def _prepared(self, item: Any) -> Callable[[], object] | None:
+        """The call for something that is not simply a message of the type."""
+        if type(item) is bytes and not self._wants_info and not self.raw:
+            message = self._read(item)
+            return None if message is None else partial(self._callback, message)
+        detailed = item if type(item) is Detailed else Detailed(item)
+        if detailed.expires_ns is not None and self.node.timebase.steady_ns() > detailed.expires_ns:
+            return None
+        message = detailed.message
+        if self.raw:
+            message = self._as_bytes(message)
+        elif isinstance(message, (bytes, bytearray, memoryview)):
+            message = self._read(message)
+            if message is None:
+                return None
+        elif item is message and not self._wants_info:
+            self._as_it_is = type(message)
+        if self._wants_info:
+            return partial(self._callback, message, detailed.info or MessageInfo(time.time_ns(), time.time_ns()))
+        return partial(self._callback, message)
+
+    def _as_bytes(self, message: Any) -> bytes:
+        if isinstance(message, bytes):
+            return message
+        return serialize(message)
+
+    def _read(self, data: bytes | bytearray | memoryview) -> Any:
+        """The message that bytes are; None, which is told of once, when they are none."""
+        try:
+            return deserialize(data, self.msg_type)
+        except LinkwrightError as error:
+            self._refuse(error)
+            return None
+
+    def _refuse(self, error: LinkwrightError) -> None:
+        self.malformed += 1
+        if self.malformed == 1:
+            self.node.get_logger().warning(f"Dropped a malformed message of topic '{self.name}': {error}")

@@ -1,0 +1,48 @@
+"""Sends transforms to ``/tf`` and ``/tf_static``, as ``tf2_ros`` does."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from linkwright.graph.qos import STATIC_TF_PUBLISHER_QOS, TF_QOS, QoSProfile
+from linkwright.messages import TFMessage, TransformStamped
+
+
+class TransformBroadcaster:
+    """Publishes transforms that change.
+
+    Args:
+        node: publishes.
+        qos: that of the publisher.
+    """
+
+    def __init__(self, node: Any, qos: QoSProfile | int = TF_QOS) -> None:
+        self.pub_tf = node.create_publisher(TFMessage, "/tf", qos)
+
+    def sendTransform(self, transform: TransformStamped | Sequence[TransformStamped]) -> None:  # noqa: N802
+        """Publish one transform, or several in one message."""
+        self.pub_tf.publish(TFMessage(transforms=_listed(transform)))
+
+
+class StaticTransformBroadcaster:
+    """Publishes transforms that do not change: each message has all that were sent so far, for those who come late.
+
+    Args:
+        node: publishes.
+        qos: that of the publisher.
+    """
+
+    def __init__(self, node: Any, qos: QoSProfile | int = STATIC_TF_PUBLISHER_QOS) -> None:
+        self.pub_tf = node.create_publisher(TFMessage, "/tf_static", qos)
+        self._sent: dict[str, TransformStamped] = {}
+
+    def sendTransform(self, transform: TransformStamped | Sequence[TransformStamped]) -> None:  # noqa: N802
+        """Publish transforms; one that was sent before for the same child frame is replaced."""
+        for each in _listed(transform):
+            self._sent[each.child_frame_id] = each
+        self.pub_tf.publish(TFMessage(transforms=list(self._sent.values())))
+
+
+def _listed(transform: Any) -> list[TransformStamped]:
+    return list(transform) if isinstance(transform, (list, tuple)) else [transform]

@@ -1,0 +1,122 @@
+"""The viewers of a launch: the page in the browser that stands in for RViz."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import sys
+import threading
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from linkwright.diagnostics import Diagnostic
+from linkwright.launch.engine.hosted_plan import HostedPlan
+from linkwright.launch.engine.viewer_arguments import read_viewer_config
+
+if TYPE_CHECKING:
+    from linkwright.graph import Graph
+    from linkwright.launch.engine.session import LaunchSession
+    from linkwright.nodes import RunningNode
+    from linkwright.viewer import Viewer
+
+_CLOSE_SECONDS = 0.8
+
+
+class ViewerHost:
+    """Starts, holds and ends viewers."""
+
+    def __init__(self, session: LaunchSession) -> None:
+        self._session = session
+        self._viewers: dict[str, tuple[HostedPlan, Viewer]] = {}
+        self._findings: list[Diagnostic] = []
+
+    def __bool__(self) -> bool:
+        return bool(self._viewers)
+
+    def plans(self) -> Iterator[HostedPlan]:
+        """The plans of those that run."""
+        return iter([plan for plan, _ in self._viewers.values()])
+
+    def show_findings(self, findings: list[Diagnostic]) -> None:
+        """Show what is wrong with the model files now."""
+        self._findings = findings
+        for _, viewer in self._viewers.values():
+            viewer.show_diagnostics(findings)
+
+    def attach_panel(self, running: RunningNode) -> None:
+        """Show the sliders of a node, if it has any."""
+        for _, viewer in self._viewers.values():
+            _attach_panel(viewer, running)
+
+    async def start(self, plan: HostedPlan, graph: Graph, nodes: list[RunningNode]) -> None:
+        """Start a viewer, and say where it is.
+
+        Args:
+            plan: how.
+            graph: what it shows.
+            nodes: those that run already.
+
+        Raises:
+            LinkwrightError: why it cannot start.
+        """
+        from linkwright.viewer import Viewer
+
+        session = self._session
+        if plan.viewer_config is not None:
+            config, findings = plan.viewer_config(), list[Diagnostic]()
+        else:
+            config, findings = read_viewer_config(plan.arguments)
+        session.log.diagnostics(findings)
+        viewer = Viewer(
+            graph,
+            library=session.descriptions.library,
+            finder=session.finder,
+            config=config,
+            host=session.options.host,
+            port=session.options.port,
+            title=session.options.title,
+            name=plan.node_name or plan.executable,
+            namespace=plan.namespace,
+            remappings=plan.remappings,
+        )
+        await viewer.start()
+        self._viewers[plan.process_name] = plan, viewer
+        session.log.announce(f"Viewer: {viewer.url}")
+        if session.options.open_browser:
+            _open_in_browser(viewer.url)
+        session.log.say(
+            plan.process_name, "started in the launcher's process: the viewer in the browser stands in for RViz"
+        )
+        viewer.show_diagnostics([*self._findings, *findings])
+        for running in nodes:
+            _attach_panel(viewer, running)
+
+    def take(self, plan: HostedPlan) -> Viewer:
+        """A viewer that is to be ended, which this host then holds no longer."""
+        return self._viewers.pop(plan.process_name)[1]
+
+    async def stop(self, plan: HostedPlan, viewer: Viewer) -> None:
+        """End a viewer."""
+        try:
+            await asyncio.wait_for(viewer.close(), _CLOSE_SECONDS)
+        except asyncio.TimeoutError:
+            self._session.log.caution(plan.process_name, "a browser did not let go of its connection in time")
+
+
+def _attach_panel(viewer: Viewer, running: RunningNode) -> None:
+    panel = getattr(running, "panel", None)
+    if panel is not None:
+        viewer.attach_joint_panel(panel)
+
+
+def _open_in_browser(url: str) -> None:
+    """Open the page; in a thread, because some browsers take their time to answer.
+
+    Not where there is no display: a browser for the terminal would take ours.
+    """
+    displays = ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER")
+    if sys.platform.startswith("linux") and not any(os.environ.get(name) for name in displays):
+        return
+    import webbrowser
+
+    threading.Thread(target=webbrowser.open, args=(url,), name="linkwright-browser", daemon=True).start()

@@ -1,0 +1,163 @@
+r"""Substitutions in text: ``$(name argument ...)``, with quotes, escapes and substitutions inside.
+
+The rules are those of ``launch.frontend``. A backslash takes any meaning from the character after it. Arguments are
+divided by blanks; one with blanks in it stands in single or double quotes. Inside these, quotes of the same kind are
+written with a backslash, and a substitution there has arguments without quotes.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Any, NoReturn
+
+from linkwright.diagnostics import did_you_mean
+from linkwright.launch.frontend.entity import place_of
+from linkwright.launch.frontend.expose import instantiate_substitution, substitution_parse_methods
+from linkwright.launch.places import MarkupPlace, Place, error_at, reading
+from linkwright.launch.substitution import Substitution, TextSubstitution
+
+_NAME = re.compile(r"[A-Za-z][\w-]*")
+_ESCAPED = re.compile(r"\\(.)", re.DOTALL)
+_BLANK = " \t\r\n"
+_UNQUOTED_END = frozenset(_BLANK + "()")
+
+
+def replace_escaped_characters(data: str) -> str:
+    """The text with each backslash gone that stands before a character."""
+    return _ESCAPED.sub(r"\1", data)
+
+
+def parse_substitution(string_value: str) -> list[Substitution]:
+    """A text as a list of substitutions.
+
+    Raises:
+        ValueError: LAUNCH119, it cannot be read.
+        RuntimeError: LAUNCH119, there is no such substitution.
+    """
+    if not string_value:
+        return [TextSubstitution(text=string_value)]
+    return _Reader(string_value, place_of(string_value)).template()
+
+
+def parse_if_substitutions(value: Any) -> Any:
+    """A value with the substitutions in its texts; texts without any stay texts.
+
+    Raises:
+        ValueError: a list has plain values of several types.
+    """
+    if not isinstance(value, list):
+        return _parse_if(value)
+    parsed = [_parse_if(item) for item in value]
+    if len({str if isinstance(item, str) else type(item) for item in parsed if not isinstance(item, list)}) > 1:
+        raise ValueError("The result is a non-uniform list")
+    return parsed
+
+
+def _parse_if(value: Any) -> Any:
+    if not isinstance(value, str):
+        return value
+    parts = parse_substitution(value)
+    return parts[0].text if len(parts) == 1 and isinstance(parts[0], TextSubstitution) else parts
+
+
+class _Reader:
+    """Reads one text from its begin to its end."""
+
+    def __init__(self, text: str, place: Place | None) -> None:
+        self._text = text
+        self._at = 0
+        self._place = place
+
+    def template(self) -> list[Substitution]:
+        """The whole text."""
+        parts = self._parts(until="", argument=False)
+        assert self._at == len(self._text)
+        return parts
+
+    def _parts(self, until: str, argument: bool) -> list[Substitution]:
+        """Text and substitutions up to an end.
+
+        Args:
+            until: the quote that ends them, left unread; empty outside of quotes.
+            argument: whether they are an argument, so that a blank or a parenthesis ends them too.
+        """
+        parts: list[Substitution] = []
+        start = self._at
+        while self._at < len(self._text):
+            character = self._text[self._at]
+            if character == until or (argument and character in _UNQUOTED_END):
+                break
+            if self._text.startswith("$(", self._at):
+                self._add_text(parts, start)
+                parts.append(self._substitution(until))
+                start = self._at
+            elif argument and not until and character in "'\"":
+                self._fail(f"a quote inside the argument {self._text[start : self._at]!r}", "quote the whole argument")
+            else:
+                self._at += 2 if character == "\\" and self._at + 1 < len(self._text) else 1
+        self._add_text(parts, start)
+        return parts
+
+    def _add_text(self, parts: list[Substitution], start: int) -> None:
+        if start < self._at:
+            with reading(self._part(start, self._at)):
+                parts.append(TextSubstitution(text=replace_escaped_characters(self._text[start : self._at])))
+
+    def _substitution(self, quote: str) -> Substitution:
+        start = self._at
+        self._at += 2
+        name = _NAME.match(self._text, self._at)
+        if name is None:
+            self._fail("no name after '$('", r"write \$( for the characters themselves")
+        self._at = name.end()
+        arguments = []
+        while True:
+            blank = self._skip_blanks()
+            if self._at >= len(self._text) or self._text[self._at] == quote:
+                end, self._at = self._at, start
+                self._fail(f"'{self._text[start:end]}' has no closing parenthesis", "end it with ')'")
+            if self._text[self._at] == ")":
+                break
+            if not blank:
+                self._unexpected(name[0])
+            arguments.append(self._argument(quote))
+        self._at += 1
+        return instantiate_substitution(name[0], arguments, self._part(start, self._at))
+
+    def _argument(self, quote: str) -> list[Substitution]:
+        opening = self._text[self._at]
+        if quote or opening not in "'\"":
+            start = self._at
+            parts = self._parts(until=quote, argument=True)
+            if self._at == start:
+                self._fail("an opening parenthesis in an argument", r"put quotes around it, or write \(")
+            return parts
+        start = self._at
+        self._at += 1
+        parts = self._parts(until=opening, argument=False)
+        if self._at >= len(self._text):
+            self._at = start
+            self._fail(f"the quote {opening} is never closed", f"close it, or write \\{opening} for the character")
+        self._at += 1
+        return parts
+
+    def _skip_blanks(self) -> bool:
+        start = self._at
+        while self._at < len(self._text) and self._text[self._at] in _BLANK:
+            self._at += 1
+        return self._at > start
+
+    def _unexpected(self, name: str) -> NoReturn:
+        character = self._text[self._at]
+        hint = None if name in substitution_parse_methods else did_you_mean(name, substitution_parse_methods)
+        if character == "(":
+            hint = hint or r"put quotes around it, or write \("
+        self._fail(f"{character!r} after '{self._text[: self._at][-20:]}'", hint or "divide arguments by blanks")
+
+    def _part(self, start: int, end: int) -> Place | None:
+        return self._place.part(start, end) if isinstance(self._place, MarkupPlace) else self._place
+
+    def _fail(self, message: str, hint: str) -> NoReturn:
+        place = self._part(self._at, self._at + 1)
+        text = f"substitution in '{self._text}' cannot be read: {message}"
+        raise error_at(place, "LAUNCH119", text, hint, promises=ValueError(text))

@@ -1,0 +1,236 @@
+"""Readers of launch files in markup languages, and which of them reads which file."""
+
+from __future__ import annotations
+
+import io
+import os
+import traceback
+import warnings
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path
+from linkwright.launch.frontend import grammar
+from linkwright.launch.frontend.expose import instantiate_action
+from linkwright.launch.invalid_file import InvalidFrontendLaunchFileError
+from linkwright.launch.places import error_at
+from linkwright.launch.promises import keeping
+
+if TYPE_CHECKING:
+    from linkwright.launch.description import LaunchDescription
+    from linkwright.launch.entity import Action
+    from linkwright.launch.frontend.entity import Entity
+    from linkwright.launch.substitution import Substitution
+
+_OUR_EXTENSIONS = ("linkwright.launch.actions", "linkwright.launch.substitutions", "linkwright.launch.ros")
+
+
+class Parser:
+    """Makes actions and substitutions out of entities. A parser for a language overrides `load`."""
+
+    extensions_loaded: ClassVar[bool] = False
+    frontend_parsers: ClassVar[dict[str, type[Parser]] | None] = None
+
+    @classmethod
+    def load_launch_extensions(cls) -> None:
+        """Import what exposes actions and substitutions: ours, and that of packages with such an entry point."""
+        if Parser.extensions_loaded:
+            return
+        import importlib
+
+        for module in _OUR_EXTENSIONS:
+            importlib.import_module(module)
+        for entry_point in _entry_points("launch.frontend.launch_extension"):
+            _load(entry_point, "launch extension")
+        Parser.extensions_loaded = True
+
+    @classmethod
+    def load_parser_implementations(cls) -> None:
+        """Find the parsers: ours for XML and YAML, and those of packages with such an entry point."""
+        if Parser.frontend_parsers is not None:
+            return
+        from linkwright.launch.frontend import xml, yaml
+
+        parsers: dict[str, type[Parser]] = {"xml": xml.Parser, "yaml": yaml.Parser}
+        for entry_point in _entry_points("launch.frontend.parser"):
+            loaded = _load(entry_point, "parser extension")
+            if loaded is not None:
+                parsers.setdefault(entry_point.name, loaded)
+        Parser.frontend_parsers = dict(sorted(parsers.items()))
+
+    # --- what functions that read tags ask for ---------------------------------------------------------------
+
+    def parse_action(self, entity: Entity) -> Action:
+        """The action of an entity."""
+        self.load_launch_extensions()
+        return instantiate_action(entity, self)
+
+    def parse_substitution(self, value: str) -> list[Substitution]:
+        """A text with ``$(...)`` in it, as substitutions."""
+        self.load_launch_extensions()
+        return grammar.parse_substitution(value)
+
+    def parse_if_substitutions(self, value: Any) -> Any:
+        """A value with the substitutions in its texts."""
+        self.load_launch_extensions()
+        return grammar.parse_if_substitutions(value)
+
+    def escape_characters(self, value: str) -> str:
+        """The text with its escapes resolved."""
+        return grammar.replace_escaped_characters(value)
+
+    def parse_description(self, entity: Entity) -> LaunchDescription:
+        """The launch description of a root entity.
+
+        Raises:
+            RuntimeError: LAUNCH109, the root is not called ``launch``.
+        """
+        from linkwright.launch.description import LaunchDescription
+
+        if entity.type_name != "launch":
+            promised = RuntimeError("Expected 'launch' as root tag")
+            message = f"the root of a launch file is 'launch', and this is '{entity.type_name}'"
+            raise error_at(entity.place, "LAUNCH109", message, promises=promised)
+        deprecated = entity.get_attr("deprecated", optional=True)
+        actions = []
+        problems = []
+        for child in entity.children:
+            try:
+                actions.append(self.parse_action(child))
+            except LinkwrightError as error:  # noqa: PERF203 - independent errors are told together
+                problems.append(error)
+        if len(problems) == 1:
+            raise problems[0]
+        if problems:
+            problems[0].diagnostics = tuple(each for problem in problems for each in problem.diagnostics)
+            raise problems[0]
+        entity.assert_entity_completely_parsed()
+        return LaunchDescription(actions, deprecated_reason=deprecated)
+
+    # --- which parser reads a file ----------------------------------------------------------------------------
+
+    @classmethod
+    def get_file_extensions(cls) -> set[str]:
+        """How the names of files end that this parser reads, without the first dot."""
+        return set()
+
+    @classmethod
+    def may_parse(cls, filename: str) -> bool:
+        """Whether the name of a file is one for this parser."""
+        return any(filename.endswith("." + extension) for extension in cls.get_file_extensions())
+
+    @classmethod
+    def get_available_extensions(cls) -> list[str]:
+        """The names of the parsers."""
+        return list(cls._parsers())
+
+    @classmethod
+    def is_extension_valid(cls, extension: str) -> bool:
+        """Whether there is a parser of this name."""
+        warnings.warn("Parser.is_extension_valid is deprecated, use Parser.is_filename_valid instead", stacklevel=2)
+        return extension in cls._parsers()
+
+    @classmethod
+    def get_parser_from_extension(cls, extension: str) -> type[Parser]:
+        """The parser of a name."""
+        warnings.warn(
+            "Parser.get_parser_from_extension is deprecated, use Parser.get_parsers_from_filename instead",
+            stacklevel=2,
+        )
+        try:
+            return cls._parsers()[extension]
+        except KeyError:
+            raise RuntimeError("Not recognized frontend implementation") from None
+
+    @classmethod
+    def is_filename_valid(cls, filename: str) -> bool:
+        """Whether the name of a file is one for any parser."""
+        return any(parser.may_parse(filename) for parser in cls._parsers().values())
+
+    @classmethod
+    def get_parsers_from_filename(cls, filename: str) -> list[type[Parser]]:
+        """The parsers for the name of a file."""
+        return [parser for parser in cls._parsers().values() if parser.may_parse(filename)]
+
+    @classmethod
+    def get_file_extensions_from_parsers(cls) -> set[str]:
+        """How the names of files end that any parser reads."""
+        return {extension for parser in cls._parsers().values() for extension in parser.get_file_extensions()}
+
+    @classmethod
+    def load(cls, file: Any) -> tuple[Entity, Parser]:
+        """The root entity of a file, given by its path or open, and the parser for it.
+
+        The parser is chosen by the file's name; where the name does not tell, each is tried.
+
+        Raises:
+            InvalidFrontendLaunchFileError: LAUNCH107 to LAUNCH109 and XML codes, what is wrong with it.
+        """
+        name, text = read_file(file)
+        chosen = cls.get_parsers_from_filename(name) or _by_suffix(name, cls._parsers())
+        errors: list[Exception] = []
+        for parser in chosen or cls._parsers().values():
+            again = io.StringIO(text)
+            again.name = name
+            try:
+                return parser.load(again)
+            except Exception as error:  # noqa: BLE001 - parsers of packages may raise anything
+                errors.append(error)
+        extension = os.path.splitext(name)[1][1:] if cls.is_filename_valid(name) else ""  # noqa: PTH122
+        promised = InvalidFrontendLaunchFileError(extension, likely_errors=errors)
+        raise keeping(promised, *_likely_diagnostics(name, text, errors)) from (errors[0] if errors else None)
+
+    @classmethod
+    def _parsers(cls) -> dict[str, type[Parser]]:
+        cls.load_parser_implementations()
+        assert Parser.frontend_parsers is not None
+        return Parser.frontend_parsers
+
+
+def read_file(file: Any) -> tuple[str, str]:
+    """Name and text of a file, given by its path or open.
+
+    Raises:
+        LinkwrightError: LAUNCH101 no such file, LAUNCH102 unreadable.
+    """
+    if isinstance(file, (str, bytes, os.PathLike)):
+        from linkwright.launch.python_file import read_launch_file
+
+        source = read_launch_file(Path(os.fsdecode(file)))
+        return source.name, source.text
+    name = getattr(file, "name", None)
+    return name if isinstance(name, str) else "<string>", file.read()
+
+
+def _likely_diagnostics(name: str, text: str, errors: Sequence[Exception]) -> tuple[Diagnostic, ...]:
+    """What to tell of a file that no parser can read: what the one says whose language it looks like."""
+    told = [error.diagnostics for error in errors if isinstance(error, LinkwrightError)]
+    looks_like_xml = text.lstrip().startswith("<")
+    for diagnostics in told:
+        if len(told) == 1 or diagnostics[0].code.startswith("XML") is looks_like_xml:
+            return diagnostics
+    message = f"launch file '{display_path(name)}' is neither XML nor YAML that a launch file could be"
+    return (Diagnostic("LAUNCH107", message),)
+
+
+def _by_suffix(name: str, parsers: dict[str, type[Parser]]) -> list[type[Parser]]:
+    suffix = {".xml": "xml", ".launch": "xml", ".yaml": "yaml", ".yml": "yaml"}.get(os.path.splitext(name)[1])  # noqa: PTH122
+    return [parsers[suffix]] if suffix in parsers else []
+
+
+def _entry_points(group: str) -> Iterable[Any]:
+    import importlib.metadata
+
+    found: Any = importlib.metadata.entry_points()
+    chosen: Iterable[Any] = found.select(group=group) if hasattr(found, "select") else found.get(group, ())
+    return chosen
+
+
+def _load(entry_point: Any, what: str) -> Any:
+    try:
+        return entry_point.load()
+    except Exception:  # noqa: BLE001 - a broken package must not stop the others
+        problem = f"Failed to load the {what}: {entry_point.name}\n{traceback.format_exc()}"
+        warnings.warn(problem, stacklevel=3)
+        return None

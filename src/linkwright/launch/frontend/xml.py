@@ -1,0 +1,126 @@
+"""XML launch files (``launch_xml``)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from linkwright.launch.frontend.entity import Entity as AnyEntity
+from linkwright.launch.frontend.entity import PlacedText, is_list_of_entities
+from linkwright.launch.frontend.markup import MarkupEntity
+from linkwright.launch.frontend.parser import Parser as AnyParser
+from linkwright.launch.frontend.parser import read_file
+from linkwright.launch.frontend.values import get_typed_value
+from linkwright.launch.places import MarkupPlace, Place
+from linkwright.xmltree import Element, parse
+from linkwright.xmltree.positions import attribute_name_range, attribute_value_range
+
+_SEPARATOR = "-sep"
+
+
+class Entity(MarkupEntity):
+    """An element of a launch file.
+
+    Args:
+        xml_element: the element; one of ``xml.etree.ElementTree`` will do.
+        parent: the entity around it.
+    """
+
+    def __init__(self, xml_element: Any, *, parent: AnyEntity | None = None) -> None:
+        self._element = xml_element if isinstance(xml_element, Element) else _from_etree(xml_element)
+        super().__init__(self._element.tag, _place(self._element), parent)
+
+    @property
+    def children(self) -> list[AnyEntity]:
+        """The elements inside, all of which count as read now."""
+        self._asked.update((element.tag, None) for element in self._element.elements())
+        return [Entity(element, parent=self) for element in self._element.elements()]
+
+    def assert_entity_completely_parsed(self) -> None:
+        """Check that all attributes and elements inside have been read.
+
+        Raises:
+            ValueError: LAUNCH116, with the first that has not.
+        """
+        tags = [element.tag for element in self._element.elements()]
+        self._check_all_asked(tags, "element", "Unexpected nested tag(s) found in")
+        self._check_all_asked(self._element.attributes, "attribute", "Unexpected attribute(s) found in")
+
+    def get_attr(self, name: str, *, data_type: Any = str, optional: bool = False, can_be_str: bool = True) -> Any:
+        """An attribute, or the elements inside of one tag; see `linkwright.launch.frontend.entity.Entity`.
+
+        The value is turned into the type. With an attribute ``NAME-sep`` it is divided into a list.
+        """
+        self._asked[name] = None
+        attributes = self._element.attributes
+        promised = f"Attribute '{name}' of type '{data_type}' not found in Entity '{self.type_name}'"
+        if is_list_of_entities(data_type):
+            inside = [Entity(element, parent=self) for element in self._element.elements(name)]
+            if not inside and not optional:
+                self._missing(name, {element.tag for element in self._element.elements()}, promised)
+            return inside or None
+        if name not in attributes:
+            if optional:
+                return None
+            self._missing(name, attributes, promised)
+        value: Any = PlacedText(attributes[name], _attribute_place(self._element, name))
+        if name + _SEPARATOR in attributes:
+            self._asked[name + _SEPARATOR] = None
+            value = [PlacedText(part, value.place) for part in value.split(attributes[name + _SEPARATOR])]
+        try:
+            return get_typed_value(value, data_type, can_be_str=can_be_str)
+        except (TypeError, ValueError):
+            promised = (
+                f"Attribute '{name}' of Entity '{self.type_name}' expected to be of type '{data_type}'."
+                f"'{value}' can not be converted to one of those types"
+            )
+            self._wrong_type(name, str(value), data_type, promised)
+
+    def _place_of_part(self, name: str) -> Place | None:
+        element, source = self._element, self._element.source
+        if name not in element.attributes:
+            inside = element.first(name)
+            return self.place if inside is None else _place(inside)
+        if source is None:
+            return None
+        if name in self._asked:
+            return _attribute_place(element, name)
+        found = attribute_name_range(source.text, element.offset, name)
+        return MarkupPlace(source, *found) if found else self.place
+
+
+class Parser(AnyParser):
+    """Reads XML launch files."""
+
+    @classmethod
+    def load(cls, file: Any) -> tuple[AnyEntity, AnyParser]:
+        """The root entity of a file, given by its path or open, and a parser for it.
+
+        Raises:
+            LinkwrightError: what is wrong with the XML.
+        """
+        name, text = read_file(file)
+        return Entity(parse(text, name).root), cls()
+
+    @classmethod
+    def get_file_extensions(cls) -> set[str]:
+        """How the names of such files end."""
+        return {"launch.xml"}
+
+
+def _place(element: Element) -> Place | None:
+    if element.source is None:
+        return None
+    return MarkupPlace(element.source, element.offset, element.offset + 1 + len(element.tag))
+
+
+def _attribute_place(element: Element, name: str) -> Place | None:
+    if element.source is None:
+        return None
+    found = attribute_value_range(element.source.text, element.offset, name)
+    return MarkupPlace(element.source, *found) if found else _place(element)
+
+
+def _from_etree(element: Any) -> Element:
+    made = Element(element.tag, dict(element.attrib))
+    made.children.extend(_from_etree(child) for child in element if isinstance(child.tag, str))
+    return made

@@ -1,0 +1,206 @@
+"""YAML launch files (``launch_yaml``)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import yaml
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText
+from linkwright.launch.frontend.entity import Entity as AnyEntity
+from linkwright.launch.frontend.entity import PlacedText, is_list_of_entities, place_of
+from linkwright.launch.frontend.markup import MarkupEntity
+from linkwright.launch.frontend.parser import Parser as AnyParser
+from linkwright.launch.frontend.parser import read_file
+from linkwright.launch.frontend.values import is_instance_of
+from linkwright.launch.places import MarkupPlace, Place, error_at
+from linkwright.launch.promises import keeping
+
+_CHILDREN = "children"
+
+
+class Entity(MarkupEntity):
+    """An action of a launch file: a mapping of attributes, or a list of actions.
+
+    Args:
+        element: the mapping or list.
+        type_name: the tag.
+        parent: the entity around it.
+    """
+
+    def __init__(self, element: Any, type_name: str = "", *, parent: AnyEntity | None = None) -> None:
+        super().__init__(type_name, place_of(type_name) or getattr(element, "place", None), parent)
+        self._element = element
+        self._children_asked = False
+
+    @property
+    def children(self) -> list[AnyEntity]:
+        """The entities inside: the items of a list, or those of the mapping's ``children``.
+
+        Raises:
+            TypeError: LAUNCH118, it is neither a list nor a mapping.
+            ValueError: LAUNCH117, the mapping has no ``children``.
+            RuntimeError: LAUNCH118, an item is no mapping with one key.
+        """
+        self._children_asked = True
+        listed = self._element
+        if isinstance(listed, dict):
+            self._asked[_CHILDREN] = None
+            if _CHILDREN not in listed:
+                text = (
+                    f"Expected entity `{self.type_name}` to have children entities."
+                    f"That can be a list of subentities or a dictionary with a `children` list element"
+                )
+                message = f"'{self.type_name}' needs actions: a list, or a key 'children' with one"
+                raise error_at(self.place, "LAUNCH117", message, promises=ValueError(text))
+            listed = listed[_CHILDREN]
+        if not isinstance(listed, list):
+            text = f"Expected a dict or list, got {type(listed)}:\n---\n{listed}\n---"
+            message = f"'{self.type_name}' needs a list of actions"
+            raise error_at(self.place, "LAUNCH118", message, promises=TypeError(text))
+        return [self._child(item) for item in listed]
+
+    def _child(self, item: Any) -> AnyEntity:
+        if not isinstance(item, dict) or len(item) != 1:
+            text = "Subentities must be a dictionary with only one key, which is the entity type"
+            message = f"an action in '{self.type_name}' must be a mapping with one key, its tag"
+            hint = "indent its attributes further than the tag" if isinstance(item, dict) and item else None
+            place = getattr(item, "place", None) or place_of(item) or self.place
+            raise error_at(place, "LAUNCH118", message, hint, promises=RuntimeError(text))
+        [(name, element)] = item.items()
+        return Entity({} if element is None else element, name, parent=self)
+
+    def assert_entity_completely_parsed(self) -> None:
+        """Check that all keys have been read.
+
+        Raises:
+            ValueError: LAUNCH116, with the first that has not.
+        """
+        if isinstance(self._element, dict):
+            self._check_all_asked(self._element, "key", "Unexpected key(s) found in")
+        elif isinstance(self._element, list) and not self._children_asked:
+            text = f"Unexpected nested entity(ies) found in `{self.type_name}`: {self._element}"
+            message = f"'{self.type_name}' takes no list of actions"
+            raise error_at(self.place, "LAUNCH116", message, promises=ValueError(text))
+
+    def get_attr(self, name: str, *, data_type: Any = str, optional: bool = False, can_be_str: bool = True) -> Any:
+        """An attribute, or the entities inside of one name; see `linkwright.launch.frontend.entity.Entity`.
+
+        The value must be of the type as YAML reads it.
+        """
+        self._asked[name] = None
+        if not isinstance(self._element, (dict, list)):
+            message = f"'{self.type_name}' needs attributes"
+            raise error_at(self.place, "LAUNCH118", message, promises=TypeError(message))
+        if name not in self._element:
+            if optional:
+                return None
+            present = self._element if isinstance(self._element, dict) else {}
+            self._missing(name, present, f"Can not find attribute '{name}' in Entity '{self.type_name}'")
+        value: Any = dict(self._element)[name]
+        if is_list_of_entities(data_type):
+            if isinstance(value, list) and value and all(isinstance(item, dict) for item in value):
+                return [Entity(item, PlacedText(name, getattr(item, "place", None)), parent=self) for item in value]
+            text = f"Attribute '{name}' of Entity '{self.type_name}' expected to be a list of dictionaries."
+            message = f"key '{name}' of '{self.type_name}' must be a list of mappings"
+            raise error_at(self._place_of_part(name), "LAUNCH118", message, promises=TypeError(text))
+        if not is_instance_of(value, data_type, can_be_str=can_be_str):
+            text = (
+                f"Attribute '{name}' of Entity '{self.type_name}' expected to be of type '{data_type}', "
+                f"got '{type(value)}'"
+            )
+            self._wrong_type(name, value, data_type, text)
+        return value
+
+    def _place_of_part(self, name: str) -> Place | None:
+        for key, value in self._element.items() if isinstance(self._element, dict) else ():
+            if key == name:
+                return (place_of(value) if name in self._asked else None) or place_of(key) or self.place
+        return self.place
+
+
+class Parser(AnyParser):
+    """Reads YAML launch files."""
+
+    @classmethod
+    def load(cls, file: Any) -> tuple[AnyEntity, AnyParser]:
+        """The root entity of a file, given by its path or open, and a parser for it.
+
+        Raises:
+            LinkwrightError: LAUNCH108, it is no YAML; LAUNCH109, it is not the mapping of one key.
+        """
+        name, text = read_file(file)
+        tree = load(text, name)
+        if not isinstance(tree, dict) or len(tree) != 1:
+            source = SourceText(name, text)
+            message = "a YAML launch file is a mapping with the one key 'launch'"
+            place = getattr(tree, "place", None) or MarkupPlace(source, 0, 0)
+            raise error_at(place, "LAUNCH109", message, promises=RuntimeError("Expected only one root"))
+        [(root, element)] = tree.items()
+        return Entity(element, root), cls()
+
+    @classmethod
+    def get_file_extensions(cls) -> set[str]:
+        """How the names of such files end."""
+        return {"launch.yaml", "launch.yml"}
+
+
+# --- YAML with places -----------------------------------------------------------------------------------------
+
+
+class PlacedMapping(dict[Any, Any]):
+    """A mapping that knows where it begins."""
+
+    place: Place | None = None
+
+
+class _Loader(yaml.SafeLoader):
+    """Loads plain values, with texts and mappings that know where they stand."""
+
+    launch_text: SourceText
+
+    def place_of_node(self, node: yaml.Node) -> Place:
+        return MarkupPlace(self.launch_text, node.start_mark.index, node.end_mark.index)
+
+
+def _text(loader: _Loader, node: yaml.ScalarNode) -> PlacedText:
+    start, end = node.start_mark.index, node.end_mark.index
+    if node.style in ("'", '"'):
+        start, end = start + 1, end - 1
+    return PlacedText(loader.construct_scalar(node), MarkupPlace(loader.launch_text, start, end))
+
+
+def _mapping(loader: _Loader, node: yaml.MappingNode) -> Any:
+    made = PlacedMapping()
+    made.place = loader.place_of_node(node.value[0][0] if node.value else node)
+    yield made
+    made.update(loader.construct_mapping(node))
+
+
+_Loader.add_constructor("tag:yaml.org,2002:str", _text)
+_Loader.add_constructor("tag:yaml.org,2002:map", _mapping)
+
+
+def load(text: str, name: str) -> Any:
+    """What a YAML text holds; its texts are `PlacedText`.
+
+    Raises:
+        LinkwrightError: LAUNCH108, it is no YAML.
+    """
+    source = SourceText(name, text)
+    loader = _Loader(text)
+    loader.launch_text = source
+    try:
+        return loader.get_single_data()
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        span = source.span(mark.index) if mark else None
+        problem = ", ".join(part for part in (error.problem, error.context) if part)
+        hint = "indent with blanks" if mark and source.text[mark.index : mark.index + 1] == "\t" else None
+        diagnostic = Diagnostic("LAUNCH108", f"YAML syntax: {problem}", span, hint=hint, source=source)
+        raise keeping(error, diagnostic) from error
+    except yaml.YAMLError as error:
+        raise LinkwrightError(Diagnostic("LAUNCH108", f"YAML syntax in '{name}': {error}")) from error
+    finally:
+        loader.dispose()
+

@@ -1,0 +1,63 @@
+"""Running one executable of a package, without a launch file."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from linkwright.launch.description import LaunchDescription
+from linkwright.launch.engine.hosted_plan import VIEWER
+from linkwright.launch.engine.log import LaunchLog
+from linkwright.launch.engine.surroundings import process_environment
+from linkwright.launch.ros import Node
+from linkwright.launch.ros.executables import Origin, find_executable
+from linkwright.launch.ros.workspace_environment import workspace_environment
+from linkwright.launch.run import LaunchOptions, run_description
+from linkwright.workspace import PackageFinder
+
+
+@dataclass(frozen=True)
+class Program:
+    """An executable that is ready to be run.
+
+    Attributes:
+        command: its words.
+        environment: the environment it needs.
+        is_ours: whether it is a node that comes with us.
+    """
+
+    command: list[str]
+    environment: dict[str, str]
+    is_ours: bool
+
+
+def find_program(finder: PackageFinder, package: str, executable: str) -> Program:
+    """Find an executable.
+
+    Raises:
+        LinkwrightError: LAUNCH131, there is no such package or executable.
+    """
+    found = find_executable(finder, package, executable)
+    environment = process_environment(workspace_environment(finder, os.environ))
+    return Program(found.command, environment, found.origin is Origin.OURS)
+
+
+def run_viewer(arguments: Sequence[str], options: LaunchOptions | None = None) -> int:
+    """Run the viewer that stands in for RViz, until the user ends it.
+
+    Args:
+        arguments: the command line of ``rviz2``.
+        options: how its page is served.
+
+    Returns:
+        The exit status, see `linkwright.launch.run_launch`.
+    """
+    package, executable = VIEWER
+    viewer = Node(package=package, executable=executable, arguments=list(arguments))
+
+    def load(_: LaunchLog) -> tuple[LaunchDescription, dict[str, Any]]:
+        return LaunchDescription([viewer]), {}
+
+    return run_description(load, {}, PackageFinder(), options or LaunchOptions(), executable)

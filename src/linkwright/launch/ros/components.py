@@ -1,0 +1,267 @@
+"""Nodes that are composed in the process of a container (``launch_ros.descriptions``)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.launch.context import LaunchContext
+from linkwright.launch.places import Place, error_at, located
+from linkwright.launch.ros.names import make_namespace_absolute, prefix_namespace
+from linkwright.launch.ros.parameter_lists import normalize_parameters
+from linkwright.launch.ros.parameters import FileSource, own_parameters, scope_parameters
+from linkwright.launch.ros.parsing import Entities, parse_remappings
+from linkwright.launch.ros.remappings import RemapRule, evaluated_rules, normalize_remap_rules
+from linkwright.launch.ros.scoping import NAMESPACE, PARAMETERS, REMAPPINGS
+from linkwright.launch.substitution import (
+    SomeSubstitutionsType,
+    Substitution,
+    normalize_to_list_of_substitutions,
+    perform_substitutions,
+)
+
+if TYPE_CHECKING:
+    from linkwright.launch.conditions import Condition
+    from linkwright.launch.frontend.entity import Entity
+    from linkwright.launch.frontend.parser import Parser
+
+
+class ComposableNode:
+    """A node that can be loaded into a container.
+
+    Args:
+        package: the package of its library.
+        plugin: the name of its class there, such as ``composition::Talker``.
+        name: the name it is given.
+        namespace: where it lives, inside the namespaces of `PushRosNamespace` unless it starts with a slash.
+        parameters: as those of a `Node`.
+        remappings: pairs of names.
+        extra_arguments: parameters for the container, such as ``use_intra_process_comms``.
+        condition: whether it is loaded.
+    """
+
+    def __init__(
+        self,
+        *,
+        package: SomeSubstitutionsType,
+        plugin: SomeSubstitutionsType,
+        name: SomeSubstitutionsType | None = None,
+        namespace: SomeSubstitutionsType | None = None,
+        parameters: Sequence[Any] | None = None,
+        remappings: Iterable[tuple[SomeSubstitutionsType, SomeSubstitutionsType]] | None = None,
+        extra_arguments: Sequence[Any] | None = None,
+        condition: Condition | None = None,
+    ) -> None:
+        self.place = Place.of_caller()
+        self.__package = normalize_to_list_of_substitutions(package)
+        self.__node_plugin = normalize_to_list_of_substitutions(plugin)
+        self.__node_name = None if name is None else normalize_to_list_of_substitutions(name)
+        self.__node_namespace = None if namespace is None else normalize_to_list_of_substitutions(namespace)
+        self.__parameters = None if parameters is None else normalize_parameters(parameters)
+        self.__remappings = None if remappings is None else list(normalize_remap_rules(remappings))
+        self.__extra_arguments = None if extra_arguments is None else normalize_parameters(extra_arguments)
+        self.__condition = condition
+
+    @classmethod
+    def parse(cls, parser: Parser, entity: Entity) -> tuple[type[ComposableNode], dict[str, Any]]:
+        """Reads the tag ``composable_node``.
+
+        Raises:
+            RuntimeError: LAUNCH118, it has both ``if`` and ``unless``.
+        """
+        from linkwright.launch.conditions import IfCondition, UnlessCondition
+        from linkwright.launch.ros.node import Node
+
+        kwargs: dict[str, Any] = {
+            "package": parser.parse_substitution(entity.get_attr("pkg")),
+            "plugin": parser.parse_substitution(entity.get_attr("plugin")),
+        }
+        wanted, unwanted = entity.get_attr("if", optional=True), entity.get_attr("unless", optional=True)
+        if wanted is not None and unwanted is not None:
+            text = "if and unless conditions can't be used simultaneously"
+            raise error_at(entity.place, "LAUNCH118", text, promises=RuntimeError(text))
+        if wanted is not None:
+            kwargs["condition"] = IfCondition(predicate_expression=parser.parse_substitution(wanted))
+        if unwanted is not None:
+            kwargs["condition"] = UnlessCondition(predicate_expression=parser.parse_substitution(unwanted))
+        for attribute in ("name", "namespace"):
+            text = entity.get_attr(attribute, optional=True)
+            if text is not None:
+                kwargs[attribute] = parser.parse_substitution(text)
+        parameters = entity.get_attr("param", data_type=Entities, optional=True)
+        if parameters is not None:
+            kwargs["parameters"] = Node.parse_nested_parameters(parameters, parser)
+        kwargs.update(parse_remappings(entity, parser))
+        extra = entity.get_attr("extra_arg", data_type=Entities, optional=True)
+        if extra is not None:
+            kwargs["extra_arguments"] = [_extra_argument(tag, parser) for tag in extra]
+        entity.assert_entity_completely_parsed()
+        return cls, kwargs
+
+    @property
+    def package(self) -> list[Substitution]:
+        """The package, as substitutions."""
+        return self.__package
+
+    @property
+    def node_plugin(self) -> list[Substitution]:
+        """The name of its class, as substitutions."""
+        return self.__node_plugin
+
+    @property
+    def node_name(self) -> Any:
+        """Its name, as substitutions; None where it keeps the one its code gives it."""
+        return self.__node_name
+
+    @property
+    def node_namespace(self) -> list[Substitution] | None:
+        """Its namespace, as substitutions."""
+        return self.__node_namespace
+
+    @property
+    def parameters(self) -> tuple[Any, ...] | None:
+        """Its parameters, normalized."""
+        return self.__parameters
+
+    @property
+    def remappings(self) -> list[RemapRule] | None:
+        """Its remappings, as tuples of substitutions."""
+        return self.__remappings
+
+    @property
+    def extra_arguments(self) -> tuple[Any, ...] | None:
+        """The parameters for the container, normalized."""
+        return self.__extra_arguments
+
+    def condition(self) -> Condition | None:
+        """Whether it is loaded."""
+        return self.__condition
+
+
+class ComposableLifecycleNode(ComposableNode):
+    """A lifecycle node that can be loaded into a container.
+
+    Args:
+        autostart: whether it is configured and activated when it is loaded.
+        kwargs: see `ComposableNode`.
+    """
+
+    is_lifecycle_node = True
+
+    def __init__(self, *, autostart: Any = False, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self.__autostart = autostart
+        self.__full_name: str | None = None
+
+    @property
+    def node_autostart(self) -> Any:
+        """Whether it is configured and activated when it is loaded."""
+        return self.__autostart
+
+    @property
+    def node_name(self) -> Any:
+        """Its name as substitutions; once it is loaded its full name."""
+        return super().node_name if self.__full_name is None else self.__full_name
+
+    def loaded(self, full_name: str) -> None:
+        """Take note of its full name."""
+        self.__full_name = full_name
+
+
+def get_composable_node_load_request(description: ComposableNode, context: LaunchContext) -> Any:
+    """The request to a container for loading a node; None if its condition does not hold.
+
+    Raises:
+        LinkwrightError: what is wrong with its parameters.
+    """
+    condition = description.condition()
+    if condition is not None and not condition.evaluate(context):
+        return None
+    from linkwright.nodes.component_container import load_request
+
+    request = load_request()
+    request.package_name = perform_substitutions(context, description.package)
+    request.plugin_name = perform_substitutions(context, description.node_plugin)
+    if description.node_name is not None:
+        request.node_name = perform_substitutions(context, description.node_name)
+    own = description.node_namespace
+    inner = None if own is None else perform_substitutions(context, own)
+    namespace = make_namespace_absolute(prefix_namespace(context.launch_configurations.get(NAMESPACE), inner))
+    if namespace is not None:
+        request.node_namespace = namespace
+    rules = [
+        *(context.launch_configurations.get(REMAPPINGS) or ()),
+        *evaluated_rules(context, description.remappings or ()),
+    ]
+    request.remap_rules = [f"{source}:={target}" for source, target in rules]
+    full_name = f"{(namespace or '').rstrip('/')}/{request.node_name}"
+    try:
+        request.parameters = _messages(
+            context,
+            full_name,
+            [
+                *scope_parameters(context.launch_configurations.get(PARAMETERS) or (), context).sources,
+                *own_parameters(description.parameters or (), context).sources,
+            ],
+        )
+        request.extra_arguments = _messages(
+            context, full_name, own_parameters(description.extra_arguments or (), context).sources
+        )
+    except LinkwrightError as error:
+        raise located(error, description.place) from error
+    return request
+
+
+def to_parameters_list(
+    context: LaunchContext, node_name: str, namespace: str | None, evaluated_parameters: Iterable[Any]
+) -> list[Any]:
+    """Evaluated parameters as ``rclpy.parameter.Parameter`` objects; files are read by the node's full name."""
+    full_name = f"{(namespace or '').rstrip('/')}/{node_name.lstrip('/')}"
+    full_name = full_name if full_name.startswith("/") else f"/{full_name}"
+    return _parameters(context, full_name, own_parameters(tuple(evaluated_parameters), context).sources)
+
+
+def _messages(context: LaunchContext, full_name: str, sources: Iterable[Any]) -> list[Any]:
+    return [each.to_parameter_msg() for each in _parameters(context, full_name, sources)]
+
+
+def _parameters(context: LaunchContext, full_name: str, sources: Iterable[Any]) -> list[Any]:
+    from linkwright.graph import Parameter
+
+    found: list[Any] = []
+    for source in sources:
+        if isinstance(source, FileSource):
+            values = _of_file(source, context, full_name)
+        elif isinstance(source, tuple):
+            values = dict([source])
+        else:
+            values = source
+        found += [
+            Parameter(name, value=list(value) if isinstance(value, tuple) else value) for name, value in values.items()
+        ]
+    return found
+
+
+def _of_file(source: FileSource, context: LaunchContext, full_name: str) -> dict[str, Any]:
+    """The values of a file for a node: those of patterns first, those under its own name win, as launch_ros has it."""
+    try:
+        rules = source.file.rules(context)
+    except LinkwrightError as error:
+        raise _promised(error, source.path) from error
+    exact = {name: value for pattern, values in rules if pattern == full_name for name, value in values.items()}
+    return {**rules.for_node(full_name), **exact}
+
+
+def _promised(error: LinkwrightError, path: Path) -> LinkwrightError:
+    from linkwright.launch.promises import keeping
+
+    return keeping(RuntimeError(f"{path}: {error.diagnostics[0].message}"), *error.diagnostics)
+
+
+def _extra_argument(tag: Entity, parser: Parser) -> dict[Any, Any]:
+    name = tuple(parser.parse_substitution(tag.get_attr("name")))
+    value = parser.parse_substitution(tag.get_attr("value"))
+    tag.assert_entity_completely_parsed()
+    return {name: value}

@@ -1,0 +1,229 @@
+"""Containers of composed nodes, and loading nodes into them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.launch import events
+from linkwright.launch.entity import Action
+from linkwright.launch.frontend.expose import expose_action
+from linkwright.launch.places import error_at, located
+from linkwright.launch.ros.components import (
+    ComposableLifecycleNode,
+    ComposableNode,
+    get_composable_node_load_request,
+)
+from linkwright.launch.ros.executables import Executable, installed_executable
+from linkwright.launch.ros.lifecycle import LifecycleEventManager, answered, autostarts
+from linkwright.launch.ros.lifecycle_events import ChangeState
+from linkwright.launch.ros.names import make_namespace_absolute, repeated_name
+from linkwright.launch.ros.node import Node
+from linkwright.launch.ros.parsing import Entities
+from linkwright.launch.substitution import normalize_to_list_of_substitutions, perform_substitutions
+
+if TYPE_CHECKING:
+    from linkwright.launch.context import LaunchContext
+    from linkwright.launch.frontend.entity import Entity
+    from linkwright.launch.frontend.parser import Parser
+    from linkwright.workspace import PackageFinder
+
+_LOGGER = "launch_ros.actions.load_composable_nodes"
+_CONFIGURE, _ACTIVATE = 1, 3
+
+
+@expose_action("load_composable_node")
+class LoadComposableNodes(Action):
+    """Loads nodes into a container, one after another, as soon as that is there.
+
+    Args:
+        composable_node_descriptions: the nodes.
+        target_container: the container's action, or its full name.
+    """
+
+    def __init__(
+        self,
+        *,
+        composable_node_descriptions: Sequence[ComposableNode],
+        target_container: Any,
+        **kwargs: Any,
+    ) -> None:
+        super().__init__(**kwargs)
+        self.__composable_node_descriptions = list(composable_node_descriptions)
+        if not isinstance(target_container, ComposableNodeContainer):
+            try:
+                target_container = normalize_to_list_of_substitutions(target_container)
+            except TypeError as error:
+                message = f"'target_container' must be a container or its name, not {target_container!r}"
+                raise error_at(self.place, "LAUNCH139", message, promises=error) from error
+        self.__target_container = target_container
+
+    @classmethod
+    def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
+        """Reads ``target`` and the nodes inside."""
+        _, kwargs = super().parse(entity, parser)
+        kwargs["target_container"] = parser.parse_substitution(entity.get_attr("target", data_type=str))
+        kwargs["composable_node_descriptions"] = _described(entity, parser)
+        return cls, kwargs
+
+    def execute(self, context: LaunchContext) -> None:
+        """Begin to load them.
+
+        Raises:
+            LinkwrightError: what is wrong with their parameters.
+        """
+        requests = []
+        for description in self.__composable_node_descriptions:
+            try:
+                request = get_composable_node_load_request(description, context)
+            except LinkwrightError as error:
+                raise located(error, description.place) from error
+            if request is not None:
+                requests.append((description, request))
+        if requests:
+            name = self._container_name(context)
+            context.session.spawn(self._load_in_sequence(context, name, requests))
+
+    def _container_name(self, context: LaunchContext) -> str:
+        if isinstance(self.__target_container, ComposableNodeContainer):
+            return self.__target_container.node_name
+        name = make_namespace_absolute(perform_substitutions(context, self.__target_container))
+        assert name is not None
+        return name
+
+    async def _load_in_sequence(
+        self, context: LaunchContext, container: str, requests: list[tuple[ComposableNode, Any]]
+    ) -> None:
+        launcher = context.session.host.launcher_node
+        client = launcher.create_client("composition_interfaces/srv/LoadNode", f"{container}/_container/load_node")
+        try:
+            for description, request in requests:
+                response = await answered(context, client, request)
+                if response is None:
+                    return
+                self._report(context, container, description, request, response)
+        finally:
+            launcher.destroy_client(client)
+
+    def _report(
+        self, context: LaunchContext, container: str, description: ComposableNode, request: Any, response: Any
+    ) -> None:
+        log = context.session.log
+        name = response.full_node_name or request.node_name
+        if not response.success:
+            text = f"Failed to load node '{name}' of type '{request.plugin_name}' in container '{container}'"
+            problem = f"{text}: {response.error_message}"
+            context.session.fail(description)
+            log.diagnostics(located(LinkwrightError(Diagnostic("LAUNCH139", problem)), description.place).diagnostics)
+            return
+        remark = repeated_name(context, name)
+        if remark is not None:
+            log.caution(container, remark)
+        log.say(_LOGGER, f"Loaded node '{name}' in container '{container}'")
+        if isinstance(description, ComposableLifecycleNode):
+            _manage(context, description, name)
+
+
+@expose_action("node_container")
+class ComposableNodeContainer(Node):
+    """Starts a container, and loads nodes into it.
+
+    Args:
+        name: the container's name.
+        namespace: where it lives.
+        composable_node_descriptions: the nodes.
+        kwargs: see `Node`.
+    """
+
+    def __init__(
+        self,
+        *,
+        name: Any,
+        namespace: Any,
+        composable_node_descriptions: Sequence[ComposableNode] | None = None,
+        **kwargs: Any,
+    ) -> None:
+        super().__init__(name=name, namespace=namespace, **kwargs)
+        self.__composable_node_descriptions = composable_node_descriptions
+        self.__real: Executable | None = None
+
+    @classmethod
+    def parse(
+        cls, entity: Entity, parser: Parser, ignore: Sequence[str] | None = None
+    ) -> tuple[type[Action], dict[str, Any]]:
+        """Reads the tag: that of a node, and the nodes inside."""
+        _, kwargs = super().parse(entity, parser, ignore)
+        kwargs["composable_node_descriptions"] = _described(entity, parser, optional=True)
+        return cls, kwargs
+
+    def execute(self, context: LaunchContext) -> list[Any] | None:
+        """Start it, and load the nodes when it has started.
+
+        Raises:
+            LinkwrightError: see `Node.execute`.
+        """
+        loading: list[Any] = []
+        valid = [
+            description
+            for description in self.__composable_node_descriptions or ()
+            if description.condition() is None or description.condition().evaluate(context)  # type: ignore[union-attr]
+        ]
+        if valid:
+            # What holds in the scope now must hold for the nodes too, so their requests are made at once.
+            load = LoadComposableNodes(composable_node_descriptions=valid, target_container=self)
+            load.place = self.place
+            loading = [load]
+        following = super().execute(context)
+        return [*(following or ()), *loading] or None
+
+    def _may_be_hosted(self, context: LaunchContext, package: str | None, executable: str) -> bool:
+        """As any node, unless it is to load what only a real container of this machine can."""
+        return super()._may_be_hosted(context, package, executable) and self._real_container(context) is None
+
+    def _executable(self, finder: PackageFinder, package: str, executable: str) -> Executable:
+        return self.__real or super()._executable(finder, package, executable)
+
+    def _real_container(self, context: LaunchContext) -> Executable | None:
+        from linkwright.nodes.components import COMPONENTS
+
+        self.__real = None
+        wanted = [
+            tuple(perform_substitutions(context, part) for part in (each.package, each.node_plugin))
+            for each in self.__composable_node_descriptions or ()
+        ]
+        if not all(each in COMPONENTS for each in wanted):
+            package, executable = (
+                perform_substitutions(context, normalize_to_list_of_substitutions(each))
+                for each in (self.node_package, self.node_executable)
+            )
+            self.__real = installed_executable(context.session.finder, package, executable)
+        return self.__real
+
+
+def _described(entity: Entity, parser: Parser, optional: bool = False) -> list[ComposableNode]:
+    tags = entity.get_attr("composable_node", data_type=Entities, optional=optional)
+    described = []
+    for tag in tags or ():
+        cls, kwargs = ComposableNode.parse(parser, tag)
+        described.append(cls(**kwargs))
+    return described
+
+
+def _manage(context: LaunchContext, description: ComposableLifecycleNode, full_name: str) -> None:
+    """Follow a lifecycle node that was loaded, and bring it to its active state if that is asked for."""
+    description.loaded(full_name)
+    LifecycleEventManager(description).setup_lifecycle_manager(context)
+    if not autostarts(context, description.node_autostart):
+        return
+    from linkwright.launch.actions import EmitEvent
+    from linkwright.launch.ros.lifecycle_events import OnStateTransition
+
+    def change(number: int) -> ChangeState:
+        return ChangeState(lifecycle_node_matcher=events.matches_action(description), transition_id=number)
+
+    active = EmitEvent(event=change(_ACTIVATE))
+    context.register_event_handler(
+        OnStateTransition(target_lifecycle_node=description, goal_state="inactive", entities=[active], handle_once=True)
+    )
+    context.emit_event_sync(change(_CONFIGURE))

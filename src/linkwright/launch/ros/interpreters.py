@@ -1,0 +1,68 @@
+"""Which Python runs an installed script."""
+
+from __future__ import annotations
+
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+from functools import cache
+from pathlib import Path
+
+_VERSION = re.compile(r"python(\d+)\.(\d+)")
+_ASK_SECONDS = 5.0
+
+
+def needs_our_interpreter(path: Path) -> bool:
+    """Whether a script asks for a Python of another version than ours while there is no ROS for it to find there.
+
+    The stand-ins for ROS's modules need compiled libraries that are for one version of Python only.
+    """
+    interpreter = _interpreter_of(path)
+    if interpreter is None or _has_ros_for_python():
+        return False
+    return _version_of(interpreter) not in (None, sys.version_info[:2])
+
+
+def interpreter_words(path: Path) -> list[str]:
+    """The words of a script's first line, an interpreter and perhaps an argument; none for other files."""
+    try:
+        with path.open("rb") as file:
+            first = file.readline(512)
+    except OSError:
+        return []
+    return shlex.split(first[2:].decode(errors="replace")) if first.startswith(b"#!") else []
+
+
+def _interpreter_of(path: Path) -> str | None:
+    """The Python that a script's first line asks for; None for other programs."""
+    words = interpreter_words(path)
+    if words and Path(words[0]).name == "env":
+        words = [word for word in words[1:] if not word.startswith("-")]
+    if not words or not Path(words[0]).name.startswith("python"):
+        return None
+    return shutil.which(words[0])
+
+
+@cache
+def _version_of(interpreter: str) -> tuple[int, ...] | None:
+    named = _VERSION.search(Path(os.path.realpath(interpreter)).name)
+    if named:
+        return int(named[1]), int(named[2])
+    program = "import sys; print(*sys.version_info[:2])"
+    try:
+        done = subprocess.run(  # noqa: S603 - the interpreter that the user's script names
+            [interpreter, "-I", "-S", "-c", program], capture_output=True, timeout=_ASK_SECONDS, check=True, text=True
+        )
+        return tuple(int(word) for word in done.stdout.split())
+    except (OSError, subprocess.SubprocessError, ValueError):
+        return None
+
+
+def _has_ros_for_python() -> bool:
+    """Whether a real rclpy lies in one of the prefixes that are in force."""
+    prefixes = os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)
+    patterns = ("lib/python*/site-packages/rclpy", "local/lib/python*/dist-packages/rclpy")
+    return any(next(Path(prefix).glob(each), None) is not None for prefix in prefixes if prefix for each in patterns)

@@ -1,0 +1,199 @@
+"""Managing lifecycle nodes from the launcher: asking for transitions, and following them."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import TYPE_CHECKING, Any
+
+from linkwright.launch import events
+from linkwright.launch.actions import EmitEvent, OpaqueFunction, RegisterEventHandler
+from linkwright.launch.event_handlers import EventHandler, OnProcessStart
+from linkwright.launch.frontend.expose import expose_action
+from linkwright.launch.places import error_at
+from linkwright.launch.ros.lifecycle_events import (
+    STATES,
+    TRANSITIONS,
+    ChangeState,
+    OnStateTransition,
+    StateTransition,
+)
+from linkwright.launch.ros.node import Node
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from linkwright.launch.context import LaunchContext
+    from linkwright.launch.entity import Action
+    from linkwright.launch.frontend.entity import Entity
+    from linkwright.launch.frontend.parser import Parser
+
+_CONFIGURE, _ACTIVATE = 1, 3
+_LOOK_SECONDS = 0.2
+_DEPTH = 10
+
+
+class LifecycleEventManager:
+    """Emits `StateTransition` events for a lifecycle node, and asks it for the transitions of `ChangeState` events.
+
+    Args:
+        lifecycle_node: the action or description of the node; its ``node_name`` is the full name.
+    """
+
+    def __init__(self, lifecycle_node: Any) -> None:
+        self._node = lifecycle_node
+        self._client: Any = None
+        self.current_state = STATES[0]
+
+    @property
+    def node_name(self) -> str:
+        """The node's full name."""
+        return str(self._node.node_name)
+
+    def setup_lifecycle_manager(self, context: LaunchContext) -> None:
+        """Begin to follow the node."""
+        launcher = context.session.host.launcher_node
+        launcher.create_subscription(
+            "lifecycle_msgs/msg/TransitionEvent",
+            f"{self.node_name}/transition_event",
+            lambda message: self._changed(context, message),
+            _DEPTH,
+        )
+        self._client = launcher.create_client("lifecycle_msgs/srv/ChangeState", f"{self.node_name}/change_state")
+        context.register_event_handler(
+            EventHandler(
+                matcher=lambda event: isinstance(event, ChangeState),
+                entities=[OpaqueFunction(function=self._asked)],
+            )
+        )
+
+    def _changed(self, context: LaunchContext, message: Any) -> None:
+        self.current_state = STATES.get(message.goal_state.id, STATES[0])
+        context.emit_event_sync(StateTransition(action=self._node, msg=message))
+
+    def _asked(self, context: LaunchContext) -> None:
+        event = context.locals.event
+        if event.lifecycle_node_matcher(self._node):
+            context.session.spawn(self._change_state(context, event.transition_id))
+
+    async def _change_state(self, context: LaunchContext, transition: int) -> None:
+        request = self._client.srv_type.Request()
+        request.transition.id = transition
+        response = await answered(context, self._client, request)
+        if response is not None and not response.success:
+            name = TRANSITIONS[transition]
+            text = f"Failed to make transition '{name}' for LifecycleNode '{self.node_name}'"
+            context.session.log.complain("launch_ros.actions.lifecycle_node", text)
+
+
+async def answered(context: LaunchContext, client: Any, request: Any) -> Any:
+    """What a service answers, whenever it is there; None when the launch ends before that."""
+    future = client.call_async(request)
+    while not future.done():
+        if context.is_shutdown:
+            waited_for = "service response" if client.service_is_ready() else "service"
+            text = f"Abandoning wait for the '{client.srv_name}' {waited_for}, due to shutdown."
+            context.session.log.caution("launch_ros", text)
+            client.remove_pending_request(future)
+            return None
+        await _done_or_time(future)
+    return future.result()
+
+
+async def _done_or_time(future: Any) -> None:
+    """Wait until a future is done, or a moment."""
+    loop = asyncio.get_running_loop()
+    woken = loop.create_future()
+
+    def wake(_: Any = None) -> None:
+        if not woken.done():
+            woken.set_result(None)
+
+    future.add_done_callback(lambda _: loop.call_soon_threadsafe(wake))
+    handle = loop.call_later(_LOOK_SECONDS, wake)
+    try:
+        await woken
+    finally:
+        handle.cancel()
+
+
+@expose_action("lifecycle_node")
+class LifecycleNode(Node):
+    """Starts a lifecycle node, and follows its state.
+
+    Args:
+        name: the node's name.
+        namespace: where it lives.
+        autostart: whether it is configured and activated when it has started.
+        kwargs: see `Node`.
+    """
+
+    is_lifecycle_node = True
+
+    def __init__(self, *, name: Any, namespace: Any, autostart: Any = False, **kwargs: Any) -> None:
+        super().__init__(name=name, namespace=namespace, **kwargs)
+        self.__autostart = autostart
+        self.__manager = LifecycleEventManager(self)
+
+    @classmethod
+    def parse(
+        cls, entity: Entity, parser: Parser, ignore: Sequence[str] | None = None
+    ) -> tuple[type[Action], dict[str, Any]]:
+        """Reads the tag: that of a node, with ``autostart``."""
+        _, kwargs = super().parse(entity, parser, ignore)
+        autostart = entity.get_attr("autostart", data_type=bool, optional=True)
+        if autostart is not None:
+            kwargs["autostart"] = parser.parse_if_substitutions(autostart)
+        return cls, kwargs
+
+    @property
+    def node_autostart(self) -> Any:
+        """Whether it is configured and activated when it has started."""
+        return self.__autostart
+
+    @property
+    def current_state(self) -> str:
+        """The name of the state that it was last heard to be in."""
+        return self.__manager.current_state
+
+    def execute(self, context: LaunchContext) -> list[Any] | None:
+        """Start and follow it.
+
+        Raises:
+            LinkwrightError: see `Node.execute`.
+        """
+        if context.is_shutdown:
+            return None
+        self._expand_names(context)
+        self.__manager.setup_lifecycle_manager(context)
+        following = list(super().execute(context) or [])
+        if autostarts(context, self.__autostart):
+            following += autostart_actions(self)
+        return following
+
+
+def autostarts(context: LaunchContext, value: Any) -> bool:
+    """Whether ``autostart`` of a lifecycle node is true."""
+    from linkwright.launch.frontend.values import normalize_typed_substitution, perform_typed_substitution
+
+    return bool(perform_typed_substitution(context, normalize_typed_substitution(value, bool), bool))
+
+
+def autostart_actions(action: Any) -> list[Any]:
+    """What configures a lifecycle node when it has started, and activates it when it is configured."""
+    change = {
+        number: EmitEvent(event=ChangeState(lifecycle_node_matcher=events.matches_action(action), transition_id=number))
+        for number in (_CONFIGURE, _ACTIVATE)
+    }
+    configured = OnStateTransition(
+        target_lifecycle_node=action, start_state="configuring", goal_state="inactive", entities=[change[_ACTIVATE]]
+    )
+    return [
+        RegisterEventHandler(OnProcessStart(target_action=action, on_start=[change[_CONFIGURE]])),
+        RegisterEventHandler(configured),
+    ]
+
+
+def unknown_transition(place: Any, text: str) -> Exception:
+    """The error about a transition that is no number."""
+    message = f"expected integer for lifecycle transition, got {text}"
+    return error_at(place, "LAUNCH138", message, promises=ValueError(message))

@@ -1,0 +1,162 @@
+"""Events of lifecycle nodes, and the handler for their changes of state (``launch_ros.events.lifecycle``)."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Callable
+from typing import Any
+
+from linkwright.launch.event_handlers import EventHandler
+from linkwright.launch.events import Event
+from linkwright.launch.places import Place, error_at
+
+TRANSITIONS = OrderedDict(
+    (
+        (0, "TRANSITION_CREATE"),
+        (1, "TRANSITION_CONFIGURE"),
+        (2, "TRANSITION_CLEANUP"),
+        (3, "TRANSITION_ACTIVATE"),
+        (4, "TRANSITION_DEACTIVATE"),
+        (5, "TRANSITION_UNCONFIGURED_SHUTDOWN"),
+        (6, "TRANSITION_INACTIVE_SHUTDOWN"),
+        (7, "TRANSITION_ACTIVE_SHUTDOWN"),
+        (8, "TRANSITION_DESTROY"),
+    )
+)
+"""The transitions of ``lifecycle_msgs/msg/Transition`` by number."""
+
+STATES = OrderedDict(
+    (
+        (0, "PRIMARY_STATE_UNKNOWN"),
+        (1, "PRIMARY_STATE_UNCONFIGURED"),
+        (2, "PRIMARY_STATE_INACTIVE"),
+        (3, "PRIMARY_STATE_ACTIVE"),
+        (4, "PRIMARY_STATE_FINALIZED"),
+        (10, "TRANSITION_STATE_CONFIGURING"),
+        (11, "TRANSITION_STATE_CLEANINGUP"),
+        (12, "TRANSITION_STATE_SHUTTINGDOWN"),
+        (13, "TRANSITION_STATE_ACTIVATING"),
+        (14, "TRANSITION_STATE_DEACTIVATING"),
+        (15, "TRANSITION_STATE_ERRORPROCESSING"),
+    )
+)
+"""The states of ``lifecycle_msgs/msg/State`` by number."""
+
+NodeMatcher = Callable[[Any], bool]
+
+
+class ChangeState(Event):
+    """The lifecycle nodes that the matcher accepts are to make a transition.
+
+    Args:
+        lifecycle_node_matcher: called with the action of each lifecycle node.
+        transition_id: the transition, see `TRANSITIONS`.
+    """
+
+    name = "launch_ros.events.lifecycle.ChangeState"
+    valid_transitions = TRANSITIONS
+    valid_states = STATES
+
+    def __init__(self, *, lifecycle_node_matcher: NodeMatcher, transition_id: int) -> None:
+        super().__init__()
+        if transition_id not in TRANSITIONS:
+            listed = ", ".join(f"{name}: {number}" for number, name in TRANSITIONS.items())
+            promised = ValueError(f"given transition_id of '{transition_id}', expected one of {{{listed}}}")
+            message = f"there is no lifecycle transition {transition_id!r}"
+            raise error_at(Place.of_caller(), "LAUNCH138", message, f"choose of {listed}", promises=promised)
+        self.lifecycle_node_matcher = lifecycle_node_matcher
+        self.transition_id = transition_id
+
+
+class StateTransition(Event):
+    """A lifecycle node has made a transition.
+
+    Args:
+        action: the action of the node.
+        msg: its message, a ``lifecycle_msgs/msg/TransitionEvent``.
+    """
+
+    name = "launch_ros.events.lifecycle.StateTransition"
+
+    def __init__(self, *, action: Any, msg: Any) -> None:
+        super().__init__()
+        self.action = action
+        self.msg = msg
+
+    @property
+    def timestamp(self) -> int:
+        """When, nanoseconds by the node's clock."""
+        return int(self.msg.timestamp)
+
+    @property
+    def transition(self) -> str:
+        """The transition's name, such as ``configure``."""
+        return str(self.msg.transition.label)
+
+    @property
+    def start_state(self) -> str:
+        """The state before, such as ``unconfigured``."""
+        return str(self.msg.start_state.label)
+
+    @property
+    def goal_state(self) -> str:
+        """The state after, such as ``inactive``."""
+        return str(self.msg.goal_state.label)
+
+
+class OnStateTransition(EventHandler):
+    """Visits entities when a lifecycle node has made a transition; what is not given may be anything.
+
+    Args:
+        entities: what is visited.
+        target_lifecycle_node: the action of the node.
+        transition: name of the transition.
+        start_state: name of the state before.
+        goal_state: name of the state after.
+        matcher: called with the event, in place of all these.
+    """
+
+    def __init__(
+        self,
+        *,
+        entities: Any,
+        target_lifecycle_node: Any = None,
+        transition: str | None = None,
+        start_state: str | None = None,
+        goal_state: str | None = None,
+        matcher: Callable[[Event], bool] | None = None,
+        **kwargs: Any,
+    ) -> None:
+        if target_lifecycle_node is not None and not getattr(target_lifecycle_node, "is_lifecycle_node", False):
+            text = "OnStateTransition requires a 'LifecycleNode' action as the target"
+            message = f"{text}, not a {type(target_lifecycle_node).__name__}"
+            raise error_at(Place.of_caller(), "LAUNCH138", message, promises=RuntimeError(text))
+        self._target = target_lifecycle_node
+        wanted = {"transition": transition, "start_state": start_state, "goal_state": goal_state}
+
+        def matches(event: Event) -> bool:
+            if not isinstance(event, StateTransition):
+                return False
+            if target_lifecycle_node is not None and event.action is not target_lifecycle_node:
+                return False
+            return all(value is None or getattr(event, name) == value for name, value in wanted.items())
+
+        super().__init__(matcher=matcher or matches, entities=entities, **kwargs)
+
+    @property
+    def handler_description(self) -> str:
+        """What is done."""
+        return "<actions>"
+
+    @property
+    def matcher_description(self) -> str:
+        """What for."""
+        if self._target is None:
+            return "event == StateTransition"
+        return f"event == StateTransition and event.action == LifecycleNode({hex(id(self._target))})"
+
+
+def matches_node_name(node_name: str) -> NodeMatcher:
+    """A matcher that accepts the action of the node of a full name; a missing first slash is added."""
+    full_name = node_name if node_name.startswith("/") else f"/{node_name}"
+    return lambda action: action.node_name == full_name

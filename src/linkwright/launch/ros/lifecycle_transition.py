@@ -1,0 +1,126 @@
+"""Leading lifecycle nodes through several transitions, each when the one before is made."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from linkwright.launch.actions import EmitEvent, OpaqueFunction, RegisterEventHandler
+from linkwright.launch.entity import Action
+from linkwright.launch.event_handlers import BaseEventHandler, EventHandler
+from linkwright.launch.places import error_at
+from linkwright.launch.ros.lifecycle import unknown_transition
+from linkwright.launch.ros.lifecycle_events import (
+    ChangeState,
+    OnStateTransition,
+    StateTransition,
+    matches_node_name,
+)
+from linkwright.launch.substitution import normalize_to_list_of_substitutions, perform_substitutions
+
+if TYPE_CHECKING:
+    from linkwright.launch.context import LaunchContext
+    from linkwright.launch.events import Event
+
+_GOALS = {
+    1: ("configuring", "inactive"),
+    2: ("cleaningup", "unconfigured"),
+    3: ("activating", "active"),
+    4: ("deactivating", "inactive"),
+    5: ("shuttingdown", "finalized"),
+    6: ("shuttingdown", "finalized"),
+    7: ("shuttingdown", "finalized"),
+}
+"""The state in the transition and the one after it, by the transition's number."""
+
+
+class LifecycleTransition(Action):
+    """Asks lifecycle nodes for transitions, one after another; an error in one ends the row.
+
+    Args:
+        lifecycle_node_names: the nodes' names; a missing first slash is added.
+        transition_ids: the transitions' numbers.
+    """
+
+    transition_targets: ClassVar[dict[int, dict[str, str]]] = {
+        number: {"start_state": start, "goal_state": goal} for number, (start, goal) in _GOALS.items()
+    }
+
+    def __init__(self, *, lifecycle_node_names: Sequence[Any], transition_ids: Sequence[Any], **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        for what, given in (("transition_ids", transition_ids), ("lifecycle_node_names", lifecycle_node_names)):
+            if len(given) == 0:
+                text = f"No {what} provided."
+                raise error_at(self.place, "LAUNCH138", text.rstrip("."), promises=ValueError(text))
+        self._names = [normalize_to_list_of_substitutions(name) for name in lifecycle_node_names]
+        self._ids = [
+            normalize_to_list_of_substitutions(str(each) if isinstance(each, int) else each) for each in transition_ids
+        ]
+        self._handlers: dict[str, list[BaseEventHandler]] = {}
+
+    def execute(self, context: LaunchContext) -> list[Action]:
+        """Ask for the first ones; the handlers for the others come before.
+
+        Raises:
+            LinkwrightError: LAUNCH138, a transition is no number, or none that ends in a state.
+        """
+        names = [perform_substitutions(context, name) for name in self._names]
+        numbers = [self._number(perform_substitutions(context, each)) for each in self._ids]
+        registering: list[Action] = []
+        asking: list[Action] = []
+        for name in names:
+            wishes = [_wish(name, number) for number in numbers]
+            asking.append(wishes[0])
+            for number, following in zip(numbers, [*wishes[1:], self._ending(name)], strict=True):
+                start, goal = _GOALS[number]
+                handler = OnStateTransition(matcher=_arrival(name, start, goal), entities=[following], handle_once=True)
+                self._handlers.setdefault(name, []).append(handler)
+                registering.append(RegisterEventHandler(handler))
+            failing = EventHandler(
+                matcher=_arrival(name, None, "errorprocessing"),
+                entities=[self._ending(name, "error occured during transitions")],
+                handle_once=True,
+            )
+            self._handlers[name].append(failing)
+            context.register_event_handler(failing)
+        return [*registering, *asking]
+
+    def _number(self, text: str) -> int:
+        try:
+            number = int(text)
+        except ValueError:
+            raise unknown_transition(self.place, text) from None
+        if number not in _GOALS:
+            message = f"transition {number} leads to no state that could be waited for"
+            raise error_at(self.place, "LAUNCH138", message, promises=KeyError(number))
+        return number
+
+    def _ending(self, name: str, reason: str | None = None) -> OpaqueFunction:
+        def end(context: LaunchContext) -> None:
+            if reason is not None:
+                text = f"Stopping transitions for {name} because '{reason}'"
+                context.session.log.say("launch_ros.actions.lifecycle_transition", text)
+            for handler in self._handlers.pop(name, ()):
+                with suppress(ValueError):  # it has handled its event and is gone
+                    context.unregister_event_handler(handler)
+
+        return OpaqueFunction(function=end)
+
+
+def _wish(name: str, number: int) -> EmitEvent:
+    return EmitEvent(event=ChangeState(lifecycle_node_matcher=matches_node_name(name), transition_id=number))
+
+
+def _arrival(name: str, start: str | None, goal: str) -> Any:
+    full_name = name if name.startswith("/") else f"/{name}"
+
+    def matches(event: Event) -> bool:
+        return (
+            isinstance(event, StateTransition)
+            and event.action.node_name == full_name
+            and event.goal_state == goal
+            and start in (None, event.start_state)
+        )
+
+    return matches

@@ -1,0 +1,72 @@
+"""Names of nodes and namespaces, and how many nodes of a name a launch has started (``launch_ros.utilities``)."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import Any
+
+_COUNTS = "unique_ros_node_names"
+
+
+def is_root_namespace(ns: str) -> bool:
+    """Whether a namespace is ``/``."""
+    return ns == "/"
+
+
+def is_namespace_absolute(ns: str) -> bool:
+    """Whether a namespace begins with a slash."""
+    return ns.startswith("/")
+
+
+def make_namespace_absolute(ns: str | None) -> str | None:
+    """A namespace with a slash before it; None stays None."""
+    return ns if ns is None or is_namespace_absolute(ns) else f"/{ns}"
+
+
+def prefix_namespace(base_ns: str | None, ns: str | None, *, return_absolute_ns: bool = False) -> str | None:
+    """A namespace inside another. An absolute one stands for itself; None stands for one that nobody gave.
+
+    Args:
+        base_ns: the outer one.
+        ns: the inner one.
+        return_absolute_ns: whether a slash is put before the result.
+    """
+    if ns is None:
+        combined = base_ns
+    elif not base_ns or is_namespace_absolute(ns):
+        combined = ns
+    else:
+        combined = f"{base_ns.rstrip('/')}/{ns}"
+    if combined is None:
+        return None
+    if not is_root_namespace(combined):
+        combined = combined.rstrip("/")
+    return make_namespace_absolute(combined) if return_absolute_ns else combined
+
+
+def add_node_name(context: Any, node_name: str) -> None:
+    """Take note that a node of this full name was started."""
+    _counts(context)[node_name] += 1
+
+
+def get_node_name_count(context: Any, node_name: str) -> int:
+    """How many nodes of this full name were started in the launch."""
+    return _counts(context).get(node_name, 0)
+
+
+def repeated_name(context: Any, node_name: str) -> str | None:
+    """Take note of a node, and what to say if there is another of its name; None if not."""
+    add_node_name(context, node_name)
+    count = get_node_name_count(context, node_name)
+    if count < 2:
+        return None
+    return f"there are now at least {count} nodes with the name {node_name} created within this launch context"
+
+
+def _counts(context: Any) -> defaultdict[str, int]:
+    try:
+        counts: defaultdict[str, int] = getattr(context.locals, _COUNTS)
+    except AttributeError:
+        counts = defaultdict(int)
+        context.extend_globals({_COUNTS: counts})
+    return counts

@@ -1,0 +1,206 @@
+"""The ``parameters`` of a node in one form, and evaluated (``launch_ros.utilities``).
+
+What a launch file gives is normalized when the node is made, so that its form is checked there: paths become
+`ParameterFile`, and dictionaries become flat, with tuples of substitutions for names and either plain values or tuples
+of substitutions for values. Evaluation gives for each item a path, a dictionary of values by name, or a `Parameter`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from linkwright.launch.context import LaunchContext
+from linkwright.launch.places import Place, error_at
+from linkwright.launch.ros.parameter_files import ParameterFile
+from linkwright.launch.ros.parameter_values import Parameter, ParameterValue, uniform, yaml_value
+from linkwright.launch.substitution import (
+    Substitution,
+    TextSubstitution,
+    normalize_to_list_of_substitutions,
+    perform_substitutions,
+)
+
+Name = tuple[Substitution, ...]
+NormalizedDict = dict[Name, Any]
+
+
+class PlainItem(TextSubstitution):
+    """A value among substitutions that keeps its type, as a text that is no YAML does.
+
+    Attributes:
+        value: the value.
+    """
+
+    def __init__(self, value: Any) -> None:
+        super().__init__(text=str(value))
+        self.value = value
+
+
+def normalize_parameters(parameters: Any) -> tuple[Any, ...]:
+    """The ``parameters`` of a node, normalized.
+
+    Raises:
+        LinkwrightError: LAUNCH132, they are no list, or an item can be no parameters; a TypeError too.
+    """
+    place = Place.of_caller()
+    if isinstance(parameters, (str, Mapping)) or not isinstance(parameters, Sequence):
+        promised = TypeError(f"Expecting list of parameters, got {parameters}")
+        hint = "put it into a list: parameters=[...]"
+        raise error_at(place, "LAUNCH132", "'parameters' of a node must be a list", hint, promises=promised)
+    return tuple(_normalized_item(item, place) for item in parameters)
+
+
+def normalize_parameter_dict(
+    parameters: Mapping[Any, Any], *, _prefix: Sequence[Substitution] | None = None
+) -> NormalizedDict:
+    """A dictionary of parameters, normalized; nested ones give names with dots.
+
+    Raises:
+        LinkwrightError: LAUNCH132, a name or value is none that a parameter can have; a TypeError too.
+    """
+    if not isinstance(parameters, Mapping):
+        raise TypeError("expected dict")
+    normalized: NormalizedDict = {}
+    for key, value in parameters.items():
+        name = _normalized_name(key)
+        if _prefix:
+            name = (*_prefix, TextSubstitution(text="."), *name)
+        if isinstance(value, Mapping):
+            normalized.update(normalize_parameter_dict(value, _prefix=name))
+        else:
+            normalized[name] = _normalized_value(value, key)
+    return normalized
+
+
+def evaluate_parameters(context: LaunchContext, parameters: Iterable[Any]) -> tuple[Any, ...]:
+    """Evaluate normalized parameters: for each item a path, a dictionary, or a `Parameter`.
+
+    Raises:
+        LinkwrightError: LAUNCH132 or LAUNCH133, what is wrong with a value or a file.
+    """
+    return tuple(_evaluated_item(context, item) for item in parameters)
+
+
+def evaluate_parameter_dict(context: LaunchContext, parameters: NormalizedDict) -> dict[str, Any]:
+    """Evaluate a normalized dictionary: values by name, lists as tuples.
+
+    Raises:
+        LinkwrightError: LAUNCH132, what is wrong with a value; a TypeError too.
+    """
+    if not isinstance(parameters, Mapping):
+        raise TypeError("expected dict")
+    evaluated: dict[str, Any] = {}
+    for key, value in parameters.items():
+        if not isinstance(key, tuple):
+            raise TypeError(f"Expecting tuple of substitutions got {key!r}")
+        name = perform_substitutions(context, key)
+        evaluated[name] = _evaluated_value(context, name, value)
+    return evaluated
+
+
+# --- normalizing ------------------------------------------------------------------------------------------------
+
+
+def _normalized_item(item: Any, place: Place | None) -> Any:
+    if isinstance(item, Mapping):
+        return normalize_parameter_dict(item)
+    if isinstance(item, (Parameter, ParameterFile)):
+        return item
+    if isinstance(item, (str, Path, Substitution, list, tuple)):
+        return ParameterFile(item)
+    message = f"'parameters' of a node has an item of type {type(item).__name__}"
+    hint = "items are dictionaries and paths of YAML files"
+    raise error_at(place, "LAUNCH132", message, hint, promises=TypeError(message))
+
+
+def _normalized_name(key: Any) -> Name:
+    try:
+        return tuple(normalize_to_list_of_substitutions(key))
+    except TypeError as error:
+        message = f"the name of a parameter must be text, not {key!r}"
+        raise error_at(Place.of_caller(), "LAUNCH132", message, promises=error) from error
+
+
+def _normalized_value(value: Any, key: Any) -> Any:
+    if isinstance(value, str):
+        return (PlainItem(value),)
+    if isinstance(value, Substitution):
+        return (value,)
+    if isinstance(value, (bool, int, float, bytes, ParameterValue)):
+        return value
+    if isinstance(value, Sequence):
+        return _normalized_sequence(value, key)
+    shown = key if isinstance(key, str) else "..."
+    if isinstance(value, Path):
+        message = f"parameter '{shown}' is a Path"
+        raise error_at(
+            Place.of_caller(), "LAUNCH132", message, "give it as text: str(PATH)", promises=TypeError(message)
+        )
+    message = f"parameter '{shown}' is of type {type(value).__name__}, which no parameter can be"
+    promised = TypeError(f"Unexpected type for parameter value {value!r}")
+    raise error_at(Place.of_caller(), "LAUNCH132", message, promises=promised)
+
+
+def _normalized_sequence(items: Sequence[Any], key: Any) -> tuple[Any, ...]:
+    kinds = {_item_kind(item, key) for item in items}
+    if kinds <= {int, float}:
+        return tuple(items) if len(kinds) < 2 else tuple(float(item) for item in items)
+    if kinds <= {str}:
+        return tuple(items)
+    if kinds == {bool}:
+        return tuple(items)
+    if Substitution in kinds and kinds <= {str, Substitution}:
+        return tuple(normalize_to_list_of_substitutions(items))
+    # Items of their own: texts and other values stand for themselves, substitutions are read as YAML one by one.
+    return tuple(
+        tuple(normalize_to_list_of_substitutions(item))
+        if isinstance(item, (Substitution, list, tuple))
+        else (PlainItem(item),)
+        for item in items
+    )
+
+
+def _item_kind(item: Any, key: Any) -> type:
+    for kind in (Substitution, str, bool, int, float):
+        if isinstance(item, kind):
+            return kind
+    if isinstance(item, (list, tuple)) and all(isinstance(each, (str, Substitution)) for each in item):
+        return tuple
+    shown = key if isinstance(key, str) else "..."
+    message = f"the list of parameter '{shown}' has an item of type {type(item).__name__}"
+    hint = "items are of one of the types bool, int, float and str"
+    raise error_at(Place.of_caller(), "LAUNCH132", message, hint, promises=TypeError(message))
+
+
+# --- evaluating -------------------------------------------------------------------------------------------------
+
+
+def _evaluated_item(context: LaunchContext, item: Any) -> Any:
+    if isinstance(item, ParameterFile):
+        return item.evaluate(context)
+    if isinstance(item, Mapping):
+        return evaluate_parameter_dict(context, dict(item))
+    if isinstance(item, tuple) and item and isinstance(item[0], Substitution):
+        return Path(perform_substitutions(context, item))
+    return item
+
+
+def _evaluated_value(context: LaunchContext, name: str, value: Any) -> Any:
+    if isinstance(value, ParameterValue):
+        return value.evaluate(context, name)
+    if not isinstance(value, tuple) or not value:
+        return value
+    if isinstance(value[0], Substitution):
+        return _evaluated_text(context, name, value)
+    if isinstance(value[0], tuple):
+        place = next((each.place for item in value for each in item if each.place is not None), None)
+        return uniform([_evaluated_text(context, name, item) for item in value], name, place)
+    return value
+
+
+def _evaluated_text(context: LaunchContext, name: str, parts: tuple[Substitution, ...]) -> Any:
+    if len(parts) == 1 and isinstance(parts[0], PlainItem):
+        return parts[0].value
+    return yaml_value(perform_substitutions(context, parts), name, parts[0].place)

@@ -1,0 +1,112 @@
+"""Reading the tags of nodes in XML and YAML launch files."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from linkwright.launch.frontend.entity import Entity
+from linkwright.launch.places import error_at
+from linkwright.launch.ros.parameter_files import ParameterFile
+from linkwright.launch.ros.parameter_values import ParameterValue
+
+if TYPE_CHECKING:
+    from linkwright.launch.frontend.parser import Parser
+
+Entities = list[Entity]
+
+
+def parse_node(entity: Entity, parser: Parser, kwargs: dict[str, Any], cls: Any) -> dict[str, Any]:
+    """Add the keyword arguments of a node to those of a process.
+
+    Args:
+        entity: the tag.
+        parser: makes substitutions.
+        kwargs: what was read of it so far.
+        cls: the action's class, which reads command lines and parameters.
+    """
+    for attribute, keyword in (("args", "arguments"), ("ros_args", "ros_arguments")):
+        words = entity.get_attr(attribute, optional=True)
+        if words is not None:
+            kwargs[keyword] = cls._parse_cmdline(words, parser)
+    for attribute, keyword in (("name", "name"), ("exec_name", "exec_name"), ("pkg", "package")):
+        text = entity.get_attr(attribute, optional=True)
+        if text is not None:
+            kwargs[keyword] = parser.parse_substitution(text)
+        elif attribute == "name":
+            kwargs.pop("name", None)
+    kwargs["executable"] = parser.parse_substitution(entity.get_attr("exec"))
+    namespace = entity.get_attr("namespace", optional=True)
+    if namespace is not None:
+        kwargs["namespace"] = parser.parse_substitution(namespace)
+    kwargs.update(parse_remappings(entity, parser))
+    parameters = entity.get_attr("param", data_type=Entities, optional=True)
+    if parameters is not None:
+        kwargs["parameters"] = cls.parse_nested_parameters(parameters, parser)
+    return kwargs
+
+
+def parse_remappings(entity: Entity, parser: Parser) -> dict[str, Any]:
+    """The keyword argument ``remappings`` of the ``remap`` tags inside; nothing without any."""
+    tags = entity.get_attr("remap", data_type=Entities, optional=True)
+    if tags is None:
+        return {}
+    rules = []
+    for tag in tags:
+        source, target = tag.get_attr("from"), tag.get_attr("to")
+        rules.append((parser.parse_substitution(source), parser.parse_substitution(target)))
+        tag.assert_entity_completely_parsed()
+    return {"remappings": rules}
+
+
+def parse_parameters(tags: list[Entity], parser: Parser) -> list[Any]:
+    """What ``param`` tags say, for ``parameters`` of a node.
+
+    Raises:
+        RuntimeError: LAUNCH118, a tag says too much or too little.
+    """
+    parameters: list[Any] = []
+    for tag in tags:
+        path = tag.get_attr("from", optional=True)
+        allow = tag.get_attr("allow_substs", data_type=bool, optional=True)
+        name = tag.get_attr("name", optional=True)
+        if path is not None and name is not None:
+            raise _wrong(tag, "name and from attributes are mutually exclusive")
+        if path is not None:
+            allow = parser.parse_substitution(allow) if isinstance(allow, str) else bool(allow)
+            tag.assert_entity_completely_parsed()
+            parameters.append(ParameterFile(parser.parse_substitution(path), allow_substs=allow))
+        elif name is not None:
+            if allow is not None:
+                raise _wrong(tag, "'allow_substs' can only be used together with 'from' attribute")
+            parameters.append(_nested([tag], parser))
+        else:
+            raise _wrong(tag, "param Entity should have name or from attribute", ValueError)
+    return parameters
+
+
+def _nested(tags: list[Entity], parser: Parser) -> dict[Any, Any]:
+    from linkwright.launch.frontend.values import get_data_type_from_identifier
+
+    found: dict[Any, Any] = {}
+    for tag in tags:
+        name = tuple(parser.parse_substitution(tag.get_attr("name")))
+        identifier = tag.get_attr("type", data_type=None, optional=True)
+        data_type = None if identifier is None else get_data_type_from_identifier(identifier)
+        value = tag.get_attr("value", data_type=data_type, optional=True)
+        inside = tag.get_attr("param", data_type=Entities, optional=True)
+        tag.assert_entity_completely_parsed()
+        if value is not None and inside:
+            raise _wrong(tag, "nested parameters and value attributes are mutually exclusive")
+        if data_type is not None and inside:
+            raise _wrong(tag, "nested parameters and type attributes are mutually exclusive")
+        if value is not None:
+            found[name] = ParameterValue(parser.parse_if_substitutions(value), value_type=data_type)
+        elif inside:
+            found[name] = _nested(inside, parser)
+        else:
+            raise _wrong(tag, "either a value attribute or nested params are needed")
+    return found
+
+
+def _wrong(tag: Entity, text: str, kind: type[Exception] = RuntimeError) -> Exception:
+    return error_at(tag.place, "LAUNCH118", f"'{tag.type_name}': {text}", promises=kind(text))

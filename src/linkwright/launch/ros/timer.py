@@ -1,0 +1,50 @@
+"""Actions after a while of ROS time, which may be simulated."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from linkwright.launch.actions.timer import TimerAction
+from linkwright.launch.context import LaunchContext
+from linkwright.launch.frontend.expose import expose_action
+
+if TYPE_CHECKING:
+    from linkwright.graph import Node, Timer
+    from linkwright.launch.engine.session import Schedule, Scheduled
+
+
+@expose_action("ros_timer")
+class RosTimer(TimerAction):
+    """Visits actions once, after a period of ROS time.
+
+    The time is that of the launcher's node. It goes by ``/clock`` from where `SetUseSimTime` says so, even if that
+    comes after the timer.
+    """
+
+    def _schedule(self, context: LaunchContext) -> Schedule:
+        node = context.session.host.launcher_node
+
+        def schedule(seconds: float, due: Callable[[], None]) -> Scheduled:
+            return _OneShot(node, seconds, due)
+
+        return schedule
+
+
+class _OneShot:
+    """A timer of a node that fires once."""
+
+    def __init__(self, node: Node, seconds: float, due: Callable[[], None]) -> None:
+        self._node = node
+        self._due = due
+        self._timer: Timer | None = node.create_timer(seconds, self._fire)
+
+    def cancel(self) -> None:
+        """Do not fire."""
+        if self._timer is not None:
+            self._node.destroy_timer(self._timer)
+            self._timer = None
+
+    def _fire(self) -> None:
+        self.cancel()
+        self._due()

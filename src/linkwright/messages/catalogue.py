@@ -1,0 +1,33 @@
+"""The interfaces that come with Linkwright: what ROS 2 Humble ships, as one text file for each package in ``data/``.
+
+A file has the interface files of its package one after the other, without their comments, each after a line such as
+``=== msg/JointState``. It is read when the first of its interfaces is asked for.
+"""
+
+from __future__ import annotations
+
+import os
+from functools import cache
+
+_FOLDER = os.path.join(os.path.dirname(__file__), "data")  # noqa: PTH118, PTH120 - pathlib takes long to import
+_HEAD = "=== "
+
+
+@cache
+def packages() -> tuple[str, ...]:
+    """The names of the packages, sorted."""
+    return tuple(sorted(name[:-4] for name in os.listdir(_FOLDER) if name.endswith(".txt")))  # noqa: PTH208
+
+
+@cache
+def texts(package: str) -> dict[str, str]:
+    """The interfaces of a package: kind and name, such as ``msg/JointState``, -> text; empty for an unknown package."""
+    if package not in packages():
+        return {}
+    with open(os.path.join(_FOLDER, package + ".txt"), encoding="utf-8") as file:  # noqa: PTH118, PTH123
+        text = file.read()
+    found: dict[str, str] = {}
+    for part in text.removeprefix(_HEAD).split("\n" + _HEAD):
+        name, _, body = part.partition("\n")
+        found[name] = body if body.endswith("\n") or not body else body + "\n"
+    return found

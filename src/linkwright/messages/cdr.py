@@ -1,0 +1,111 @@
+"""Messages as bytes and back: CDR as ROS 2's middlewares send it (XCDR1, little-endian, four header bytes)."""
+
+from __future__ import annotations
+
+import struct
+from typing import Any, TypeVar
+
+from linkwright.messages.cdr_reader import READ_FAULTS, compile_reader
+from linkwright.messages.cdr_values import DataFaultError
+from linkwright.messages.classes import class_of
+from linkwright.messages.errors import MessageDataError, data_error
+from linkwright.messages.message import Message
+
+MessageT = TypeVar("MessageT")
+
+_LITTLE = b"\x00\x01"
+_BIG = b"\x00\x00"
+_HEADERS = {
+    b"\x00\x02": "PL_CDR_BE",
+    b"\x00\x03": "PL_CDR_LE",
+    b"\x00\x06": "CDR2_BE",
+    b"\x00\x07": "CDR2_LE",
+    b"\x00\x08": "D_CDR2_BE",
+    b"\x00\x09": "D_CDR2_LE",
+    b"\x00\x0a": "PL_CDR2_BE",
+    b"\x00\x0b": "PL_CDR2_LE",
+}
+
+_WRITE_FAULTS = (struct.error, AttributeError, TypeError, ValueError, OverflowError)
+_big_readers: dict[str, Any] = {}
+
+
+def serialize(message: Message) -> bytes:
+    """A message as CDR: header bytes 00 01 00 00, then the fields; nothing is filled up at the end.
+
+    Raises:
+        MessageDataError: MSG202, a value is of the wrong type or out of range (which only happens when the checks on
+            assignment were evaded, as by appending to a list).
+    """
+    try:
+        return message._write()
+    except _WRITE_FAULTS as fault:
+        raise _unwritable(message, fault) from fault
+
+
+def deserialize(data: bytes | bytearray | memoryview, message_class: type[MessageT]) -> MessageT:
+    """The message that bytes are, header included; what stands behind its end is not looked at.
+
+    Raises:
+        MessageDataError: MSG201, the bytes are no message of this class.
+    """
+    if type(data) is not bytes:
+        data = bytes(data)
+    little = data[:2] == _LITTLE
+    read = message_class._read if little else _reader_for(data, message_class)  # type: ignore[attr-defined]
+    try:
+        message: MessageT = read(data)
+    except READ_FAULTS as fault:
+        raise _unreadable(message_class, data, fault) from None
+    return message
+
+
+def _reader_for(data: bytes, message_class: type[Any]) -> Any:
+    if data[:2] != _BIG or len(data) < 4:
+        if len(data) < 4:
+            why = f"{len(data)} bytes are too few for the header"
+        elif data[:2] in _HEADERS:
+            why = f"its header says {_HEADERS[data[:2]]}; ROS 2 sends plain CDR"
+        else:
+            why = f"it begins with {data[:4].hex(' ')} instead of the header of CDR"
+        raise data_error("MSG201", f"this is no message of type '{message_class.TYPE_NAME}': {why}")
+    name = message_class.TYPE_NAME
+    reader = _big_readers.get(name)
+    if reader is None:
+        reader = _big_readers[name] = compile_reader(message_class._definition, class_of, ">")
+    return reader
+
+
+def _unreadable(message_class: type[Any], data: bytes, fault: Exception) -> MessageDataError:
+    if isinstance(fault, UnicodeDecodeError):
+        why = "a text in it is not UTF-8"
+    elif isinstance(fault, DataFaultError):
+        why = str(fault)
+    else:
+        why = f"the data, {len(data)} bytes, ends in the middle of the message"
+    return data_error("MSG201", f"this is no message of type '{message_class.TYPE_NAME}': {why}")
+
+
+def _unwritable(message: object, fault: Exception) -> MessageDataError:
+    if not isinstance(message, Message):
+        return data_error("MSG202", f"'{type(message).__name__}' is no message class")
+    return data_error("MSG202", f"this '{message.TYPE_NAME}' cannot be written: {_bad_field(message, '') or fault}")
+
+
+def _bad_field(message: Message, path: str) -> str | None:
+    """Which field has a value that it could not be given now, and why, in the words of the checks on assignment."""
+    for field in message._definition.fields:
+        here = f"{path}.{field.name}" if path else field.name
+        try:
+            value = getattr(message, field.name)
+            setattr(type(message)(), field.name, value)
+        except AttributeError:
+            return f"'{here}' was never set"
+        except AssertionError as error:
+            return str(error).replace(f"'{field.name}'", f"'{here}'", 1)
+        within = [value] if isinstance(value, Message) else value if "/" in field.type.base else ()
+        for number, each in enumerate(within):
+            found = _bad_field(each, here if each is value else f"{here}[{number}]")
+            if found:
+                return found
+    return None

@@ -1,0 +1,332 @@
+"""Compiles, for a structure, the function that reads it from CDR.
+
+The function unpacks runs of fixed fields, through nested structures, with one `struct` call each, straight into the
+slots of the objects; no check of an assignment is made again. It trusts no length: none makes it read or reserve more
+than there is, and whatever it raises for bad data is one of the errors in `READ_FAULTS`.
+"""
+
+from __future__ import annotations
+
+import struct
+from array import array
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from itertools import count
+from typing import Any, Literal
+
+import numpy as np
+
+from linkwright.messages import cdr_values
+from linkwright.messages.cdr_layout import ANYWHERE, DEEPEST_LOOP, MOST_INLINE, START, Place, facts
+from linkwright.messages.definition import Container, Field, FieldType, Structure
+from linkwright.messages.library import LIBRARY
+from linkwright.messages.primitives import Primitive
+
+READ_FAULTS = (struct.error, IndexError, ValueError)
+"""What a reader raises for bad data: UnicodeDecodeError and DataFaultError are ValueErrors."""
+
+_SCOPE: dict[str, Any] = {
+    "new": object.__new__,
+    "texts": cdr_values.read_texts,
+    "numbers": cdr_values.read_numbers,
+    "bools": cdr_values.read_bools,
+    "single_bytes": cdr_values.read_bytes,
+    "wide": cdr_values.read_wide_text,
+    "truncated": cdr_values.truncated,
+    "unterminated": cdr_values.unterminated,
+    "bad_bool": cdr_values.bad_bool,
+    "too_long": cdr_values.too_long,
+    "check_bounds": cdr_values.check_bounds,
+    "array": array,
+    "frombuffer": np.frombuffer,
+}
+
+_parts: dict[tuple[str, str], Callable[..., Any]] = {}
+
+ClassOf = Callable[[Structure], type]
+Order = Literal["<", ">"]
+
+
+def compile_reader(structure: Structure, class_of: ClassOf, order: Order = "<") -> Callable[[bytes], Any]:
+    """The function that makes a message of bytes, header included.
+
+    Args:
+        structure: what is read.
+        class_of: gives the class of each structure.
+        order: ``<`` for little-endian data, ``>`` for big-endian.
+    """
+    code = _ReaderCode(START, class_of, order, known=4)
+    name = code.made(structure)
+    code.structure(structure, name)
+    code.end_run()
+    body = "    e = len(d)\n" + code.body()
+    reader: Callable[[bytes], Any] = code.compiled(f"def read(d):\n{body}    return {name}\n", structure)
+    return reader
+
+
+def _compile_part(structure: Structure, class_of: ClassOf, order: Order) -> Callable[..., Any]:
+    """The function that reads a nested structure at a place and returns it and where it ends."""
+    found = _parts.get((structure.type_name, order))
+    if found is None:
+        code = _ReaderCode(ANYWHERE, class_of, order, known=None)
+        name = code.made(structure)
+        code.structure(structure, name)
+        code.end_run()
+        source = f"def read(d, p, e):\n{code.body()}    return {name}, p\n"
+        found = _parts[structure.type_name, order] = code.compiled(source, structure)
+    return found
+
+
+class _ReaderCode:
+    """The code while it is written. `p` is the place in the data, header included, `e` the end of the data."""
+
+    def __init__(self, place: Place, class_of: ClassOf, order: Order, known: int | None) -> None:
+        self.place = place
+        self._known = known
+        """The place as a number, as long as it is the same for all messages."""
+        self._class_of = class_of
+        self._order = order
+        self._lines: list[str] = []
+        self._depth = 1
+        self._loops = 0
+        self._run: list[tuple[str, str]] = []
+        self._after_run: list[str] = []
+        self._names = count(1)
+        self._scope = dict(_SCOPE)
+
+    def body(self) -> str:
+        return "".join(self._lines)
+
+    def compiled(self, source: str, structure: Structure) -> Any:
+        exec(compile(source, f"<CDR reader of {structure.type_name}>", "exec"), self._scope)  # noqa: S102
+        return self._scope["read"]
+
+    # --- structures and fields ------------------------------------------------------------------------------
+
+    def made(self, structure: Structure) -> str:
+        """A new object of the structure's class, in a variable."""
+        name = f"m{next(self._names)}"
+        self._line(f"{name} = new({self._given(self._class_of(structure), 'C')})")
+        return name
+
+    def structure(self, structure: Structure, target: str) -> None:
+        if not structure.fields:
+            self._primitive("B", 1, "_")
+        for field in structure.fields:
+            self._field(field, f"{target}._{field.name}")
+
+    def _field(self, field: Field, target: str) -> None:
+        kind = field.type
+        if kind.container is Container.ONE:
+            self._one(field.name, kind, target)
+        elif kind.container is Container.ARRAY:
+            self._array(field, target)
+        else:
+            self._sequence(field, target)
+
+    def _one(self, name: str, kind: FieldType, target: str) -> None:
+        primitive = kind.primitive
+        if primitive is None:
+            self._nested(kind, target)
+        elif primitive.python is str:
+            self._text(name, kind, target)
+        elif primitive.python is bool:
+            value = f"b{next(self._names)}"
+            self._primitive("B", 1, value)
+            self._after_run += [f"if {value} > 1: bad_bool({value})", f"{target} = {value} == 1"]
+        else:
+            assert primitive.code is not None
+            self._primitive(primitive.code, primitive.size, target)
+
+    def _nested(self, kind: FieldType, target: str) -> None:
+        structure = LIBRARY.structure(kind.base)
+        if facts(structure).leaves > MOST_INLINE or self._loops >= DEEPEST_LOOP:
+            self._move_on()
+            part = _compile_part(structure, self._class_of, self._order)
+            self._line(f"{target}, p = {self._given(part, 'R')}(d, p, e)")
+            self.place = ANYWHERE
+        else:
+            name = self.made(structure)
+            self._line(f"{target} = {name}")
+            self.structure(structure, name)
+
+    def _text(self, name: str, kind: FieldType, target: str) -> None:
+        length = self._length()
+        if kind.base == "wstring":
+            self._line(f"{target}, p = wide(d, p, {length}, {self._order!r})")
+            self.place = Place(2, 0)
+        else:
+            self._line(f"if {length}:")
+            self._line(f"    q = p + {length} - 1")
+            self._line("    if d[q]: unterminated()")
+            self._line(f"    {target} = str(d[p:q], 'utf-8')")
+            self._line("    p = q + 1")
+            self._line(f"else: {target} = ''")
+            self.place = ANYWHERE
+        if kind.string_bound is not None:
+            self._line(f"if len({target}) > {kind.string_bound}: too_long({name!r}, {kind.string_bound})")
+
+    def _array(self, field: Field, target: str) -> None:
+        kind, primitive, size = field.type, field.type.primitive, field.type.size
+        assert size is not None
+        if kind.is_numeric_array:
+            assert primitive is not None
+            self._align(primitive.size)
+            self.end_run()
+            dtype = np.dtype(primitive.dtype).newbyteorder(self._order)
+            data = f"frombuffer(d, {self._given(dtype, 'T')}, {size}, {self._here()})"
+            native = f".astype({primitive.dtype!r})" if self._order == ">" else ".copy()"
+            self._line(f"{target} = {data}{native}")
+            self._skip(size * primitive.size)
+        elif primitive is not None and primitive.python in (bool, bytes):
+            self._move_on()
+            self._small_values(primitive, str(size), target)
+        else:
+            self._repeated(field, target, str(size))
+
+    def _sequence(self, field: Field, target: str) -> None:
+        kind, primitive = field.type, field.type.primitive
+        length = self._length()
+        if kind.size is not None:
+            self._line(f"if {length} > {kind.size}: too_long({field.name!r}, {kind.size})")
+        if kind.is_numeric_array:
+            assert primitive is not None
+            self._numbers(primitive, length, target)
+        elif primitive is not None and primitive.python in (bool, bytes):
+            self._small_values(primitive, length, target)
+        elif kind.base == "string" and self._order == "<":
+            self._line(f"{target}, p = texts(d, p, {length})")
+            self.place = ANYWHERE
+            if kind.string_bound is not None:
+                self._line(f"check_bounds({field.name!r}, {target}, {kind.string_bound})")
+        else:
+            least = 4 if primitive is not None else facts(LIBRARY.structure(kind.base)).least
+            self._line(f"if {length} * {least} > e - p: truncated()")
+            self._repeated(field, target, length)
+
+    def _numbers(self, primitive: Primitive, length: str, target: str) -> None:
+        code = primitive.array_code
+        self._line(f"if {length}:")
+        self._depth += 1
+        if primitive.size == 8:
+            padding = self.place.padding(8)
+            if padding is None:
+                self._line("p = (p + 3 & -8) + 4")
+            elif padding:
+                self._line(f"p += {padding}")
+        self._line(f"q = p + {length}" + (f" * {primitive.size}" if primitive.size > 1 else ""))
+        self._line(f"{target} = numbers({code!r}, d, p, q)")
+        if self._order == ">" and primitive.size > 1:
+            self._line(f"{target}.byteswap()")
+        self._line("p = q")
+        self._depth -= 1
+        self._line(f"else: {target} = array({code!r})")
+        self.place = Place(min(primitive.size, 4), 0)
+
+    def _small_values(self, primitive: Primitive, length: str, target: str) -> None:
+        reader = "bools" if primitive.python is bool else "single_bytes"
+        self._line(f"q = p + {length}")
+        self._line(f"{target} = {reader}(d, p, q)")
+        self._line("p = q")
+        self.place = ANYWHERE
+
+    def _repeated(self, field: Field, target: str, length: str) -> None:
+        """A loop. Its beginning is known as far as it is the same the first and every further time."""
+        one = FieldType(field.type.base, field.type.string_bound)
+        self._move_on()
+        values, value = f"l{next(self._names)}", f"x{next(self._names)}"
+        self._line(f"{target} = {values} = []")
+        before = self.place
+        while True:
+            lines = len(self._lines)
+            self.place = before
+            with self._loop(length):
+                self._one(field.name, one, value)
+                self._move_on()
+                self._line(f"{values}.append({value})")
+            met = before.met(self.place)
+            if met == before:
+                break
+            before = met
+            del self._lines[lines:]
+        self.place = before
+
+    # --- places and runs ------------------------------------------------------------------------------------
+
+    def _length(self) -> str:
+        """Read the length of a text or a sequence; `p` is behind it then."""
+        name = f"n{next(self._names)}"
+        self._primitive("I", 4, name)
+        self._move_on()
+        return name
+
+    def _primitive(self, code: str, size: int, target: str) -> None:
+        self._align(size)
+        self._run.append((code, target))
+        self.place = self.place.after(size)
+
+    def _align(self, size: int) -> None:
+        padding = self.place.padding(size)
+        if padding is None:
+            self.end_run()
+            self._line({2: "p += p & 1", 4: "p += -p & 3", 8: "p = (p + 3 & -8) + 4"}[size])
+            self.place = Place(size, 0)
+        elif padding:
+            if self._run:
+                self._run.append((f"{padding}x", ""))
+            else:
+                self._skip_bytes(padding)
+            self.place = self.place.after(padding)
+
+    def end_run(self) -> None:
+        """Unpack what has been collected."""
+        if not self._run:
+            return
+        form = struct.Struct(self._order + "".join(code for code, _ in self._run))
+        targets = ", ".join(target for _, target in self._run if target)
+        comma = "" if "," in targets else ","
+        self._line(f"{targets}{comma} = {self._given(form.unpack_from, 'U')}(d, {self._here()})")
+        self._skip_bytes(form.size)
+        self._run = []
+        for line in self._after_run:
+            self._line(line)
+        self._after_run = []
+
+    def _skip(self, size: int) -> None:
+        self._skip_bytes(size)
+        self.place = self.place.after(size)
+
+    def _skip_bytes(self, size: int) -> None:
+        if self._known is None:
+            self._line(f"p += {size}")
+        else:
+            self._known += size
+
+    def _here(self) -> str:
+        return "p" if self._known is None else str(self._known)
+
+    def _move_on(self) -> None:
+        """End the run; from here on the place is in `p` alone."""
+        self.end_run()
+        if self._known is not None:
+            self._line(f"p = {self._known}")
+            self._known = None
+
+    # --- lines and names ------------------------------------------------------------------------------------
+
+    def _line(self, text: str) -> None:
+        self._lines.append("    " * self._depth + text + "\n")
+
+    def _given(self, value: Any, letter: str) -> str:
+        name = f"{letter}{len(self._scope)}"
+        self._scope[name] = value
+        return name
+
+    @contextmanager
+    def _loop(self, length: str) -> Iterator[None]:
+        self._line(f"for _ in range({length}):")
+        self._depth += 1
+        self._loops += 1
+        yield
+        self._depth -= 1
+        self._loops -= 1

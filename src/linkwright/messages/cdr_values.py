@@ -1,0 +1,175 @@
+"""What generated CDR code calls at run time: texts and sequences of texts on the wire, and the faults of bad data.
+
+Publishers send the same names again and again. So the bytes of a short text, and of a list of texts, are remembered
+when they were written, and the list of texts when its bytes were read: the names of twelve joints cost one comparison.
+"""
+
+from __future__ import annotations
+
+import struct
+from array import array
+from typing import Any
+
+_LENGTH = struct.Struct("<I")
+_LONGEST_KEPT = 128
+_MOST_TEXTS = 4096
+_LONGEST_BLOCK_KEPT = 8192
+_MOST_BLOCKS = 64
+_KEY = 28
+_COPIED_AT_ONCE = 4096
+
+
+class DataFaultError(ValueError):
+    """Bytes that are no message; says why. Never leaves this room."""
+
+
+class Texts(dict[str, bytes]):
+    """Text -> length, UTF-8, NUL, and zeros up to a multiple of `alignment`. Made and kept on first use."""
+
+    def __init__(self, alignment: int) -> None:
+        super().__init__()
+        self._alignment = alignment
+
+    def __missing__(self, text: str) -> bytes:
+        raw = text.encode()
+        piece = _LENGTH.pack(len(raw) + 1) + raw + b"\0"
+        piece += bytes(-len(piece) % self._alignment)
+        if len(raw) <= _LONGEST_KEPT:
+            if len(self) >= _MOST_TEXTS:
+                self.clear()
+            self[text] = piece
+        return piece
+
+
+class TextLists(dict[tuple[str, ...], bytes]):
+    """Texts -> their number, then each as in `Texts`; the last is filled up only to `alignment`."""
+
+    def __init__(self, alignment: int) -> None:
+        super().__init__()
+        self._last = TEXT1 if alignment == 1 else TEXT4
+
+    def __missing__(self, texts: tuple[str, ...]) -> bytes:
+        piece = _LENGTH.pack(len(texts)) + b"".join([TEXT4[text] for text in texts[:-1]])
+        if texts:
+            piece += self._last[texts[-1]]
+        if len(piece) <= _LONGEST_BLOCK_KEPT:
+            if len(self) >= _MOST_BLOCKS:
+                self.clear()
+            self[texts] = piece
+        return piece
+
+
+TEXT1 = Texts(1)
+TEXT4 = Texts(4)
+TEXT_LIST1 = TextLists(1)
+TEXT_LIST4 = TextLists(4)
+
+_blocks: dict[bytes, tuple[bytes, list[str], int]] = {}
+"""Their beginning -> the bytes of a list of texts, the texts, and the length of the bytes."""
+
+
+def read_texts(data: bytes, at: int, count: int) -> tuple[list[str], int]:
+    """A list of texts.
+
+    Args:
+        data: the message.
+        at: where the first text's length stands, a multiple of four.
+        count: how many there are.
+
+    Returns:
+        The texts, and where they end.
+    """
+    key = data[at - 4 : at + _KEY]
+    kept = _blocks.get(key)
+    if kept is not None and data.startswith(kept[0], at):
+        return kept[1].copy(), at + kept[2]
+    start, end = at, len(data)
+    if count * 4 > end - at:
+        truncated()
+    texts = []
+    length_at = _LENGTH.unpack_from
+    for _ in range(count):
+        at = (at + 3) & ~3
+        (length,) = length_at(data, at)
+        at += 4
+        if length:
+            last = at + length - 1
+            if data[last]:
+                unterminated()
+            texts.append(str(data[at:last], "utf-8"))
+            at = last + 1
+        else:
+            texts.append("")
+    if count and at - start <= _LONGEST_BLOCK_KEPT:
+        if len(_blocks) >= _MOST_BLOCKS:
+            _blocks.clear()
+        _blocks[key] = (data[start:at], texts.copy(), at - start)
+    return texts, at
+
+
+def read_numbers(code: str, data: bytes, start: int, end: int) -> array[Any]:
+    """The numbers that lie in a part of a message; checks that the message is that long."""
+    if end > len(data):
+        truncated()
+    if end - start <= _COPIED_AT_ONCE:
+        return array(code, data[start:end])
+    numbers = array(code)
+    numbers.frombytes(memoryview(data)[start:end])
+    return numbers
+
+
+def read_bools(data: bytes, start: int, end: int) -> list[bool]:
+    """The bools that lie in a part of a message; checks that the message is that long."""
+    raw = data[start:end]
+    if len(raw) < end - start:
+        truncated()
+    if raw.translate(None, b"\0\1"):
+        bad_bool(max(raw))
+    return list(map(bool, raw))
+
+
+def read_bytes(data: bytes, start: int, end: int) -> list[bytes]:
+    """Single bytes that lie in a part of a message; checks that the message is that long."""
+    if end > len(data):
+        truncated()
+    return [data[at : at + 1] for at in range(start, end)]
+
+
+def read_wide_text(data: bytes, at: int, count: int, order: str) -> tuple[str, int]:
+    """A wide text of so many UTF-16 units, and where it ends (no terminator, as Cyclone DDS and Fast CDR 2 have it)."""
+    end = at + count * 2
+    if end > len(data):
+        truncated()
+    return str(data[at:end], "utf-16-le" if order == "<" else "utf-16-be"), end
+
+
+def write_wide_text(text: str) -> bytes:
+    """A wide text: the number of its UTF-16 units, and these."""
+    raw = text.encode("utf-16-le")
+    return _LENGTH.pack(len(raw) // 2) + raw
+
+
+def truncated() -> None:
+    """The data ends before the message does, or a length in it is nonsense."""
+    raise DataFaultError("the data ends in the middle of the message, or a length in it is wrong")
+
+
+def unterminated() -> None:
+    """A text without the NUL that belongs behind it."""
+    raise DataFaultError("a text in it does not end where its length says")
+
+
+def bad_bool(value: int) -> None:
+    """A byte that is neither of the two."""
+    raise DataFaultError(f"a bool in it is {value}")
+
+
+def too_long(name: str, bound: int) -> None:
+    """More than a bound allows."""
+    raise DataFaultError(f"'{name}' is longer than its bound of {bound}")
+
+
+def check_bounds(name: str, texts: list[str], bound: int) -> None:
+    """See to it that none of the texts is longer than a bound."""
+    if any(len(text) > bound for text in texts):
+        too_long(name, bound)

@@ -1,0 +1,220 @@
+"""What may be assigned to a field: the rules and the texts of rosidl_generator_py's classes (Humble).
+
+The setters that `linkwright.messages.classes` compiles test for the usual case themselves and come here for all others.
+The functions return the value to be kept, or raise the AssertionError that rclpy's users know. Beyond rclpy, numpy
+arrays and buffers of bytes may be assigned to numeric sequences.
+"""
+
+from __future__ import annotations
+
+import math
+from array import array
+from collections import UserList, UserString
+from collections.abc import Iterable, Sequence
+from collections.abc import Set as AbstractSet
+from typing import Any, NoReturn, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.messages.definition import Container, FieldType
+from linkwright.messages.primitives import Primitive
+
+
+class Unset:
+    """The mark of an argument that was not given."""
+
+    def __repr__(self) -> str:
+        return "default"
+
+
+UNSET = Unset()
+
+
+def refuse_arguments(names: Iterable[str]) -> NoReturn:
+    """For a constructor that was given names of no field."""
+    raise AssertionError("Invalid arguments passed to constructor: " + ", ".join(sorted(names)))
+
+
+def check_int(name: str, value: Any, low: int, high: int) -> int:
+    """An integer in its range; bools are integers, numpy's are none (as in rclpy)."""
+    if not isinstance(value, int):
+        raise AssertionError(f"The '{name}' field must be of type 'int'")  # noqa: TRY004 - rclpy\'s
+    if not low <= value <= high:
+        kind = "an integer" if low else "an unsigned integer"
+        raise AssertionError(f"The '{name}' field must be {kind} in [{low}, {high}]")
+    return value
+
+
+def check_float(name: str, value: Any, high: float) -> float:
+    """A float in its range; integers are none (as in rclpy)."""
+    if not isinstance(value, float):
+        raise AssertionError(f"The '{name}' field must be of type 'float'")  # noqa: TRY004 - rclpy\'s
+    if (value < -high or value > high) and not math.isinf(value):
+        kind = "a float" if high < 1e300 else "a double"
+        raise AssertionError(f"The '{name}' field must be {kind} in [{-high}, {high}]")
+    return value
+
+
+def check_bool(name: str, value: Any) -> bool:
+    """A bool."""
+    if not isinstance(value, bool):
+        raise AssertionError(f"The '{name}' field must be of type 'bool'")  # noqa: TRY004 - rclpy\'s
+    return value
+
+
+def check_byte(name: str, value: Any) -> bytes:
+    """Bytes of length 1."""
+    if not (isinstance(value, (bytes, bytearray)) and len(value) == 1):
+        raise AssertionError(f"The '{name}' field must be of type 'bytes' or 'ByteString' with length 1")
+    return bytes(value)
+
+
+def check_text(name: str, value: Any, bound: int | None) -> str:
+    """Text no longer than its bound."""
+    if bound is None:
+        if not isinstance(value, str):
+            raise AssertionError(f"The '{name}' field must be of type 'str'")
+    elif not (isinstance(value, (str, UserString)) and len(value) <= bound):
+        raise AssertionError(f"The '{name}' field must be string value not longer than {bound}")
+    return str(value) if isinstance(value, UserString) else value
+
+
+def check_message(name: str, value: Any, cls: type) -> Any:
+    """A message of the field's class."""
+    if not isinstance(value, cls):
+        raise AssertionError(f"The '{name}' field must be a sub message of type '{cls.__name__}'")  # noqa: TRY004 - rclpy\'s
+    return value
+
+
+def check_values(name: str, value: Any, kind: FieldType, cls: type) -> Any:
+    """Several bools, bytes, texts or messages; the list that was given is kept."""
+    if isinstance(value, np.ndarray) and cls is bool and value.dtype == np.bool_:
+        value = value.ravel().tolist()
+    if not (
+        _is_collection(value)
+        and _length_fits(value, kind)
+        and all(isinstance(each, cls) for each in value)
+        and (kind.string_bound is None or all(len(each) <= kind.string_bound for each in value))
+    ):
+        raise AssertionError(f"The '{name}' field must be {_wanted(kind, cls)}")
+    return value
+
+
+def check_fixed_array(name: str, value: Any, kind: FieldType) -> NDArray[Any]:
+    """A fixed number of numbers, kept as a numpy array."""
+    primitive = cast(Primitive, kind.primitive)
+    if isinstance(value, np.ndarray):
+        if value.dtype != np.dtype(primitive.dtype):
+            raise AssertionError(f"The '{name}' numpy.ndarray() must have the dtype of 'numpy.{primitive.dtype}'")
+        if value.size != kind.size:
+            raise AssertionError(f"The '{name}' numpy.ndarray() must have a size of {kind.size}")
+        return value
+    return np.array(_checked_numbers(name, value, kind, primitive), dtype=primitive.dtype)
+
+
+def check_sequence(name: str, value: Any, kind: FieldType) -> array[Any]:
+    """Any number of numbers, kept as an ``array.array``; one of the right type is kept as it is."""
+    primitive = cast(Primitive, kind.primitive)
+    assert primitive.array_code is not None
+    if isinstance(value, array):
+        if value.typecode != primitive.array_code:
+            raise AssertionError(f"The '{name}' array.array() must have the type code of '{primitive.array_code}'")
+        if kind.size is not None and len(value) > kind.size:
+            raise AssertionError(f"The '{name}' array.array() must have a size <= {kind.size}")
+        return value
+    if isinstance(value, np.ndarray):
+        return _from_numpy(name, value, kind, primitive)
+    if primitive.array_code == "B" and isinstance(value, (bytes, bytearray, memoryview)):
+        return _from_buffer(name, value, kind)
+    return array(primitive.array_code, _checked_numbers(name, value, kind, primitive))
+
+
+def made_sequence(name: str, value: Any, kind: FieldType) -> array[Any]:
+    """What a constructor makes of numbers: as rclpy's, it takes integers for floats."""
+    if isinstance(value, (array, np.ndarray, bytes, bytearray, memoryview)):
+        return check_sequence(name, value, kind)
+    assert kind.primitive is not None
+    assert kind.primitive.array_code is not None
+    return check_sequence(name, array(kind.primitive.array_code, value), kind)
+
+
+def made_fixed_array(name: str, value: Any, kind: FieldType) -> NDArray[Any]:
+    """What a constructor makes of numbers for a fixed array."""
+    made = np.array(value, dtype=cast(Primitive, kind.primitive).dtype)
+    if made.size != kind.size:
+        raise AssertionError(f"The '{name}' numpy.ndarray() must have a size of {kind.size}")
+    return made
+
+
+def _is_collection(value: Any) -> bool:
+    return isinstance(value, (Sequence, AbstractSet, UserList)) and not isinstance(value, (str, UserString))
+
+
+def _length_fits(value: Any, kind: FieldType) -> bool:
+    if kind.container is Container.ARRAY:
+        return len(value) == kind.size
+    return kind.size is None or len(value) <= kind.size
+
+
+def _checked_numbers(name: str, value: Any, kind: FieldType, primitive: Primitive) -> Any:
+    if not (
+        _is_collection(value)
+        and _length_fits(value, kind)
+        and (set(map(type, value)) <= {primitive.python} or all(isinstance(each, primitive.python) for each in value))
+        and _in_range(value, primitive)
+    ):
+        raise AssertionError(f"The '{name}' field must be {_wanted(kind, primitive.python)}")
+    return value if isinstance(value, (list, tuple)) else list(value)
+
+
+def _in_range(values: Any, primitive: Primitive) -> bool:
+    if not len(values):
+        return True
+    if primitive.is_integer:
+        return bool(min(values) >= primitive.low and max(values) <= primitive.high)
+    if primitive.array_code == "d":  # whatever is a float in Python
+        return True
+    return all(-primitive.high <= value <= primitive.high or not math.isfinite(value) for value in values)
+
+
+def _from_numpy(name: str, value: NDArray[Any], kind: FieldType, primitive: Primitive) -> array[Any]:
+    code = primitive.array_code
+    assert code is not None
+    wanted = np.dtype(primitive.dtype)
+    value = value.ravel()
+    whole = wanted.kind in "iu" and value.dtype.kind in "iu"
+    fits = whole or np.can_cast(value.dtype, wanted, "same_kind")
+    if not (fits and _length_fits(value, kind) and (value.dtype == wanted or not whole or _in_range(value, primitive))):
+        raise AssertionError(f"The '{name}' field must be {_wanted(kind, primitive.python)}")
+    made = array(code)
+    made.frombytes(np.ascontiguousarray(value, dtype=wanted).data.cast("B"))
+    return made
+
+
+def _from_buffer(name: str, value: bytes | bytearray | memoryview, kind: FieldType) -> array[Any]:
+    made = array("B")
+    made.frombytes(value)
+    if not _length_fits(made, kind):
+        raise AssertionError(f"The '{name}' field must be {_wanted(kind, int)}")
+    return made
+
+
+def _wanted(kind: FieldType, python: type) -> str:
+    """What a field of several values must be, in rclpy's words."""
+    words = ["a set or sequence"]
+    if kind.container is Container.ARRAY:
+        words.append(f"with length {kind.size}")
+    elif kind.size is not None:
+        words.append(f"with length <= {kind.size}")
+    if kind.string_bound is not None:
+        words.append(f"and each string value not longer than {kind.string_bound}")
+    words.append(f"and each value of type '{python.__name__}'")
+    primitive = kind.primitive
+    if primitive is not None and primitive.is_integer:
+        integer = "integer" if primitive.low else "unsigned integer"
+        words.append(f"and each {integer} in [{primitive.low}, {primitive.high}]")
+    elif primitive is not None and primitive.python is float:
+        what = "double" if primitive.array_code == "d" else "float"
+        words.append(f"and each {what} in [{-primitive.high:f}, {primitive.high:f}]")
+    return " ".join(words)

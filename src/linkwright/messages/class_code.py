@@ -1,0 +1,185 @@
+"""Writes the Python code of a message class: constructor and setters, each as short as its field allows.
+
+A setter tests for the usual case in line (``value.__class__ is float``) and leaves all others to
+`linkwright.messages.checks`. A field's property reads its slot by a C function, so a read costs what a read costs.
+"""
+
+from __future__ import annotations
+
+import keyword
+from array import array
+from operator import attrgetter
+from typing import Any
+
+import numpy as np
+
+from linkwright.messages import checks
+from linkwright.messages.definition import Container, Field, Structure
+
+
+def build_class(structure: Structure, base: type, classes: dict[str, type], module: str) -> type:
+    """The class of a structure.
+
+    Args:
+        structure: what it holds.
+        base: its base class.
+        classes: type name -> class, of every structure that fields are made of.
+        module: what it says its module is.
+    """
+    # Names with capitals, which no field has.
+    scope: dict[str, Any] = {
+        "U": checks.UNSET,
+        "Checks": checks,
+        "Array": array,
+        "Np": np,
+        "Range": range,
+        "List": list,
+    }
+    fields = [_FieldCode(field, classes, scope) for field in structure.fields]
+    code = "".join([_constructor(fields), *(field.setter() for field in fields)])
+    exec(compile(code, f"<class of {structure.type_name}>", "exec"), scope)  # noqa: S102 - the names in it are checked
+    name = structure.type_name.rpartition("/")[2]
+    body: dict[str, Any] = {
+        "__slots__": tuple("_" + field.name for field in structure.fields),
+        "__module__": module,
+        "__doc__": _docstring(name, structure),
+        "__init__": scope["__init__"],
+        "TYPE_NAME": structure.type_name,
+        "_definition": structure,
+    }
+    for field in fields:
+        body[field.name] = property(attrgetter("_" + field.name), scope["S_" + field.name], None, field.docstring())
+        if field.field.default is not None:
+            body[field.name.upper() + "__DEFAULT"] = field.default
+    for constant in structure.constants:
+        body[constant.name] = constant.value
+    made = type(base)(name, (base,), body)
+    for field in fields:
+        function = scope["S_" + field.name]
+        function.__qualname__ = f"{name}.{field.name}"
+    return made
+
+
+class _FieldCode:
+    """The code about one field."""
+
+    def __init__(self, field: Field, classes: dict[str, type], scope: dict[str, Any]) -> None:
+        self.field = field
+        self.name = field.name
+        self.kind = field.type
+        self._classes = classes
+        scope["K_" + field.name] = field.type
+        if self.kind.primitive is None:
+            scope["C_" + field.name] = classes[self.kind.base]
+        self.default = self._default()
+        if self.default is not None and not self._is_plain():
+            scope["D_" + field.name] = self.default
+
+    def docstring(self) -> str:
+        return f"Message field '{self.name}'."
+
+    def parameter(self) -> str:
+        # A field may be called like a word of Python, such as 'from': it is set by **other then.
+        return "" if keyword.iskeyword(self.name) else f"{self.name}=U, "
+
+    def initial(self) -> str:
+        """The lines of the constructor about this field."""
+        name = argument = self.name
+        lines = ""
+        if keyword.iskeyword(name):
+            argument = name + "_"
+            lines = f"    {argument} = Rest.pop({name!r}, U)\n"
+        lines += f"    if {argument} is U: M._{name} = {self._default_code()}\n"
+        if self.kind.is_numeric_array:
+            made = "made_fixed_array" if self.kind.container is Container.ARRAY else "made_sequence"
+            return lines + f"    else: M._{name} = Checks.{made}({name!r}, {argument}, K_{name})\n"
+        return lines + f"    else: S_{name}(M, {argument})\n"
+
+    def setter(self) -> str:
+        name = self.name
+        return f"def S_{name}(self, value):\n{self._checked()}    self._{name} = value\n"
+
+    # --- the check ------------------------------------------------------------------------------------------
+
+    def _checked(self) -> str:
+        name, kind, primitive = self.name, self.kind, self.kind.primitive
+        if kind.is_numeric_array:
+            check = "check_fixed_array" if kind.container is Container.ARRAY else "check_sequence"
+            return f"    value = Checks.{check}({name!r}, value, K_{name})\n"
+        if kind.container is not Container.ONE:
+            cls = f"C_{name}" if primitive is None else primitive.python.__name__
+            return f"    value = Checks.check_values({name!r}, value, K_{name}, {cls})\n"
+        if primitive is None:
+            return _unless(f"value.__class__ is C_{name}", f"check_message({name!r}, value, C_{name})")
+        if primitive.python is int:
+            low, high = primitive.low, primitive.high
+            return _unless(
+                f"value.__class__ is int and {low} <= value <= {high}", f"check_int({name!r}, value, {low}, {high})"
+            )
+        if primitive.python is float:
+            high = primitive.high
+            test = "value.__class__ is float"
+            if primitive.code == "f":
+                test += f" and -{high!r} <= value <= {high!r}"
+            return _unless(test, f"check_float({name!r}, value, {high!r})")
+        if primitive.python is bool:
+            return _unless("value.__class__ is bool", f"check_bool({name!r}, value)")
+        if primitive.python is bytes:
+            return _unless("value.__class__ is bytes and len(value) == 1", f"check_byte({name!r}, value)")
+        test = "value.__class__ is str"
+        if kind.string_bound is not None:
+            test += f" and len(value) <= {kind.string_bound}"
+        return _unless(test, f"check_text({name!r}, value, {kind.string_bound})")
+
+    # --- the default ----------------------------------------------------------------------------------------
+
+    def _is_plain(self) -> bool:
+        return self.kind.container is Container.ONE
+
+    def _default(self) -> Any:
+        """The default value that the definition gives, as the field holds it; None where it gives none."""
+        value = self.field.default
+        if value is None or self._is_plain():
+            return value
+        assert isinstance(value, tuple)
+        return list(value)
+
+    def _default_code(self) -> str:
+        kind, primitive, name = self.kind, self.kind.primitive, self.name
+        if kind.is_numeric_array:
+            assert primitive is not None
+            values = "" if self.default is None else f"D_{name}"
+            if kind.container is Container.ARRAY:
+                dtype = f"dtype={primitive.dtype!r}"
+                return f"Np.array({values}, {dtype})" if values else f"Np.zeros({kind.size}, {dtype})"
+            return f"Array({primitive.array_code!r}" + (f", {values})" if values else ")")
+        if not self._is_plain():
+            if self.default is not None:
+                return f"List(D_{name})"
+            if kind.container is Container.SEQUENCE:
+                return "[]"
+            return f"[{self._one()} for _ in Range({kind.size})]"
+        return self._one() if self.default is None else repr(self.default)
+
+    def _one(self) -> str:
+        primitive = self.kind.primitive
+        if primitive is None:
+            return f"C_{self.name}()"
+        return {int: "0", float: "0.0", bool: "False", str: "''", bytes: "b'\\0'"}[primitive.python]
+
+
+def _unless(test: str, check: str) -> str:
+    return f"    if not ({test}): value = Checks.{check}\n"
+
+
+def _constructor(fields: list[_FieldCode]) -> str:
+    parameters = "".join(field.parameter() for field in fields)
+    lines = "".join(field.initial() for field in fields)
+    return f"def __init__(M, {parameters}**Rest):\n{lines}    if Rest: Checks.refuse_arguments(Rest)\n"
+
+
+def _docstring(name: str, structure: Structure) -> str:
+    text = f"Message class '{name}'."
+    if structure.constants:
+        text += "\n\nConstants:\n" + "\n".join(f"  {constant.name}" for constant in structure.constants)
+    return text

@@ -1,0 +1,211 @@
+"""Sets the fields of a message from plain data, such as the YAML that ``ros2 topic pub`` is given."""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from linkwright.diagnostics import Diagnostic, did_you_mean
+from linkwright.messages.classes import get_message
+from linkwright.messages.definition import Container, FieldType
+from linkwright.messages.errors import UnknownFieldError, WrongValueError
+from linkwright.messages.message import Message
+from linkwright.messages.primitives import Primitive
+
+_HEADER = "std_msgs/msg/Header"
+_TIME = "builtin_interfaces/msg/Time"
+
+StampSetter = Callable[[Any], None]
+"""Sets a field to a builtin_interfaces/msg/Time."""
+
+
+def from_dict(message_class: type[Any], values: Mapping[str, Any]) -> Any:
+    """A message of a class with these values; other fields have their defaults. Errors are those of `set_fields`."""
+    message = message_class()
+    set_fields(message, values)
+    return message
+
+
+def set_fields(
+    message: Message, values: Mapping[str, Any], *, expand_header_auto: bool = False, expand_time_now: bool = False
+) -> list[StampSetter]:
+    """Set fields of a message from plain data: numbers, bools, texts, lists, and mappings for nested messages.
+
+    A nested message is made anew: its fields that are not given have their defaults. A whole number may stand for a
+    float, a number for a text, and text for a number if it is one.
+
+    Args:
+        message: the message to change.
+        values: field name -> value.
+        expand_header_auto: take ``auto`` for a Header, and ``now`` for its stamp whenever the message is sent.
+        expand_time_now: take ``now`` for a Time, and the time at which the message is sent.
+
+    Returns:
+        Functions that set the fields given as ``auto`` or ``now``, each to the Time it is called with.
+
+    Raises:
+        UnknownFieldError: MSG301, a field that there is not; also an AttributeError.
+        WrongValueError: MSG302, a value that the field cannot have; also a TypeError.
+    """
+    setter = _Setter(expand_header_auto, expand_time_now)
+    setter.fields(message, values, "")
+    if setter.found:
+        unknown = setter.found[0].code == "MSG301"
+        raise (UnknownFieldError if unknown else WrongValueError)(*setter.found)
+    return setter.stamps
+
+
+class _Unfit(Exception):  # noqa: N818 - becomes a diagnostic
+    """A value that a field cannot have; says what it should have been."""
+
+
+class _Setter:
+    """Sets fields and keeps what is wrong with them, all of it."""
+
+    def __init__(self, expand_header: bool, expand_time: bool) -> None:
+        self._expand_header = expand_header
+        self._expand_time = expand_time
+        self.found: list[Diagnostic] = []
+        self.stamps: list[StampSetter] = []
+
+    def fields(self, message: Message, values: Any, path: str) -> None:
+        if not isinstance(values, Mapping):
+            what = f"'{path}'" if path else f"a {message.TYPE_NAME}"
+            names = ", ".join(field.name for field in message._definition.fields)
+            self._wrong(
+                f"{what} is given as {_shown(values)}, not as fields and values", f"its fields: {names or 'none'}"
+            )
+            return
+        kinds = {field.name: field.type for field in message._definition.fields}
+        for name, value in values.items():
+            kind = kinds.get(name)
+            if kind is None:
+                self._unknown(message, str(name), path)
+            else:
+                self._field(message, name, kind, value, f"{path}.{name}" if path else name)
+
+    def _field(self, message: Message, name: str, kind: FieldType, value: Any, path: str) -> None:
+        if self._is_stamp(message, name, kind, value):
+            return
+        try:
+            setattr(message, name, self._value(kind, value, path))
+        except _Unfit as unfit:
+            self._wrong(f"'{path}' cannot be {_shown(value)}", f"it is {unfit}")
+        except AssertionError as error:
+            reason = str(error).partition(" must ")[2]
+            self._wrong(f"'{path}' cannot be {_shown(value)}", f"it must {reason}")
+
+    def _is_stamp(self, message: Message, name: str, kind: FieldType, value: Any) -> bool:
+        if kind.container is not Container.ONE:
+            return False
+        if kind.base == _HEADER and value == "auto" and self._expand_header:
+            self.stamps.append(partial(setattr, getattr(message, name), "stamp"))
+            return True
+        if kind.base == _TIME and value == "now" and self._expand_time:
+            self.stamps.append(partial(setattr, message, name))
+            return True
+        return False
+
+    # --- values ---------------------------------------------------------------------------------------------
+
+    def _value(self, kind: FieldType, value: Any, path: str) -> Any:
+        primitive = kind.primitive
+        if kind.container is Container.ONE:
+            return self._message(kind, value, path) if primitive is None else _converted(primitive, kind, value)
+        if kind.base in {"uint8", "char"} and isinstance(value, (bytes, bytearray)):
+            value = list(value)
+        if not isinstance(value, (Sequence, array, np.ndarray)) or isinstance(value, (str, bytes)):
+            raise _Unfit(_described(kind))
+        one = FieldType(kind.base, kind.string_bound)
+        values = [self._value(one, each, f"{path}[{number}]") for number, each in enumerate(value)]
+        exact = kind.container is Container.ARRAY
+        if kind.size is not None and (len(values) > kind.size or (exact and len(values) < kind.size)):
+            raise _Unfit(f"{_described(kind)}, not of {len(values)} values")
+        return values
+
+    def _message(self, kind: FieldType, value: Any, path: str) -> Any:
+        cls = get_message(kind.base)
+        if isinstance(value, cls):
+            return value
+        message = cls()
+        self.fields(message, value, path)
+        return message
+
+    # --- what is wrong --------------------------------------------------------------------------------------
+
+    def _unknown(self, message: Message, name: str, path: str) -> None:
+        names = [field.name for field in message._definition.fields]
+        hint = did_you_mean(name, names) or f"its fields: {', '.join(names) or 'none'}"
+        where = f" ('{path}')" if path else ""
+        self.found.append(Diagnostic("MSG301", f"{message.TYPE_NAME}{where} has no field '{name}'", hint=hint))
+
+    def _wrong(self, message: str, hint: str) -> None:
+        self.found.append(Diagnostic("MSG302", message, hint=hint))
+
+
+def _converted(primitive: Primitive, kind: FieldType, value: Any) -> Any:
+    """A value as the field's Python type; ranges and lengths are left to the field's own check."""
+    if isinstance(value, np.generic):
+        value = value.item()
+    python = primitive.python
+    if python is str:
+        if isinstance(value, (str, int, float)):
+            return _as_text(value)
+    elif python is bool:
+        if isinstance(value, bool) or value in (0, 1):
+            return bool(value)
+    elif python is bytes:
+        return _as_byte(value)
+    elif isinstance(value, (bool, int, float, str)):
+        try:
+            number = python(value)
+        except (ValueError, OverflowError):
+            raise _Unfit(_described(kind)) from None
+        if python is int and isinstance(value, float) and number != value:
+            raise _Unfit(_described(kind))
+        return number
+    raise _Unfit(_described(kind))
+
+
+def _as_text(value: str | float) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return str(value)
+
+
+def _as_byte(value: Any) -> bytes:
+    if isinstance(value, (bytes, bytearray)) and len(value) == 1:
+        return bytes(value)
+    if isinstance(value, int) and 0 <= value <= 255:
+        return bytes([value])
+    if isinstance(value, str) and len(value) == 1 and ord(value) <= 255:
+        return value.encode("latin-1")
+    raise _Unfit("a byte, 0 to 255")
+
+
+def _described(kind: FieldType) -> str:
+    words = {
+        int: "a whole number",
+        float: "a number",
+        str: "a text",
+        bool: "true or false",
+        bytes: "a byte, 0 to 255",
+    }
+    primitive = kind.primitive
+    one = f"{kind.base}" if primitive is None else words[primitive.python]
+    if primitive is not None and primitive.is_integer:
+        one += f", {primitive.low} to {primitive.high}"
+    if kind.container is Container.ARRAY:
+        return f"a list of {kind.size} ({kind.spelled()})"
+    if kind.container is Container.SEQUENCE:
+        return f"a list ({kind.spelled()})"
+    return one
+
+
+def _shown(value: Any) -> str:
+    text = repr(value) if isinstance(value, str) else str(value)
+    return text if len(text) <= 60 else text[:57] + "..."

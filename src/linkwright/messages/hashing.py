@@ -1,0 +1,109 @@
+"""The hash of a type as ROS 2 (Iron and newer) sends it with endpoints: RIHS01, the SHA-256 of a type description.
+
+The description is that of type_description_interfaces (REP 2011, REP 2016): the fields' names and types, without
+defaults and constants, and those of all structures within. rosidl hashes it as JSON, with these very separators and
+this order of keys.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+from linkwright.messages.definition import Action, Container, Definition, Field, FieldType, Service, Structure
+from linkwright.messages.derived import event_of, feedback_message_of, get_result_of, send_goal_of
+from linkwright.messages.library import LIBRARY
+
+_NESTED = 1
+_BOUNDED_TEXT = 4
+"""From a text's type to that of a bounded one: 17 to 21, 18 to 22."""
+
+_CONTAINERS = {Container.ONE: 0, Container.ARRAY: 48, Container.SEQUENCE: 144}
+_BOUNDED_SEQUENCE = 96
+
+
+def type_hash(interface: Any) -> str:
+    """The hash of a message, service or action: ``RIHS01_`` and 64 hexadecimal digits.
+
+    Args:
+        interface: the class, or its type name.
+
+    Raises:
+        InterfaceNotFoundError: there is none of this name.
+    """
+    name = interface if isinstance(interface, str) else interface.TYPE_NAME
+    return _hash(LIBRARY.definition(name).type_name)
+
+
+@cache
+def _hash(type_name: str) -> str:
+    return hash_of(type_description(LIBRARY.definition(type_name)))
+
+
+def hash_of(description: dict[str, Any]) -> str:
+    """The hash of a type description."""
+    import hashlib  # here, because a process that stays to itself sends no hashes
+    import json
+
+    return "RIHS01_" + hashlib.sha256(json.dumps(description, separators=(", ", ": ")).encode()).hexdigest()
+
+
+def type_description(definition: Definition) -> dict[str, Any]:
+    """A type and all within it, as a type_description_interfaces/msg/TypeDescription without default values."""
+    described = _individual(definition)
+    seen: dict[str, dict[str, Any]] = {}
+    waiting = _nested_names(described)
+    while waiting:
+        name = waiting.pop()
+        if name not in seen:
+            seen[name] = _individual(LIBRARY.definition(name))
+            waiting += _nested_names(seen[name])
+    return {"type_description": described, "referenced_type_descriptions": [seen[name] for name in sorted(seen)]}
+
+
+def _nested_names(described: dict[str, Any]) -> list[str]:
+    return [name for field in described["fields"] if (name := field["type"]["nested_type_name"])]
+
+
+def _individual(definition: Definition) -> dict[str, Any]:
+    return {"type_name": definition.type_name, "fields": [_field(field) for field in _members(definition)]}
+
+
+def _members(definition: Definition) -> tuple[Field, ...]:
+    """The fields of a structure; services and actions are described as if they had some too."""
+    if isinstance(definition, Structure):
+        return definition.wire_fields
+    if isinstance(definition, Service):
+        parts: dict[str, Definition] = {
+            "request_message": definition.request,
+            "response_message": definition.response,
+            "event_message": event_of(definition),
+        }
+    else:
+        assert isinstance(definition, Action)
+        parts = {
+            "goal": definition.goal,
+            "result": definition.result,
+            "feedback": definition.feedback,
+            "send_goal_service": send_goal_of(definition),
+            "get_result_service": get_result_of(definition),
+            "feedback_message": feedback_message_of(definition),
+        }
+    return tuple(Field(name, FieldType(part.type_name)) for name, part in parts.items())
+
+
+def _field(field: Field) -> dict[str, Any]:
+    kind, primitive = field.type, field.type.primitive
+    type_id = _NESTED if primitive is None else primitive.type_id
+    if kind.string_bound is not None:
+        type_id += _BOUNDED_TEXT
+    bounded = kind.container is Container.SEQUENCE and kind.size is not None
+    return {
+        "name": field.name,
+        "type": {
+            "type_id": type_id + (_BOUNDED_SEQUENCE if bounded else _CONTAINERS[kind.container]),
+            "capacity": kind.size or 0,
+            "string_capacity": kind.string_bound or 0,
+            "nested_type_name": kind.base if primitive is None else "",
+        },
+    }

@@ -1,0 +1,318 @@
+"""Reads ``.idl`` files, as far as ROS interfaces are written in them.
+
+That is what rosidl makes of ``.msg``, ``.srv`` and ``.action`` files: modules, structures of primitives, texts,
+sequences and arrays, typedefs of these, constants, and ``@default``. Other annotations are skipped; unions,
+enumerations and the other constructs of IDL that such files do not have are refused with their place.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import NamedTuple, NoReturn
+
+from linkwright.diagnostics import Diagnostic, SourceText, did_you_mean
+from linkwright.messages.definition import (
+    EMPTY_MEMBER,
+    Action,
+    Constant,
+    Container,
+    Definition,
+    Field,
+    FieldType,
+    Service,
+    Structure,
+)
+from linkwright.messages.errors import DefinitionError
+from linkwright.messages.literals import LiteralFault, read_constant, read_default
+from linkwright.messages.parser import SECTIONS, KnownMessages
+
+_TOKEN = re.compile(
+    r"""(?P<skip>\s+ | //[^\n]* | /\*.*?\*/ | \#[^\n]*)
+      | (?P<text>L?"(?:\\.|[^"\\])*" | L?'(?:\\.|[^'\\])*')
+      | (?P<number>[-+]?(?:0[xX][0-9a-fA-F]+ | (?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)[dDfF]?)
+      | (?P<name>[A-Za-z_]\w*(?:::[A-Za-z_]\w*)*)
+      | (?P<mark>::|[{}()<>\[\];,=@])""",
+    re.VERBOSE | re.DOTALL,
+)
+_PRIMITIVES = {
+    "boolean": "bool",
+    "octet": "byte",
+    "float": "float32",
+    "double": "float64",
+    "short": "int16",
+    "unsigned short": "uint16",
+    "long": "int32",
+    "unsigned long": "uint32",
+    "long long": "int64",
+    "unsigned long long": "uint64",
+    **{name: name for name in ("int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64")},
+}
+_NOT_IN_MESSAGES = {"char", "wchar", "long double", "any", "map", "fixed", "enum", "union", "bitmask", "bitset"}
+_WORDS_OF_PRIMITIVES = {"unsigned", "long", "short", "double"}
+
+
+class _Token(NamedTuple):
+    kind: str
+    text: str
+    start: int
+
+
+def parse_idl(source: SourceText, type_name: str, known: KnownMessages) -> Definition:
+    """What an ``.idl`` file defines.
+
+    Args:
+        source: the text of the file.
+        type_name: the interface's, such as ``my_msgs/msg/Count``.
+        known: which messages there are.
+
+    Raises:
+        DefinitionError: MSG120 for what is not understood, MSG111, MSG114, MSG118 and MSG119 as for other files.
+    """
+    reader = _Reader(source, known)
+    reader.definitions(())
+    return _assembled(reader, source, type_name)
+
+
+def _assembled(reader: _Reader, source: SourceText, type_name: str) -> Definition:
+    _, kind, _ = type_name.split("/")
+    parts: list[Structure] = []
+    for suffix in SECTIONS[kind]:
+        name = type_name + suffix
+        if name not in reader.structures:
+            hint = did_you_mean(name, reader.structures)
+            message = f"the file does not define the structure '{name.replace('/', '::')}'"
+            raise DefinitionError(Diagnostic("MSG118", message, source.span(0), hint=hint, source=source))
+        fields = tuple(field for field in reader.structures[name] if field.name != EMPTY_MEMBER)
+        parts.append(Structure(name, fields, tuple(reader.constants.get(name, ()))))
+    if kind == "msg":
+        return parts[0]
+    return Service(type_name, *parts) if kind == "srv" else Action(type_name, *parts)
+
+
+class _Reader:
+    """Reads one file, token by token."""
+
+    def __init__(self, source: SourceText, known: KnownMessages) -> None:
+        self._source = source
+        self._known = known
+        self._tokens = list(self._split())
+        self._at = 0
+        self._typedefs: dict[str, FieldType] = {}
+        self.structures: dict[str, list[Field]] = {}
+        self.constants: dict[str, list[Constant]] = {}
+
+    def _split(self) -> Iterator[_Token]:
+        text, at = self._source.text, 0
+        while at < len(text):
+            match = _TOKEN.match(text, at)
+            if match is None:
+                self._fail("MSG120", f"'{text[at]}' is not expected here", at, 1)
+            assert match.lastgroup is not None
+            if match.lastgroup != "skip":
+                yield _Token(match.lastgroup, match.group(), at)
+            at = match.end()
+        yield _Token("end", "", at)
+
+    # --- definitions ----------------------------------------------------------------------------------------
+
+    def definitions(self, scope: tuple[str, ...]) -> None:
+        """Read what stands in a module, or in the file."""
+        while self._now.kind != "end" and self._now.text != "}":
+            self._annotations()
+            word = self._take("name")
+            if word.text == "module":
+                name = self._take("name").text
+                self._expect("{")
+                self.definitions((*scope, name))
+                self._expect("}")
+                self._expect(";")
+            elif word.text == "struct":
+                self._structure(scope)
+            elif word.text == "typedef":
+                kind = self._type()
+                name, kind = self._declared(kind)
+                self._typedefs[name] = kind
+                self._expect(";")
+            elif word.text == "const":
+                self._constant(scope)
+            else:
+                self._fail("MSG120", f"'{word.text}' is not understood in the IDL of messages", word.start,
+                           len(word.text), "write the interface as a .msg, .srv or .action file")  # fmt: skip
+
+    def _structure(self, scope: tuple[str, ...]) -> None:
+        name = "/".join((*scope, self._take("name").text))
+        fields: list[Field] = []
+        self._expect("{")
+        while self._now.text != "}":
+            default = self._annotations()
+            kind = self._type()
+            while True:
+                field_name, whole = self._declared(kind)
+                fields.append(Field(field_name, whole, self._default(default, whole)))
+                if self._now.text != ",":
+                    break
+                self._expect(",")
+            self._expect(";")
+        self._expect("}")
+        self._expect(";")
+        self.structures[name] = fields
+
+    def _constant(self, scope: tuple[str, ...]) -> None:
+        kind = self._type()
+        name = self._take("name").text
+        self._expect("=")
+        value = self._value()
+        self._expect(";")
+        owner = "/".join(scope).removesuffix("_Constants")
+        if kind.primitive is None or kind.container is not Container.ONE:
+            self._fail("MSG114", f"the constant '{name}' is of no primitive type", value.start, len(value.text))
+        try:
+            constant = Constant(name, kind.base, read_constant(_plain(value), kind.base))
+        except LiteralFault as fault:
+            self._fail("MSG114", f"the value of '{name}' is wrong: {fault}", value.start, len(value.text))
+        self.constants.setdefault(owner, []).append(constant)
+
+    def _annotations(self) -> _Token | None:
+        """Skip annotations; the value of ``@default (value=...)``, if it is among them."""
+        default = None
+        while self._now.text == "@":
+            self._expect("@")
+            name = self._take("name").text
+            if self._now.text != "(":
+                continue
+            self._expect("(")
+            depth = 1
+            while depth:
+                token = self._next()
+                if token.kind == "end":
+                    self._fail("MSG120", "the file ends inside of an annotation", token.start, 0)
+                depth += {"(": 1, ")": -1}.get(token.text, 0)
+                if name == "default" and token.text == "=":
+                    default = self._now
+        return default
+
+    def _default(self, token: _Token | None, kind: FieldType) -> object | None:
+        if token is None:
+            return None
+        text = _plain(token)
+        if kind.container is not Container.ONE:
+            # rosidl writes lists as a text: "(1, 2, 3)".
+            inside = text[1:-1] if text[:1] in {'"', "'"} else text
+            text = "[" + inside.strip().removeprefix("(").removesuffix(")") + "]"
+        try:
+            return read_default(text, kind)
+        except LiteralFault as fault:
+            self._fail("MSG114", f"the default value is wrong: {fault}", token.start, len(token.text))
+
+    # --- types ----------------------------------------------------------------------------------------------
+
+    def _type(self) -> FieldType:
+        token = self._take("name")
+        words = [token.text]
+        while words[-1] in _WORDS_OF_PRIMITIVES and self._now.text in _WORDS_OF_PRIMITIVES:
+            words.append(self._take("name").text)
+        text = " ".join(words)
+        if text in _PRIMITIVES:
+            return FieldType(_PRIMITIVES[text])
+        if text in {"string", "wstring"}:
+            return FieldType(text, self._bound() if self._now.text == "<" else None)
+        if text == "sequence":
+            return self._sequence(token)
+        if text in self._typedefs:
+            return self._typedefs[text]
+        if text in _NOT_IN_MESSAGES:
+            self._fail("MSG120", f"'{text}' is not supported in messages", token.start, len(text))
+        parts = text.split("::")
+        if len(parts) != 3:
+            self._fail("MSG111", f"there is no type '{text}'", token.start, len(text),
+                       did_you_mean(text, [*_PRIMITIVES, "string", "sequence", *self._typedefs]))  # fmt: skip
+        name = "/".join(parts)
+        if name not in self.structures and not self._known.has_message(name):
+            hint = self._known.hint_for(name)
+            self._fail("MSG111", f"there is no message '{name}'", token.start, len(text), hint)
+        return FieldType(name)
+
+    def _sequence(self, token: _Token) -> FieldType:
+        self._expect("<")
+        one = self._type()
+        size = None
+        if self._now.text == ",":
+            self._expect(",")
+            size = self._size()
+        self._expect(">")
+        if one.container is not Container.ONE:
+            self._fail("MSG120", "sequences of sequences and arrays are not supported in messages", token.start, 8)
+        return FieldType(one.base, one.string_bound, Container.SEQUENCE, size)
+
+    def _declared(self, kind: FieldType) -> tuple[str, FieldType]:
+        """A declared name, and its type with the array size behind the name, if there is one."""
+        token = self._take("name")
+        if self._now.text != "[":
+            return token.text, kind
+        self._expect("[")
+        size = self._size()
+        self._expect("]")
+        if kind.container is not Container.ONE or self._now.text == "[":
+            self._fail("MSG120", "arrays of arrays and sequences are not supported in messages", token.start,
+                       len(token.text))  # fmt: skip
+        return token.text, FieldType(kind.base, kind.string_bound, Container.ARRAY, size)
+
+    def _bound(self) -> int:
+        self._expect("<")
+        bound = self._size()
+        self._expect(">")
+        return bound
+
+    def _size(self) -> int:
+        token = self._next()
+        if not token.text.isdigit() or int(token.text) == 0:
+            self._fail("MSG119", f"'{token.text}' is no length: it is a whole number above 0", token.start,
+                       len(token.text))  # fmt: skip
+        return int(token.text)
+
+    # --- tokens ---------------------------------------------------------------------------------------------
+
+    @property
+    def _now(self) -> _Token:
+        return self._tokens[self._at]
+
+    def _next(self) -> _Token:
+        token = self._tokens[self._at]
+        if token.kind != "end":
+            self._at += 1
+        return token
+
+    def _take(self, kind: str) -> _Token:
+        token = self._next()
+        if token.kind != kind:
+            self._unexpected(token, f"a {kind}")
+        return token
+
+    def _value(self) -> _Token:
+        token = self._next()
+        if token.kind not in {"number", "text", "name"}:
+            self._unexpected(token, "a value")
+        return token
+
+    def _expect(self, mark: str) -> None:
+        token = self._next()
+        if token.text != mark:
+            self._unexpected(token, f"'{mark}'")
+
+    def _unexpected(self, token: _Token, wanted: str) -> NoReturn:
+        found = f"'{token.text}'" if token.text else "the end of the file"
+        self._fail("MSG120", f"{found} stands where {wanted} is expected", token.start, len(token.text))
+
+    def _fail(self, code: str, message: str, start: int, length: int, hint: str | None = None) -> NoReturn:
+        span = self._source.span(start, start + length)
+        raise DefinitionError(Diagnostic(code, message, span, hint=hint, source=self._source))
+
+
+def _plain(token: _Token) -> str:
+    """A value as the files of the other language have it."""
+    if token.kind == "text":
+        return token.text.removeprefix("L")
+    if token.kind == "number" and not token.text.lower().startswith(("0x", "-0x")):
+        return token.text.rstrip("dDfF")
+    return token.text

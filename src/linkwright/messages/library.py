@@ -1,0 +1,302 @@
+"""Finds the definition of an interface by its name: those that come with Linkwright, then those of the workspace."""
+
+from __future__ import annotations
+
+import os
+import re
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+from linkwright.diagnostics import Diagnostic, Note, SourceText, Span, did_you_mean, display_path
+from linkwright.messages import catalogue
+from linkwright.messages.definition import Action, Definition, Service, Structure, structures_of
+from linkwright.messages.derived import parts_of
+from linkwright.messages.errors import DefinitionError, InterfaceNotFoundError
+from linkwright.messages.names import KINDS, InterfaceName, split_name
+from linkwright.messages.parser import KnownMessages, parse_interface
+from linkwright.workspace import PackageFinder
+from linkwright.workspace.active import active_finder
+from linkwright.workspace.interface_files import interface_file, interface_files
+
+_FINDER_KEPT_S = 1.0
+"""For so long after a question about it the workspace is taken to be as it was."""
+
+KIND_NAMES = {"msg": "message", "srv": "service", "action": "action"}
+
+
+class Library:
+    """All interfaces that are known, read when they are asked for; safe to use from several threads.
+
+    An interface that comes with Linkwright is taken from there, even if the workspace has one of the same name; all
+    others are read from the interface files of the packages that the finder finds, without a build.
+
+    Args:
+        finder: where packages are; the finder in force at the time of each question when left out.
+    """
+
+    def __init__(self, finder: PackageFinder | None = None) -> None:
+        self.finder = finder
+        self._definitions: dict[str, Definition] = {}
+        self._sources: dict[str, SourceText] = {}
+        self._checked: set[str] = set()
+        self._own: PackageFinder | None = None
+        self._own_folder = ""
+        self._own_until = 0.0
+        self._lock = threading.RLock()
+
+    def definition(self, name: str, *kinds: str) -> Definition:
+        """The definition of a message, service or action, or of one of its parts (``std_srvs/srv/SetBool_Request``).
+
+        Args:
+            name: ``package/kind/Name``, or ``package/Name``.
+            kinds: which of ``msg``, ``srv`` and ``action`` are meant; any of them when left out.
+
+        Raises:
+            InterfaceNotFoundError: MSG101 with the nearest names, MSG102 for a text that is no name.
+            DefinitionError: what is wrong with the file.
+        """
+        found = self._definitions.get(name)
+        if found is not None and (not kinds or name.split("/")[1] in kinds):
+            return found
+        with self._lock:
+            return self._look_up(name, kinds or KINDS)
+
+    def structure(self, type_name: str) -> Structure:
+        """The definition of a structure, by its full type name."""
+        found = self.definition(type_name)
+        assert isinstance(found, Structure)
+        return found
+
+    def source(self, name: str) -> SourceText:
+        """The interface file that a definition was read from; of those that come with Linkwright, without comments.
+
+        Raises:
+            InterfaceNotFoundError: as `definition`.
+        """
+        type_name = self.definition(name).type_name
+        package, kind, part = type_name.split("/")
+        return self._sources[f"{package}/{kind}/{part.partition('_')[0]}"]
+
+    def names(self, kind: str, package: str | None = None) -> list[str]:
+        """The type names of all interfaces of one kind, those of the workspace included, sorted.
+
+        Args:
+            kind: ``msg``, ``srv`` or ``action``.
+            package: only this one's.
+        """
+        found = {
+            f"{owner}/{name}"
+            for owner in catalogue.packages()
+            if package is None or owner == package
+            for name in catalogue.texts(owner)
+            if name.startswith(kind + "/")
+        }
+        for owner, share in self._workspace_packages(package):
+            found.update(f"{owner}/{kind}/{name}" for name in interface_files(share, kind))
+        return sorted(found)
+
+    # --- looking up -----------------------------------------------------------------------------------------
+
+    def _look_up(self, text: str, kinds: tuple[str, ...]) -> Definition:
+        name = split_name(text)
+        if name is None:
+            raise InterfaceNotFoundError(_not_a_name(text))
+        for kind in (name.kind,) if name.kind else kinds:
+            if kind in kinds:
+                full = f"{name.package}/{kind}/{name.name}"
+                found = self._definitions.get(full) or self._load(full)
+                if found is not None:
+                    return found
+        raise InterfaceNotFoundError(self._unknown(name, kinds))
+
+    def _load(self, full: str) -> Definition | None:
+        """Read the file of an interface, and take note of all that rosidl makes of it."""
+        package, kind, name = full.split("/")
+        base = f"{package}/{kind}/{name.partition('_')[0]}"
+        if base in self._sources:
+            return self._definitions.get(full)
+        source = self._shipped_source(base) or self._workspace_source(base)
+        if source is None:
+            return None
+        shipped = source.name[:1] == "<"
+        definition = _parsed(source, base, _Trusted() if shipped else self)
+        self._sources[base] = source
+        parts = parts_of(definition)
+        self._definitions.update(parts)
+        if not shipped:
+            try:
+                self._check(definition, source, ())
+            except DefinitionError:
+                for part in parts:
+                    del self._definitions[part]
+                del self._sources[base]
+                raise
+        return self._definitions.get(full)
+
+    def _shipped_source(self, base: str) -> SourceText | None:
+        package, _, rest = base.partition("/")
+        text = catalogue.texts(package).get(rest)
+        return None if text is None else SourceText(f"<{base}>", text)
+
+    def _workspace_source(self, base: str) -> SourceText | None:
+        package, kind, name = base.split("/")
+        share = self._finder().find(package)
+        path = interface_file(share, kind, name) if share is not None else None
+        return None if path is None else _read(path)
+
+    def has_message(self, type_name: str) -> bool:
+        """Whether there is a message of this full name, be its file right or wrong."""
+        package, _, rest = type_name.partition("/")
+        if rest in catalogue.texts(package):
+            return True
+        share = self._finder().find(package)
+        return share is not None and interface_file(share, *rest.split("/")) is not None
+
+    def hint_for(self, type_name: str) -> str | None:
+        """What may have been meant by the name of a message that there is not."""
+        name = split_name(type_name)
+        return None if name is None else self._unknown(name, ("msg",)).hint
+
+    def _check(self, definition: Definition, source: SourceText, above: tuple[str, ...]) -> None:
+        """See to it that no structure contains itself, and that the files of all within are right."""
+        if definition.type_name in self._checked:
+            return
+        for structure in structures_of(definition):
+            way = (*above, structure.type_name)
+            for reference in dict.fromkeys(structure.references):
+                if reference in way:
+                    raise DefinitionError(_recursive(source, (*way[way.index(reference) :], reference)))
+                inner = self.definition(reference)
+                inner_source = self._sources[reference]
+                if inner_source.name[:1] != "<":
+                    self._check(inner, inner_source, way)
+        self._checked.add(definition.type_name)
+
+    # --- the workspace --------------------------------------------------------------------------------------
+
+    def _finder(self) -> PackageFinder:
+        """The finder in force. One of our own is kept for a while: it has read the folders of the workspace."""
+        finder = self.finder or active_finder()
+        if finder is None:
+            now, folder = time.monotonic(), os.getcwd()  # noqa: PTH109
+            if self._own is None or folder != self._own_folder or now > self._own_until:
+                self._own, self._own_folder = PackageFinder(), folder
+            self._own_until = now + _FINDER_KEPT_S
+            finder = self._own
+        return finder
+
+    def _workspace_packages(self, package: str | None) -> Iterator[tuple[str, Path]]:
+        finder = self._finder()
+        if package is None:
+            yield from finder.packages().items()
+        else:
+            share = finder.find(package)
+            if share is not None:
+                yield package, share
+
+    def _unknown(self, name: InterfaceName, kinds: tuple[str, ...]) -> Diagnostic:
+        wanted = (name.kind,) if name.kind in kinds else kinds
+        what = " or ".join(KIND_NAMES[kind] for kind in wanted if kind)
+        same_package = [other for kind in wanted if kind for other in self.names(kind, name.package)]
+        notes: list[Note] = []
+        if same_package:
+            listed = [other.rpartition("/")[2] for other in same_package]
+            hint = did_you_mean(name.name, listed) or self._same_name_elsewhere(name, wanted)
+            if hint is None:
+                hint = f"'{name.package}' has {', '.join(listed[:8])}{', ...' if len(listed) > 8 else ''}"
+        else:
+            packages = {*catalogue.packages(), *self._finder().packages()}
+            if name.package in packages:
+                notes.append(Note(f"the package '{name.package}' has no {what}"))
+                hint = None
+            else:
+                notes.append(Note(f"there is no package '{name.package}'"))
+                hint = did_you_mean(name.package, packages)
+            hint = hint or self._same_name_elsewhere(name, wanted)
+        if hint is None:
+            others = [other for kind in KINDS if kind not in wanted for other in self.names(kind, name.package)]
+            hint = next((f"there is '{other}'" for other in others if other.endswith("/" + name.name)), None)
+        return Diagnostic("MSG101", f"there is no {what} '{name}'", notes=tuple(notes), hint=hint)
+
+    def _same_name_elsewhere(self, name: InterfaceName, kinds: tuple[str | None, ...]) -> str | None:
+        for kind in kinds:
+            for other in self.names(kind) if kind else ():
+                if other.rpartition("/")[2] == name.name:
+                    return f"did you mean '{other}'?"
+        return None
+
+
+class _Trusted:
+    """For the files that come with Linkwright: what they name is there, a test has seen to it."""
+
+    def has_message(self, type_name: str) -> bool:  # noqa: ARG002 - the protocol's
+        """True."""
+        return True
+
+    def hint_for(self, type_name: str) -> str | None:  # noqa: ARG002 - the protocol's
+        """None."""
+        return None
+
+
+def _parsed(source: SourceText, base: str, known: KnownMessages) -> Definition:
+    """What a file defines, whichever of the two languages it is written in."""
+    if source.name.endswith(".idl"):
+        from linkwright.messages.idl import parse_idl
+
+        return parse_idl(source, base, known)
+    return parse_interface(source, base, known)
+
+
+def not_of_kind(definition: Definition, kind: str) -> Diagnostic:
+    """What to say about an interface that is there but is no message, service or action, as was wanted."""
+    name = definition.type_name
+    is_a = {Structure: "a message", Service: "a service", Action: "an action"}[type(definition)]
+    return Diagnostic("MSG101", f"there is no {KIND_NAMES[kind]} '{name}'", hint=f"'{name}' is {is_a}")
+
+
+def _read(path: Path) -> SourceText:
+    name = display_path(path)
+    try:
+        return SourceText(name, path.read_text(encoding="utf-8-sig"))
+    except UnicodeDecodeError as error:
+        raise DefinitionError(
+            Diagnostic(
+                "MSG121", f"'{name}' is not text in UTF-8", hint=f"the byte at {error.start} begins no character"
+            )
+        ) from None
+    except OSError as error:
+        raise DefinitionError(Diagnostic("MSG121", f"cannot read '{name}': {error.strerror}")) from None
+
+
+def _not_a_name(text: str) -> Diagnostic:
+    hint = "the form is 'package/kind/Name', such as 'sensor_msgs/msg/JointState'"
+    guess = re.sub(r"\.|::", "/", text)
+    if guess != text and split_name(guess):
+        hint = f"did you mean '{guess}'?"
+    return Diagnostic("MSG102", f"'{text}' is no name of a message, service or action", hint=hint)
+
+
+def _span_of(source: SourceText, reference: str, owner: str) -> Span:
+    package, _, name = reference.split("/")
+    spellings = [rf"{package}/(?:msg/)?{name}", rf"{package}::msg::{name}"]
+    if owner.startswith(package + "/"):
+        spellings.append(name)
+    match = re.search(rf"^[ \t]*(?:sequence<)?({'|'.join(spellings)})\b", source.text, re.MULTILINE)
+    return source.span(*match.span(1)) if match else source.span(0)
+
+
+def _recursive(source: SourceText, way: tuple[str, ...]) -> Diagnostic:
+    span = _span_of(source, way[-1], way[-2])
+    inside = way[0] if len(way) == 2 else f"{way[0]} by way of " + ", ".join(way[1:-1])
+    return Diagnostic("MSG116", f"'{way[-1]}' would contain itself: it is part of {inside}", span, source=source)
+
+
+LIBRARY = Library()
+"""The interfaces of this process. Classes are made of it once, so a message is the same class everywhere."""
+
+
+def find_interfaces_with(finder: PackageFinder | None) -> None:
+    """Look for packages of interfaces with this finder from now on; with None, with the one in force at each time."""
+    LIBRARY.finder = finder

@@ -1,0 +1,276 @@
+"""Reads ``.msg``, ``.srv`` and ``.action`` files (the interface definition language of ROS 2, without IDL)."""
+
+from __future__ import annotations
+
+import re
+from typing import Protocol
+
+from linkwright.diagnostics import Diagnostic, SourceText, did_you_mean
+from linkwright.messages.definition import (
+    Action,
+    Constant,
+    Container,
+    Definition,
+    Field,
+    FieldType,
+    Service,
+    Structure,
+)
+from linkwright.messages.errors import DefinitionError
+from linkwright.messages.literals import LiteralFault, read_constant, read_default
+from linkwright.messages.names import is_constant_name, is_field_name, is_interface_name, is_package_name
+from linkwright.messages.primitives import PRIMITIVES
+
+SEPARATOR = "---"
+SECTIONS = {"msg": ("",), "srv": ("_Request", "_Response"), "action": ("_Goal", "_Result", "_Feedback")}
+"""What the parts of a file of each kind are called, after the interface's own name."""
+
+_LINE = re.compile(
+    r"""(?P<base>[A-Za-z_][\w/]*) (?P<bound>[ ]*<=[ ]*(?P<string_bound>[^\s\[\]]*))?
+        (?P<container>\[[^\]]*\])? (?P<gap>\s+) (?P<name>[^\s=]+) \s* (?P<rest>.*)""",
+    re.VERBOSE | re.DOTALL,
+)
+_ROS1_TYPES = {
+    "time": "'builtin_interfaces/Time'",
+    "duration": "'builtin_interfaces/Duration'",
+    "Header": "'std_msgs/Header'",
+}
+
+_WITH_MORE_PARTS = {1: "requests and responses are written in a .srv file", 2: "goals are written in a .action file"}
+
+
+class _Section:
+    """One structure while its lines are read."""
+
+    def __init__(self) -> None:
+        self.fields: list[Field] = []
+        self.constants: list[Constant] = []
+        self.names: set[str] = set()
+
+
+class KnownMessages(Protocol):
+    """Answers which messages there are that a file may be made of."""
+
+    def has_message(self, type_name: str) -> bool:
+        """Whether there is a message of this full name."""
+
+    def hint_for(self, type_name: str) -> str | None:
+        """What may have been meant by the name of a message that there is not."""
+
+
+def parse_interface(source: SourceText, type_name: str, known: KnownMessages) -> Definition:
+    """What an interface file defines.
+
+    Args:
+        source: the text of the file.
+        type_name: the interface's, such as ``my_msgs/srv/Count``.
+        known: which messages there are.
+
+    Raises:
+        DefinitionError: with every mistake of the file, MSG110 to MSG119.
+    """
+    return _Reader(source, type_name, known).read()
+
+
+class _Reader:
+    def __init__(self, source: SourceText, type_name: str, known: KnownMessages) -> None:
+        self._source = source
+        self._type_name = type_name
+        self._package, self._kind, self._name = type_name.split("/")
+        self._known = known
+        self._found: list[Diagnostic] = []
+
+    def read(self) -> Definition:
+        sections = [_Section()]
+        offset = 0
+        for line in self._source.text.splitlines(keepends=True):
+            code = _without_comment(line)
+            start = offset + len(code) - len(code.lstrip())
+            offset += len(line)
+            code = code.strip()
+            if code == SEPARATOR:
+                sections.append(_Section())
+                self._check_sections(len(sections), start)
+            elif code:
+                self._read_line(code, start, sections[-1])
+        suffixes = SECTIONS[self._kind]
+        if len(sections) < len(suffixes):
+            self._report(
+                "MSG118",
+                f"a .{self._kind} file has {len(suffixes)} parts with '---' between them, this one has {len(sections)}",
+                offset,
+                0,
+            )
+        if self._found:
+            raise DefinitionError(*self._found)
+        return self._assembled(
+            [
+                Structure(self._type_name + suffix, tuple(section.fields), tuple(section.constants))
+                for suffix, section in zip(suffixes, sections, strict=True)
+            ]
+        )
+
+    def _assembled(self, structures: list[Structure]) -> Definition:
+        if self._kind == "msg":
+            return structures[0]
+        if self._kind == "srv":
+            return Service(self._type_name, *structures)
+        return Action(self._type_name, *structures)
+
+    def _check_sections(self, count: int, start: int) -> None:
+        most = len(SECTIONS[self._kind])
+        if count == most + 1:
+            self._report(
+                "MSG118",
+                f"a .{self._kind} file has {most} part{'s' if most > 1 else ''}, this '---' begins another",
+                start,
+                3,
+                _WITH_MORE_PARTS.get(most),
+            )
+
+    def _read_line(self, code: str, start: int, section: _Section) -> None:
+        match = _LINE.fullmatch(code)
+        if match is None:
+            self._report("MSG110", f"'{code}' is neither a field ('TYPE name') nor a constant ('TYPE NAME=value')",
+                         start, len(code))  # fmt: skip
+            return
+        kind = self._read_type(match, start)
+        name, rest = match["name"], match["rest"]
+        at = start + match.start("name")
+        if rest.startswith("="):
+            self._add_constant(section, kind, name, at, rest[1:].strip(), start + match.start("rest"))
+        else:
+            self._add_field(section, kind, name, at, rest, start + match.start("rest"))
+
+    # --- types ----------------------------------------------------------------------------------------------
+
+    def _read_type(self, match: re.Match[str], start: int) -> FieldType | None:
+        base = self._base(match["base"], start)
+        container, size = Container.ONE, None
+        string_bound = None
+        sound = base is not None
+        if match["bound"] is not None:
+            string_bound = self._number(match["string_bound"], start + match.start("string_bound"), "a string")
+            sound = sound and string_bound is not None
+            if base is not None and base not in {"string", "wstring"}:
+                hint = f"a bounded sequence is written '{match['base']}[<={match['string_bound']}]'"
+                self._report("MSG119", f"'{match['base']}' is no string and has no length to bound", start,
+                             len(match["base"]), hint)  # fmt: skip
+                sound = False
+        brackets = match["container"]
+        if brackets is not None:
+            inside, at = brackets[1:-1].strip(), start + match.start("container") + 1
+            container = Container.SEQUENCE if not inside or inside.startswith("<=") else Container.ARRAY
+            if inside:
+                what = "an array" if container is Container.ARRAY else "a sequence"
+                number = inside.removeprefix("<=").lstrip()
+                size = self._number(number, at + brackets[1:].index(inside) + len(inside) - len(number), what)
+                sound = sound and size is not None
+        return FieldType(base, string_bound, container, size) if sound and base is not None else None
+
+    def _base(self, text: str, start: int) -> str | None:
+        if text in PRIMITIVES:
+            return text
+        if "/" in text:
+            parts = text.split("/")
+            if len(parts) == 3 and parts[1] == "msg":
+                parts.pop(1)
+            if len(parts) == 2 and is_package_name(parts[0]) and is_interface_name(parts[1]):
+                return self._message(f"{parts[0]}/msg/{parts[1]}", text, start)
+            self._report(
+                "MSG111", f"'{text}' is no type: another package's is written 'package/Name'", start, len(text)
+            )
+            return None
+        own = f"{self._package}/msg/{text}"
+        if text in _ROS1_TYPES and not self._known.has_message(own):
+            self._report("MSG117", f"the type '{text}' is ROS 1's", start, len(text),
+                         f"in ROS 2 it is {_ROS1_TYPES[text]}")  # fmt: skip
+            return None
+        if is_interface_name(text):
+            return self._message(own, text, start)
+        self._report("MSG111", f"there is no type '{text}'", start, len(text), did_you_mean(text, PRIMITIVES))
+        return None
+
+    def _message(self, type_name: str, text: str, start: int) -> str | None:
+        if self._known.has_message(type_name):
+            return type_name
+        hint = self._known.hint_for(type_name)
+        self._report("MSG111", f"there is no message '{type_name}'", start, len(text), hint)
+        return None
+
+    def _number(self, text: str, at: int, what: str) -> int | None:
+        if text.isascii() and text.isdigit() and int(text) > 0:
+            return int(text)
+        self._report("MSG119", f"'{text}' is no length of {what}: it is a whole number above 0", at, max(len(text), 1))
+        return None
+
+    # --- fields and constants -------------------------------------------------------------------------------
+
+    def _add_field(
+        self, section: _Section, kind: FieldType | None, name: str, at: int, default: str, default_at: int
+    ) -> None:
+        if not is_field_name(name):
+            hint = "field names are lower case with single underscores"
+            near = re.sub(r"_+", "_", re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower()).strip("_")
+            if is_field_name(near):
+                hint += f", such as '{near}'"
+            self._report("MSG112", f"'{name}' is no name for a field", at, len(name), hint)
+            return
+        if not self._is_new(section, name, at) or kind is None:
+            return
+        value = None
+        if default:
+            try:
+                value = read_default(default, kind)
+            except LiteralFault as fault:
+                self._report("MSG114", f"the default value of '{name}' is wrong: {fault}", default_at, len(default))
+                return
+        section.fields.append(Field(name, kind, value))
+
+    def _add_constant(
+        self, section: _Section, kind: FieldType | None, name: str, at: int, value: str, value_at: int
+    ) -> None:
+        if not is_constant_name(name):
+            hint = "constants are upper case with single underscores"
+            if is_field_name(name):
+                hint += "; the default value of a field is written without '='"
+            self._report("MSG113", f"'{name}' is no name for a constant", at, len(name), hint)
+            return
+        if not self._is_new(section, name, at) or kind is None:
+            return
+        if kind.primitive is None or kind.container is not Container.ONE:
+            self._report("MSG114", f"the constant '{name}' cannot be of type '{kind.spelled(self._package)}'", at,
+                         len(name), "constants are numbers, bools and strings")  # fmt: skip
+            return
+        try:
+            section.constants.append(Constant(name, kind.base, read_constant(value, kind.base)))
+        except LiteralFault as fault:
+            self._report("MSG114", f"the value of '{name}' is wrong: {fault}", value_at, max(len(value), 1))
+
+    def _is_new(self, section: _Section, name: str, at: int) -> bool:
+        if name in section.names:
+            self._report("MSG115", f"there are two '{name}'", at, len(name))
+            return False
+        section.names.add(name)
+        return True
+
+    def _report(self, code: str, message: str, start: int, length: int, hint: str | None = None) -> None:
+        span = self._source.span(start, start + length)
+        self._found.append(Diagnostic(code, message, span, hint=hint, source=self._source))
+
+
+def _without_comment(line: str) -> str:
+    """The line up to its comment; a ``#`` inside of quotes begins none."""
+    if "#" not in line:
+        return line
+    quote = None
+    for at, character in enumerate(line):
+        if quote:
+            if character == quote and line[at - 1] != "\\":
+                quote = None
+        elif character in "\"'" and at and (line[at - 1] in " \t=[,"):
+            quote = character
+        elif character == "#":
+            return line[:at]
+    # An apostrophe that closes nothing ("string name  # the robot's") has hidden nothing: it stood in the comment.
+    return line.partition("#")[0] if quote else line

@@ -1,0 +1,25 @@
+"""The message classes that the rooms of Linkwright use by name. What they look like to mypy is in ``wellknown.pyi``."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.messages.classes import get_message
+
+Time = get_message("builtin_interfaces/msg/Time")
+Duration = get_message("builtin_interfaces/msg/Duration")
+Header = get_message("std_msgs/msg/Header")
+String = get_message("std_msgs/msg/String")
+Point = get_message("geometry_msgs/msg/Point")
+Pose = get_message("geometry_msgs/msg/Pose")
+Quaternion = get_message("geometry_msgs/msg/Quaternion")
+Transform = get_message("geometry_msgs/msg/Transform")
+TransformStamped = get_message("geometry_msgs/msg/TransformStamped")
+Vector3 = get_message("geometry_msgs/msg/Vector3")
+JointState = get_message("sensor_msgs/msg/JointState")
+
+FloatSequence = Sequence[float] | NDArray[np.float64]
+"""Numbers for a float64[] field: any sequence of floats, or a numpy array where there are many."""

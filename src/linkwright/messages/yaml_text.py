@@ -1,0 +1,201 @@
+"""Messages as YAML, character for character what PyYAML makes of them and ``ros2 topic echo`` shows.
+
+PyYAML takes milliseconds for a message of a few hundred numbers, too long to follow /tf. So the lines are written here,
+from a plan for each class; only for texts, whose quoting is an art, PyYAML is asked, and its answers are remembered.
+"""
+
+from __future__ import annotations
+
+import sys
+from array import array
+from collections import OrderedDict
+from collections.abc import Callable
+from functools import lru_cache
+from math import isfinite
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from linkwright.messages.conversion import abbreviated, abbreviated_text, to_dict
+from linkwright.messages.definition import Container, Field, FieldType
+from linkwright.messages.message import Message
+
+_LONGEST_REMEMBERED = 200
+
+
+class _Options(NamedTuple):
+    """What is left out."""
+
+    truncate_length: int | None
+    no_arr: bool
+    no_str: bool
+
+
+def to_yaml(
+    message: Message,
+    *,
+    truncate_length: int | None = None,
+    no_arr: bool = False,
+    no_str: bool = False,
+    flow_style: bool = False,
+) -> str:
+    """A message as YAML.
+
+    Args:
+        message: any message.
+        truncate_length: longer texts and lists are cut to this length and end with ``...``.
+        no_arr: say only of what kind and how long arrays and sequences are.
+        no_str: say only how long texts are.
+        flow_style: lists in brackets; what lies in them in braces.
+    """
+    if flow_style:
+        return _dumped(to_dict(message, truncate_length=truncate_length, no_arr=no_arr, no_str=no_str), True)
+    lines: list[str] = []
+    _Writer(_Options(truncate_length, no_arr, no_str), lines).message(message, "", ())
+    return "".join(lines) or "{}\n"
+
+
+class _Writer:
+    """Writes one message. A way is the containers that a value lies in, ``m`` for mappings and ``s`` for lists."""
+
+    def __init__(self, options: _Options, lines: list[str]) -> None:
+        self._options = options
+        self._lines = lines
+
+    def message(self, message: Message, indent: str, way: tuple[str, ...]) -> None:
+        """The lines of a message's fields; the first is indented too."""
+        way = (*way, "m")
+        lines, append = self._lines, self._lines.append
+        for key, slot, kind, number in _plan(type(message)):
+            value = getattr(message, slot)
+            if number is not None:
+                append(f"{indent}{key}: {number(value)}\n")
+            elif kind.container is not Container.ONE:
+                append(f"{indent}{key}:")
+                self._list(kind, value, indent, way)
+            elif isinstance(value, Message):
+                append(f"{indent}{key}:\n")
+                before = len(lines)
+                self.message(value, indent + "  ", way)
+                if len(lines) == before:
+                    lines[-1] = f"{indent}{key}: {{}}\n"
+            else:
+                append(f"{indent}{key}: {self._text(value, way)}\n")
+
+    def _list(self, kind: FieldType, values: Any, indent: str, way: tuple[str, ...]) -> None:
+        lines, options = self._lines, self._options
+        if options.no_arr:
+            lines.append(f" {_scalar(abbreviated(kind, values))}\n")
+            return
+        if not len(values):
+            lines.append(" []\n")
+            return
+        lines.append("\n")
+        length = options.truncate_length
+        shown = values if length is None else list(values)[:length]
+        bullet = indent + "- "
+        number = _number_text(kind)
+        if number is not None:
+            numbers = shown.tolist() if isinstance(shown, (array, np.ndarray)) else shown
+            lines.extend([f"{bullet}{number(each)}\n" for each in numbers])
+        else:
+            way = (*way, "s")
+            for each in shown:
+                self._item(each, indent, bullet, way)
+        if len(shown) < len(values):
+            lines.append(f"{bullet}'...'\n")
+
+    def _item(self, value: Any, indent: str, bullet: str, way: tuple[str, ...]) -> None:
+        lines = self._lines
+        if not isinstance(value, Message):
+            lines.append(f"{bullet}{self._text(value, way)}\n")
+            return
+        first = len(lines)
+        self.message(value, indent + "  ", way)
+        if len(lines) > first:
+            lines[first] = bullet + lines[first][len(bullet) :]
+        else:
+            lines.append(f"{bullet}{{}}\n")
+
+    def _text(self, value: Any, way: tuple[str, ...]) -> str:
+        length = self._options.truncate_length
+        text: str = value.decode("latin-1") if isinstance(value, bytes) else value
+        if self._options.no_str and not isinstance(value, bytes):
+            text = abbreviated_text(text)
+        elif length is not None and len(text) > length:
+            text = text[:length] + "..."
+        if len(text) <= _LONGEST_REMEMBERED and text.isprintable():
+            return _scalar(text)
+        return _placed_scalar(text, way)
+
+
+_Step = tuple[str, str, FieldType, Callable[[Any], str] | None]
+"""Of a field: its key, its slot, its type, and what writes it if it is a plain number."""
+
+_plans: dict[str, list[_Step]] = {}
+
+
+def _plan(cls: type[Message]) -> list[_Step]:
+    """How the fields of a class are written."""
+    plan = _plans.get(cls.TYPE_NAME)
+    if plan is None:
+        plan = _plans[cls.TYPE_NAME] = [_step(field) for field in cls._definition.fields]
+    return plan
+
+
+def _step(field: Field) -> _Step:
+    number = _number_text(field.type) if field.type.container is Container.ONE else None
+    return _scalar(field.name), "_" + field.name, field.type, number
+
+
+def _number_text(kind: FieldType) -> Callable[[Any], str] | None:
+    """What writes one value of a type, where that needs no thought."""
+    primitive = kind.primitive
+    writers: dict[type, Callable[[Any], str]] = {int: str, float: _float_text, bool: _bool_text}
+    return None if primitive is None else writers.get(primitive.python)
+
+
+def _bool_text(value: object) -> str:
+    return "true" if value else "false"
+
+
+def _float_text(value: float) -> str:
+    if not isfinite(value):
+        return ".nan" if value != value else ".inf" if value > 0 else "-.inf"
+    text = repr(float(value))
+    # YAML 1.1 wants a point in a number with an exponent.
+    return text.replace("e", ".0e", 1) if "e" in text and "." not in text else text
+
+
+@lru_cache(maxsize=8192)
+def _scalar(text: str) -> str:
+    """A text of one line as a value or a key."""
+    return _dumped({"k": text}, False)[len("k: ") : -1]
+
+
+def _placed_scalar(text: str, way: tuple[str, ...]) -> str:
+    """A text of several lines: they are indented according to the place, so PyYAML is shown one like it."""
+    marker = _dumped(_wrapped("X", way), False)
+    return _dumped(_wrapped(text, way), False)[marker.index("X") : -1]
+
+
+def _wrapped(text: str, way: tuple[str, ...]) -> Any:
+    value: Any = text
+    for container in reversed(way):
+        value = [value] if container == "s" else {"k": value}
+    return value
+
+
+def _dumped(data: Any, flow_style: bool) -> str:
+    import yaml  # here, because a launch without an echo has no use for it
+
+    class Dumper(yaml.SafeDumper):
+        """PyYAML's, but a message's fields are never in braces, whatever the style of lists (rosidl_runtime_py)."""
+
+        def represent_fields(self, data: OrderedDict[str, Any]) -> yaml.MappingNode:
+            items = [(self.represent_data(key), self.represent_data(value)) for key, value in data.items()]
+            return yaml.MappingNode("tag:yaml.org,2002:map", items)
+
+    Dumper.add_representer(OrderedDict, Dumper.represent_fields)
+    text: str = yaml.dump(data, Dumper=Dumper, allow_unicode=True, width=sys.maxsize, default_flow_style=flow_style)
+    return text

@@ -1,0 +1,145 @@
+"""component_container: loads nodes into its process at run time and unloads them (rclcpp_components)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
+from typing import Any
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean
+from linkwright.graph import Graph, Node, Parameter
+from linkwright.messages import get_service
+from linkwright.nodes.components import COMPONENTS
+from linkwright.nodes.options import NodeOptions, RunningNode, create_node, starting
+
+OnLoaded = Callable[[RunningNode, NodeOptions], None]
+
+_DEFAULT_NAME = "ComponentManager"
+
+
+class ComponentContainer:
+    """The running node.
+
+    It answers ``~/_container/load_node``, ``unload_node`` and ``list_nodes`` as rclcpp_components does. What it can
+    load are the components that come with Linkwright (`COMPONENTS`); others are libraries of compiled code.
+
+    Attributes:
+        on_loaded: called with each node that was loaded and what it was started with.
+        loading: what is entered while a node is made, for those who want to know whose words come then.
+    """
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        self._graph = graph
+        self._library = options.library
+        self._node, _ = create_node(graph, options, _DEFAULT_NAME)
+        self._loaded: dict[int, RunningNode] = {}
+        self._last_id = 0
+        self.on_loaded: list[OnLoaded] = []
+        self.loading: Callable[[], AbstractContextManager[object]] = nullcontext
+        with starting(self._node):
+            for name, kind, callback in (
+                ("load_node", "LoadNode", self._load),
+                ("unload_node", "UnloadNode", self._unload),
+                ("list_nodes", "ListNodes", self._list),
+            ):
+                self._node.create_service(f"composition_interfaces/srv/{kind}", f"~/_container/{name}", callback)
+
+    @property
+    def node(self) -> Node:
+        """Its node in the graph."""
+        return self._node
+
+    @property
+    def loaded(self) -> dict[int, RunningNode]:
+        """The nodes in it, by the numbers that it gave them."""
+        return dict(self._loaded)
+
+    def close(self) -> None:
+        """Unload all nodes and end it."""
+        for number in tuple(self._loaded):
+            self._close(number)
+        self._node.destroy_node()
+
+    def load(self, package: str, plugin: str, options: NodeOptions) -> tuple[int, RunningNode]:
+        """Load a component; returns its number and the node.
+
+        Raises:
+            LinkwrightError: NODE601, no such component; and what the node itself raises.
+        """
+        factory = COMPONENTS.get((package, plugin))
+        if factory is None:
+            raise _unknown(package, plugin)
+        with self.loading():
+            running = factory(self._graph, options)
+        self._last_id += 1
+        self._loaded[self._last_id] = running
+        for told in self.on_loaded:
+            told(running, options)
+        return self._last_id, running
+
+    def _load(self, request: Any, response: Any) -> Any:
+        logger = self._node.get_logger()
+        logger.info(f"Load Library: {request.package_name}")
+        options = NodeOptions(
+            name=request.node_name or None,
+            namespace=request.node_namespace or "/",
+            parameters={each.name: Parameter.from_parameter_msg(each).value for each in request.parameters},
+            remappings=[_pair(rule) for rule in request.remap_rules],
+            library=self._library,
+        )
+        try:
+            number, running = self.load(request.package_name, request.plugin_name, options)
+        except LinkwrightError as error:
+            problem = error.diagnostics[0].message  # the user's mistake, so without a traceback
+            logger.error(f"Component constructor threw an exception: {problem}")  # noqa: TRY400
+            response.success = False
+            response.error_message = "; ".join(_told(each) for each in error.diagnostics)
+            return response
+        logger.info(f"Instantiate class: rclcpp_components::NodeFactoryTemplate<{request.plugin_name}>")
+        response.success = True
+        response.unique_id = number
+        response.full_node_name = running.node.get_fully_qualified_name()
+        return response
+
+    def _unload(self, request: Any, response: Any) -> Any:
+        if request.unique_id not in self._loaded:
+            response.success = False
+            response.error_message = f"No node found with unique_id: {request.unique_id}"
+            self._node.get_logger().warning(response.error_message)
+            return response
+        self._close(request.unique_id)
+        response.success = True
+        return response
+
+    def _list(self, _: Any, response: Any) -> Any:
+        for number, running in self._loaded.items():
+            response.unique_ids.append(number)
+            response.full_node_names.append(running.node.get_fully_qualified_name())
+        return response
+
+    def _close(self, number: int) -> None:
+        self._loaded.pop(number).close()
+
+
+def load_request() -> Any:
+    """An empty request to load a component."""
+    return get_service("composition_interfaces/srv/LoadNode").Request()
+
+
+def _unknown(package: str, plugin: str) -> LinkwrightError:
+    message = f"Failed to find class with the requested plugin name: package '{package}' has no component '{plugin}'"
+    here = [name for owner, name in COMPONENTS if owner == package]
+    near = did_you_mean(plugin, here) or did_you_mean(plugin, [name for _, name in COMPONENTS])
+    if near is None and here:
+        near = "it has: " + ", ".join(here)
+    hint = near or "without ROS only the nodes that come with Linkwright can be composed; others are compiled libraries"
+    return LinkwrightError(Diagnostic("NODE601", message, hint=hint))
+
+
+def _told(diagnostic: Diagnostic) -> str:
+    return diagnostic.message if diagnostic.hint is None else f"{diagnostic.message} ({diagnostic.hint})"
+
+
+def _pair(rule: str) -> tuple[str, str]:
+    source, _, target = rule.partition(":=")
+    return source, target

@@ -1,0 +1,95 @@
+"""cam2image of image_tools, without a camera: publishes a moving test picture on the topic ``image``."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.graph import Graph, Node
+from linkwright.graph.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy
+from linkwright.messages import get_message
+from linkwright.nodes.options import NodeOptions, create_node, starting
+
+_BAND_HEIGHT = 1 / 3
+
+
+class DemoCamera:
+    """The running node; its parameters are cam2image's.
+
+    Raises:
+        LinkwrightError: NODE421, a parameter is not right.
+    """
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        self._node, _ = create_node(graph, options, "cam2image")
+        with starting(self._node):
+            self._start()
+
+    @property
+    def node(self) -> Node:
+        """Its node in the graph."""
+        return self._node
+
+    def close(self) -> None:
+        """End it."""
+        self._node.destroy_node()
+
+    def _start(self) -> None:
+        node = self._node
+        reliability: str = node.declare_parameter("reliability", "reliable").value
+        history: str = node.declare_parameter("history", "keep_last").value
+        depth: int = node.declare_parameter("depth", 10).value
+        frequency: float = node.declare_parameter("frequency", 30.0).value
+        width: int = node.declare_parameter("width", 320).value
+        height: int = node.declare_parameter("height", 240).value
+        node.declare_parameter("burger_mode", True)
+        frame_id: str = node.declare_parameter("frame_id", "camera_frame").value
+        for name, value in (("frequency", frequency), ("width", width), ("height", height), ("depth", depth)):
+            if value <= 0:
+                raise LinkwrightError(
+                    Diagnostic("NODE421", f"parameter '{name}' must be more than 0, and it is {value}")
+                )
+        qos = QoSProfile(
+            depth=depth,
+            history=HistoryPolicy[_policy(HistoryPolicy, "history", history)],
+            reliability=ReliabilityPolicy[_policy(ReliabilityPolicy, "reliability", reliability)],
+        )
+        self._publisher = node.create_publisher(get_message("sensor_msgs/msg/Image"), "image", qos)
+        self._picture = _stripes(width, height)
+        self._frame_id = frame_id
+        self._count = 0
+        node.create_timer(1.0 / frequency, self._publish)
+
+    def _publish(self) -> None:
+        self._count += 1
+        self._node.get_logger().info(f"Publishing image #{self._count}")
+        height, width, _ = self._picture.shape
+        message = get_message("sensor_msgs/msg/Image")()
+        message.header.stamp = self._node.get_clock().now().to_msg()
+        message.header.frame_id = self._frame_id
+        message.height, message.width = height, width
+        message.encoding = "bgr8"
+        message.is_bigendian = 0
+        message.step = width * 3
+        message.data = np.roll(self._picture, self._count * 4, axis=1).reshape(-1)
+        self._publisher.publish(message)
+
+
+def _stripes(width: int, height: int) -> NDArray[np.uint8]:
+    """Bars of eight colours above a ramp from black to white: array, shape (height, width, 3), blue green red."""
+    columns = np.arange(width)
+    bars = 7 - columns * 8 // width
+    picture = np.empty((height, width, 3), dtype=np.uint8)
+    picture[:] = np.stack([bars & 1, bars >> 2 & 1, bars >> 1 & 1], axis=-1) * 255
+    picture[round(height * (1 - _BAND_HEIGHT)) :] = (columns * 255 // max(1, width - 1))[:, np.newaxis]
+    return picture
+
+
+def _policy(kind: type[HistoryPolicy | ReliabilityPolicy], name: str, value: str) -> str:
+    known = [each.name.lower() for each in kind if each.name not in ("UNKNOWN", "BEST_AVAILABLE")]
+    if value not in known:
+        raise LinkwrightError(
+            Diagnostic("NODE421", f"parameter '{name}' is '{value}'", hint=f"it is one of {', '.join(known)}")
+        )
+    return value.upper()

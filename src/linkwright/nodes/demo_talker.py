@@ -1,0 +1,36 @@
+"""talker: publishes a greeting with a count, once a second (demo_nodes_cpp, demo_nodes_py, composition)."""
+
+from __future__ import annotations
+
+from linkwright.graph import Graph, Node, QoSProfile
+from linkwright.messages import String
+from linkwright.nodes.options import NodeOptions, create_node, starting
+
+_PERIOD_SECONDS = 1.0
+_DEPTH = 7
+
+
+class Talker:
+    """The running node."""
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        self._node, _ = create_node(graph, options, "talker")
+        self._count = 0
+        with starting(self._node):
+            self._publisher = self._node.create_publisher(String, "chatter", QoSProfile.of(_DEPTH))
+            self._node.create_timer(_PERIOD_SECONDS, self._talk)
+
+    @property
+    def node(self) -> Node:
+        """Its node in the graph."""
+        return self._node
+
+    def close(self) -> None:
+        """End it."""
+        self._node.destroy_node()
+
+    def _talk(self) -> None:
+        self._count += 1
+        text = f"Hello World: {self._count}"
+        self._node.get_logger().info(f"Publishing: '{text}'")
+        self._publisher.publish(String(data=text))

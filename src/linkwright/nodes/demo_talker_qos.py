@@ -1,0 +1,92 @@
+"""talker_qos and listener_qos of demo_nodes_py: as talker and listener, with a choice of quality and a last message."""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+from collections.abc import Sequence
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.graph import SENSOR_DATA_QOS, Graph, Node, QoSProfile
+from linkwright.messages import String
+from linkwright.nodes.options import NodeOptions, create_node, starting
+
+_PERIOD_SECONDS = 1.0
+_DEPTH = 10
+_ENDLESS = 1 << 31
+
+
+class _Counted:
+    """What both have in common: their arguments, and an end after some messages."""
+
+    _name: str
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        self.finished: asyncio.Future[int] = asyncio.get_running_loop().create_future()
+        self._node, words = create_node(graph, options, self._name)
+        self._count = 0
+        with starting(self._node):
+            given = _read(self._name, words)
+            self._left = given.number_of_cycles
+            self._begin(QoSProfile.of(_DEPTH) if given.reliable else SENSOR_DATA_QOS)
+        self._node.get_logger().info(f"{'Reliable' if given.reliable else 'Best effort'} {self._what}")
+
+    _what: str
+
+    @property
+    def node(self) -> Node:
+        """Its node in the graph."""
+        return self._node
+
+    def close(self) -> None:
+        """End it."""
+        self._node.destroy_node()
+
+    def _begin(self, qos: QoSProfile) -> None:
+        raise NotImplementedError
+
+    def _counted(self) -> None:
+        self._count += 1
+        if self._count >= self._left and not self.finished.done():
+            self.finished.set_result(0)
+
+
+class TalkerQos(_Counted):
+    """The running talker."""
+
+    _name = "talker_qos"
+    _what = "talker"
+
+    def _begin(self, qos: QoSProfile) -> None:
+        self._publisher = self._node.create_publisher(String, "chatter", qos)
+        self._node.create_timer(_PERIOD_SECONDS, self._talk)
+
+    def _talk(self) -> None:
+        text = f"Hello World: {self._count}"
+        self._node.get_logger().info(f'Publishing: "{text}"')
+        self._publisher.publish(String(data=text))
+        self._counted()
+
+
+class ListenerQos(_Counted):
+    """The running listener."""
+
+    _name = "listener_qos"
+    _what = "listener"
+
+    def _begin(self, qos: QoSProfile) -> None:
+        self._node.create_subscription(String, "chatter", self._hear, qos)
+
+    def _hear(self, message: String) -> None:
+        self._node.get_logger().info(f"I heard: [{message.data}]")
+        self._counted()
+
+
+def _read(name: str, words: Sequence[str]) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog=name, add_help=False, exit_on_error=False)
+    parser.add_argument("--reliable", action="store_true")
+    parser.add_argument("-n", "--number_of_cycles", type=int, default=_ENDLESS)
+    try:
+        return parser.parse_known_args(words)[0]
+    except argparse.ArgumentError as error:
+        raise LinkwrightError(Diagnostic("NODE602", f"arguments of {name}: {error}")) from error

@@ -1,0 +1,131 @@
+"""tf2_echo of tf2_ros: prints the transform between two frames again and again."""
+
+from __future__ import annotations
+
+import asyncio
+from math import asin, atan2, cos, degrees, pi
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.graph import Graph, Node, TransformException
+from linkwright.graph.time import Time
+from linkwright.graph.transform_core import BufferCore
+from linkwright.graph.transform_listener import TransformListener
+from linkwright.kinematics import rotation_matrix
+from linkwright.nodes.options import NodeOptions, create_node, starting
+
+USAGE = """Usage: tf2_echo source_frame target_frame [echo_rate]
+
+This will echo the transform from the coordinate frame of the source_frame
+to the coordinate frame of the target_frame.
+Note: This is the transform to get data from target_frame into the source_frame.
+Default echo rate is 1 if echo_rate is not given."""
+
+_LATEST = Time()
+
+
+class Tf2Echo:
+    """The running node.
+
+    Raises:
+        LinkwrightError: NODE401, the rate is no number.
+    """
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        self._node, arguments = create_node(graph, options, "tf2_echo")
+        self._output = options.output
+        self.finished: asyncio.Future[int] = asyncio.get_running_loop().create_future()
+        if len(arguments) not in (2, 3):
+            self._output(USAGE)
+            self.finished.set_result(1)
+            return
+        with starting(self._node):
+            rate = _rate(arguments[2]) if len(arguments) == 3 else 1.0
+        self._source, self._target = arguments[:2]
+        self._waiting = True
+        self._buffer = BufferCore(logger=self._node.get_logger().get_child("tf2"))
+        TransformListener(self._buffer, self._node)
+        self._node.create_timer(1.0 / rate, self._look)
+        self._look()
+
+    @property
+    def node(self) -> Node:
+        """Its node in the graph."""
+        return self._node
+
+    def close(self) -> None:
+        """End it."""
+        self._node.destroy_node()
+
+    def _look(self) -> None:
+        if self._waiting:
+            possible, reason = self._buffer.can_transform_core(self._source, self._target, _LATEST)
+            if not possible:
+                self._node.get_logger().info(
+                    f"Waiting for transform {self._source} ->  {self._target}: {reason}", throttle_duration_sec=1.0
+                )
+                return
+            self._waiting = False
+        try:
+            transform = self._buffer.lookup_transform_core(self._source, self._target, _LATEST)
+        except TransformException as error:
+            seconds = self._node.get_clock().now().nanoseconds / 1e9
+            frames = self._buffer.all_frames_as_string()
+            self._output(
+                f"Failure at {seconds:.3f}\nException thrown:{error}\nThe current list of frames is:\n{frames}"
+            )
+        else:
+            self._output(describe(transform))
+
+
+def describe(transform: Any) -> str:
+    """A geometry_msgs/msg/TransformStamped as tf2_echo prints it."""
+    stamp, translation, rotation = transform.header.stamp, transform.transform.translation, transform.transform.rotation
+    position = (translation.x, translation.y, translation.z)
+    quaternion = (rotation.x, rotation.y, rotation.z, rotation.w)
+    turn = rotation_matrix(quaternion)
+    angles = _roll_pitch_yaw(turn)
+    rows = np.eye(4)
+    rows[:3, :3], rows[:3, 3] = turn, position
+    return "\n".join(
+        [
+            # The nanoseconds have no leading zeros there either.
+            f"At time {stamp.sec}.{stamp.nanosec}",
+            f"- Translation: [{_listed(position)}]",
+            f"- Rotation: in Quaternion (xyzw) [{_listed(quaternion)}]",
+            f"- Rotation: in RPY (radian) [{_listed(angles)}]",
+            f"- Rotation: in RPY (degree) [{_listed([degrees(angle) for angle in angles])}]",
+            "- Matrix:",
+            *("".join(f" {value:6.3f}" for value in row) for row in rows.tolist()),
+        ]
+    )
+
+
+def _roll_pitch_yaw(turn: NDArray[np.float64]) -> tuple[float, float, float]:
+    """The angles that tf2 gives for a rotation matrix, with its signs of zero."""
+    (xx, xy, xz), (yx, _, _), (zx, zy, zz) = turn.tolist()
+    if abs(zx) >= 1.0:
+        # Roll and yaw turn about the same axis: all of it counts as roll.
+        delta = atan2(xy, xz) if zx < 0.0 else atan2(-xy, -xz)
+        return delta, pi / 2.0 if zx < 0.0 else -pi / 2.0, 0.0
+    pitch = -asin(zx)
+    level = cos(pitch)
+    return atan2(zy / level, zz / level), pitch, atan2(yx / level, xx / level)
+
+
+def _listed(values: Any) -> str:
+    return ", ".join(f"{value:.3f}" for value in values)
+
+
+def _rate(text: str) -> float:
+    try:
+        rate = float(text)
+    except ValueError:
+        rate = 0.0
+    if not 0.0 < rate < float("inf"):
+        message = f"Failed to convert rate argument '{text}' to a floating-point number"
+        raise LinkwrightError(Diagnostic("NODE401", message, hint="give the echoes a second, such as 2.0"))
+    return rate

@@ -1,0 +1,132 @@
+"""tf2_monitor of tf2_ros: tells who sends transforms, how often, and how old they are when they come."""
+
+from __future__ import annotations
+
+import asyncio
+from collections import deque
+from collections.abc import Iterable
+
+from linkwright.graph import STATIC_TF_SUBSCRIPTION_QOS, TF_QOS, Graph, Node, TransformException
+from linkwright.graph.time import Time
+from linkwright.graph.transform_core import BufferCore, nanoseconds_of
+from linkwright.messages import TFMessage
+from linkwright.nodes.options import NodeOptions, create_node
+
+AUTHORITY = "<no authority available>"
+USAGE = "TF_Monitor: usage: tf2_monitor framea frameb"
+
+_KEPT = 1000
+_LOOK_EVERY_SECONDS = 0.5
+_LOOKS_A_REPORT = 21
+_LOW_PASS = 0.01
+_LATEST = Time()
+_SHORTEST_SPAN_S = 1e-8
+
+
+class Tf2Monitor:
+    """The running node: reports about every ten seconds, on all frames or on the way between two."""
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        self._node, arguments = create_node(graph, options, "tf2_monitor_main")
+        self._clock = self._node.get_clock()
+        self._output = options.output
+        self.finished: asyncio.Future[int] = asyncio.get_running_loop().create_future()
+        if len(arguments) not in (0, 2):
+            self._output(USAGE)
+            self.finished.set_result(255)
+            return
+        self._ends = (arguments[0], arguments[1]) if arguments else None
+        self._chain: list[str] = []
+        self._gathering = False
+        self._looks = 0
+        self._average = self._greatest = 0.0
+        self._delays: dict[str, deque[float]] = {}
+        self._message_delays: deque[float] = deque(maxlen=_KEPT)
+        self._message_times: deque[float] = deque(maxlen=_KEPT)
+        self._buffer = BufferCore(logger=self._node.get_logger().get_child("tf2"))
+        self._node.create_subscription(TFMessage, "/tf", lambda message: self._hear(message, static=False), TF_QOS)
+        self._node.create_subscription(
+            TFMessage, "/tf_static", lambda message: self._hear(message, static=True), STATIC_TF_SUBSCRIPTION_QOS
+        )
+        if self._ends is not None:
+            self._output(f"Waiting for transform chain to become available between {' and '.join(self._ends)} ")
+        self._node.create_timer(_LOOK_EVERY_SECONDS, self._look)
+
+    @property
+    def node(self) -> Node:
+        """Its node in the graph."""
+        return self._node
+
+    def close(self) -> None:
+        """End it."""
+        self._node.destroy_node()
+
+    def _hear(self, message: TFMessage, *, static: bool) -> None:
+        now_ns = self._clock.now().nanoseconds
+        self._buffer.update(message, static=static)
+        total = 0.0
+        for transform in message.transforms:
+            delay = (now_ns - nanoseconds_of(transform.header.stamp)) / 1e9
+            total += delay
+            self._delays.setdefault(transform.child_frame_id, deque(maxlen=_KEPT)).append(delay)
+        self._message_delays.append(total / max(1, len(message.transforms)))
+        self._message_times.append(now_ns / 1e9)
+
+    def _look(self) -> None:
+        if not self._gathering and not self._begin():
+            return
+        if self._ends is not None:
+            self._measure(*self._ends)
+        self._looks += 1
+        if self._looks >= _LOOKS_A_REPORT:
+            self._looks = 0
+            self._report()
+
+    def _begin(self) -> bool:
+        """Begin, once the way between the two frames is there."""
+        what = "all frames"
+        if self._ends is not None:
+            first, second = self._ends
+            try:
+                self._chain = self._buffer.chain(second, _LATEST, first, _LATEST, second)
+            except TransformException:
+                return False
+            what = f"{first} -> {second}"
+        self._output(f"Gathering data on {what} for 10 seconds...")
+        self._gathering = True
+        return True
+
+    def _measure(self, first: str, second: str) -> None:
+        try:
+            _, stamp_ns = self._buffer.lookup(first, second, 0)
+        except TransformException:
+            return
+        delay = (self._clock.now().nanoseconds - stamp_ns) / 1e9
+        self._average = _LOW_PASS * delay + (1.0 - _LOW_PASS) * self._average
+        self._greatest = max(self._greatest, delay)
+
+    def _report(self) -> None:
+        lines = ["", "", ""]
+        if self._ends is not None:
+            lines += [
+                f"RESULTS: for {' to '.join(self._ends)}",
+                f"Chain is: {' -> '.join(self._chain)}",
+                f"Net delay     avg = {self._average:g}: max = {self._greatest:g}",
+            ]
+        else:
+            lines.append("RESULTS: for all Frames")
+        lines += ["", "Frames:"]
+        for frame, delays in sorted(self._delays.items()):
+            if self._ends is None or frame in self._chain:
+                lines.append(f"Frame: {frame}, published by {AUTHORITY}, {_average_and_greatest(delays, ', ')}")
+        lines += ["", "All Broadcasters:"]
+        if self._message_times:
+            span = max(_SHORTEST_SPAN_S, self._message_times[-1] - self._message_times[0])
+            frequency = len(self._message_times) / span
+            lines.append(f"Node: {AUTHORITY} {frequency:g} Hz, {_average_and_greatest(self._message_delays, ' ')}")
+        self._output("\n".join(lines))
+
+
+def _average_and_greatest(delays: Iterable[float], between: str) -> str:
+    values = list(delays)
+    return f"Average Delay: {sum(values) / len(values):g}{between}Max Delay: {max(0.0, *values):g}"

@@ -1,0 +1,140 @@
+"""view_frames of tf2_tools: listens to transforms for some seconds and draws the tree of frames."""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import time
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.graph import Graph, Node
+from linkwright.graph.transform_listener import DEFAULT_STATIC_TF_TOPIC, DEFAULT_TF_TOPIC, TransformListener
+from linkwright.graph.transform_waiting import Buffer
+from linkwright.nodes.options import NodeOptions, create_node, starting
+
+
+class ViewFrames:
+    """The running node. It writes ``frames_DATE.gv`` and ``frames_DATE.pdf`` into the current folder, and ends.
+
+    Raises:
+        LinkwrightError: NODE411, an argument is not right.
+    """
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        self._node, arguments = create_node(graph, options, "view_frames")
+        self._logger = self._node.get_logger()
+        self.finished: asyncio.Future[int] = asyncio.get_running_loop().create_future()
+        with starting(self._node):
+            self._settings = _parse(arguments)
+        self._buffer = Buffer(node=self._node)
+        TransformListener(
+            self._buffer,
+            self._node,
+            tf_topic=self._settings.tf_topic,
+            tf_static_topic=self._settings.tf_static_topic,
+        )
+        self._logger.info(f"Listening to tf data for {self._settings.wait_time} seconds...")
+        self._timer = self._node.create_timer(max(0.001, self._settings.wait_time), self._finish)
+
+    @property
+    def node(self) -> Node:
+        """Its node in the graph."""
+        return self._node
+
+    def close(self) -> None:
+        """End it."""
+        self._node.destroy_node()
+
+    def _finish(self) -> None:
+        self._timer.cancel()
+        self._logger.info("Generating graph...")
+        try:
+            self._write()
+        except LinkwrightError as error:
+            self._node.get_logger().error(str(error))
+            status = 1
+        else:
+            status = 0
+        if not self.finished.done():
+            self.finished.set_result(status)
+
+    def _write(self) -> None:
+        import yaml
+
+        from linkwright.urdf.diagram import render
+
+        text = self._buffer.all_frames_as_yaml()
+        self._logger.info(f"Result:tf2_msgs.srv.FrameGraph_Response(frame_yaml={text!r})")
+        base = self._settings.output or f"frames_{time.strftime('%Y-%m-%d_%H.%M.%S')}"
+        drawing, picture = Path(f"{base}.gv"), Path(f"{base}.pdf")
+        self._logger.info(f"Exporting graph in {picture} file...")
+        seconds = self._node.get_clock().now().nanoseconds / 1e9
+        dot = frames_as_dot(yaml.safe_load(text) or {}, seconds)
+        try:
+            drawing.write_text(dot, encoding="utf-8")
+        except OSError as error:
+            raise LinkwrightError(
+                Diagnostic("NODE412", f"'{drawing}' cannot be written: {error.strerror or error}")
+            ) from error
+        render(dot, picture)
+
+
+def frames_as_dot(frames: Mapping[str, Mapping[str, Any]], recorded_s: float) -> str:
+    """The drawing for Graphviz.
+
+    Args:
+        frames: what the buffer says of each frame, by name.
+        recorded_s: when, seconds since the epoch.
+    """
+    if not frames:
+        return 'digraph G { "No tf data received" }'
+    lines = ["digraph G {"]
+    for name, facts in frames.items():
+        lines.append(
+            f'"{facts["parent"]}" -> "{name}"[label=" Broadcaster: {facts["broadcaster"]}\\n'
+            f"Average rate: {facts['rate']}\\nBuffer length: {facts['buffer_length']}\\n"
+            f"Most recent transform: {facts['most_recent_transform']}\\n"
+            f'Oldest transform: {facts["oldest_transform"]}\\n"];'
+        )
+    legend = f"Recorded at time: {recorded_s}"
+    roots = dict.fromkeys(facts["parent"] for facts in frames.values() if facts["parent"] not in frames)
+    lines += [
+        "edge [style=invis];",
+        ' subgraph cluster_legend { style=bold; color=black; label ="view_frames Result";',
+        f'"{legend}"[ shape=plaintext ] ;',
+        "}",
+        *(f'"{legend}"->"{root}";' for root in roots),
+        "}",
+    ]
+    return "\n".join(lines)
+
+
+def _parse(arguments: Sequence[str]) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(
+        prog="view_frames",
+        description="Create a diagram of the TF frames being broadcast over ROS",
+        exit_on_error=False,
+    )
+    parser.add_argument(
+        "--wait-time",
+        "-t",
+        type=float,
+        default=5.0,
+        help="Listen to the /tf topic for this many seconds before rendering the frame tree",
+    )
+    parser.add_argument("-o", "--output", help="Output filename")
+    parser.add_argument("--tf_topic", default=DEFAULT_TF_TOPIC, help="Topic for dynamic transforms")
+    parser.add_argument("--tf_static_topic", default=DEFAULT_STATIC_TF_TOPIC, help="Topic for static transforms")
+    try:
+        settings, unknown = parser.parse_known_args(arguments)
+    except argparse.ArgumentError as problem:
+        raise LinkwrightError(
+            Diagnostic("NODE411", f"view_frames: {problem}", hint=parser.format_usage().strip())
+        ) from problem
+    if unknown:
+        message = f"view_frames does not know the arguments {' '.join(unknown)}"
+        raise LinkwrightError(Diagnostic("NODE411", message, hint=parser.format_usage().strip()))
+    return settings

@@ -1,0 +1,6 @@
+"""A shell in which the commands of ROS 2 exist as its users type them."""
+
+from linkwright.shell.programs import PROGRAMS, write_programs
+from linkwright.shell.session import run_shell, shell_environment
+
+__all__ = ["PROGRAMS", "run_shell", "shell_environment", "write_programs"]

@@ -1,0 +1,147 @@
+"""Running a shell, or one command, in an environment where the commands of ROS 2 exist.
+
+The folder of our programs stands at the end of the search path, so that whatever is really installed comes first.
+Start-up files of shells (``~/.bashrc`` often sources a ROS 2) set the path anew; therefore the shell reads them first
+and then a file of ours.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean
+from linkwright.shell.programs import PROGRAMS, write_programs
+from linkwright.standins import process
+
+MARK = "LINKWRIGHT_SHELL"
+"""Set in the environment of the shell, to the folder of its programs."""
+
+
+def run_shell(command: Sequence[str] = (), environment: Mapping[str, str] | None = None) -> int:
+    """Run the user's shell, or one command, until it ends.
+
+    Args:
+        command: program and arguments; the user's interactive shell when empty.
+        environment: what it starts from; that of this process when left out.
+
+    Returns:
+        The exit status; 128 and the number of the signal for what a signal ended, as shells have it.
+
+    Raises:
+        LinkwrightError: SHELL101, there is no such command.
+    """
+    with tempfile.TemporaryDirectory(prefix="linkwright_shell_") as scratch:
+        folder = Path(scratch) / "bin"
+        folder.mkdir()
+        write_programs(folder)
+        variables = shell_environment(folder, os.environ if environment is None else environment)
+        words = list(command) or _interactive(Path(scratch), variables)
+        path = shutil.which(words[0], path=variables["PATH"])
+        if path is None:
+            raise LinkwrightError(
+                Diagnostic(
+                    "SHELL101", f"there is no command '{words[0]}'", hint=did_you_mean(words[0], PROGRAMS) or _QUOTES
+                )
+            )
+        return _run([path, *words[1:]], variables)
+
+
+_QUOTES = "one command and its words follow `--`; for several write `linkwright shell -- bash -c '...'`"
+
+
+def shell_environment(folder: Path, base: Mapping[str, str]) -> dict[str, str]:
+    """The environment of the shell.
+
+    Where no ``ros2`` is installed, the folder of the interpreter that runs Linkwright comes first in the search path:
+    ``python3`` is then one that finds our stand-ins and what they need.
+
+    Args:
+        folder: where our programs are.
+        base: the environment it is made from.
+    """
+    variables = process.environment(base)
+    parts = [part for part in variables.get("PATH", os.defpath).split(os.pathsep) if part and part != base.get(MARK)]
+    if shutil.which("ros2", path=os.pathsep.join(parts)) is None:
+        own = str(Path(sys.executable).parent)
+        parts = [own, *(part for part in parts if part != own)]
+    variables["PATH"] = os.pathsep.join([*parts, str(folder)])
+    variables[MARK] = str(folder)
+    return variables
+
+
+def _interactive(scratch: Path, variables: dict[str, str]) -> list[str]:
+    """The words that start the user's shell so that it keeps our search path after its own start-up files."""
+    if sys.platform == "win32":
+        return [os.environ.get("COMSPEC", "cmd.exe")]
+    shell = os.environ.get("SHELL") or "/bin/sh"
+    kind = Path(shell).name
+    if kind == "bash":
+        start = scratch / "bashrc"
+        start.write_text(_start_file("~/.bashrc", variables), encoding="utf-8")
+        return [shell, "--rcfile", str(start), "-i"]
+    if kind == "zsh":
+        home = variables.get("ZDOTDIR") or variables.get("HOME") or "~"
+        (scratch / ".zshrc").write_text(
+            f"ZDOTDIR={shlex.quote(home)}\n" + _start_file(f"{home}/.zshrc", variables), encoding="utf-8"
+        )
+        variables["ZDOTDIR"] = str(scratch)
+        return [shell, "-i"]
+    if kind == "fish":
+        settings = "; ".join(
+            f"set -gx {name} {shlex.quote(variables[name])}" for name in ("PYTHONPATH", MARK) if name in variables
+        )
+        return [shell, "-i", "--init-command", f"{settings}; set -gx PATH $PATH ${MARK}"]
+    return [shell, "-i"]
+
+
+def _start_file(own: str, variables: Mapping[str, str]) -> str:
+    """What bash and zsh read: the user's file, then what makes our commands exist behind everything else."""
+    interpreter = shlex.quote(str(Path(sys.executable).parent))
+    standins = shlex.quote(process.standin_path())
+    return f"""\
+[ -f {own} ] && . {own}
+command -v ros2 >/dev/null 2>&1 || export PATH={interpreter}:"$PATH"
+export PATH="$PATH":{shlex.quote(variables[MARK])}
+case ":$PYTHONPATH:" in *:{standins}:*) ;; *) export PYTHONPATH="${{PYTHONPATH:+$PYTHONPATH:}}"{standins} ;; esac
+PS1="(linkwright) $PS1"
+"""
+
+
+def _run(words: Sequence[str], variables: Mapping[str, str]) -> int:
+    """Run it to its end. Ctrl-C reaches it as it reaches us, and is for it; other signals are passed on."""
+    import signal
+
+    with subprocess.Popen(words, env=dict(variables)) as child:  # noqa: S603 - the user's own command
+
+        def pass_on(number: int, _frame: object) -> None:
+            child.send_signal(number)
+
+        previous = {number: signal.signal(number, pass_on) for number in _passed_signals()}
+        try:
+            status = _wait(child)
+        finally:
+            for number, handler in previous.items():
+                signal.signal(number, handler)
+    return status if status >= 0 else 128 - status
+
+
+def _passed_signals() -> list[int]:
+    import signal
+
+    names = ("SIGTERM", "SIGHUP")
+    return [getattr(signal, name) for name in names if hasattr(signal, name)]
+
+
+def _wait(child: subprocess.Popen[bytes]) -> int:
+    while child.returncode is None:
+        with contextlib.suppress(KeyboardInterrupt):
+            child.wait()
+    return child.returncode

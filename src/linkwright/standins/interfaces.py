@@ -1,0 +1,175 @@
+"""Makes ``<package>.msg``, ``.srv`` and ``.action`` importable: the Python packages that rosidl would have generated.
+
+``from sensor_msgs.msg import JointState`` gives `linkwright.messages`' class, and so does ``from
+my_msgs.msg import Count`` for a package of the workspace, straight from its interface files, without a build. A module
+that any other finder has comes first, so interfaces that are installed are used.
+"""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from collections.abc import Sequence
+from importlib.abc import Loader, MetaPathFinder
+from importlib.machinery import ModuleSpec
+from types import ModuleType
+from typing import Any
+
+from linkwright.diagnostics import LinkwrightError, did_you_mean
+from linkwright.messages import catalogue
+from linkwright.messages.classes import get_interface
+from linkwright.messages.errors import InterfaceNotFoundError
+from linkwright.messages.library import LIBRARY
+from linkwright.messages.message import ActionType, ServiceType
+from linkwright.messages.names import KINDS, is_package_name, snake_case
+
+
+class InterfaceFinder(MetaPathFinder):
+    """Finds the packages of interfaces, their modules ``msg``, ``srv`` and ``action``, and those within these."""
+
+    def find_spec(
+        self,
+        fullname: str,
+        path: Sequence[str] | None = None,  # noqa: ARG002 - the protocol's
+        target: ModuleType | None = None,  # noqa: ARG002 - the protocol's
+    ) -> ModuleSpec | None:
+        """The module of this name, or None when it is none of interfaces."""
+        return find_spec(fullname)
+
+
+class NamespaceFinder(MetaPathFinder):
+    """Finds ``my_msgs.msg`` where Python would take folders for it.
+
+    In a folder that has a package's sources in it, a folder ``my_msgs/msg`` of ``.msg`` files, Python has modules of
+    these names that are empty (namespace packages). So this finder, which comes before Python's own, takes the modules
+    of interfaces in packages that are nothing but a folder.
+    """
+
+    def find_spec(
+        self,
+        fullname: str,
+        path: Sequence[str] | None = None,  # noqa: ARG002 - the protocol's
+        target: ModuleType | None = None,  # noqa: ARG002 - the protocol's
+    ) -> ModuleSpec | None:
+        """The module of interfaces in a namespace package, or None."""
+        package, _, kind = fullname.rpartition(".")
+        if kind not in KINDS or getattr(sys.modules.get(package), "__file__", None) is not None:
+            return None
+        return find_spec(fullname)
+
+
+def install() -> None:
+    """Let the packages of interfaces be imported; may be called again."""
+    if not any(isinstance(finder, InterfaceFinder) for finder in sys.meta_path):
+        sys.meta_path.insert(0, NamespaceFinder())
+        sys.meta_path.append(InterfaceFinder())
+
+
+def find_spec(name: str) -> ModuleSpec | None:
+    """The module of interfaces of this name: ``std_msgs``, ``std_msgs.msg`` or ``std_msgs.msg._string``; else None."""
+    package, *rest = name.split(".")
+    if len(rest) > 2 or (rest and rest[0] not in KINDS) or not is_package_name(package):
+        return None
+    names = _interfaces(package, rest[0]) if rest else [each for kind in KINDS for each in _interfaces(package, kind)]
+    if not names:
+        return None
+    loader: Loader
+    if len(rest) < 2:
+        loader = _KindLoader(names) if rest else _PackageLoader()
+        return ModuleSpec(name, loader, origin="Linkwright", is_package=True)
+    interface = next((each for each in names if "_" + snake_case(each) == rest[1]), None)
+    if interface is None:
+        return None
+    return ModuleSpec(name, _InterfaceLoader(f"{package}/{rest[0]}/{interface}"), origin="Linkwright")
+
+
+def _interfaces(package: str, kind: str) -> list[str]:
+    """The names of a package's interfaces; of one that comes with us without a look at the disk, if it has any."""
+    shipped = [name.rpartition("/")[2] for name in catalogue.texts(package) if name.startswith(kind + "/")]
+    return sorted(shipped) or [name.rpartition("/")[2] for name in LIBRARY.names(kind, package)]
+
+
+class _PackageLoader(Loader):
+    """Makes the module of a package, which is empty but for what is imported from below it."""
+
+    def create_module(self, spec: ModuleSpec) -> ModuleType | None:  # noqa: ARG002 - the protocol's
+        return None
+
+    def exec_module(self, module: ModuleType) -> None:
+        module.__doc__ = f"The messages, services and actions of {module.__name__}."
+
+        def load_kind(name: str) -> Any:
+            if name in KINDS and _interfaces(module.__name__, name):
+                return importlib.import_module(f"{module.__name__}.{name}")
+            raise AttributeError(f"module '{module.__name__}' has no attribute '{name}'")
+
+        module.__getattr__ = load_kind  # type: ignore[method-assign]  # PEP 562
+
+
+class _KindLoader(Loader):
+    """Makes the module ``<package>.msg`` and its like; classes are made when somebody takes them from it."""
+
+    def __init__(self, names: list[str]) -> None:
+        self._names = names
+
+    def create_module(self, spec: ModuleSpec) -> ModuleType | None:  # noqa: ARG002 - the protocol's
+        return None
+
+    def exec_module(self, module: ModuleType) -> None:
+        package, _, kind = module.__name__.rpartition(".")
+        names = self._names
+
+        def load(name: str) -> Any:
+            if not name[:1].isupper():
+                raise AttributeError(f"module '{module.__name__}' has no attribute '{name}'")
+            try:
+                found = get_interface(f"{package}/{kind}/{name}")
+            except InterfaceNotFoundError:
+                # For whoever writes 'from std_msgs.msg import Strng': Python's own message has no suggestion.
+                hint = did_you_mean(name, names) or "it has " + ", ".join(names)
+                message = f"cannot import name '{name}' from '{module.__name__}': {hint}"
+                raise ImportError(message, name=module.__name__) from None
+            except LinkwrightError as error:
+                raise ImportError(str(error), name=module.__name__) from error
+            setattr(module, name, found)
+            return found
+
+        module.__doc__ = f"The {kind} interfaces of {package}."
+        module.__getattr__ = load  # type: ignore[method-assign]  # PEP 562
+        module.__dir__ = lambda: sorted({*names, *vars(module)})  # type: ignore[method-assign]
+        module.__all__ = list(names)  # type: ignore[attr-defined]
+
+
+class _InterfaceLoader(Loader):
+    """Makes a module such as ``std_srvs.srv._set_bool`` with all classes that rosidl puts there."""
+
+    def __init__(self, type_name: str) -> None:
+        self._type_name = type_name
+
+    def create_module(self, spec: ModuleSpec) -> ModuleType | None:  # noqa: ARG002 - the protocol's
+        return None
+
+    def exec_module(self, module: ModuleType) -> None:
+        try:
+            whole = get_interface(self._type_name)
+        except LinkwrightError as error:  # a mistake in the file: shown where the import stands
+            raise ImportError(str(error), name=module.__name__) from error
+        name = whole.__name__
+        found = {name: whole}
+        if issubclass(whole, ServiceType):
+            found |= _parts_of_service(name, whole)
+        elif issubclass(whole, ActionType):
+            found |= {f"{name}_Goal": whole.Goal, f"{name}_Result": whole.Result, f"{name}_Feedback": whole.Feedback}
+            found[f"{name}_FeedbackMessage"] = whole.Impl.FeedbackMessage
+            for part, service in (("SendGoal", whole.Impl.SendGoalService), ("GetResult", whole.Impl.GetResultService)):
+                found[f"{name}_{part}"] = service
+                found |= _parts_of_service(f"{name}_{part}", service)
+        module.__dict__.update(found)
+
+
+def _parts_of_service(name: str, service: type[ServiceType]) -> dict[str, Any]:
+    return {
+        f"{name}_Request": service.Request,
+        f"{name}_Response": service.Response,
+        f"{name}_Event": service.Event,
+    }

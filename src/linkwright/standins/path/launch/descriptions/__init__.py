@@ -1,0 +1,5 @@
+"""Stands in for ``launch.descriptions``."""
+
+from linkwright.launch.executable import Executable
+
+__all__ = ["Executable"]

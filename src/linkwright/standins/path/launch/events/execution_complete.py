@@ -1,0 +1,5 @@
+"""Stands in for ``launch.events.execution_complete``."""
+
+from linkwright.launch.events import ExecutionComplete
+
+__all__ = ["ExecutionComplete"]

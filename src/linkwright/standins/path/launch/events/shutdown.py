@@ -1,0 +1,5 @@
+"""Stands in for ``launch.events.shutdown``."""
+
+from linkwright.launch.events import Shutdown
+
+__all__ = ["Shutdown"]

@@ -1,0 +1,19 @@
+"""Stands in for ``launch.frontend``."""
+
+from launch.frontend import type_utils
+from linkwright.launch.frontend.entity import Entity
+from linkwright.launch.frontend.expose import expose_action, expose_substitution
+from linkwright.launch.frontend.grammar import parse_if_substitutions, parse_substitution
+from linkwright.launch.frontend.parser import Parser
+from linkwright.launch.invalid_file import InvalidFrontendLaunchFileError
+
+__all__ = [
+    "Entity",
+    "InvalidFrontendLaunchFileError",
+    "Parser",
+    "expose_action",
+    "expose_substitution",
+    "parse_if_substitutions",
+    "parse_substitution",
+    "type_utils",
+]

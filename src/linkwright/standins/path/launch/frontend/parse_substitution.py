@@ -1,0 +1,5 @@
+"""Stands in for ``launch.frontend.parse_substitution``."""
+
+from linkwright.launch.frontend.grammar import parse_if_substitutions, parse_substitution, replace_escaped_characters
+
+__all__ = ["parse_if_substitutions", "parse_substitution", "replace_escaped_characters"]

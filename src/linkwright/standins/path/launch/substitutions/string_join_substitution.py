@@ -1,0 +1,5 @@
+"""Stands in for ``launch.substitutions.string_join_substitution``."""
+
+from linkwright.launch.substitutions import StringJoinSubstitution
+
+__all__ = ["StringJoinSubstitution"]

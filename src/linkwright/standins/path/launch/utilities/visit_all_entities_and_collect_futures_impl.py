@@ -1,0 +1,5 @@
+"""Stands in for ``launch.utilities.visit_all_entities_and_collect_futures_impl``."""
+
+from linkwright.launch.class_checks import visit_all_entities_and_collect_futures
+
+__all__ = ["visit_all_entities_and_collect_futures"]

@@ -1,0 +1,5 @@
+"""Stands in for ``launch_ros.actions.load_composable_nodes``."""
+
+from linkwright.launch.ros import LoadComposableNodes, get_composable_node_load_request
+
+__all__ = ["LoadComposableNodes", "get_composable_node_load_request"]

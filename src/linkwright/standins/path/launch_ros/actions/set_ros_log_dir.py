@@ -1,0 +1,6 @@
+"""Stands in for ``launch_ros.actions.set_ros_log_dir``."""
+
+from linkwright.launch.ros import SetROSLogDir
+from linkwright.launch.ros import SetROSLogDir as SetRosLogDir
+
+__all__ = ["SetROSLogDir", "SetRosLogDir"]

@@ -1,5 +1,0 @@
-"""Stands in for ``launch_ros.descriptions``."""
-
-from linkwright.launch.ros import Parameter, ParameterFile, ParameterValue
-
-__all__ = ["Parameter", "ParameterFile", "ParameterValue"]

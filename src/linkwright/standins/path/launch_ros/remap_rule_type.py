@@ -1,0 +1,13 @@
+"""Stands in for ``launch_ros.remap_rule_type``."""
+
+from collections.abc import Iterable, Sequence
+
+from launch.some_substitutions_type import SomeSubstitutionsType
+from launch.substitution import Substitution
+
+SomeRemapRule = tuple[SomeSubstitutionsType, SomeSubstitutionsType]
+SomeRemapRules = Iterable[SomeRemapRule]
+RemapRule = tuple[Sequence[Substitution], Sequence[Substitution]]
+RemapRules = Sequence[RemapRule]
+
+__all__ = ["RemapRule", "RemapRules", "SomeRemapRule", "SomeRemapRules"]

@@ -1,0 +1,5 @@
+"""Stands in for ``launch_ros.ros_adapters``."""
+
+from linkwright.standins.ros_adapter import ROSAdapter, get_ros_adapter, get_ros_node
+
+__all__ = ["ROSAdapter", "get_ros_adapter", "get_ros_node"]

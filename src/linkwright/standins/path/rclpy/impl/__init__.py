@@ -1,0 +1,3 @@
+"""Stands in for ``rclpy.impl``."""
+
+__all__ = []

@@ -1,0 +1,5 @@
+"""Stands in for ``rclpy.impl.rcutils_logger``."""
+
+from linkwright.graph.log import Logger as RcutilsLogger
+
+__all__ = ["RcutilsLogger"]

@@ -1,0 +1,6 @@
+"""Stands in for ``rclpy.subscription``."""
+
+from linkwright.graph.subscription import Subscription
+from linkwright.graph.transport import MessageInfo
+
+__all__ = ["MessageInfo", "Subscription"]

@@ -1,0 +1,5 @@
+"""Stands in for ``rclpy.wait_for_message``."""
+
+from linkwright.standins.rclpy_api.waiting import wait_for_message
+
+__all__ = ["wait_for_message"]

@@ -1,0 +1,19 @@
+"""Stands in for ``ros2launch.api``."""
+
+from linkwright.standins.launch_command import (
+    get_share_file_path_from_package,
+    is_launch_file,
+    launch_a_launch_file,
+    parse_launch_arguments,
+    print_a_launch_file,
+    print_arguments_of_launch_file,
+)
+
+__all__ = [
+    "get_share_file_path_from_package",
+    "is_launch_file",
+    "launch_a_launch_file",
+    "parse_launch_arguments",
+    "print_a_launch_file",
+    "print_arguments_of_launch_file",
+]

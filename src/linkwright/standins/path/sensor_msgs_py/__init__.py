@@ -1,0 +1,3 @@
+"""Stands in for ``sensor_msgs_py``."""
+
+__all__ = []

@@ -1,0 +1,29 @@
+"""Stands in for ``tf2_geometry_msgs.tf2_geometry_msgs``."""
+
+from linkwright.graph.transform_geometry import (
+    do_transform_point,
+    do_transform_polygon_stamped,
+    do_transform_pose,
+    do_transform_pose_stamped,
+    do_transform_pose_with_covariance_stamped,
+    do_transform_vector3,
+    do_transform_wrench,
+    transform_covariance,
+)
+from linkwright.standins.tf2_api.geometry import from_msg_msg, to_msg_msg
+from linkwright.standins.tf2_api.geometry import register as _register
+
+_register()
+
+__all__ = [
+    "do_transform_point",
+    "do_transform_polygon_stamped",
+    "do_transform_pose",
+    "do_transform_pose_stamped",
+    "do_transform_pose_with_covariance_stamped",
+    "do_transform_vector3",
+    "do_transform_wrench",
+    "from_msg_msg",
+    "to_msg_msg",
+    "transform_covariance",
+]

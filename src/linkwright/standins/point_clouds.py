@@ -1,0 +1,192 @@
+"""Point clouds as numpy arrays and back (the API of ``sensor_msgs_py.point_cloud2``)."""
+
+from __future__ import annotations
+
+from collections import namedtuple
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.lib.recfunctions import structured_to_unstructured, unstructured_to_structured
+from numpy.typing import NDArray
+
+from linkwright.messages import get_message
+
+_TYPES = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 8: "f8"}
+"""numpy's names of the constants of sensor_msgs/msg/PointField."""
+
+_FLOAT32 = 7
+
+
+def dtype_from_fields(
+    fields: Iterable[Any], point_step: int | None = None, *, is_bigendian: bool = False
+) -> np.dtype[Any]:
+    """What a point is for numpy.
+
+    Args:
+        fields: the fields of a point (sensor_msgs/msg/PointField). One with a count of n becomes n fields.
+        point_step: bytes from one point to the next; as few as the fields need when None.
+        is_bigendian: the order of the bytes of numbers.
+    """
+    order = ">" if is_bigendian else "<"
+    names, formats, offsets = [], [], []
+    for index, field in enumerate(fields):
+        format_ = np.dtype(order + _TYPES[field.datatype])
+        name = field.name or f"unnamed_field_{index}"
+        for part in range(field.count):
+            names.append(name if field.count == 1 else f"{name}_{part}")
+            formats.append(format_)
+            offsets.append(field.offset + part * format_.itemsize)
+    layout: Any = {"names": names, "formats": formats, "offsets": offsets}
+    if point_step is not None:
+        layout["itemsize"] = point_step
+    dtype: np.dtype[Any] = np.dtype(layout)
+    return dtype
+
+
+def read_points(
+    cloud: Any,
+    field_names: Sequence[str] | None = None,
+    skip_nans: bool = False,
+    uvs: Iterable[Any] | None = None,
+    reshape_organized_cloud: bool = False,
+) -> NDArray[Any]:
+    """The points of a cloud as a structured array.
+
+    Args:
+        cloud: sensor_msgs/msg/PointCloud2.
+        field_names: the fields that are wanted; all when None.
+        skip_nans: leave out points of which a wanted field is no number.
+        uvs: which points: their numbers, or pairs of column and row; all when None.
+        reshape_organized_cloud: give an array of width by height when the cloud has rows.
+
+    Raises:
+        AssertionError: the cloud does not have a field that is wanted.
+    """
+    dtype = dtype_from_fields(cloud.fields, cloud.point_step, is_bigendian=cloud.is_bigendian)
+    points: NDArray[Any] = _rows(cloud, dtype)
+    if field_names is not None:
+        missing = [name for name in field_names if name not in _names(dtype)]
+        if missing:
+            raise AssertionError(f"the point cloud has no field {missing}; it has {list(_names(dtype))}")
+        points = points[list(field_names)]
+    if uvs is not None:
+        points = points[_numbers(uvs, cloud.width)]
+    if skip_nans:
+        points = points[_has_numbers(points)]
+    if reshape_organized_cloud and cloud.height > 1 and points.size == cloud.width * cloud.height:
+        points = points.reshape(cloud.width, cloud.height)
+    return points
+
+
+def read_points_numpy(
+    cloud: Any,
+    field_names: Sequence[str] | None = None,
+    skip_nans: bool = False,
+    uvs: Iterable[Any] | None = None,
+    reshape_organized_cloud: bool = False,
+) -> NDArray[Any]:
+    """The points of a cloud as an array with a column for each field; see `read_points`.
+
+    Raises:
+        AssertionError: the fields are not all of one type, or one is not there.
+    """
+    points = read_points(cloud, field_names, skip_nans, uvs, reshape_organized_cloud)
+    if len({points.dtype[name] for name in _names(points.dtype)}) > 1:
+        raise AssertionError("the fields of the points are of several types: name those that are wanted")
+    return structured_to_unstructured(points)
+
+
+def read_points_list(
+    cloud: Any, field_names: Sequence[str] | None = None, skip_nans: bool = False, uvs: Iterable[Any] | None = None
+) -> list[Any]:
+    """The points of a cloud as named tuples; see `read_points`."""
+    points = read_points(cloud, field_names, skip_nans, uvs)
+    point = namedtuple("Point", _names(points.dtype))  # type: ignore[misc]  # noqa: PYI024 - the cloud's names
+    return [point._make(values) for values in points.tolist()]
+
+
+def create_cloud(
+    header: Any, fields: Sequence[Any], points: Iterable[Any] | NDArray[Any], step: int | None = None
+) -> Any:
+    """A cloud of points: sensor_msgs/msg/PointCloud2.
+
+    Args:
+        header: its stamp and frame (std_msgs/msg/Header).
+        fields: what a point consists of (sensor_msgs/msg/PointField).
+        points: rows with a value for each field, or a structured array; one of width by height becomes organised.
+        step: bytes from one point to the next; as few as the fields need when None.
+
+    Raises:
+        AssertionError: the points do not have these fields.
+    """
+    dtype = dtype_from_fields(fields, step)
+    rows = _structured(points, dtype)
+    if rows.ndim > 2:
+        raise AssertionError("points have a width and a height at most")
+    width, height = rows.shape[0], rows.shape[1] if rows.ndim == 2 else 1
+    cloud = get_message("sensor_msgs/msg/PointCloud2")(
+        header=header,
+        height=height,
+        width=width,
+        is_dense=False,
+        is_bigendian=False,
+        fields=list(fields),
+        point_step=dtype.itemsize,
+        row_step=dtype.itemsize * width,
+    )
+    cloud.data = np.frombuffer(rows.tobytes(), np.uint8)
+    return cloud
+
+
+def create_cloud_xyz32(header: Any, points: Iterable[Any] | NDArray[Any], step: int | None = None) -> Any:
+    """A cloud of points with x, y and z as float32; see `create_cloud`."""
+    field = get_message("sensor_msgs/msg/PointField")
+    fields = [field(name=name, offset=4 * at, datatype=_FLOAT32, count=1) for at, name in enumerate("xyz")]
+    return create_cloud(header, fields, points, step)
+
+
+def _names(dtype: np.dtype[Any]) -> tuple[str, ...]:
+    return dtype.names or ()
+
+
+def _rows(cloud: Any, dtype: np.dtype[Any]) -> NDArray[Any]:
+    """The points one after the other; rows of an organised cloud may have something behind them."""
+    data = np.frombuffer(cloud.data, np.uint8)
+    width, height = cloud.width, cloud.height
+    if height > 1 and cloud.row_step > width * dtype.itemsize:
+        rows = data[: height * cloud.row_step].reshape(height, cloud.row_step)
+        data = np.ascontiguousarray(rows[:, : width * dtype.itemsize]).reshape(-1)
+    return np.frombuffer(data, dtype, count=width * height)
+
+
+def _numbers(uvs: Iterable[Any], width: int) -> NDArray[np.intp]:
+    wanted = np.array(list(uvs), dtype=np.intp)
+    return wanted[:, 1] * width + wanted[:, 0] if wanted.ndim == 2 else wanted
+
+
+def _has_numbers(points: NDArray[Any]) -> NDArray[np.bool_]:
+    valid = np.ones(points.shape, np.bool_)
+    for name in _names(points.dtype):
+        if points.dtype[name].kind == "f":
+            valid &= ~np.isnan(points[name])
+    return valid
+
+
+def _structured(points: Iterable[Any] | NDArray[Any], dtype: np.dtype[Any]) -> NDArray[Any]:
+    if not isinstance(points, np.ndarray):
+        return _filled([tuple(point) for point in points], dtype)
+    if points.dtype.names is None:
+        if points.shape[-1] != len(_names(dtype)):
+            raise AssertionError(f"points have {points.shape[-1]} values, but there are {len(_names(dtype))} fields")
+        return _filled(unstructured_to_structured(points, dtype), dtype)
+    if points.dtype.names != dtype.names or any(points.dtype[name] != dtype[name] for name in _names(dtype)):
+        raise AssertionError(f"points are {points.dtype}, but the fields say {dtype}")
+    return _filled(points, dtype)
+
+
+def _filled(points: list[Any] | NDArray[Any], dtype: np.dtype[Any]) -> NDArray[Any]:
+    """A structured array with zeros between the fields, where numpy leaves whatever was in memory."""
+    rows = np.zeros(np.shape(points)[:1] if isinstance(points, list) else points.shape, dtype)
+    rows[...] = points
+    return rows

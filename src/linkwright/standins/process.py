@@ -1,0 +1,77 @@
+"""Processes of users' own programs, in which ``import rclpy`` gives the stand-in where the real one is absent."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Mapping, Sequence
+from importlib.util import find_spec
+from pathlib import Path
+
+_STARTUP = Path(__file__).parent / "startup"
+
+_NEEDED = ("linkwright", "numpy", "yaml", "rosbags", "cyclonedds")
+"""What the stand-ins import, for programs that run in an environment of their own."""
+
+
+def standin_path() -> str:
+    """The folder to put on ``PYTHONPATH``. It holds nothing but a ``sitecustomize``, which goes on to the next one."""
+    return str(_STARTUP)
+
+
+def environment(base: Mapping[str, str] | None = None) -> dict[str, str]:
+    """The environment for a process, and for those that it starts, in which the stand-ins can be imported.
+
+    Args:
+        base: the environment to begin with; this process's own when left out.
+
+    Returns:
+        A copy with ``PYTHONPATH`` led by `standin_path`, and ``LINKWRIGHT_SITE``: the folders of the packages that the
+        stand-ins need, for interpreters that do not have them. Calling it again changes nothing more.
+    """
+    result = dict(os.environ if base is None else base)
+    _prepend(result, "PYTHONPATH", [standin_path()])
+    result["LINKWRIGHT_SITE"] = os.pathsep.join(_site_folders())
+    return result
+
+
+def python_command(arguments: Sequence[str], base: Mapping[str, str] | None = None) -> list[str]:
+    """The command that runs a Python program.
+
+    Args:
+        arguments: what follows the interpreter: a file, or ``-m`` and a module, and the program's arguments.
+        base: the environment the program will get; this process's own when left out.
+
+    Returns:
+        The arguments behind the interpreter of the active virtual environment, when that has the version of ours, else
+        behind ours: the compiled libraries that the stand-ins need are for one version.
+    """
+    variables = os.environ if base is None else base
+    return [_interpreter(variables), *arguments]
+
+
+def _interpreter(variables: Mapping[str, str]) -> str:
+    active = variables.get("VIRTUAL_ENV") or variables.get("CONDA_PREFIX")
+    if active and Path(active) != Path(sys.prefix):
+        version = f"python{sys.version_info.major}.{sys.version_info.minor}"
+        folder, suffix = ("Scripts", ".exe") if os.name == "nt" else ("bin", "")
+        candidate = Path(active) / folder / f"{version}{suffix}"
+        if candidate.exists():
+            return str(candidate)
+    return sys.executable
+
+
+def _prepend(variables: dict[str, str], name: str, folders: Sequence[str]) -> None:
+    present = [entry for entry in variables.get(name, "").split(os.pathsep) if entry and entry not in folders]
+    variables[name] = os.pathsep.join([*folders, *present])
+
+
+def _site_folders() -> list[str]:
+    folders: list[str] = []
+    for package in _NEEDED:
+        spec = find_spec(package)
+        if spec is not None and spec.origin is not None:
+            folder = str(Path(spec.origin).parent.parent)
+            if folder not in folders:
+                folders.append(folder)
+    return folders

@@ -1,0 +1,1 @@
+"""What the Python package ``rclpy`` offers, on the nodes and executors of `linkwright.graph`."""

@@ -1,0 +1,69 @@
+"""Action servers and clients of rclpy's nodes (rclpy ``action``)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from linkwright.graph import action_client, action_server
+from linkwright.graph.introspection import NamesAndTypes
+
+if TYPE_CHECKING:
+    from linkwright.standins.rclpy_api.node import Node
+
+
+class ActionServer(action_server.ActionServer):
+    """Executes the goals of an action.
+
+    Args:
+        node: whose it is.
+        action_type: the action class.
+        action_name: relative, absolute or private (``~/``) name.
+        execute_callback: called with the handle of each goal that is executed; gives the result.
+        options: what else `linkwright.graph.action_server.ActionServer` takes.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        action_type: Any,
+        action_name: str,
+        execute_callback: Callable[[Any], Any],
+        **options: Any,
+    ) -> None:
+        super().__init__(node.graph_node, action_type, action_name, execute_callback, **options)
+
+
+class ActionClient(action_client.ActionClient):
+    """Sends goals to an action.
+
+    Args:
+        node: whose it is.
+        action_type: the action class.
+        action_name: relative, absolute or private (``~/``) name.
+        options: what else `linkwright.graph.action_client.ActionClient` takes.
+    """
+
+    def __init__(self, node: Node, action_type: Any, action_name: str, **options: Any) -> None:
+        super().__init__(node.graph_node, action_type, action_name, **options)
+
+
+def get_action_names_and_types(node: Node) -> NamesAndTypes:
+    """The actions that there are, with their types."""
+    return node.graph_node.get_action_names_and_types()
+
+
+def get_action_client_names_and_types_by_node(
+    node: Node, remote_node_name: str, remote_node_namespace: str
+) -> NamesAndTypes:
+    """The actions that a node sends goals to, with their types."""
+    graph = node.graph_node.graph
+    return graph.get_action_client_names_and_types_by_node(remote_node_name, remote_node_namespace)
+
+
+def get_action_server_names_and_types_by_node(
+    node: Node, remote_node_name: str, remote_node_namespace: str
+) -> NamesAndTypes:
+    """The actions that a node executes, with their types."""
+    graph = node.graph_node.graph
+    return graph.get_action_server_names_and_types_by_node(remote_node_name, remote_node_namespace)

@@ -1,0 +1,219 @@
+"""Contexts: from ``rclpy.init`` to ``rclpy.shutdown`` (rclpy ``context``)."""
+
+from __future__ import annotations
+
+import atexit
+import inspect
+import os
+import sys
+import threading
+import weakref
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph import Graph
+from linkwright.graph.log_setup import Logging, set_up
+from linkwright.graph.ros_arguments import RosArguments, parse
+from linkwright.standins.rclpy_api import logging
+from linkwright.standins.rclpy_api.errors import RCLInvalidROSArgsError, UnknownROSArgsError
+from linkwright.standins.rclpy_api.signals import shut_down_on_signal
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
+
+_open: weakref.WeakSet[Context] = weakref.WeakSet()
+
+
+class Context:
+    """One graph with its nodes, and whether the program is to go on. It is initialised once.
+
+    Args:
+        graph: the graph, where there is one already; it is closed with the context.
+    """
+
+    def __init__(self, graph: Graph | None = None) -> None:
+        self._lock = threading.RLock()
+        self._callbacks: list[Callable[[], Callable[[], object] | None]] = []
+        self._initialized = False
+        self._ok = False
+        self._ended_by_signal = False
+        self._domain_id: int | None = None
+        self._graph = graph
+        self._logging: Logging | None = None
+        self.ros_arguments = RosArguments()
+
+    @property
+    def enable_rosout(self) -> bool:
+        """Whether the command line lets nodes publish what they log."""
+        return self.ros_arguments.rosout_logs is not False
+
+    @property
+    def handle(self) -> Context | None:
+        """Something to be entered while the context is used; None before it is initialised."""
+        return self if self._initialized else None
+
+    @property
+    def graph(self) -> Graph:
+        """The graph that the nodes of the context are in. It joins the network when the first node asks for it."""
+        with self._lock:
+            if self._graph is None:
+                self._graph = self._new_graph()
+            return self._graph
+
+    def init(
+        self, args: Sequence[str] | None = None, *, initialize_logging: bool = True, domain_id: int | None = None
+    ) -> None:
+        """Begin.
+
+        Args:
+            args: the command line; ``sys.argv`` when None.
+            initialize_logging: whether what the command line says about logging holds.
+            domain_id: the network's domain; that of ROS_DOMAIN_ID, else 0, when None.
+
+        Raises:
+            RuntimeError: the domain is negative, or the context was initialised before.
+            UnknownROSArgsError: there are unknown ROS arguments.
+            RCLInvalidROSArgsError: a ROS argument is malformed.
+        """
+        if domain_id is not None and domain_id < 0:
+            raise RuntimeError(f"Domain id ({domain_id}) should not be lower than zero.")
+        with self._lock:
+            if self._initialized:
+                raise RuntimeError("Context.init() must only be called once")
+            self.ros_arguments = read_ros_arguments(sys.argv if args is None else args)
+            self._domain_id = domain_id
+            if initialize_logging and not logging.is_configured():
+                self._logging = set_up(self.ros_arguments, Path(sys.argv[0]).stem or "python3", logging.LEVELS)
+                logging.write_to(self._logging.sink)
+            self._initialized = self._ok = True
+        _open.add(self)
+        shut_down_on_signal(self)
+
+    def ok(self) -> bool:
+        """Whether it was initialised and not shut down since."""
+        return self._ok
+
+    def get_domain_id(self) -> int:
+        """The network's domain.
+
+        Raises:
+            RuntimeError: the context is not initialised.
+        """
+        if not self._initialized:
+            raise RuntimeError("Context must be initialized before it can have a domain id")
+        if self._domain_id is not None:
+            return self._domain_id
+        text = os.environ.get("ROS_DOMAIN_ID", "")
+        return int(text) if text.isdigit() else 0
+
+    def on_shutdown(self, callback: Callable[[], object]) -> None:
+        """Have something called at the end; at once when that has come. Bound methods are held weakly.
+
+        Raises:
+            TypeError: it cannot be called.
+        """
+        if not callable(callback):
+            raise TypeError(f"callback should be a callable, got {type(callback)}")
+        with self._lock:
+            if not self._initialized or self._ok:
+                held = weakref.WeakMethod(callback) if inspect.ismethod(callback) else lambda: callback
+                self._callbacks.append(held)
+                return
+        callback()
+
+    def shutdown(self) -> None:
+        """End: executors stop spinning, the nodes leave the graph, nothing of it stays behind.
+
+        Raises:
+            RuntimeError: it was not initialised, or is shut down already, other than by a signal.
+        """
+        if not self._initialized:
+            raise RuntimeError("Context must be initialized before it can be shutdown")
+        if not self._ok and not self._ended_by_signal:
+            raise RuntimeError("Context must be initialized before it can be shutdown: it was shut down already")
+        self._ended_by_signal = False
+        self._end()
+
+    def try_shutdown(self) -> None:
+        """End, unless that has happened already."""
+        if self._initialized and (self._ok or self._ended_by_signal):
+            self.shutdown()
+
+    def shutdown_by_signal(self) -> None:
+        """Tell executors to stop; the rest is left to `shutdown`, for a signal comes at any moment."""
+        if self._ok:
+            self._ended_by_signal = True
+            self._ok = False
+            self._tell()
+
+    def destroy(self) -> None:
+        """End, if that has not happened (rclpy)."""
+        self.try_shutdown()
+
+    def __enter__(self) -> Self:
+        if not self._initialized:
+            self.init()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        self.try_shutdown()
+
+    def _end(self) -> None:
+        self._ok = False
+        self._tell()
+        with self._lock:
+            graph, self._graph = self._graph, None
+        if graph is not None:
+            graph.close_now()
+        if self._logging is not None:
+            logging.shutdown()
+            self._logging.close()
+            self._logging = None
+        _open.discard(self)
+
+    def _tell(self) -> None:
+        callbacks, self._callbacks = self._callbacks, []
+        for held in callbacks:
+            callback = held()
+            if callback is not None:
+                callback()
+
+    def _new_graph(self) -> Graph:
+        from linkwright.graph import dds
+
+        graph = Graph(threads=True, on_log=logging.write, levels=logging.LEVELS)
+        dds.join(graph, domain_id=self._domain_id)
+        return graph
+
+
+def read_ros_arguments(arguments: Sequence[str]) -> RosArguments:
+    """What a command line says to ROS.
+
+    Raises:
+        UnicodeEncodeError: an argument is not text.
+        UnknownROSArgsError: there are unknown ROS arguments.
+        RCLInvalidROSArgsError: a ROS argument is malformed.
+    """
+    for argument in arguments:
+        argument.encode()
+    try:
+        return parse(arguments)
+    except LinkwrightError as error:
+        text = str(error)
+        if "unknown ROS argument" in text:
+            unknown = text.partition("'")[2].partition("'")[0]
+            raise UnknownROSArgsError(f"Found unknown ROS arguments: {[unknown]}") from error
+        raise RCLInvalidROSArgsError(f"Failed to parse ROS arguments: {list(arguments)}: {text}") from error
+
+
+def _end_all() -> None:
+    for context in tuple(_open):
+        context.try_shutdown()
+
+
+atexit.register(_end_all)

@@ -1,0 +1,39 @@
+"""Executors that belong to the default context when they are given none (rclpy ``executors``)."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from typing import Any
+
+from linkwright.graph import executors
+from linkwright.standins.rclpy_api.context import Context
+from linkwright.standins.rclpy_api.session import get_default_context
+
+
+class Executor(executors.Executor):
+    """Runs the callbacks of nodes; a base class for users' own executors, which define ``spin_once``."""
+
+    def __init__(self, *, context: Context | None = None) -> None:
+        super().__init__(context=get_default_context() if context is None else context)
+
+
+class SingleThreadedExecutor(executors.SingleThreadedExecutor, Executor):
+    """Runs callbacks one after another in the thread that spins."""
+
+    def __init__(self, *, context: Context | None = None) -> None:
+        super().__init__(context=context)
+
+
+class MultiThreadedExecutor(executors.MultiThreadedExecutor, Executor):
+    """Runs callbacks in a pool of threads."""
+
+    def __init__(self, num_threads: int | None = None, *, context: Context | None = None) -> None:
+        super().__init__(num_threads, context=context)
+
+
+async def await_or_execute(callback: Callable[..., Any], *args: Any) -> Any:
+    """Await what a coroutine function gives, or call anything else."""
+    if inspect.iscoroutinefunction(callback):
+        return await callback(*args)
+    return callback(*args)

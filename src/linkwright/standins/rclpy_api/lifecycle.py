@@ -1,0 +1,42 @@
+"""Managed nodes (rclpy ``lifecycle``)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from linkwright.graph.dispatch import CallbackGroup
+from linkwright.graph.lifecycle import LifecycleNodeMixin
+from linkwright.standins.rclpy_api.node import Node
+
+
+class LifecycleNode(LifecycleNodeMixin, Node):
+    """A node with a life cycle that others can drive; users' managed nodes derive from it.
+
+    Args:
+        node_name: its name.
+        enable_communication_interface: whether others can drive it, through services, and hear of it.
+        callback_group: that of the services.
+        arguments: what else `Node` takes.
+
+    Raises:
+        TypeError: `enable_communication_interface` is not a bool.
+    """
+
+    def __init__(
+        self,
+        node_name: str,
+        *,
+        enable_communication_interface: bool = True,
+        callback_group: CallbackGroup | None = None,
+        **arguments: Any,
+    ) -> None:
+        if not isinstance(enable_communication_interface, bool):
+            raise TypeError(f"enable_communication_interface must be a bool, not {enable_communication_interface!r}")
+        Node.__init__(self, node_name, **arguments)
+        LifecycleNodeMixin.__init__(
+            self, enable_communication_interface=enable_communication_interface, callback_group=callback_group
+        )
+
+    def destroy_node(self) -> None:
+        """Take the node and all it made out of the graph."""
+        Node.destroy_node(self)

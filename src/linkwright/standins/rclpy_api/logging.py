@@ -1,0 +1,99 @@
+"""The loggers of the process, which exist before and after contexts (rclpy ``logging``)."""
+
+from __future__ import annotations
+
+import os
+import time
+from pathlib import Path
+
+from linkwright.graph.log import Logger, LogLevel, LogRecord, LogSink, print_to_console
+from linkwright.graph.log_levels import LogLevels, level_named
+
+LEVELS = LogLevels()
+"""The levels of all loggers of the process."""
+
+LoggingSeverity = LogLevel
+
+_sinks: list[LogSink] = [print_to_console]
+
+
+def write(record: LogRecord) -> None:
+    """Write a record of any logger of the process."""
+    _sinks[-1](record)
+
+
+def write_to(sink: LogSink) -> None:
+    """Have all loggers of the process write to something else than the console."""
+    _sinks[1:] = [sink]
+
+
+def is_configured() -> bool:
+    """Whether they write to something else than the console."""
+    return len(_sinks) > 1
+
+
+root_logger = Logger("", write, time.time_ns, LEVELS)
+"""The parent of all loggers."""
+
+
+def get_logger(name: str) -> Logger:
+    """The logger of a name; dots separate levels.
+
+    Raises:
+        ValueError: the name is empty.
+    """
+    if not name:
+        raise ValueError("Logger name must not be empty.")
+    return root_logger.get_child(name)
+
+
+def initialize() -> None:
+    """Forget all levels that were set."""
+    LEVELS.reset()
+
+
+def shutdown() -> None:
+    """Write to the console again."""
+    del _sinks[1:]
+
+
+def clear_config() -> None:
+    """Forget what was configured."""
+    shutdown()
+    initialize()
+
+
+def set_logger_level(name: str, level: int, detailed_error: bool = False) -> None:  # noqa: ARG001  # rclpy's signature
+    """Give a logger a level, which its children inherit; the empty name stands for the default level."""
+    LEVELS.set(name, LogLevel(level))
+
+
+def get_logger_effective_level(name: str) -> LogLevel:
+    """The level that holds for a logger."""
+    return LEVELS.effective(name)
+
+
+def get_logger_level(name: str) -> LogLevel:
+    """The level that a logger has itself; UNSET where it has none."""
+    return LEVELS.own(name)
+
+
+def get_logging_severity_from_string(log_severity: str) -> LogLevel:
+    """The severity of a name.
+
+    Raises:
+        RuntimeError: there is none of that name.
+    """
+    level = level_named(log_severity)
+    if level is None:
+        raise RuntimeError(f"failed to get severity from string '{log_severity}'")
+    return level
+
+
+def get_logging_directory() -> Path:
+    """Where log files are written: ROS_LOG_DIR, else ``log`` below ROS_HOME, else ``~/.ros/log``."""
+    folder = os.environ.get("ROS_LOG_DIR")
+    if folder:
+        return Path(folder).expanduser()
+    home = os.environ.get("ROS_HOME")
+    return (Path(home).expanduser() if home else Path.home() / ".ros") / "log"

@@ -1,0 +1,85 @@
+"""Checks of names, as rclpy has them in modules of their own."""
+
+from __future__ import annotations
+
+from linkwright.graph import names
+
+TOPIC_SEPARATOR_STRING = "/"
+HIDDEN_TOPIC_PREFIX = "_"
+
+
+def validate_node_name(node_name: str) -> bool:
+    """True for a name that a node may bear.
+
+    Raises:
+        InvalidNodeNameError: for any other.
+    """
+    names.check_node_name(node_name)
+    return True
+
+
+def validate_namespace(namespace: str) -> bool:
+    """True for a namespace.
+
+    Raises:
+        InvalidNamespaceError: for anything else.
+    """
+    problem = names.namespace_problem(namespace)
+    if problem is not None:
+        raise names.InvalidNamespaceError(namespace, *problem)
+    return True
+
+
+def validate_topic_name(name: str, *, is_service: bool = False) -> bool:
+    """True for the name of a topic or service as code gives it, which may be relative or private.
+
+    Raises:
+        InvalidTopicNameError, InvalidServiceNameError: for any other.
+    """
+    _raise(name, names.topic_name_problem(name), is_service=is_service)
+    return True
+
+
+def validate_full_topic_name(name: str, *, is_service: bool = False) -> bool:
+    """True for the absolute name of a topic or service.
+
+    Raises:
+        InvalidTopicNameError, InvalidServiceNameError: for any other.
+    """
+    problem = names.topic_name_problem(name)
+    if problem is None and not name.startswith("/"):
+        problem = "topic name must be absolute, it must lead with a '/'", 0
+    _raise(name, problem, is_service=is_service)
+    return True
+
+
+def expand_topic_name(topic_name: str, node_name: str, node_namespace: str) -> str:
+    """The absolute name of a topic that a node names.
+
+    Raises:
+        ValueError: one of the names is not valid.
+    """
+    try:
+        validate_node_name(node_name)
+        validate_namespace(node_namespace)
+        return names.expand_topic_name(topic_name, node_name, node_namespace)
+    except names.InvalidNameError as error:
+        raise ValueError(f"{error.kind} is invalid: {error}") from error
+
+
+def topic_or_service_is_hidden(name: str) -> bool:
+    """Whether tools leave a topic or service out unless they are asked: a part of its name begins with ``_``.
+
+    Raises:
+        InvalidTopicNameError: the name is not valid.
+    """
+    validate_topic_name(name)
+    return names.is_hidden(name)
+
+
+def _raise(name: str, problem: names.Problem | None, *, is_service: bool) -> None:
+    if problem is None:
+        return
+    if is_service:
+        raise names.InvalidServiceNameError(name, *problem)
+    raise names.InvalidTopicNameError(name, *problem)

@@ -1,0 +1,73 @@
+"""Parameters as messages, from text and from files (rclpy ``parameter``)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from linkwright.graph.parameter_files import parse_value, read_parameter_file
+from linkwright.graph.parameter_rules import ANY_NODE
+from linkwright.graph.parameter_services import ParameterServices
+from linkwright.graph.parameters import Parameter
+
+if TYPE_CHECKING:
+    from linkwright.standins.rclpy_api.node import Node
+
+
+class ParameterService(ParameterServices):
+    """The services through which others read and set the parameters of a node."""
+
+    def __init__(self, node: Node) -> None:
+        super().__init__(node.graph_node)
+
+
+def get_parameter_value(string_value: str) -> Any:
+    """What a text means as the value of a parameter: rcl_interfaces/msg/ParameterValue.
+
+    It is read as YAML; what that cannot be a parameter's value stays a text.
+    """
+    try:
+        return Parameter("", value=parse_value(string_value, "")).get_parameter_value()
+    except (TypeError, ValueError):
+        return Parameter("", value=string_value).get_parameter_value()
+
+
+def parameter_dict_from_yaml_file(
+    parameter_file: str,
+    use_wildcard: bool = False,
+    target_nodes: Sequence[str] | None = None,
+    namespace: str = "",
+) -> dict[str, Any]:
+    """The parameters in a file, as rcl_interfaces/msg/Parameter by name.
+
+    Args:
+        parameter_file: the file.
+        use_wildcard: whether those of ``/**`` count.
+        target_nodes: the full names of the nodes whose parameters are wanted; all when None.
+        namespace: put before each name, with a dot.
+
+    Raises:
+        RuntimeError: none of the nodes is in the file.
+        LinkwrightError: the file cannot be read.
+    """
+    # A node may be written with its slash or without, here and in the file.
+    rules: dict[str, dict[str, Any]] = {}
+    for pattern, values in read_parameter_file(parameter_file):
+        rules.setdefault(_absolute(pattern), {}).update(values)
+    wanted = list(rules) if target_nodes is None else [name for name in map(_absolute, target_nodes) if name in rules]
+    if target_nodes is not None and use_wildcard and ANY_NODE in rules:
+        wanted.insert(0, ANY_NODE)
+    if not use_wildcard:
+        wanted = [name for name in wanted if name != ANY_NODE]
+    if target_nodes and not wanted:
+        raise RuntimeError(f"Param file does not contain any parameters for {', '.join(target_nodes)}")
+    found: dict[str, Any] = {}
+    for pattern in wanted:
+        for name, value in rules[pattern].items():
+            full_name = f"{namespace}.{name}" if namespace else name
+            found[full_name] = Parameter(full_name, value=value).to_parameter_msg()
+    return found
+
+
+def _absolute(pattern: str) -> str:
+    return "/" + pattern.lstrip("/")

@@ -1,0 +1,33 @@
+"""Messages as bytes (rclpy ``serialization``)."""
+
+from __future__ import annotations
+
+from typing import Any, TypeVar
+
+from linkwright.messages import deserialize, serialize
+
+M = TypeVar("M")
+
+
+def serialize_message(message: Any) -> bytes:
+    """The bytes of a message: CDR with its header.
+
+    Raises:
+        TypeError: it is not a message.
+    """
+    if not hasattr(message, "TYPE_NAME"):
+        raise TypeError(f"{type(message)} is not the class of a message")
+    return serialize(message)
+
+
+def deserialize_message(serialized_message: bytes, message_type: type[M]) -> M:
+    """The message of some bytes.
+
+    Raises:
+        TypeError: the type is not that of a message.
+        LinkwrightError: the bytes are not such a message.
+    """
+    if not hasattr(message_type, "TYPE_NAME"):
+        raise TypeError(f"{message_type} is not the class of a message")
+    message: M = deserialize(serialized_message, message_type)
+    return message

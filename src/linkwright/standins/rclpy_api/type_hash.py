@@ -1,0 +1,62 @@
+"""Hashes of interface types (REP 2016; rclpy ``type_hash``)."""
+
+from __future__ import annotations
+
+from typing import TypedDict
+
+_SIZE = 32
+
+
+class TypeHashDictionary(TypedDict):
+    """The parts of a hash."""
+
+    version: int
+    value: bytes
+
+
+class TypeHash:
+    """A hash with the version of its rules; version -1 for none.
+
+    Raises:
+        AssertionError: the value has not 32 bytes.
+    """
+
+    __slots__ = ("_value", "_version")
+
+    def __init__(self, version: int = -1, value: bytes = bytes(_SIZE)) -> None:
+        self.version = version
+        self.value = value
+
+    @property
+    def version(self) -> int:
+        """The version of the rules."""
+        return self._version
+
+    @version.setter
+    def version(self, version: int) -> None:
+        assert isinstance(version, int)
+        self._version = version
+
+    @property
+    def value(self) -> bytes:
+        """The hash, 32 bytes."""
+        return self._value
+
+    @value.setter
+    def value(self, value: bytes) -> None:
+        assert isinstance(value, bytes)
+        assert len(value) == _SIZE
+        self._value = value
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, TypeHash):
+            return NotImplemented
+        return (self._version, self._value) == (other._version, other._value)
+
+    def __hash__(self) -> int:
+        return hash((self._version, self._value))
+
+    def __str__(self) -> str:
+        if self._version <= 0 or self._version > 0xFF:
+            return "INVALID"
+        return f"RIHS{self._version:02}_{self._value.hex()}"

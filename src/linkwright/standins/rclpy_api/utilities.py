@@ -1,0 +1,37 @@
+"""Small things that rclpy offers in ``utilities``."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+
+from linkwright.graph import ros_arguments
+
+_NANOSECONDS_PER_SECOND = 1_000_000_000
+_MIDDLEWARE = "rmw_cyclonedds_cpp"
+
+
+def remove_ros_args(args: Sequence[str] | None = None) -> list[str]:
+    """The arguments of a command line that are not for ROS.
+
+    Args:
+        args: the command line with the program's name; ``sys.argv`` when None.
+    """
+    return ros_arguments.remove_ros_arguments(sys.argv if args is None else args)
+
+
+def timeout_sec_to_nsec(timeout_sec: float | None) -> int:
+    """A timeout in nanoseconds; -1 for one without limit, which None and negative numbers stand for."""
+    if timeout_sec is None or timeout_sec < 0:
+        return -1
+    return int(float(timeout_sec) * _NANOSECONDS_PER_SECOND)
+
+
+def get_rmw_implementation_identifier() -> str:
+    """The middleware that ours is compatible with."""
+    return _MIDDLEWARE
+
+
+def get_available_rmw_implementations() -> set[str]:
+    """The middlewares that there are."""
+    return {_MIDDLEWARE}

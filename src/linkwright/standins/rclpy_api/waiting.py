@@ -1,0 +1,55 @@
+"""Waiting for one message (rclpy ``wait_for_message``)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from linkwright.graph.executors import ReentrantCallbackGroup
+from linkwright.graph.future import Future
+from linkwright.graph.qos import DEFAULT_QOS, QoSProfile
+from linkwright.standins.rclpy_api.executors import SingleThreadedExecutor
+
+if TYPE_CHECKING:
+    from linkwright.standins.rclpy_api.node import Node
+
+
+def wait_for_message(
+    msg_type: type[Any],
+    node: Node,
+    topic: str,
+    *args: Any,
+    qos_profile: QoSProfile | int = DEFAULT_QOS,
+    time_to_wait: float = -1,
+) -> tuple[bool, Any]:
+    """Wait for the next message of a topic. It is received whether or not the node is spun.
+
+    Args:
+        msg_type: the message class.
+        node: subscribes meanwhile.
+        topic: the topic.
+        args: Humble's fourth and only positional argument: `time_to_wait`.
+        qos_profile: what is asked for.
+        time_to_wait: the longest wait, in seconds; no limit when negative.
+
+    Returns:
+        Whether one came, and the message, None without one.
+    """
+    if args:
+        (time_to_wait,) = args
+    received: Future[Any] = Future()
+
+    def receive(message: Any) -> None:
+        if not received.done():
+            received.set_result(message)
+
+    subscription = node.create_subscription(
+        msg_type, topic, receive, qos_profile, callback_group=ReentrantCallbackGroup()
+    )
+    executor = SingleThreadedExecutor(context=node.context)
+    subscription.set_dispatcher(executor)
+    try:
+        executor.spin_until_future_complete(received, time_to_wait)
+    finally:
+        node.destroy_subscription(subscription)
+        executor.shutdown()
+    return received.done(), received.result() if received.done() else None

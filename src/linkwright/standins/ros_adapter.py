@@ -1,0 +1,111 @@
+"""A node of rclpy for launch files that want one of their own (``launch_ros.ros_adapters``)."""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Sequence
+from typing import Any
+
+from linkwright.launch.context import LaunchContext
+from linkwright.launch.event_handlers import OnShutdown
+
+_LOOK_SECONDS = 0.2
+
+
+class ROSAdapter:
+    """An rclpy node with an executor that spins in a thread.
+
+    Args:
+        argv: the arguments of rclpy's context.
+        autostart: whether it is started at once.
+    """
+
+    def __init__(self, *, argv: Sequence[str] | None = None, autostart: bool = True) -> None:
+        self._argv = argv
+        self._context: Any = None
+        self._node: Any = None
+        self._executor: Any = None
+        self._thread: threading.Thread | None = None
+        self._running = False
+        if autostart:
+            self.start()
+
+    def start(self) -> None:
+        """Make the node and spin.
+
+        Raises:
+            RuntimeError: it runs already.
+        """
+        if self._running:
+            raise RuntimeError("Cannot start a ROS adapter that is already running")
+        import rclpy  # type: ignore[import-not-found, unused-ignore]
+        from rclpy.executors import SingleThreadedExecutor  # type: ignore[import-not-found, unused-ignore]
+
+        self._context = rclpy.context.Context()
+        rclpy.init(args=self._argv, context=self._context)
+        self._node = rclpy.create_node(f"launch_ros_{os.getpid()}", context=self._context)
+        self._executor = SingleThreadedExecutor(context=self._context)
+        self._executor.add_node(self._node)
+        self._running = True
+        self._thread = threading.Thread(target=self._spin, name="launch_ros-spin")
+        self._thread.start()
+
+    def shutdown(self) -> None:
+        """Spin no more, and take the node away.
+
+        Raises:
+            RuntimeError: it does not run.
+        """
+        if not self._running:
+            raise RuntimeError("Cannot shutdown a ROS adapter that is not running")
+        import rclpy
+
+        self._running = False
+        self._executor.wake()
+        if self._thread is not None and self._thread is not threading.current_thread():
+            self._thread.join()
+        self._executor.shutdown()
+        self._node.destroy_node()
+        rclpy.shutdown(context=self._context)
+        self._node = self._thread = None
+
+    @property
+    def argv(self) -> Sequence[str] | None:
+        """The arguments of rclpy's context."""
+        return self._argv
+
+    @property
+    def ros_context(self) -> Any:
+        """Rclpy's context."""
+        return self._context
+
+    @property
+    def ros_node(self) -> Any:
+        """The node; None while it does not run."""
+        return self._node
+
+    @property
+    def ros_executor(self) -> Any:
+        """What runs the node's callbacks."""
+        return self._executor
+
+    def _spin(self) -> None:
+        while self._running:
+            self._executor.spin_once(timeout_sec=_LOOK_SECONDS)
+
+
+def get_ros_adapter(context: LaunchContext) -> ROSAdapter:
+    """The adapter of a launch; made when first asked for, and ended with the launch."""
+    try:
+        adapter: ROSAdapter = context.locals.ros_adapter
+    except AttributeError:
+        adapter = ROSAdapter(argv=context.argv)
+        context.extend_globals({"ros_adapter": adapter})
+        context.register_event_handler(OnShutdown(on_shutdown=lambda *_: adapter.shutdown()))
+    return adapter
+
+
+def get_ros_node(context: LaunchContext) -> Any:
+    """The node of the adapter of a launch."""
+    return get_ros_adapter(context).ros_node

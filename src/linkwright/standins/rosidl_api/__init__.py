@@ -1,0 +1,1 @@
+"""What the stand-in of rosidl_runtime_py does."""

@@ -1,0 +1,67 @@
+"""Which interfaces there are."""
+
+from collections.abc import Iterable
+
+from linkwright.messages.library import LIBRARY
+from linkwright.workspace import current_finder, interface_files
+
+
+def get_interface_packages() -> list[str]:
+    """The packages that have interfaces, sorted."""
+    return sorted({name.partition("/")[0] for kind in ("msg", "srv", "action") for name in LIBRARY.names(kind)})
+
+
+def get_interfaces(package_names: Iterable[str] = ()) -> dict[str, list[str]]:
+    """Package -> its messages, services and actions, such as ``msg/String``.
+
+    Raises:
+        LookupError: there is no package of one of the names.
+    """
+    return _by_package(("msg", "srv", "action"), package_names)
+
+
+def get_message_interfaces(package_names: Iterable[str] = ()) -> dict[str, list[str]]:
+    """Package -> its messages, such as ``msg/String``."""
+    return _by_package(("msg",), package_names)
+
+
+def get_service_interfaces(package_names: Iterable[str] = ()) -> dict[str, list[str]]:
+    """Package -> its services, such as ``srv/SetBool``."""
+    return _by_package(("srv",), package_names)
+
+
+def get_action_interfaces(package_names: Iterable[str] = ()) -> dict[str, list[str]]:
+    """Package -> its actions, such as ``action/Fibonacci``."""
+    return _by_package(("action",), package_names)
+
+
+def get_interface_path(interface_name: str) -> str:
+    """The file that defines an interface.
+
+    Raises:
+        ValueError: the text is no name of an interface.
+        LookupError: there is no file of it.
+    """
+    parts = interface_name.split("/")
+    if len(parts) != 3:
+        raise ValueError(f"Invalid name '{interface_name}'. Expected three parts separated by '/'")
+    package, kind, name = parts
+    share = current_finder().find(package)
+    path = interface_files.interface_file(share, kind, name) if share is not None else None
+    if path is None:
+        raise LookupError(f"Could not find the interface '{interface_name}'")
+    return str(path)
+
+
+def _by_package(kinds: tuple[str, ...], package_names: Iterable[str]) -> dict[str, list[str]]:
+    wanted = set(package_names)
+    found: dict[str, list[str]] = {}
+    for kind in kinds:
+        for name in LIBRARY.names(kind):
+            package, _, rest = name.partition("/")
+            if not wanted or package in wanted:
+                found.setdefault(package, []).append(rest)
+    missing = sorted(wanted - set(found) - set(get_interface_packages()))
+    if missing:
+        raise LookupError(f"Unknown package '{missing[0]}'")
+    return {package: sorted(names) for package, names in sorted(found.items())}

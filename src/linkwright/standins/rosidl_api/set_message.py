@@ -1,0 +1,17 @@
+"""The fields of a message, set from a dictionary."""
+
+from typing import Any
+
+from linkwright.messages import set_fields
+
+
+def set_message_fields(
+    msg: Any, values: dict[str, Any], expand_header_auto: bool = False, expand_time_now: bool = False
+) -> list[Any]:
+    """Set fields; gives functions that set the stamps which were left to be set when the message is sent.
+
+    Raises:
+        AttributeError: a field that there is not.
+        TypeError: a value that a field cannot have.
+    """
+    return list(set_fields(msg, values, expand_header_auto=expand_header_auto, expand_time_now=expand_time_now))

@@ -1,0 +1,49 @@
+"""Classes of interfaces, by their names."""
+
+from typing import Any
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.messages import classes
+from linkwright.messages.library import LIBRARY
+from linkwright.messages.names import split_name
+
+
+def get_message(identifier: str) -> Any:
+    """The class of a message, ``std_msgs/msg/String``."""
+    return _found(classes.get_message, identifier, "message")
+
+
+def get_service(identifier: str) -> Any:
+    """The class of a service, ``std_srvs/srv/SetBool``."""
+    return _found(classes.get_service, identifier, "service")
+
+
+def get_action(identifier: str) -> Any:
+    """The class of an action, ``example_interfaces/action/Fibonacci``."""
+    return _found(classes.get_action, identifier, "action")
+
+
+def get_interface(identifier: str) -> Any:
+    """The class of a message, service or action."""
+    return _found(classes.get_interface, identifier, "interface")
+
+
+def import_message_from_namespaced_type(message_type: Any) -> Any:
+    """The class of a `rosidl_parser.definition.NamespacedType`."""
+    return classes.get_message("/".join(message_type.namespaced_name()))
+
+
+def _found(getter: Any, identifier: str, what: str) -> Any:
+    # Callers look for the exceptions that an import of the generated module raises.
+    name = split_name(identifier)
+    if name is None or name.kind is None:
+        raise ValueError(f"Expected the full name of a {what}, got '{identifier}'")
+    try:
+        return getter(identifier)
+    except LinkwrightError as error:
+        known = LIBRARY.names(name.kind, name.package)
+        if not any(LIBRARY.names(kind, name.package) for kind in ("msg", "srv", "action")):
+            raise ModuleNotFoundError(f"No module named '{name.package}'", name=name.package) from error
+        if identifier in known:
+            raise ValueError(f"Expected '{identifier}' to be a {what}") from error
+        raise AttributeError(str(error)) from error

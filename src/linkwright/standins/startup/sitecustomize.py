@@ -1,0 +1,145 @@
+"""Run by every Python that has this folder on its ``PYTHONPATH``: lets it import the stand-ins, should it ask for them.
+
+Nothing of Linkwright is imported here before the program imports a module that no other finder knows and that we
+have. Where a real rclpy can be imported nothing of ours is offered at all: its nodes take only the real message
+classes, and the real ones only its nodes.
+"""
+
+# Every Python process pays for what is imported here, and pathlib is dear.
+# ruff: noqa: PTH100, PTH109, PTH113, PTH118, PTH120, PTH208
+
+from __future__ import annotations
+
+import os
+import sys
+from importlib.machinery import ModuleSpec, PathFinder
+
+_HERE = os.path.dirname(os.path.abspath(__file__))
+_STAND_INS = os.path.join(os.path.dirname(_HERE), "path")
+_LINKWRIGHT = os.path.dirname(os.path.dirname(os.path.dirname(_HERE)))
+
+_WITH_ANY_ROS = frozenset({"tf_transformations"})
+"""Stand-ins that touch neither messages nor nodes, so that they may go with a real ROS."""
+
+_INTERFACE_KINDS = ("msg", "srv", "action")
+_INTERFACE_ENDINGS = ("_msgs", "_interfaces", "_srvs", "_msg", "_srv", "_action", "_actions")
+_OTHER_INTERFACES = frozenset({"turtlesim"})
+_PARENTS_LOOKED_AT = 5
+
+
+class StandIns:
+    """A finder of modules that comes after all others."""
+
+    def __init__(self) -> None:
+        self._names: frozenset[str] | None = None
+        self._real_ros: bool | None = None
+        self._searching = False
+
+    def find_spec(self, name: str, path: object = None, target: object = None) -> ModuleSpec | None:  # noqa: ARG002
+        """The stand-in of a module that nobody else has."""
+        if self._searching or name.startswith("_"):
+            return None
+        top, _, rest = name.partition(".")
+        if rest:
+            return self.interface(name) if rest.partition(".")[0] in _INTERFACE_KINDS else None
+        if top in self._stand_ins():
+            if top not in _WITH_ANY_ROS and self._has_real_ros():
+                return None
+            _make_importable()
+            return PathFinder.find_spec(name, [_STAND_INS])
+        return self.interface(name) if _may_hold_interfaces(top) else None
+
+    def interface(self, name: str) -> ModuleSpec | None:
+        """The module of interfaces of this name, or None when it is none."""
+        if self._searching or self._has_real_ros():
+            return None
+        self._searching = True
+        try:
+            _make_importable()
+            from linkwright.standins.interfaces import find_spec
+
+            return find_spec(name)
+        finally:
+            self._searching = False
+
+    def _stand_ins(self) -> frozenset[str]:
+        if self._names is None:
+            try:
+                self._names = frozenset(name.removesuffix(".py") for name in os.listdir(_STAND_INS))
+            except OSError:
+                self._names = frozenset()
+        return self._names
+
+    def _has_real_ros(self) -> bool:
+        if self._real_ros is None:
+            found = PathFinder.find_spec("rclpy", [entry for entry in sys.path if entry != _STAND_INS])
+            self._real_ros = found is not None and found.origin is not None
+        return self._real_ros
+
+
+class InterfaceFolders:
+    """A finder that comes before all others, for ``my_msgs.msg`` where Python takes folders for packages.
+
+    In a folder with a package's sources, ``my_msgs/msg`` would else be a module without anything in it.
+    """
+
+    def __init__(self, stand_ins: StandIns) -> None:
+        self._stand_ins = stand_ins
+
+    def find_spec(self, name: str, path: object = None, target: object = None) -> ModuleSpec | None:  # noqa: ARG002
+        """The module of interfaces in a package that is nothing but a folder."""
+        package, _, kind = name.rpartition(".")
+        if kind not in _INTERFACE_KINDS or package not in sys.modules:
+            return None
+        return None if getattr(sys.modules[package], "__file__", None) else self._stand_ins.interface(name)
+
+
+def _may_hold_interfaces(package: str) -> bool:
+    """Whether it is worth loading Linkwright to see if a name is that of a package with interface files."""
+    if _is_loaded("linkwright.messages") or package.endswith(_INTERFACE_ENDINGS) or package in _OTHER_INTERFACES:
+        return True
+    shares = [os.path.join(prefix, "share") for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)]
+    return any(os.path.isfile(os.path.join(folder, package, "package.xml")) for folder in (*shares, *_near_folders()))
+
+
+def _is_loaded(name: str) -> bool:
+    """Whether a module is there, and not just being imported: what that imports in turn is none of our business."""
+    module = sys.modules.get(name)
+    return module is not None and not getattr(module.__spec__, "_initializing", False)
+
+
+def _near_folders() -> list[str]:
+    """The folders in which packages of the program's own workspace lie."""
+    current = os.getcwd()
+    folders = [current, os.path.join(current, "src")]
+    program = os.path.abspath(sys.argv[0]) if getattr(sys, "argv", [""])[0] else current
+    for _ in range(_PARENTS_LOOKED_AT):
+        program = os.path.dirname(program)
+        folders.append(program)
+    return folders
+
+
+def _make_importable() -> None:
+    """Have Linkwright and what it needs on the path, behind everything that the program has itself."""
+    for folder in (_LINKWRIGHT, *os.environ.get("LINKWRIGHT_SITE", "").split(os.pathsep)):
+        if folder and folder not in sys.path:
+            sys.path.append(folder)
+
+
+def _run_next_sitecustomize() -> None:
+    """Run the ``sitecustomize`` that this one hides."""
+    others = [entry for entry in sys.path if os.path.abspath(entry) != _HERE]
+    spec = PathFinder.find_spec("sitecustomize", others)
+    if spec is None or spec.loader is None:
+        return
+    from importlib.util import module_from_spec  # not imported by every program: it is not small
+
+    module = module_from_spec(spec)
+    sys.modules["sitecustomize"] = module
+    spec.loader.exec_module(module)
+
+
+_stand_ins = StandIns()
+sys.meta_path.insert(0, InterfaceFolders(_stand_ins))
+sys.meta_path.append(_stand_ins)
+_run_next_sitecustomize()

@@ -1,0 +1,21 @@
+"""The buffer of a node (tf2_ros ``Buffer``)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from linkwright.graph import transform_waiting
+from linkwright.standins.tf2_api.interface import BufferInterface
+
+
+class Buffer(transform_waiting.Buffer, BufferInterface):
+    """Keeps transforms, waits for them, and takes messages from one frame to another.
+
+    Args:
+        cache_time: how far back transforms are kept; 10 seconds when left out.
+        node: where given, it offers the service ``tf2_frames``, and its clock empties the buffer when it jumps back.
+    """
+
+    def __init__(self, cache_time: Any = None, node: Any = None) -> None:
+        transform_waiting.Buffer.__init__(self, cache_time, node)
+        BufferInterface.__init__(self)

@@ -1,0 +1,114 @@
+"""Which types can be transformed and converted into each other (tf2_ros ``buffer_interface``)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from copy import deepcopy
+from typing import Any, ClassVar, TypeVar
+
+F = TypeVar("F")
+Transformation = Callable[[Any, Any], Any]
+Conversion = Callable[[Any], Any]
+
+
+class TypeException(Exception):
+    """A type has not been registered.
+
+    Attributes:
+        errstr: what is missing.
+    """
+
+    def __init__(self, errstr: str) -> None:
+        super().__init__(errstr)
+        self.errstr = errstr
+
+
+class NotImplementedException(Exception):
+    """A buffer cannot do this."""
+
+    def __init__(self) -> None:
+        self.errstr = "CanTransform or LookupTransform not implemented"
+        super().__init__(self.errstr)
+
+
+class TransformRegistration:
+    """How things of each type are taken from one frame to another; the same for all objects of this class."""
+
+    _by_type: ClassVar[dict[Any, Transformation]] = {}
+
+    def add(self, key: Any, callback: Transformation) -> None:
+        """Register a function of a thing and a transform, for a type."""
+        self._by_type[key] = callback
+
+    def get(self, key: Any) -> Transformation:
+        """The function for a type.
+
+        Raises:
+            TypeException: there is none.
+        """
+        return _found(self._by_type, key)
+
+    def print_me(self) -> None:
+        """Print what is registered."""
+        print(self._by_type)  # what the method is for
+
+
+class ConvertRegistration:
+    """How things of each type become messages, come from them, or become others directly; the same for all objects."""
+
+    _to_msg: ClassVar[dict[Any, Conversion]] = {}
+    _from_msg: ClassVar[dict[Any, Conversion]] = {}
+    _direct: ClassVar[dict[Any, Conversion]] = {}
+
+    def add_from_msg(self, key: Any, callback: Conversion) -> None:
+        """Register how a message becomes a thing of a type."""
+        self._from_msg[key] = callback
+
+    def add_to_msg(self, key: Any, callback: Conversion) -> None:
+        """Register how a thing of a type becomes a message."""
+        self._to_msg[key] = callback
+
+    def add_convert(self, key: tuple[Any, Any], callback: Conversion) -> None:
+        """Register how a thing of the first type becomes one of the second."""
+        self._direct[key] = callback
+
+    def get_from_msg(self, key: Any) -> Conversion:
+        """How a message becomes a thing of a type; TypeException where that is not registered."""
+        return _found(self._from_msg, key)
+
+    def get_to_msg(self, key: Any) -> Conversion:
+        """How a thing of a type becomes a message; TypeException where that is not registered."""
+        return _found(self._to_msg, key)
+
+    def get_convert(self, key: tuple[Any, Any]) -> Conversion:
+        """How a thing of one type becomes one of another; TypeException where that is not registered."""
+        return _found(self._direct, key)
+
+
+def convert(a: Any, b_type: Any) -> Any:
+    """A thing as one of another type, by way of a message if need be; a copy where the type is the same.
+
+    Raises:
+        TypeException: it is not registered how.
+    """
+    registration = ConvertRegistration()
+    try:
+        return registration.get_convert((type(a), b_type))(a)
+    except TypeException:
+        if type(a) is b_type:
+            return deepcopy(a)
+    return registration.get_from_msg(b_type)(registration.get_to_msg(type(a))(a))
+
+
+def Stamped(obj: Any, stamp: Any, frame_id: str) -> Any:
+    """The object with a header."""
+    from linkwright.messages import get_message
+
+    obj.header = get_message("std_msgs/msg/Header")(frame_id=frame_id, stamp=stamp)
+    return obj
+
+
+def _found(table: dict[Any, F], key: Any) -> F:
+    if key not in table:
+        raise TypeException(f"Type {key} is not loaded or supported")
+    return table[key]

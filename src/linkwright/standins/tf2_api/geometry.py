@@ -1,0 +1,35 @@
+"""Has buffers transform the messages of geometry_msgs (``import tf2_geometry_msgs``)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from linkwright.graph import transform_geometry
+from linkwright.messages import get_message
+from linkwright.standins.tf2_api.conversion import ConvertRegistration, TransformRegistration
+
+_TRANSFORMATIONS = {
+    "PointStamped": transform_geometry.do_transform_point,
+    "PolygonStamped": transform_geometry.do_transform_polygon_stamped,
+    "PoseStamped": transform_geometry.do_transform_pose_stamped,
+    "PoseWithCovarianceStamped": transform_geometry.do_transform_pose_with_covariance_stamped,
+    "Vector3Stamped": transform_geometry.do_transform_vector3,
+    "WrenchStamped": transform_geometry.do_transform_wrench,
+}
+
+
+def to_msg_msg(msg: Any) -> Any:
+    """The message that a message is."""
+    return msg
+
+
+from_msg_msg = to_msg_msg
+
+
+def register() -> None:
+    """Have buffers transform them from now on."""
+    for name, transformation in _TRANSFORMATIONS.items():
+        kind = get_message(f"geometry_msgs/msg/{name}")
+        TransformRegistration().add(kind, transformation)
+        ConvertRegistration().add_to_msg(kind, to_msg_msg)
+        ConvertRegistration().add_from_msg(kind, from_msg_msg)

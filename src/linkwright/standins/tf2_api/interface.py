@@ -1,0 +1,78 @@
+"""What all buffers of tf2_ros have in common (tf2_ros ``BufferInterface``)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from linkwright.graph.time import Duration, Time
+from linkwright.standins.tf2_api.conversion import NotImplementedException, TransformRegistration, convert
+
+NO_TIME = Duration()
+
+
+class BufferInterface:
+    """Something that looks up transforms, and takes messages from one frame to another by them."""
+
+    def __init__(self) -> None:
+        self.registration = TransformRegistration()
+
+    def transform(
+        self, object_stamped: Any, target_frame: str, timeout: Duration = NO_TIME, new_type: Any = None
+    ) -> Any:
+        """A thing with a header in another frame.
+
+        Args:
+            object_stamped: the thing, of a registered type: ``import tf2_geometry_msgs`` registers those of
+                geometry_msgs.
+            target_frame: the other frame.
+            timeout: how long to wait for the transform.
+            new_type: what the result is converted to; left as it is when None.
+
+        Raises:
+            TypeException: the type is not registered.
+            TransformException: there is no transform.
+        """
+        do_transform = self.registration.get(type(object_stamped))
+        header = object_stamped.header
+        found = self.lookup_transform(target_frame, header.frame_id, Time.from_msg(header.stamp), timeout)
+        result = do_transform(object_stamped, found)
+        return result if new_type is None else convert(result, new_type)
+
+    def transform_full(
+        self,
+        object_stamped: Any,
+        target_frame: str,
+        target_time: Any,
+        fixed_frame: str,
+        timeout: Duration = NO_TIME,
+        new_type: Any = None,
+    ) -> Any:
+        """A thing with a header in another frame at another time, by way of a frame that does not move.
+
+        Raises:
+            TypeException: the type is not registered.
+            TransformException: there is no transform.
+        """
+        do_transform = self.registration.get(type(object_stamped))
+        header = object_stamped.header
+        found = self.lookup_transform_full(
+            target_frame, target_time, header.frame_id, Time.from_msg(header.stamp), fixed_frame, timeout
+        )
+        result = do_transform(object_stamped, found)
+        return result if new_type is None else convert(result, new_type)
+
+    def lookup_transform(self, *_question: Any, **_options: Any) -> Any:
+        """The pose of the source frame in the target frame: of two frames, a time and a timeout."""
+        raise NotImplementedException
+
+    def lookup_transform_full(self, *_question: Any, **_options: Any) -> Any:
+        """The pose of a source frame at a time in a target frame at another, by way of a fixed frame."""
+        raise NotImplementedException
+
+    def can_transform(self, *_question: Any, **_options: Any) -> Any:
+        """Whether `lookup_transform` would give a transform."""
+        raise NotImplementedException
+
+    def can_transform_full(self, *_question: Any, **_options: Any) -> Any:
+        """Whether `lookup_transform_full` would give a transform."""
+        raise NotImplementedException

@@ -1,0 +1,112 @@
+"""Fills a buffer from the topics (tf2_ros ``TransformListener``)."""
+
+from __future__ import annotations
+
+import threading
+from typing import Any
+
+from linkwright.graph.executors import ExternalShutdownException, ReentrantCallbackGroup
+from linkwright.graph.qos import STATIC_TF_SUBSCRIPTION_QOS, TF_QOS, QoSProfile
+from linkwright.graph.transform_listener import DEFAULT_STATIC_TF_TOPIC, DEFAULT_TF_TOPIC
+from linkwright.messages import TFMessage
+from linkwright.standins.rclpy_api.executors import SingleThreadedExecutor
+from linkwright.standins.rclpy_api.node import Node
+
+_AUTHORITY = "default_authority"
+
+
+class TransformListener:
+    """Takes what is published on ``/tf`` and ``/tf_static`` into a buffer.
+
+    Its callbacks are in a reentrant group, so that another callback of the node may wait for a transform.
+
+    Args:
+        buffer: what is filled.
+        node: subscribes; a node of the listener's own when None.
+        spin_thread: whether a thread of the listener's own spins the node.
+        qos: for ``/tf``.
+        static_qos: for ``/tf_static``.
+        tf_topic: instead of ``/tf``.
+        tf_static_topic: instead of ``/tf_static``.
+        static_only: whether only ``/tf_static`` is listened to.
+    """
+
+    def __init__(
+        self,
+        buffer: Any,
+        node: Node | None,
+        *,
+        spin_thread: bool = False,
+        qos: QoSProfile | int = TF_QOS,
+        static_qos: QoSProfile | int = STATIC_TF_SUBSCRIPTION_QOS,
+        tf_topic: str = DEFAULT_TF_TOPIC,
+        tf_static_topic: str = DEFAULT_STATIC_TF_TOPIC,
+        static_only: bool = False,
+    ) -> None:
+        self.buffer = buffer
+        self.node = node or Node(
+            f"transform_listener_impl_{id(self):010x}", enable_rosout=False, start_parameter_services=False
+        )
+        self.group = ReentrantCallbackGroup()
+        self._subscriptions = [
+            self.node.create_subscription(
+                TFMessage, tf_static_topic, self.static_callback, static_qos, callback_group=self.group
+            )
+        ]
+        if not static_only:
+            self._subscriptions.append(
+                self.node.create_subscription(TFMessage, tf_topic, self.callback, qos, callback_group=self.group)
+            )
+        self.executor: SingleThreadedExecutor | None = None
+        if spin_thread:
+            self.executor = SingleThreadedExecutor(context=self.node.context)
+            self.executor.add_node(self.node)
+            self.dedicated_listener_thread = threading.Thread(target=self._spin, daemon=True)
+            self.dedicated_listener_thread.start()
+
+    def unregister(self) -> None:
+        """Listen no more."""
+        subscriptions, self._subscriptions = self._subscriptions, []
+        for subscription in subscriptions:
+            self.node.destroy_subscription(subscription)
+        if self.executor is not None:
+            self.executor.shutdown()
+            self.dedicated_listener_thread.join()
+            self.executor = None
+
+    def callback(self, data: Any) -> None:
+        """Take in a message of ``/tf``."""
+        self.buffer.update(data, static=False, authority=_AUTHORITY)
+
+    def static_callback(self, data: Any) -> None:
+        """Take in a message of ``/tf_static``."""
+        self.buffer.update(data, static=True, authority=_AUTHORITY)
+
+    def _spin(self) -> None:
+        executor = self.executor
+        assert executor is not None
+        try:
+            executor.spin()
+        except ExternalShutdownException:
+            return
+
+
+class StaticTransformListener(TransformListener):
+    """Takes what is published on ``/tf_static`` into a buffer.
+
+    Args:
+        buffer: what is filled.
+        node: subscribes.
+        spin_thread: whether a thread of the listener's own spins the node.
+        qos: for ``/tf_static``.
+    """
+
+    def __init__(
+        self,
+        buffer: Any,
+        node: Node | None,
+        *,
+        spin_thread: bool = False,
+        qos: QoSProfile | int = STATIC_TF_SUBSCRIPTION_QOS,
+    ) -> None:
+        super().__init__(buffer, node, spin_thread=spin_thread, static_qos=qos, static_only=True)

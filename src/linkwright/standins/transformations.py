@@ -1,0 +1,377 @@
+"""Rotations and homogeneous matrices with the names and conventions of the Python package ``tf_transformations``.
+
+Quaternions are x y z w. A matrix, array of shape (4, 4), takes column vectors. Euler angles, in radians, come with an
+axes code: ``s`` for axes that stay or ``r`` for axes that turn with the body, and the three axes in the order in which
+they are turned about; ``sxyz`` is ROS's roll, pitch and yaw.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Matrix = NDArray[np.float64]
+Vector = NDArray[np.float64]
+
+_EPSILON = 4.0 * float(np.finfo(float).eps)
+_EVEN = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
+_AXES = {
+    f"{frame}{''.join(letters)}"
+    for frame in "sr"
+    for letters in ((a, b, c) for a in "xyz" for b in "xyz" for c in "xyz" if a != b and b != c)
+}
+
+
+def identity_matrix() -> Matrix:
+    """No motion."""
+    return np.eye(4)
+
+
+def translation_matrix(direction: ArrayLike) -> Matrix:
+    """The motion along a vector."""
+    matrix = np.eye(4)
+    matrix[:3, 3] = np.asarray(direction, dtype=float)[:3]
+    return matrix
+
+
+def translation_from_matrix(matrix: ArrayLike) -> Vector:
+    """Where a motion takes the origin: array, shape (3,)."""
+    translation: Vector = np.array(matrix, dtype=float)[:3, 3].copy()
+    return translation
+
+
+def rotation_matrix(angle: float, direction: ArrayLike, point: ArrayLike | None = None) -> Matrix:
+    """The turn about an axis through a point, the origin when None."""
+    matrix = quaternion_matrix(quaternion_about_axis(angle, direction))
+    if point is not None:
+        fixed = np.asarray(point, dtype=float)[:3]
+        matrix[:3, 3] = fixed - matrix[:3, :3] @ fixed
+    return matrix
+
+
+def rotation_from_matrix(matrix: ArrayLike) -> tuple[float, Vector, Vector]:
+    """Angle, axis and a point (homogeneous) on the axis of a turn.
+
+    Raises:
+        ValueError: the matrix is not one.
+    """
+    m = np.array(matrix, dtype=float)
+    direction = _fixed_vector(m[:3, :3].T)
+    point = _fixed_vector(m)
+    point = point / point[3]
+    x, y, z, w = quaternion_from_matrix(m)
+    axis = np.array([x, y, z])
+    angle = 2.0 * math.atan2(float(axis @ direction), float(w))
+    return math.remainder(angle, 2.0 * math.pi), direction, point
+
+
+def scale_matrix(factor: float, origin: ArrayLike | None = None, direction: ArrayLike | None = None) -> Matrix:
+    """The scaling by a factor about a point, in all directions or in one."""
+    matrix = np.eye(4)
+    if direction is None:
+        matrix[:3, :3] *= factor
+    else:
+        unit = unit_vector(np.asarray(direction, dtype=float)[:3])
+        matrix[:3, :3] -= (1.0 - factor) * np.outer(unit, unit)
+    if origin is not None:
+        fixed = np.asarray(origin, dtype=float)[:3]
+        matrix[:3, 3] = fixed - matrix[:3, :3] @ fixed
+    return matrix
+
+
+def reflection_matrix(point: ArrayLike, normal: ArrayLike) -> Matrix:
+    """The mirroring at the plane through a point with a normal."""
+    return scale_matrix(-1.0, point, normal)
+
+
+def euler_matrix(ai: float, aj: float, ak: float, axes: str = "sxyz") -> Matrix:
+    """The rotation with Euler angles.
+
+    Raises:
+        ValueError: the axes code is not one.
+    """
+    return quaternion_matrix(quaternion_from_euler(ai, aj, ak, axes))
+
+
+def euler_from_matrix(matrix: ArrayLike, axes: str = "sxyz") -> tuple[float, float, float]:
+    """The Euler angles of a rotation. Where only the sum of the outer two is given, the last turned about is 0.
+
+    Raises:
+        ValueError: the axes code is not one.
+    """
+    turning, (a, b, c) = _read_axes(axes)
+    m = np.asarray(matrix, dtype=float)[:3, :3]
+    first, second, third = _proper_angles(m, a, b) if a == c else _cardan_angles(m, a, b, c)
+    return (third, second, first) if turning else (first, second, third)
+
+
+def euler_from_quaternion(quaternion: Sequence[float], axes: str = "sxyz") -> tuple[float, float, float]:
+    """The Euler angles of a quaternion x y z w.
+
+    Raises:
+        ValueError: the axes code is not one.
+    """
+    return euler_from_matrix(quaternion_matrix(quaternion), axes)
+
+
+def quaternion_from_euler(ai: float, aj: float, ak: float, axes: str = "sxyz") -> Vector:
+    """The quaternion x y z w with Euler angles.
+
+    Raises:
+        ValueError: the axes code is not one.
+    """
+    turning, (a, b, c) = _read_axes(axes)
+    first, third = (ak, ai) if turning else (ai, ak)
+    return quaternion_multiply(_about(third, c), quaternion_multiply(_about(aj, b), _about(first, a)))
+
+
+def quaternion_about_axis(angle: float, axis: ArrayLike) -> Vector:
+    """The quaternion x y z w of the turn about an axis."""
+    vector = np.asarray(axis, dtype=float)[:3]
+    length = float(np.linalg.norm(vector))
+    scale = math.sin(angle / 2.0) / length if length > _EPSILON else 0.0
+    return np.array([*(vector * scale), math.cos(angle / 2.0)])
+
+
+def quaternion_matrix(quaternion: ArrayLike) -> Matrix:
+    """The rotation of a quaternion x y z w, which need not have unit length."""
+    x, y, z, w = (float(value) for value in np.asarray(quaternion, dtype=float)[:4])
+    squared = x * x + y * y + z * z + w * w
+    matrix = np.eye(4)
+    if squared < _EPSILON:
+        return matrix
+    s = 2.0 / squared
+    matrix[:3, :3] = (
+        (1.0 - s * (y * y + z * z), s * (x * y - z * w), s * (x * z + y * w)),
+        (s * (x * y + z * w), 1.0 - s * (x * x + z * z), s * (y * z - x * w)),
+        (s * (x * z - y * w), s * (y * z + x * w), 1.0 - s * (x * x + y * y)),
+    )
+    return matrix
+
+
+def quaternion_from_matrix(matrix: ArrayLike) -> Vector:
+    """The unit quaternion x y z w of a rotation, with w not negative; of several that fit, the nearest."""
+    m = np.asarray(matrix, dtype=float)[:3, :3]
+    # The matrix whose eigenvector of the largest eigenvalue is the quaternion (Bar-Itzhack 2000), x y z w.
+    k = np.array(
+        [
+            [m[0, 0] - m[1, 1] - m[2, 2], m[0, 1] + m[1, 0], m[0, 2] + m[2, 0], m[2, 1] - m[1, 2]],
+            [m[0, 1] + m[1, 0], m[1, 1] - m[0, 0] - m[2, 2], m[1, 2] + m[2, 1], m[0, 2] - m[2, 0]],
+            [m[0, 2] + m[2, 0], m[1, 2] + m[2, 1], m[2, 2] - m[0, 0] - m[1, 1], m[1, 0] - m[0, 1]],
+            [m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1], m[0, 0] + m[1, 1] + m[2, 2]],
+        ]
+    )
+    values, vectors = np.linalg.eigh(k)
+    quaternion: Vector = vectors[:, np.argmax(values)]
+    return -quaternion if quaternion[3] < 0.0 else quaternion
+
+
+def quaternion_multiply(quaternion1: ArrayLike, quaternion0: ArrayLike) -> Vector:
+    """The product: the turn by `quaternion0`, then by `quaternion1`, seen from outside; x y z w."""
+    x0, y0, z0, w0 = np.asarray(quaternion0, dtype=float)
+    x1, y1, z1, w1 = np.asarray(quaternion1, dtype=float)
+    return np.array(
+        [
+            x1 * w0 + y1 * z0 - z1 * y0 + w1 * x0,
+            -x1 * z0 + y1 * w0 + z1 * x0 + w1 * y0,
+            x1 * y0 - y1 * x0 + z1 * w0 + w1 * z0,
+            -x1 * x0 - y1 * y0 - z1 * z0 + w1 * w0,
+        ]
+    )
+
+
+def quaternion_conjugate(quaternion: ArrayLike) -> Vector:
+    """The quaternion x y z w with its vector part turned round."""
+    return np.asarray(quaternion, dtype=float) * (-1.0, -1.0, -1.0, 1.0)
+
+
+def quaternion_inverse(quaternion: ArrayLike) -> Vector:
+    """The quaternion x y z w that undoes one."""
+    q = np.asarray(quaternion, dtype=float)
+    return quaternion_conjugate(q) / float(q @ q)
+
+
+def quaternion_slerp(
+    quat0: ArrayLike, quat1: ArrayLike, fraction: float, spin: int = 0, shortestpath: bool = True
+) -> Vector:
+    """The quaternion x y z w at a fraction of the way from one to another.
+
+    Args:
+        quat0: where the way begins.
+        quat1: where it ends.
+        fraction: 0 at its beginning, 1 at its end.
+        spin: half turns more on the way.
+        shortestpath: whether the way round with the smaller angle is taken.
+    """
+    q0, q1 = unit_vector(np.asarray(quat0, dtype=float)[:4]), unit_vector(np.asarray(quat1, dtype=float)[:4])
+    cosine = float(q0 @ q1)
+    if shortestpath and cosine < 0.0:
+        cosine, q1 = -cosine, -q1
+    angle = math.acos(max(-1.0, min(1.0, cosine))) + spin * math.pi
+    if abs(angle) < _EPSILON:
+        return q0
+    scale = 1.0 / math.sin(angle)
+    result: Vector = q0 * (math.sin((1.0 - fraction) * angle) * scale) + q1 * (math.sin(fraction * angle) * scale)
+    return result
+
+
+def random_quaternion(rand: Sequence[float] | None = None) -> Vector:
+    """A unit quaternion x y z w, all rotations alike (Shoemake 1992), from three numbers from 0 to 1 if given."""
+    u, v, w = np.random.default_rng().random(3) if rand is None else rand
+    outer, inner = math.sqrt(1.0 - u), math.sqrt(u)
+    first, second = 2.0 * math.pi * v, 2.0 * math.pi * w
+    return np.array(
+        [math.sin(first) * outer, math.cos(first) * outer, math.sin(second) * inner, math.cos(second) * inner]
+    )
+
+
+def random_rotation_matrix(rand: Sequence[float] | None = None) -> Matrix:
+    """A rotation, all alike, from three numbers from 0 to 1 if given."""
+    return quaternion_matrix(random_quaternion(rand))
+
+
+def random_vector(size: int) -> Vector:
+    """Numbers from 0 to 1."""
+    return np.random.default_rng().random(size)
+
+
+def inverse_matrix(matrix: ArrayLike) -> Matrix:
+    """The motion that undoes one."""
+    inverse: Matrix = np.linalg.inv(np.asarray(matrix, dtype=float))
+    return inverse
+
+
+def concatenate_matrices(*matrices: ArrayLike) -> Matrix:
+    """The product of matrices from left to right."""
+    product = np.eye(4)
+    for matrix in matrices:
+        product = product @ np.asarray(matrix, dtype=float)
+    return product
+
+
+def is_same_transform(matrix0: ArrayLike, matrix1: ArrayLike) -> bool:
+    """Whether two matrices are the same motion, up to a factor."""
+    m0, m1 = np.array(matrix0, dtype=float), np.array(matrix1, dtype=float)
+    return bool(np.allclose(m0 / m0[3, 3], m1 / m1[3, 3]))
+
+
+def vector_norm(data: ArrayLike, axis: int | None = None) -> Any:
+    """The length of a vector, or of the vectors along an axis."""
+    return np.linalg.norm(np.asarray(data, dtype=float), axis=axis)
+
+
+def unit_vector(data: ArrayLike, axis: int | None = None) -> Vector:
+    """The vector, or the vectors along an axis, with length 1."""
+    vectors = np.array(data, dtype=float)
+    lengths = np.linalg.norm(vectors, axis=axis, keepdims=axis is not None)
+    unit: Vector = vectors / lengths
+    return unit
+
+
+def compose_matrix(
+    scale: ArrayLike | None = None,
+    shear: ArrayLike | None = None,
+    angles: Sequence[float] | None = None,
+    translate: ArrayLike | None = None,
+    perspective: ArrayLike | None = None,
+) -> Matrix:
+    """The motion that scales, shears, turns (Euler angles ``sxyz``), moves, and projects, in this order.
+
+    Args:
+        scale: factors for x, y and z.
+        shear: factors for x-y, x-z and y-z.
+        angles: Euler angles.
+        translate: the vector.
+        perspective: the last row.
+    """
+    matrix = np.eye(4)
+    if perspective is not None:
+        matrix[3, :] = np.asarray(perspective, dtype=float)[:4]
+    if translate is not None:
+        matrix = matrix @ translation_matrix(translate)
+    if angles is not None:
+        matrix = matrix @ euler_matrix(angles[0], angles[1], angles[2])
+    if shear is not None:
+        sheared = np.eye(4)
+        sheared[0, 1], sheared[0, 2], sheared[1, 2] = np.asarray(shear, dtype=float)
+        matrix = matrix @ sheared
+    if scale is not None:
+        matrix = matrix @ np.diag([*np.asarray(scale, dtype=float)[:3], 1.0])
+    motion: Matrix = matrix / matrix[3, 3]
+    return motion
+
+
+def decompose_matrix(matrix: ArrayLike) -> tuple[Vector, list[float], list[float], Vector, Vector]:
+    """Scale, shear, Euler angles (``sxyz``), translation and last row of a matrix: the arguments of `compose_matrix`.
+
+    Raises:
+        ValueError: the matrix cannot be undone.
+    """
+    m = np.array(matrix, dtype=float)
+    if abs(m[3, 3]) < _EPSILON:
+        raise ValueError("M[3, 3] is zero")
+    m /= m[3, 3]
+    if abs(np.linalg.det(m[:3, :3])) < _EPSILON:
+        raise ValueError("Matrix is singular")
+    perspective = np.array([0.0, 0.0, 0.0, 1.0])
+    if np.abs(m[3, :3]).max() > _EPSILON:
+        affine = m.copy()
+        affine[3] = (0.0, 0.0, 0.0, 1.0)
+        perspective = m[3] @ np.linalg.inv(affine)
+    # Rotation times upper triangle, with positive scales unless the matrix mirrors.
+    rotation, triangle = np.linalg.qr(m[:3, :3])
+    signs = np.sign(np.diag(triangle))
+    rotation, triangle = rotation * signs, triangle * signs[:, None]
+    if np.linalg.det(rotation) < 0.0:
+        rotation, triangle = -rotation, -triangle
+    scale = np.diag(triangle).copy()
+    shear = [float(triangle[0, 1] / scale[1]), float(triangle[0, 2] / scale[2]), float(triangle[1, 2] / scale[2])]
+    return scale, shear, list(euler_from_matrix(rotation)), m[:3, 3].copy(), perspective
+
+
+def _read_axes(axes: str) -> tuple[bool, tuple[int, int, int]]:
+    """Whether the axes turn with the body, and the axes about which to turn, as if they did not."""
+    if axes not in _AXES:
+        raise ValueError(f"unknown axes '{axes}': write s or r and three axes, such as sxyz")
+    a, b, c = ("xyz".index(letter) for letter in axes[1:])
+    # Turns about axes that go with the body are those about fixed ones in the opposite order.
+    return (True, (c, b, a)) if axes[0] == "r" else (False, (a, b, c))
+
+
+def _about(angle: float, axis: int) -> Vector:
+    quaternion = np.zeros(4)
+    quaternion[axis], quaternion[3] = math.sin(angle / 2.0), math.cos(angle / 2.0)
+    return quaternion
+
+
+def _cardan_angles(m: Matrix, a: int, b: int, c: int) -> tuple[float, float, float]:
+    sign = 1.0 if (a, b, c) in _EVEN else -1.0
+    cosine = math.hypot(m[a, a], m[b, a])
+    second = math.atan2(-sign * m[c, a], cosine)
+    if cosine > _EPSILON:
+        return math.atan2(sign * m[c, b], m[c, c]), second, math.atan2(sign * m[b, a], m[a, a])
+    return math.atan2(-sign * m[b, c], m[b, b]), second, 0.0
+
+
+def _proper_angles(m: Matrix, a: int, b: int) -> tuple[float, float, float]:
+    c = 3 - a - b
+    sign = 1.0 if (a, b, c) in _EVEN else -1.0
+    sine = math.hypot(m[a, b], m[a, c])
+    second = sign * math.atan2(sine, m[a, a])
+    if sine > _EPSILON:
+        return sign * math.atan2(m[a, b], m[a, c]), second, sign * math.atan2(m[b, a], -m[c, a])
+    return sign * math.atan2(-m[b, c], m[b, b]), second, 0.0
+
+
+def _fixed_vector(matrix: Matrix) -> Vector:
+    """The real vector, of unit length, that a matrix leaves as it is."""
+    values, vectors = np.linalg.eig(matrix)
+    fixed = np.flatnonzero(np.abs(np.real(values) - 1.0) < 1e-8)
+    if not fixed.size:
+        raise ValueError("no unit eigenvector corresponding to eigenvalue 1")
+    vector: Vector = np.real(vectors[:, fixed[-1]])
+    return vector

@@ -1,0 +1,93 @@
+"""What was published on a topic during a test."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from linkwright.graph import (
+    DurabilityPolicy,
+    Graph,
+    HistoryPolicy,
+    MessageInfo,
+    Node,
+    QoSProfile,
+    ReliabilityPolicy,
+    Subscription,
+)
+
+
+class Recording:
+    """The messages of a topic, in the order in which they came; made by ``record`` of a stepped graph.
+
+    It subscribes as soon as the type of the topic is known, which is when somebody publishes or subscribes to it, so
+    it may be made before the node under test. What a transient local publisher keeps is part of it.
+
+    Attributes:
+        topic: the topic's absolute name.
+        messages: the messages.
+        times: when each came, in seconds since the beginning of the test.
+    """
+
+    def __init__(self, graph: Graph, node: Node, topic: str, msg_type: Any = None) -> None:
+        self.topic = node.resolve_topic_name(topic)
+        self.messages: list[Any] = []
+        self.times: list[float] = []
+        self._graph = graph
+        self._node = node
+        self._subscription: Subscription[Any] | None = None
+        if msg_type is None:
+            graph.watch(self._look)
+            self._look()
+        else:
+            self._subscribe(msg_type)
+
+    @property
+    def last(self) -> Any:
+        """The message that came last.
+
+        Raises:
+            AssertionError: none came.
+        """
+        if not self.messages:
+            raise AssertionError(f"nothing was published on '{self.topic}'")
+        return self.messages[-1]
+
+    def clear(self) -> None:
+        """Forget what came so far."""
+        self.messages.clear()
+        self.times.clear()
+
+    def __len__(self) -> int:
+        return len(self.messages)
+
+    def __iter__(self) -> Iterator[Any]:
+        return iter(self.messages)
+
+    def __getitem__(self, index: int) -> Any:
+        return self.messages[index]
+
+    def __repr__(self) -> str:
+        return f"<{len(self.messages)} messages of {self.topic}>"
+
+    def _look(self) -> None:
+        if self._subscription is None:
+            bus = self._graph.bus
+            for endpoint in (*bus.publishers(self.topic), *bus.subscriptions(self.topic)):
+                self._subscribe(endpoint.type_name)
+                return
+
+    def _subscribe(self, msg_type: Any) -> None:
+        self._graph.unwatch(self._look)
+        offered = [publisher.qos_profile.durability for publisher in self._graph.bus.publishers(self.topic)]
+        keeps = bool(offered) and all(each is DurabilityPolicy.TRANSIENT_LOCAL for each in offered)
+        qos = QoSProfile(
+            history=HistoryPolicy.KEEP_ALL,
+            reliability=ReliabilityPolicy.BEST_EFFORT,
+            durability=DurabilityPolicy.TRANSIENT_LOCAL if keeps else DurabilityPolicy.VOLATILE,
+        )
+        self._subscription = self._node.create_subscription(msg_type, self.topic, self._keep, qos)
+
+    def _keep(self, message: Any, info: MessageInfo) -> None:  # noqa: ARG002  # with it the wire's bytes are read, too
+        self.messages.append(message)
+        self.times.append(self._graph.timebase.steady_ns() / 1e9)

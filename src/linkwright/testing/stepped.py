@@ -1,0 +1,183 @@
+"""A graph for tests in coroutines, with time that passes in steps."""
+
+from __future__ import annotations
+
+from types import TracebackType
+from typing import TYPE_CHECKING, Any
+
+from linkwright.graph import (
+    DEFAULT_QOS,
+    Client,
+    Entity,
+    Graph,
+    JumpClock,
+    LogRecord,
+    Node,
+    Publisher,
+    QoSProfile,
+)
+from linkwright.testing.recording import Recording
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
+
+_NODE = "test"
+
+
+class AsyncSteppedGraph:
+    """A graph whose time passes only in `advance`: what timers, rates and throttles do in an hour takes milliseconds.
+
+    Everything runs in one thread, in an order that is the same each time. An error of a callback is raised by the
+    step in which it happens. For tests that are no coroutines there is `SteppedGraph`.
+
+    Example::
+
+        async def test_the_talker_counts():
+            async with AsyncSteppedGraph() as test:
+                chatter = test.record("/chatter")
+                node = test.create_node("talker")
+                publisher = node.create_publisher(String, "chatter", 10)
+                node.create_timer(0.5, lambda: publisher.publish(String(data=f"Hello: {len(chatter)}")))
+                await test.advance(3600.0)
+                assert len(chatter) == 7200
+                assert chatter.last.data == "Hello: 7199"
+
+    Args:
+        start: the time of day at the beginning, in seconds since the epoch.
+        strict: whether errors of callbacks are raised by the step in which they happen; else they are only logged.
+
+    Attributes:
+        clock: the clock; ``clock.jump(seconds)`` sets the time of day alone, as a corrected system clock.
+        graph: the graph.
+        node: a node of the test's own, ``/test``, to make clients and the like with.
+        log: what nodes said.
+        errors: what callbacks raised, where that is not `strict`.
+    """
+
+    def __init__(self, *, start: float = 1_700_000_000.0, strict: bool = True) -> None:
+        self.clock = JumpClock(round(start * 1e9))
+        self.log: list[LogRecord] = []
+        self.errors: list[BaseException] = []
+        self._strict = strict
+        self._graph: Graph | None = None
+        self._node: Node | None = None
+        self._publishers: dict[str, Publisher[Any]] = {}
+        self._clients: dict[str, Client[Any, Any]] = {}
+
+    async def __aenter__(self) -> Self:
+        self._graph = Graph(clock=self.clock, on_log=self.log.append)
+        assert self._graph.dispatcher is not None, "a coroutine runs on a loop"
+        self._graph.dispatcher.on_error = self._failed
+        return self
+
+    async def __aexit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        await self.graph.close()
+
+    @property
+    def graph(self) -> Graph:
+        """The graph.
+
+        Raises:
+            RuntimeError: the test has not begun.
+        """
+        if self._graph is None:
+            raise RuntimeError("use it as a context manager")
+        return self._graph
+
+    @property
+    def node(self) -> Node:
+        """A node of the test's own."""
+        if self._node is None:
+            self._node = self.graph.create_node(_NODE)
+        return self._node
+
+    @property
+    def now(self) -> float:
+        """Seconds since the beginning of the test."""
+        return self.clock.steady_ns() / 1e9
+
+    def create_node(self, name: str, **options: Any) -> Node:
+        """A node in the graph; arguments are those of ``Graph.create_node``."""
+        return self.graph.create_node(name, **options)
+
+    def record(self, topic: str, msg_type: Any = None) -> Recording:
+        """Keep what is published on a topic from now on.
+
+        Args:
+            topic: the topic's name.
+            msg_type: its message class; found out when somebody publishes, where it is left out.
+        """
+        return Recording(self.graph, self.node, topic, msg_type)
+
+    def publish(self, topic: str, message: Any, qos_profile: QoSProfile | int = DEFAULT_QOS) -> None:
+        """Publish a message; those who receive it do so in the next step. The publisher stays for the next message."""
+        publisher = self._publishers.get(topic)
+        if publisher is None:
+            publisher = self.node.create_publisher(type(message), topic, qos_profile)
+            self._publishers[topic] = publisher
+        publisher.publish(message)
+
+    async def settle(self) -> None:
+        """Run everything that is ready, and what comes of it, while time stands still.
+
+        Raises:
+            Exception: the error of a callback.
+        """
+        await self.graph.settle()
+        self._raise()
+
+    spin = settle
+
+    async def advance(self, seconds: float) -> None:
+        """Let time pass. Each timer is called when it is due, and what comes of it is done before the next.
+
+        Raises:
+            Exception: the error of a callback; time has passed all the same.
+        """
+        await self.clock.advance(seconds)
+        self._raise()
+
+    async def call(self, service: str, request: Any, *, timeout: float = 0.0) -> Any:
+        """Ask a service of the graph.
+
+        Args:
+            service: the service's name.
+            request: the request.
+            timeout: how many seconds may pass until the response is there.
+
+        Returns:
+            The response.
+
+        Raises:
+            LookupError: there is no service of that name.
+            TimeoutError: the response did not come.
+        """
+        client = self._client(service)
+        future = client.call_async(request)
+        await self.settle()
+        if not future.ended() and timeout > 0:
+            await self.advance(timeout)
+        if not future.ended():
+            client.remove_pending_request(future)
+            raise TimeoutError(f"service '{client.srv_name}' has not answered within {timeout:g} s")
+        return future.result()
+
+    def _client(self, service: str) -> Client[Any, Any]:
+        name = self.node.resolve_service_name(service)
+        client = self._clients.get(name)
+        if client is None:
+            types = dict(self.graph.get_service_names_and_types())
+            if name not in types:
+                raise LookupError(f"there is no service '{name}' in the graph")
+            client = self._clients[name] = self.node.create_client(types[name][0], name)
+        return client
+
+    def _failed(self, entity: Entity, error: BaseException) -> None:
+        entity.report(error)
+        self.errors.append(error)
+
+    def _raise(self) -> None:
+        if self._strict and self.errors:
+            raise self.errors.pop(0)

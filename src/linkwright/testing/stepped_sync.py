@@ -1,0 +1,164 @@
+"""A graph for tests that are plain functions, with time that passes in steps."""
+
+from __future__ import annotations
+
+import asyncio
+from types import TracebackType
+from typing import TYPE_CHECKING, Any
+
+from linkwright.graph import DEFAULT_QOS, Graph, JumpClock, LogRecord, Node, QoSProfile
+from linkwright.testing.recording import Recording
+from linkwright.testing.stepped import AsyncSteppedGraph
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
+
+    from linkwright.standins.rclpy_api.context import Context
+
+
+class SteppedGraph:
+    """`AsyncSteppedGraph` for tests that are no coroutines; it has an event loop of its own, in the test's thread.
+
+    >>> from linkwright.messages import String
+    >>> with SteppedGraph() as test:
+    ...     chatter = test.record("/chatter")
+    ...     node = test.create_node("talker")
+    ...     publisher = node.create_publisher(String, "chatter", 10)
+    ...     timer = node.create_timer(0.5, lambda: publisher.publish(String(data=f"Hello: {len(chatter)}")))
+    ...     test.advance(3600.0)
+    ...     len(chatter), chatter.last.data
+    (7200, 'Hello: 7199')
+
+    A node that is written for rclpy is tested in the same way: after `init_rclpy` nodes live in the test's graph, and
+    their callbacks are run by its steps; nothing has to spin::
+
+        with SteppedGraph() as test:
+            test.init_rclpy()
+            chatter = test.record("/chatter")
+            MinimalPublisher()  # an rclpy.node.Node
+            test.advance(10.0)
+            assert len(chatter) == 20
+
+    Args:
+        start: the time of day at the beginning, in seconds since the epoch.
+        strict: whether errors of callbacks are raised by the step in which they happen; else they are only logged.
+    """
+
+    def __init__(self, *, start: float = 1_700_000_000.0, strict: bool = True) -> None:
+        self._steps = AsyncSteppedGraph(start=start, strict=strict)
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._context: Context | None = None
+
+    def __enter__(self) -> Self:
+        self._loop = asyncio.new_event_loop()
+        self._run(self._steps.__aenter__())
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        assert self._loop is not None, "it was entered"
+        try:
+            if self._context is not None:
+                from linkwright.standins.rclpy_api.session import try_shutdown
+
+                try_shutdown()
+            self._run(self._steps.__aexit__(kind, error, trace))
+        finally:
+            self._loop.run_until_complete(self._loop.shutdown_asyncgens())
+            self._loop.run_until_complete(self._loop.shutdown_default_executor())
+            self._loop.close()
+            self._loop = None
+
+    @property
+    def graph(self) -> Graph:
+        """The graph."""
+        return self._steps.graph
+
+    @property
+    def clock(self) -> JumpClock:
+        """The clock; ``clock.jump(seconds)`` sets the time of day alone."""
+        return self._steps.clock
+
+    @property
+    def node(self) -> Node:
+        """A node of the test's own, ``/test``."""
+        return self._steps.node
+
+    @property
+    def log(self) -> list[LogRecord]:
+        """What nodes said."""
+        return self._steps.log
+
+    @property
+    def errors(self) -> list[BaseException]:
+        """What callbacks raised, where that is not raised by the step."""
+        return self._steps.errors
+
+    @property
+    def now(self) -> float:
+        """Seconds since the beginning of the test."""
+        return self._steps.now
+
+    def init_rclpy(self, args: list[str] | None = None) -> Context:
+        """Do what ``rclpy.init`` does, with the test's graph in place of one of its own; it ends with the test.
+
+        Args:
+            args: the command line, with ROS arguments; none when left out.
+
+        Returns:
+            The default context of rclpy, in which nodes are made.
+        """
+        from linkwright.standins.rclpy_api.session import use_graph
+
+        self._context = use_graph(self.graph, args or [])
+        return self._context
+
+    def create_node(self, name: str, **options: Any) -> Node:
+        """A node in the graph; arguments are those of ``Graph.create_node``."""
+        return self._steps.create_node(name, **options)
+
+    def record(self, topic: str, msg_type: Any = None) -> Recording:
+        """Keep what is published on a topic from now on; see `AsyncSteppedGraph.record`."""
+        return self._steps.record(topic, msg_type)
+
+    def publish(self, topic: str, message: Any, qos_profile: QoSProfile | int = DEFAULT_QOS) -> None:
+        """Publish a message; those who receive it do so in the next step."""
+        self._steps.publish(topic, message, qos_profile)
+
+    def settle(self) -> None:
+        """Run everything that is ready, and what comes of it, while time stands still.
+
+        Raises:
+            Exception: the error of a callback.
+        """
+        self._run(self._steps.settle())
+
+    spin = settle
+
+    def advance(self, seconds: float) -> None:
+        """Let time pass; see `AsyncSteppedGraph.advance`.
+
+        Raises:
+            Exception: the error of a callback; time has passed all the same.
+        """
+        self._run(self._steps.advance(seconds))
+
+    def call(self, service: str, request: Any, *, timeout: float = 0.0) -> Any:
+        """Ask a service of the graph; see `AsyncSteppedGraph.call`.
+
+        Raises:
+            LookupError: there is no service of that name.
+            TimeoutError: the response did not come.
+        """
+        return self._run(self._steps.call(service, request, timeout=timeout))
+
+    def run(self, coroutine: Any) -> Any:
+        """Run a coroutine of the test on the graph's loop, and give what it returns; time stands still."""
+        return self._run(coroutine)
+
+    def _run(self, coroutine: Any) -> Any:
+        if self._loop is None:
+            coroutine.close()
+            raise RuntimeError("use it as a context manager")
+        return self._loop.run_until_complete(coroutine)

@@ -1,0 +1,33 @@
+"""The interface files of a package: ``msg/NAME.msg``, ``srv/NAME.srv``, ``action/NAME.action``, and ``.idl`` files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+_ENDINGS = {"msg": (".msg", ".idl"), "srv": (".srv", ".idl"), "action": (".action", ".idl")}
+
+
+def interface_files(share: Path, kind: str) -> dict[str, Path]:
+    """The interfaces of one kind that a package defines.
+
+    Args:
+        share: the package's share folder, or its source folder.
+        kind: ``msg``, ``srv`` or ``action``.
+
+    Returns:
+        Name -> file. An installed package has each interface also as IDL made from it: that one is left out.
+    """
+    found: dict[str, Path] = {}
+    for ending in _ENDINGS[kind]:
+        for path in sorted(share.glob(f"{kind}/*{ending}")):
+            found.setdefault(path.stem, path)
+    return found
+
+
+def interface_file(share: Path, kind: str, name: str) -> Path | None:
+    """The file that defines one interface of a package, or None."""
+    for ending in _ENDINGS[kind]:
+        path = share / kind / (name + ending)
+        if path.is_file():
+            return path
+    return None

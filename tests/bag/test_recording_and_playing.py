@@ -1,0 +1,241 @@
+"""Recorder and player on a clock that the test moves."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator
+from pathlib import Path
+
+import pytest
+
+from linkwright.bag import BagReader, BagWriter, Player, PlayOptions, Recorder, TopicSelection
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph import DEFAULT_QOS, DESCRIPTION_QOS, SENSOR_DATA_QOS, Graph, JumpClock, LogRecord, Node
+from linkwright.messages import String, deserialize, get_message, serialize
+
+START = 1_700_000_000_000_000_000
+SECOND = 1_000_000_000
+
+
+@pytest.fixture
+def clock() -> JumpClock:
+    return JumpClock(START)
+
+
+@pytest.fixture
+def log() -> list[LogRecord]:
+    return []
+
+
+@pytest.fixture
+async def graph(clock: JumpClock, log: list[LogRecord]) -> AsyncIterator[Graph]:
+    graph = Graph(clock=clock, on_log=log.append)
+    yield graph
+    await graph.close()
+    assert asyncio.all_tasks() == {asyncio.current_task()}
+
+
+def texts(path: Path) -> list[str]:
+    with BagReader(path) as bag:
+        return [deserialize(data, String).data for topic, _, data in bag.messages() if topic == "/chatter"]
+
+
+async def test_topics_are_recorded_with_the_times_of_their_messages(
+    graph: Graph, clock: JumpClock, tmp_path: Path
+) -> None:
+    publisher = graph.create_node("talker").create_publisher(String, "chatter", DEFAULT_QOS)
+    recorder = Recorder(graph.create_node("recorder"), TopicSelection(names=["/chatter"]), BagWriter(tmp_path / "bag"))
+    for number in range(4):
+        publisher.publish(String(data=str(number)))
+        await clock.advance(0.25)
+    recorder.close()
+    assert recorder.message_count == 4
+    with BagReader(tmp_path / "bag") as bag:
+        assert [stamp - START for _, stamp, _ in bag.messages()] == [0, SECOND // 4, SECOND // 2, SECOND * 3 // 4]
+    assert texts(tmp_path / "bag") == ["0", "1", "2", "3"]
+
+
+async def test_topics_that_appear_later_are_recorded_until_all_are_there(
+    graph: Graph, clock: JumpClock, tmp_path: Path, log: list[LogRecord]
+) -> None:
+    recorder = Recorder(graph.create_node("recorder"), TopicSelection(names=["/chatter"]), BagWriter(tmp_path / "bag"))
+    await clock.advance(1)
+    publisher = graph.create_node("talker").create_publisher(String, "chatter", DEFAULT_QOS)
+    await clock.advance(0.2)
+    publisher.publish(String(data="late"))
+    await clock.advance(0.1)
+    recorder.close()
+    assert texts(tmp_path / "bag") == ["late"]
+    said = [record.text for record in log if record.node == "recorder"]
+    assert said == [
+        "Listening for topics...",
+        "Subscribed to topic '/chatter'",
+        "All requested topics are subscribed. Stopping discovery...",
+        "Recording stopped",
+    ]
+
+
+async def test_what_was_published_before_is_recorded_where_it_is_kept(
+    graph: Graph, clock: JumpClock, tmp_path: Path
+) -> None:
+    publisher = graph.create_node("talker").create_publisher(String, "chatter", DESCRIPTION_QOS)
+    publisher.publish(String(data="before"))
+    recorder = Recorder(graph.create_node("recorder"), TopicSelection(everything=True), BagWriter(tmp_path / "bag"))
+    await clock.advance(0.1)
+    recorder.close()
+    assert texts(tmp_path / "bag") == ["before"]
+
+
+async def test_while_paused_nothing_is_written(graph: Graph, clock: JumpClock, tmp_path: Path) -> None:
+    publisher = graph.create_node("talker").create_publisher(String, "chatter", SENSOR_DATA_QOS)
+    recorder = Recorder(
+        graph.create_node("recorder"), TopicSelection(everything=True), BagWriter(tmp_path / "bag"), paused=True
+    )
+    for text in ("no", "yes"):
+        publisher.publish(String(data=text))
+        await clock.advance(0.1)
+        recorder.toggle_paused()
+    recorder.close()
+    assert texts(tmp_path / "bag") == ["yes"]
+
+
+async def test_an_unknown_type_is_told_once(
+    graph: Graph, clock: JumpClock, tmp_path: Path, log: list[LogRecord], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    node = graph.create_node("recorder")
+    monkeypatch.setattr(
+        type(node), "get_topic_names_and_types", lambda _: [("/odd", ["nowhere_msgs/msg/Odd"])], raising=True
+    )
+    recorder = Recorder(node, TopicSelection(everything=True), BagWriter(tmp_path / "bag"), without_publishers=True)
+    await clock.advance(1)
+    recorder.close()
+    assert sum("nowhere_msgs" in record.text for record in log) == 1
+
+
+def record(folder: Path, times: list[float]) -> BagReader:
+    """A recording of one message at each of the times, seconds after its start."""
+    with BagWriter(folder / "bag") as writer:
+        writer.add_topic("/chatter", "std_msgs/msg/String", [DEFAULT_QOS])
+        for number, seconds in enumerate(times):
+            writer.write("/chatter", round(seconds * SECOND) + SECOND, serialize(String(data=str(number))))
+    return BagReader(folder / "bag")
+
+
+class Listener:
+    """Notes what comes on ``/chatter`` and when, in seconds since the beginning."""
+
+    def __init__(self, graph: Graph, clock: JumpClock, topic: str = "chatter") -> None:
+        self.heard: list[tuple[float, str]] = []
+        self._clock = clock
+        graph.create_node("listener").create_subscription(String, topic, self._hear, DEFAULT_QOS)
+
+    def _hear(self, message: String) -> None:
+        self.heard.append((round(self._clock.steady_ns() / SECOND, 3), message.data))
+
+
+@pytest.fixture
+def player_node(graph: Graph) -> Node:
+    return graph.create_node("player")
+
+
+async def test_messages_come_at_the_distances_at_which_they_were_received(
+    graph: Graph, clock: JumpClock, player_node: Node, tmp_path: Path
+) -> None:
+    listener = Listener(graph, clock)
+    with record(tmp_path, [0, 0.5, 0.5, 2]) as bag:
+        player = Player(player_node, bag, PlayOptions())
+        player.start()
+        await clock.advance(1.9)
+        assert not player.finished
+        await clock.advance(0.2)
+    assert listener.heard == [(0.0, "0"), (0.5, "1"), (0.5, "2"), (2.0, "3")]
+    assert player.finished
+    assert player.message_count == 4
+
+
+async def test_rate_delay_offset_and_duration(
+    graph: Graph, clock: JumpClock, player_node: Node, tmp_path: Path
+) -> None:
+    listener = Listener(graph, clock)
+    with record(tmp_path, [0, 1, 2, 3, 4]) as bag:
+        options = PlayOptions(rate=2.0, delay=1.0, start_offset=1.0, duration=2.0)
+        player = Player(player_node, bag, options)
+        player.start()
+        await clock.advance(10)
+    assert listener.heard == [(1.0, "1"), (1.5, "2"), (2.0, "3")]
+
+
+async def test_pausing_stops_the_time_of_the_recording(
+    graph: Graph, clock: JumpClock, player_node: Node, tmp_path: Path
+) -> None:
+    listener = Listener(graph, clock)
+    with record(tmp_path, [0, 1, 2]) as bag:
+        player = Player(player_node, bag, PlayOptions())
+        player.start()
+        await clock.advance(0.5)
+        player.toggle_paused()
+        await clock.advance(5)
+        assert len(listener.heard) == 1
+        player.play_next()
+        await clock.advance(0)
+        assert len(listener.heard) == 2
+        player.toggle_paused()
+        await clock.advance(5)
+    assert listener.heard == [(0.0, "0"), (5.5, "1"), (6.5, "2")]
+
+
+async def test_the_rate_may_change_on_the_way(
+    graph: Graph, clock: JumpClock, player_node: Node, tmp_path: Path
+) -> None:
+    listener = Listener(graph, clock)
+    with record(tmp_path, [0, 1, 2, 3]) as bag:
+        player = Player(player_node, bag, PlayOptions())
+        player.start()
+        await clock.advance(1.5)
+        player.set_rate(5.0)
+        await clock.advance(1)
+        with pytest.raises(ValueError, match="positive"):
+            player.set_rate(0)
+    assert listener.heard == [(0.0, "0"), (1.0, "1"), (1.6, "2"), (1.8, "3")]
+
+
+async def test_a_loop_begins_anew_until_it_is_closed(
+    graph: Graph, clock: JumpClock, player_node: Node, tmp_path: Path
+) -> None:
+    listener = Listener(graph, clock)
+    with record(tmp_path, [0, 1]) as bag:
+        player = Player(player_node, bag, PlayOptions(loop=True, delay=0.5))
+        player.start()
+        await clock.advance(4)
+        player.close()
+        count = len(listener.heard)
+        await clock.advance(10)
+    assert listener.heard[:4] == [(0.5, "0"), (1.5, "1"), (2.0, "0"), (3.0, "1")]
+    assert len(listener.heard) == count
+
+
+async def test_the_time_of_the_recording_on_clock(
+    graph: Graph, clock: JumpClock, player_node: Node, tmp_path: Path
+) -> None:
+    clocks: list[int] = []
+    graph.create_node("watch").create_subscription(
+        get_message("rosgraph_msgs/msg/Clock"), "/clock", lambda m: clocks.append(m.clock.nanoseconds), 10
+    )
+    with record(tmp_path, [0, 2]) as bag:
+        Player(player_node, bag, PlayOptions(clock_hz=4, rate=2)).start()
+        await clock.advance(1)
+    assert clocks == [SECOND * 3 // 2, SECOND * 2, SECOND * 5 // 2, SECOND * 3]
+
+
+async def test_a_topic_that_is_not_there_is_told_before_anything_is_played(player_node: Node, tmp_path: Path) -> None:
+    with record(tmp_path, [0]) as bag, pytest.raises(LinkwrightError, match="'/chater'"):
+        Player(player_node, bag, PlayOptions(topics=["/chater"]))
+
+
+async def test_a_topic_may_be_left_out(graph: Graph, clock: JumpClock, player_node: Node, tmp_path: Path) -> None:
+    with record(tmp_path, [0]) as bag:
+        player = Player(player_node, bag, PlayOptions(without=["/chatter"]))
+        player.start()
+        await clock.advance(1)
+    assert player.finished
+    assert player.publishers == ()

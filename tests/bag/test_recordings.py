@@ -1,0 +1,267 @@
+"""Recordings: what is written is read again; damaged, missing and foreign files are told."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from rosbags.highlevel import AnyReader
+from rosbags.typesys import Stores, get_typestore
+
+from linkwright.bag import STORAGES, BagReader, BagWriter, TopicSelection, summary_text
+from linkwright.bag.qos import from_bag, overrides_of, profile_for_playing, profile_for_recording, to_bag
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph import (
+    DEFAULT_QOS,
+    DESCRIPTION_QOS,
+    SENSOR_DATA_QOS,
+    Duration,
+    DurabilityPolicy,
+    HistoryPolicy,
+    QoSProfile,
+    ReliabilityPolicy,
+)
+from linkwright.messages import JointState, String, serialize
+
+START = 1_700_000_000_000_000_000
+
+
+def write(folder: Path, storage: str = "mcap", count: int = 3, **options: bool) -> Path:
+    """A recording of two topics."""
+    path = folder / "bag"
+    with BagWriter(path, storage, **options) as writer:
+        writer.add_topic("/chatter", "std_msgs/msg/String", [DESCRIPTION_QOS])
+        writer.add_topic("/joint_states", "sensor_msgs/msg/JointState", [DEFAULT_QOS, SENSOR_DATA_QOS])
+        for number in range(count):
+            writer.write("/chatter", START + number * 1_000_000_000, serialize(String(data=f"number {number}")))
+        writer.write("/joint_states", START + 500_000_000, serialize(JointState(name=["a"], position=[0.5])))
+    return path
+
+
+def code_of(error: pytest.ExceptionInfo[LinkwrightError]) -> str:
+    (diagnostic,) = error.value.diagnostics
+    return diagnostic.code
+
+
+@pytest.mark.parametrize("storage", STORAGES)
+def test_what_is_written_is_read_in_the_order_of_its_times(tmp_path: Path, storage: str) -> None:
+    with BagReader(write(tmp_path, storage)) as bag:
+        assert bag.storage == storage
+        assert [(topic.name, topic.type_name, topic.count) for topic in bag.topics] == [
+            ("/chatter", "std_msgs/msg/String", 3),
+            ("/joint_states", "sensor_msgs/msg/JointState", 1),
+        ]
+        assert bag.topics[0].offered_qos == (DESCRIPTION_QOS,)
+        assert bag.topics[1].offered_qos == (DEFAULT_QOS, SENSOR_DATA_QOS)
+        assert (bag.start_ns, bag.end_ns) == (START, START + 2_000_000_000)
+        found = list(bag.messages())
+    assert [(topic, stamp - START) for topic, stamp, _ in found] == [
+        ("/chatter", 0),
+        ("/joint_states", 500_000_000),
+        ("/chatter", 1_000_000_000),
+        ("/chatter", 2_000_000_000),
+    ]
+    assert found[0][2][:4] == b"\x00\x01\x00\x00"
+
+
+@pytest.mark.parametrize("storage", STORAGES)
+def test_another_reader_understands_types_and_content(tmp_path: Path, storage: str) -> None:
+    path = write(tmp_path, storage)
+    with AnyReader([path], default_typestore=get_typestore(Stores.ROS2_HUMBLE)) as reader:
+        texts = [
+            reader.deserialize(data, connection.msgtype).data
+            for connection, _, data in reader.messages()
+            if connection.topic == "/chatter"
+        ]
+        hashes = {connection.topic: connection.digest for connection in reader.connections}
+    assert texts == ["number 0", "number 1", "number 2"]
+    assert hashes["/chatter"] == "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18"
+
+
+def test_a_compressed_recording_is_smaller_and_reads_the_same(tmp_path: Path) -> None:
+    (tmp_path / "plain").mkdir()
+    (tmp_path / "small").mkdir()
+    plain, small = write(tmp_path / "plain", count=200), write(tmp_path / "small", count=200, compressed=True)
+    with BagReader(plain) as one, BagReader(small) as other:
+        assert list(one.messages()) == list(other.messages())
+        assert other.files[0].stat().st_size < one.files[0].stat().st_size / 2
+
+
+def test_messages_of_some_topics_from_some_time_on(tmp_path: Path) -> None:
+    with BagReader(write(tmp_path)) as bag:
+        assert [stamp - START for _, stamp, _ in bag.messages(["/chatter"], START + 1)] == [
+            1_000_000_000,
+            2_000_000_000,
+        ]
+
+
+@pytest.mark.parametrize("storage", STORAGES)
+def test_a_recording_whose_program_was_killed_is_read_from_its_file(tmp_path: Path, storage: str) -> None:
+    path = tmp_path / "bag"
+    program = f"""
+import os
+from linkwright.bag import BagWriter
+from linkwright.messages import String, serialize
+writer = BagWriter({str(path)!r}, {storage!r})
+writer.add_topic("/chatter", "std_msgs/msg/String")
+for number in range(5):
+    writer.write("/chatter", {START} + number, serialize(String(data=str(number))))
+writer.flush()
+os._exit(1)
+"""
+    subprocess.run([sys.executable, "-c", program], check=False, timeout=60)
+    assert not (path / "metadata.yaml").exists()
+    with BagReader(path) as bag:
+        assert len(list(bag.messages())) == 5
+
+
+def test_an_empty_recording(tmp_path: Path) -> None:
+    BagWriter(tmp_path / "bag").close()
+    with BagReader(tmp_path / "bag") as bag:
+        assert list(bag.messages()) == []
+        assert "Messages:          0" in summary_text(bag)
+
+
+def test_summary(tmp_path: Path) -> None:
+    with BagReader(write(tmp_path)) as bag:
+        lines = summary_text(bag).splitlines()
+        assert summary_text(bag, topic_names_only=True) == "/chatter\n/joint_states\n"
+    assert lines[0] == ""
+    assert lines[1] == "Files:             bag.mcap"
+    assert lines[3] == "Storage id:        mcap"
+    assert lines[4] == "Duration:          2.000000000s"
+    assert lines[5].endswith("(1700000000.000000000)")
+    assert lines[7] == "Messages:          4"
+    assert lines[8] == (
+        "Topic information: Topic: /chatter | Type: std_msgs/msg/String | Count: 3 | Serialization Format: cdr"
+    )
+    assert lines[9].startswith(" " * 19 + "Topic: /joint_states | ")
+
+
+def test_nothing_there(tmp_path: Path) -> None:
+    with pytest.raises(LinkwrightError) as error:
+        BagReader(tmp_path / "none")
+    assert code_of(error) == "BAG101"
+
+
+def test_a_folder_that_is_no_recording(tmp_path: Path) -> None:
+    with pytest.raises(LinkwrightError, match=r"no metadata\.yaml"):
+        BagReader(tmp_path)
+
+
+@pytest.mark.parametrize("content", [b"", b"\x89MCAP", b"not a recording at all", b"\x89MCAP0\r\n" + bytes(100)])
+def test_a_damaged_file(tmp_path: Path, content: bytes) -> None:
+    path = tmp_path / "broken.mcap"
+    path.write_bytes(content)
+    with pytest.raises(LinkwrightError) as error:
+        BagReader(path)
+    assert code_of(error) == "BAG102"
+
+
+@pytest.mark.parametrize(("cut", "left"), [(1, 300), (700, 300), (3000, 300), (10_000, 100), (20_000, 0)])
+def test_a_file_that_was_cut_off_gives_the_chunks_that_are_whole(tmp_path: Path, cut: int, left: int) -> None:
+    path = tmp_path / "bag"
+    with BagWriter(path) as writer:
+        writer.add_topic("/chatter", "std_msgs/msg/String")
+        for number in range(300):
+            writer.write("/chatter", START + number, serialize(String(data=f"number {number}")))
+            if number % 100 == 99:
+                writer.flush()
+    file = path / "bag.mcap"
+    whole = file.read_bytes()
+    file.write_bytes(whole[:-cut])
+    with BagReader(path) as bag:
+        stamps = [stamp - START for _, stamp, _ in bag.messages()]
+    assert stamps == list(range(left))
+
+
+def test_a_folder_that_exists_is_not_written_over(tmp_path: Path) -> None:
+    write(tmp_path)
+    with pytest.raises(LinkwrightError) as error:
+        BagWriter(tmp_path / "bag")
+    assert code_of(error) == "BAG105"
+
+
+def test_an_unknown_topic_is_told_with_the_nearest(tmp_path: Path) -> None:
+    with BagReader(write(tmp_path)) as bag, pytest.raises(LinkwrightError) as error:
+        bag.messages(["/chater"])
+    assert code_of(error) == "BAG103"
+    assert "/chatter" in (error.value.diagnostics[0].hint or "")
+
+
+@pytest.mark.parametrize(
+    ("selection", "taken"),
+    [
+        (TopicSelection(everything=True), ["/a", "/b/c"]),
+        (TopicSelection(everything=True, hidden=True), ["/a", "/b/c", "/b/_hidden"]),
+        (TopicSelection(names=["/a", "/b/_hidden"]), ["/a", "/b/_hidden"]),
+        (TopicSelection(types=["std_msgs/msg/String"]), ["/a"]),
+        (TopicSelection(pattern="^/b"), ["/b/c"]),
+        (TopicSelection(everything=True, without_pattern="b"), ["/a"]),
+        (TopicSelection(everything=True, without_names=["/a"]), ["/b/c"]),
+        (TopicSelection(everything=True, without_types=["std_msgs/msg/String"]), ["/b/c"]),
+        (TopicSelection(names=["/a"], without_pattern="a"), []),
+    ],
+)
+def test_selection(selection: TopicSelection, taken: list[str]) -> None:
+    topics = [("/a", "std_msgs/msg/String"), ("/b/c", "std_msgs/msg/Int32"), ("/b/_hidden", "std_msgs/msg/Int32")]
+    assert [name for name, kind in topics if selection.takes(name, kind)] == taken
+    assert not selection.is_empty
+
+
+def test_a_wrong_pattern_is_told() -> None:
+    with pytest.raises(LinkwrightError) as error:
+        TopicSelection(pattern="(")
+    assert code_of(error) == "BAG104"
+
+
+def test_profiles_survive_a_recording() -> None:
+    qos = QoSProfile(
+        history=HistoryPolicy.KEEP_ALL,
+        reliability=ReliabilityPolicy.BEST_EFFORT,
+        durability=DurabilityPolicy.TRANSIENT_LOCAL,
+        deadline=Duration(seconds=1.5),
+        lifespan=Duration(nanoseconds=7),
+    )
+    again = from_bag(to_bag(qos))
+    for policy in ("history", "reliability", "durability", "deadline", "lifespan", "liveliness"):
+        assert getattr(again, policy) == getattr(qos, policy)
+
+
+def test_recording_asks_for_no_more_than_all_publishers_offer() -> None:
+    assert profile_for_recording([DEFAULT_QOS, SENSOR_DATA_QOS]).reliability is ReliabilityPolicy.BEST_EFFORT
+    assert profile_for_recording([DEFAULT_QOS]).reliability is ReliabilityPolicy.RELIABLE
+    assert profile_for_recording([DESCRIPTION_QOS]).durability is DurabilityPolicy.TRANSIENT_LOCAL
+    assert profile_for_recording([DESCRIPTION_QOS, DEFAULT_QOS]).durability is DurabilityPolicy.VOLATILE
+
+
+def test_playing_offers_what_was_recorded_where_publishers_agreed() -> None:
+    assert profile_for_playing([DESCRIPTION_QOS, DESCRIPTION_QOS]) == DESCRIPTION_QOS
+    assert profile_for_playing([DESCRIPTION_QOS, SENSOR_DATA_QOS]) == QoSProfile(depth=10)
+
+
+def test_overrides() -> None:
+    document = {"/a": {"reliability": "best_effort", "depth": 3, "deadline": {"sec": 1, "nsec": 5}}}
+    (qos,) = overrides_of(document, "file").values()
+    assert (qos.reliability, qos.depth) == (ReliabilityPolicy.BEST_EFFORT, 3)
+    assert qos.deadline == Duration(nanoseconds=1_000_000_005)
+
+
+@pytest.mark.parametrize(
+    ("document", "said"),
+    [
+        ([1], "map topics"),
+        ({"/a": {"reliability": "best_efort"}}, "best_effort"),
+        ({"/a": {"reliabilty": "reliable"}}, "reliability"),
+        ({"/a": {"depth": 0}}, "'depth'"),
+        ({"/a": {"deadline": 5}}, "no duration"),
+    ],
+)
+def test_wrong_overrides_are_told(document: object, said: str) -> None:
+    with pytest.raises(LinkwrightError) as error:
+        overrides_of(document, "qos.yaml")
+    (diagnostic,) = error.value.diagnostics
+    assert diagnostic.code == "BAG106"
+    assert said in f"{diagnostic.message} {diagnostic.hint}"

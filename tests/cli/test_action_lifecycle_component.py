@@ -1,0 +1,217 @@
+"""``linkwright action``, ``lifecycle`` and ``component``: what ros2 prints, and what is said of mistakes."""
+
+from __future__ import annotations
+
+import asyncio
+import re
+from typing import Any
+
+import pytest
+
+from linkwright.cli import main
+from linkwright.graph import ActionServer, Graph
+from linkwright.graph.action_goal import GoalResponse
+from linkwright.graph.lifecycle import LifecycleNodeMixin
+from linkwright.messages import get_action
+from linkwright.nodes import NodeOptions
+from linkwright.nodes.component_container import ComponentContainer
+
+
+def run(capsys, *words: str, status: int = 0) -> tuple[str, str]:
+    assert main(list(words)) == status
+    captured = capsys.readouterr()
+    return captured.out, captured.err
+
+
+# action
+
+
+def fibonacci(graph: Graph) -> None:
+    node = graph.create_node("fibonacci_action_server")
+    kind = get_action("example_interfaces/action/Fibonacci")
+
+    async def execute(goal: Any) -> Any:
+        feedback = kind.Feedback()
+        sequence = [0, 1]
+        for _ in range(goal.request.order - 1):
+            sequence.append(sequence[-1] + sequence[-2])
+            feedback.sequence = sequence
+            goal.publish_feedback(feedback)
+            await asyncio.sleep(0.01)
+        goal.succeed()
+        return kind.Result(sequence=sequence)
+
+    ActionServer(node, kind, "fibonacci", execute, goal_callback=lambda goal: _verdict(goal.order))
+
+
+def _verdict(order: int) -> GoalResponse:
+    return GoalResponse.ACCEPT if order < 20 else GoalResponse.REJECT
+
+
+GOAL = ["action", "send_goal", "/fibonacci", "example_interfaces/action/Fibonacci"]
+
+
+def test_action_list_info_type(in_graph, capsys):
+    in_graph(fibonacci)
+    assert run(capsys, "action", "list")[0] == "/fibonacci\n"
+    assert run(capsys, "action", "list", "-t")[0] == "/fibonacci [example_interfaces/action/Fibonacci]\n"
+    assert run(capsys, "action", "list", "-c")[0] == "1\n"
+    assert run(capsys, "action", "type", "/fibonacci")[0] == "example_interfaces/action/Fibonacci\n"
+    assert "did you mean '/fibonacci'?" in run(capsys, "action", "type", "/fibonaci", status=1)[1]
+    assert run(capsys, "action", "info", "/fibonacci")[0] == (
+        "Action: /fibonacci\nAction clients: 0\nAction servers: 1\n    /fibonacci_action_server\n"
+    )
+    assert run(capsys, "action", "info", "-t", "/fibonacci")[0].splitlines()[-1] == (
+        "    /fibonacci_action_server [example_interfaces/action/Fibonacci]"
+    )
+    assert run(capsys, "action", "info", "-c", "/nothing")[0] == (
+        "Action: /nothing\nAction clients: 0\nAction servers: 0\n"
+    )
+
+
+def test_the_parts_of_an_action_are_hidden_topics_and_services(in_graph, capsys):
+    in_graph(fibonacci)
+    assert "/_action/" not in run(capsys, "topic", "list")[0]
+    assert "/_action/" not in run(capsys, "service", "list")[0]
+    assert (
+        "    /fibonacci: example_interfaces/action/Fibonacci"
+        in run(capsys, "node", "info", "/fibonacci_action_server")[0]
+    )
+
+
+def test_send_goal(in_graph, capsys):
+    in_graph(fibonacci)
+    out, _ = run(capsys, *GOAL, "{order: 3}")
+    assert re.fullmatch(
+        r"Waiting for an action server to become available\.\.\.\n"
+        r"Sending goal:\n     order: 3\n\n"
+        r"Goal accepted with ID: [0-9a-f]{32}\n\n"
+        r"Result:\n    sequence:\n- 0\n- 1\n- 1\n- 2\n\n"
+        r"Goal finished with status: SUCCEEDED\n",
+        out,
+    ), out
+
+
+def test_send_goal_with_feedback(in_graph, capsys):
+    in_graph(fibonacci)
+    out, _ = run(capsys, *GOAL, "{order: 3}", "--feedback")
+    assert "Feedback:\n    sequence:\n- 0\n- 1\n- 1\n\n" in out
+
+
+def test_a_goal_that_is_rejected(in_graph, capsys):
+    in_graph(fibonacci)
+    assert run(capsys, *GOAL, "{order: 30}", status=1)[0].endswith("Goal was rejected.\n")
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["/fibonacci", "example_interfaces/action/Fibonaci"], "did you mean"),
+        (["/fibonacci", "example_interfaces/action/Fibonacci", "{ordr: 1}"], "did you mean 'order'?"),
+        (["/no", "example_interfaces/action/Fibonacci", "{}", "--timeout", "0.1"], "no server of action '/no'"),
+    ],
+)
+def test_mistakes_of_send_goal(in_graph, capsys, words, said):
+    in_graph(fibonacci)
+    assert said in run(capsys, "action", "send_goal", *words, status=1)[1]
+
+
+# lifecycle
+
+
+class Managed(LifecycleNodeMixin):
+    """A managed node made of a graph's node."""
+
+    def __init__(self, graph: Graph, name: str) -> None:
+        self._node = graph.create_node(name)
+        LifecycleNodeMixin.__init__(self)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._node, name)
+
+
+def camera(graph: Graph) -> None:
+    Managed(graph, "camera")
+    graph.create_node("other")
+
+
+def test_lifecycle_nodes(in_graph, capsys):
+    in_graph(camera)
+    assert run(capsys, "lifecycle", "nodes")[0] == "/camera\n"
+    assert run(capsys, "lifecycle", "nodes", "-c")[0] == "1\n"
+
+
+def test_lifecycle_get(in_graph, capsys):
+    in_graph(camera)
+    assert run(capsys, "lifecycle", "get", "/camera")[0] == "unconfigured [1]\n"
+    assert run(capsys, "lifecycle", "get")[0] == "/camera: unconfigured [1]\n"
+    assert "Node not found" in run(capsys, "lifecycle", "get", "/nothing", status=1)[1]
+
+
+def test_lifecycle_list(in_graph, capsys):
+    in_graph(camera)
+    assert run(capsys, "lifecycle", "list", "camera")[0].splitlines() == [
+        "- configure [1]",
+        "\tStart: unconfigured",
+        "\tGoal: configuring",
+        "- shutdown [5]",
+        "\tStart: unconfigured",
+        "\tGoal: shuttingdown",
+    ]
+    everything = run(capsys, "lifecycle", "list", "-a", "camera")[0].splitlines()
+    assert len(everything) == 3 * 25
+
+
+def test_lifecycle_set(in_graph, capsys):
+    in_graph(camera)
+    assert run(capsys, "lifecycle", "set", "/camera", "configure")[0] == "Transitioning successful\n"
+    _, err = run(capsys, "lifecycle", "set", "/camera", "configur", status=1)
+    assert "Unknown transition requested" in err
+    assert "- shutdown [5]" in err
+    assert "did you mean 'configure'?" in err
+
+
+# component
+
+
+def container(graph: Graph) -> None:
+    loaded = ComponentContainer(graph, NodeOptions(name="box"))
+    loaded.load("demo_nodes_cpp", "demo_nodes_cpp::Talker", NodeOptions(name="talker"))
+
+
+def test_component_types(capsys):
+    out, _ = run(capsys, "component", "types")
+    assert "demo_nodes_cpp\n  demo_nodes_cpp::Listener\n  demo_nodes_cpp::Talker" in out
+    assert "did you mean" in run(capsys, "component", "types", "demo_nodes_cp", status=1)[1]
+
+
+def test_component_list(in_graph, capsys):
+    in_graph(container)
+    assert run(capsys, "component", "list")[0] == "/box\n  1  /talker\n"
+    assert run(capsys, "component", "list", "--containers-only")[0] == "/box\n"
+    assert run(capsys, "component", "list", "/box")[0] == "1  /talker\n"
+    _, err = run(capsys, "component", "list", "/bx", status=1)
+    assert "Unable to find container node '/bx'" in err
+    assert "did you mean '/box'?" in err
+
+
+def test_component_load_and_unload(in_graph, capsys):
+    in_graph(container)
+    words = ["demo_nodes_cpp", "demo_nodes_cpp::Listener", "-n", "ear", "--node-namespace", "/head", "-r", "chatter:=c"]
+    assert run(capsys, "component", "load", "/box", *words)[0] == (
+        "Loaded component 2 into '/box' container node as '/head/ear'\n"
+    )
+    assert run(capsys, "component", "load", "-q", "/box", *words)[0] == "2  /head/ear\n"
+    assert run(capsys, "component", "unload", "/box", "1")[0] == "Unloaded component 1 from '/box' container node\n"
+    assert run(capsys, "component", "unload", "-q", "/box", "1")[0] == "1\n"
+
+
+def test_mistakes_of_components(in_graph, capsys):
+    in_graph(container)
+    _, err = run(capsys, "component", "load", "/box", "demo_nodes_cpp", "demo_nodes_cpp::Talkr", status=1)
+    assert "Failed to load component" in err
+    _, err = run(capsys, "component", "unload", "/box", "7", status=1)
+    assert "Failed to unload component 7" in err
+    assert "it holds: 1 /talker" in err
+    words = ["load", "/box", "demo_nodes_cpp", "demo_nodes_cpp::Talker", "--log-level", "loud"]
+    assert "there is no log level 'loud'" in run(capsys, "component", *words, status=1)[1]

@@ -1,0 +1,189 @@
+"""``linkwright doctor``: troubles seeded into a running graph are seen and explained."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from linkwright.cli import main
+from linkwright.graph import STATIC_TF_PUBLISHER_QOS, TF_QOS, Graph, QoSProfile, ReliabilityPolicy
+from linkwright.messages import Header, JointState, TFMessage, Time, TransformStamped, get_message
+from linkwright.nodes import NodeOptions
+from linkwright.nodes.joint_state_publisher import JointStatePublisher
+from linkwright.nodes.robot_state_publisher import RobotStatePublisher
+
+ROBOT = """\
+<robot name="mbot">
+  <link name="base"/><link name="wheel"/><link name="mast"/>
+  <joint name="spin" type="continuous"><parent link="base"/><child link="wheel"/></joint>
+  <joint name="stand" type="fixed"><parent link="base"/><child link="mast"/></joint>
+</robot>
+"""
+DESCRIBED: dict[str, Any] = {"robot_description": ROBOT}
+
+
+def robot(graph: Graph) -> None:
+    RobotStatePublisher(graph, NodeOptions(parameters=DESCRIBED))
+    JointStatePublisher(graph, NodeOptions(parameters=DESCRIBED))
+
+
+def doctor(capsys, *words: str, status: int) -> str:
+    assert main(["doctor", "--seconds", "1", *words]) == status
+    captured = capsys.readouterr()
+    return captured.out + captured.err
+
+
+def test_a_robot_that_is_well(in_graph, capsys):
+    in_graph(robot)
+    assert "All is well: 2 nodes, 6 topics, 3 frames" in doctor(capsys, status=0)
+
+
+def test_nobody_publishes_joint_states(in_graph, capsys):
+    in_graph(lambda graph: RobotStatePublisher(graph, NodeOptions(parameters=DESCRIBED)))
+    said = doctor(capsys, status=1)
+    assert "[DOC401]: nobody publishes joint states, so there is no transform of frame 'wheel'" in said
+    assert "start joint_state_publisher" in said
+
+
+def test_a_joint_is_misspelt(in_graph, capsys):
+    def make(graph: Graph) -> None:
+        RobotStatePublisher(graph, NodeOptions(parameters=DESCRIBED))
+        node = graph.create_node("driver")
+        publisher = node.create_publisher(JointState, "joint_states", 10)
+
+        def publish() -> None:
+            stamp = node.get_clock().now().to_msg()
+            publisher.publish(JointState(header=Header(stamp=stamp), name=["spinn"], position=[0.0]))
+
+        node.create_timer(0.05, publish)
+
+    in_graph(make)
+    said = doctor(capsys, status=1)
+    assert "joint 'spin' is not in the joint states, so there is no transform of frame 'wheel'" in said
+    assert "did you mean 'spinn'?" in said
+
+
+def transform(parent: str, child: str, stamp: Time | None = None) -> TransformStamped:
+    message = TransformStamped(child_frame_id=child)
+    message.header.frame_id = parent
+    message.transform.rotation.w = 1.0
+    if stamp is not None:
+        message.header.stamp = stamp
+    return message
+
+
+def second_publisher(graph: Graph) -> None:
+    robot(graph)
+    node = graph.create_node("odometry")
+    publisher = node.create_publisher(TFMessage, "/tf", TF_QOS)
+    node.create_timer(
+        0.05,
+        lambda: publisher.publish(TFMessage(transforms=[transform("base", "wheel", node.get_clock().now().to_msg())])),
+    )
+
+
+def test_two_publishers_of_one_transform(in_graph, capsys):
+    in_graph(second_publisher)
+    said = doctor(capsys, status=1)
+    assert "2 nodes publish the transform of frame 'wheel': '/odometry', '/robot_state_publisher'" in said
+
+
+def test_two_trees_and_a_fixed_frame_that_is_not_there(in_graph, capsys, tmp_path: Path):
+    def make(graph: Graph) -> None:
+        robot(graph)
+        publisher = graph.create_node("camera").create_publisher(TFMessage, "/tf_static", STATIC_TF_PUBLISHER_QOS)
+        publisher.publish(TFMessage(transforms=[transform("camera", "lens")]))
+
+    in_graph(make)
+    rviz = tmp_path / "robot.rviz"
+    rviz.write_text("Visualization Manager:\n  Global Options:\n    Fixed Frame: map\n", encoding="utf-8")
+    said = doctor(capsys, "--rviz", str(rviz), status=1)
+    assert "frames fall into 2 trees that nothing connects" in said
+    assert "the fixed frame 'map' of '" in said
+    assert "robot.rviz' does not exist, so nothing is shown" in said
+
+
+def test_the_viewers_fixed_frame(in_graph, capsys):
+    def make(graph: Graph) -> None:
+        robot(graph)
+        viewer = graph.create_node("rviz2", parameters={"fixed_frame": "odom"})
+        viewer.declare_parameter("fixed_frame", "map")
+        viewer.create_subscription(TFMessage, "/tf", print, TF_QOS)
+
+    in_graph(make)
+    assert "the fixed frame 'odom' of '/rviz2' does not exist" in doctor(capsys, status=1)
+
+
+def test_a_clock_that_is_far_off(in_graph, capsys):
+    def make(graph: Graph) -> None:
+        node = graph.create_node("lidar")
+        publisher = node.create_publisher("sensor_msgs/msg/LaserScan", "scan", 5)
+        message = get_message("sensor_msgs/msg/LaserScan")()
+        message.header.stamp.sec = 1000
+        node.create_timer(0.05, lambda: publisher.publish(message))
+
+    in_graph(make)
+    assert "the stamps of '/lidar' on '/scan' are" in doctor(capsys, status=1)
+
+
+def test_twist_quality_of_service_and_lonely_clients(in_graph, capsys):
+    def make(graph: Graph) -> None:
+        graph.create_node("teleop").create_publisher("geometry_msgs/msg/Twist", "cmd_vel", 10)
+        base = graph.create_node("base")
+        base.create_subscription("geometry_msgs/msg/TwistStamped", "cmd_vel", print, 10)
+        best_effort = QoSProfile(5, ReliabilityPolicy.BEST_EFFORT)
+        graph.create_node("lidar").create_publisher("sensor_msgs/msg/LaserScan", "scan", best_effort)
+        base.create_subscription("sensor_msgs/msg/LaserScan", "scan", print, 10)
+        base.create_client("std_srvs/srv/Empty", "reset")
+
+    in_graph(make)
+    said = doctor(capsys, status=1)
+    assert "topic '/cmd_vel' carries Twist for some nodes and TwistStamped for others" in said
+    assert "reliability: '/lidar' offers BEST_EFFORT, '/base' requests RELIABLE" in said
+    assert "nobody serves '/reset', which '/base' calls" in said
+
+
+def test_simulated_time_for_some(in_graph, capsys):
+    def make(graph: Graph) -> None:
+        graph.create_node("one", parameters={"use_sim_time": True})
+        graph.create_node("two")
+
+    in_graph(make)
+    said = doctor(capsys, status=1)
+    assert "use_sim_time is true for '/one', but nobody publishes /clock" in said
+    assert "use_sim_time is true for '/one', but false for '/two'" in said
+
+
+def test_nobody_is_there(in_graph, capsys):
+    in_graph(lambda graph: None)
+    assert "no nodes are running where this shell looks" in doctor(capsys, status=1)
+
+
+@pytest.mark.parametrize("form", ["json", "concise"])
+def test_forms_for_programs(in_graph, capsys, form):
+    in_graph(second_publisher)
+    assert main(["doctor", "--seconds", "1", "--format", form]) == 1
+    printed = capsys.readouterr().out
+    if form == "json":
+        assert [each["code"] for each in json.loads(printed)["diagnostics"]] == ["DOC302"]
+    else:
+        assert "DOC302" in printed
+
+
+def test_the_report(in_graph, capsys):
+    in_graph(robot)
+    said = doctor(capsys, "--report", status=0)
+    for title in ("PLATFORM INFORMATION", "RMW MIDDLEWARE", "PACKAGE VERSIONS", "NETWORK CONFIGURATION"):
+        assert f"\n   {title}\n" in said
+    assert re.search(r"^topic \[type\] +: /joint_states \[sensor_msgs/msg/JointState\]$", said, re.MULTILINE)
+    assert re.search(r"^compatibility status +: OK$", said, re.MULTILINE)
+    assert re.search(r"^publisher count +: 1$", said, re.MULTILINE)
+
+
+def test_the_report_only_when_something_is_wrong(in_graph, capsys):
+    in_graph(robot)
+    assert "PLATFORM" not in doctor(capsys, "--report-failed", status=0)

@@ -1,0 +1,172 @@
+"""``linkwright interface``: the types that come with Linkwright and those of the workspace, without a build."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+
+import pytest
+
+from linkwright.cli import main
+from linkwright.cli.interface.definition_text import definition_lines, nested_type
+
+DEFINITIONS = {
+    "p/msg/Short": "# A short type\n# A constant\nbool BOOL_CONST=true # one\n\nbool value\nbool[<=3] values # two\n",
+    "p/msg/Nested": '# Nested\nShort short # inside\nstring text "a # b"\n# End\n',
+    "p/srv/Ask": "Nested[] n\n---\nstd_msgs/Header header\nHeader other\n",
+    "std_msgs/msg/Header": "# stamp\nstring frame_id\n",
+}
+
+
+def lines(name: str, **options: bool) -> list[str]:
+    return list(definition_lines(name, DEFINITIONS.__getitem__, **options))
+
+
+def test_nested_definitions_are_indented_without_their_comments():
+    assert lines("p/msg/Nested") == [
+        "# Nested",
+        "Short short # inside",
+        "\tbool BOOL_CONST=true",
+        "\tbool value",
+        "\tbool[<=3] values",
+        'string text "a # b"',
+        "# End",
+    ]
+
+
+def test_with_all_comments():
+    assert lines("p/msg/Nested", nested_comments=True) == [
+        "# Nested",
+        "Short short # inside",
+        "\t# A short type",
+        "\t# A constant",
+        "\tbool BOOL_CONST=true # one",
+        "",
+        "\tbool value",
+        "\tbool[<=3] values # two",
+        'string text "a # b"',
+        "# End",
+    ]
+
+
+def test_without_comments():
+    assert lines("p/msg/Nested", comments=False) == [
+        "Short short",
+        "\tbool BOOL_CONST=true",
+        "\tbool value",
+        "\tbool[<=3] values",
+        'string text "a # b"',
+    ]
+
+
+def test_arrays_headers_and_other_packages_of_a_service():
+    assert lines("p/srv/Ask", comments=False) == [
+        "Nested[] n",
+        "\tShort short",
+        "\t\tbool BOOL_CONST=true",
+        "\t\tbool value",
+        "\t\tbool[<=3] values",
+        '\tstring text "a # b"',
+        "---",
+        "std_msgs/Header header",
+        "\tstring frame_id",
+        "Header other",
+        "\tstring frame_id",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("line", "found"),
+    [
+        ("uint8 x", None),
+        ("string<=5[<=2] x", None),
+        ("uint8 CONSTANT=3", None),
+        ("---", None),
+        ("# Short x", None),
+        ("geometry_msgs/Point[4] corners", "geometry_msgs/msg/Point"),
+        ("geometry_msgs/msg/Point p", "geometry_msgs/msg/Point"),
+    ],
+)
+def test_which_lines_have_a_nested_type(line, found):
+    assert nested_type(line, "p") == found
+
+
+def run(capsys, *words: str, status: int = 0) -> tuple[str, str]:
+    assert main(["interface", *words]) == status
+    captured = capsys.readouterr()
+    return captured.out, captured.err
+
+
+def test_show(capsys):
+    assert run(capsys, "show", "geometry_msgs/msg/Twist", "--no-comments")[0].splitlines() == [
+        "Vector3 linear",
+        "\tfloat64 x",
+        "\tfloat64 y",
+        "\tfloat64 z",
+        "Vector3 angular",
+        "\tfloat64 x",
+        "\tfloat64 y",
+        "\tfloat64 z",
+    ]
+
+
+def test_show_from_standard_input(capsys, monkeypatch):
+    monkeypatch.setattr("sys.stdin", io.StringIO("std_msgs/msg/String\n"))
+    assert run(capsys, "show", "-")[0] == "string data\n"
+
+
+def test_show_of_an_unknown_type(capsys):
+    assert "did you mean" in run(capsys, "show", "std_msgs/msg/Strin", status=1)[1]
+
+
+def test_list(capsys):
+    out, _ = run(capsys, "list")
+    text = out.splitlines()
+    assert text[0] == "Messages:"
+    assert "    sensor_msgs/msg/JointState" in text
+    assert "    std_srvs/srv/SetBool" in text[text.index("Services:") :]
+    assert "    example_interfaces/action/Fibonacci" in text[text.index("Actions:") :]
+
+
+def test_list_of_one_kind(capsys):
+    out, _ = run(capsys, "list", "-a")
+    assert out.startswith("Actions:\n")
+    assert "Messages:" not in out
+
+
+def test_package(capsys):
+    out, _ = run(capsys, "package", "std_srvs")
+    assert out.splitlines() == ["std_srvs/srv/Empty", "std_srvs/srv/SetBool", "std_srvs/srv/Trigger"]
+    assert run(capsys, "package", "std_srvs", "-m")[0] == ""
+
+
+def test_unknown_package(capsys):
+    _, err = run(capsys, "package", "std_srv", status=1)
+    assert "Unknown package 'std_srv'" in err
+    assert "did you mean 'std_srvs'" in err
+
+
+def test_packages(capsys):
+    packages = run(capsys, "packages")[0].splitlines()
+    assert {"std_msgs", "std_srvs", "action_msgs"} <= set(packages)
+    assert packages == sorted(packages)
+    assert "std_msgs" not in run(capsys, "packages", "-s")[0].splitlines()
+
+
+def test_proto(capsys):
+    assert run(capsys, "proto", "std_msgs/msg/String")[0] == "\"data: ''\n\"\n"
+    assert run(capsys, "proto", "--no-quotes", "std_srvs/srv/SetBool")[0] == "data: false\n\n"
+
+
+def test_types_of_the_workspace(capsys, tmp_path: Path, monkeypatch):
+    package = tmp_path / "src" / "my_interfaces"
+    (package / "msg").mkdir(parents=True)
+    (package / "package.xml").write_text(
+        '<package format="3"><name>my_interfaces</name><version>0.0.0</version><description>d</description>'
+        '<maintainer email="a@example.org">a</maintainer><license>MIT</license></package>',
+        encoding="utf-8",
+    )
+    (package / "msg" / "Wheel.msg").write_text("# A wheel\nfloat64 speed  # rad/s\n", encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    assert run(capsys, "show", "my_interfaces/msg/Wheel")[0] == "# A wheel\nfloat64 speed  # rad/s\n"
+    assert run(capsys, "package", "my_interfaces")[0] == "my_interfaces/msg/Wheel\n"

@@ -1,0 +1,94 @@
+"""``linkwright launch``: its options, as a user types them."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from linkwright.cli import main
+
+Write = Callable[[str], Path]
+
+HEAD = """
+import sys
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument, ExecuteProcess, LogInfo
+from launch_ros.actions import Node
+
+def generate_launch_description():
+    return LaunchDescription([{}])
+"""
+PRINTS = "ExecuteProcess(cmd=[sys.executable, '-c', 'print(\"out\")'], name='py')"
+
+
+@pytest.fixture
+def write(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Write:
+    """Writes a launch file of entities."""
+    monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "logs"))
+    monkeypatch.setenv("LINKWRIGHT_DDS", "0")
+
+    def written(*entities: str) -> Path:
+        path = tmp_path / "a.launch.py"
+        path.write_text(HEAD.format(", ".join(entities)))
+        return path
+
+    return written
+
+
+def launched(*words: object) -> subprocess.CompletedProcess[str]:
+    program = "import sys; from linkwright.cli import main; sys.exit(main())"
+    return subprocess.run(
+        [sys.executable, "-c", program, "launch", *map(str, words)],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+
+
+def test_the_output_of_processes_goes_to_the_log_unless_asked_for(write: Write, tmp_path: Path) -> None:
+    path = write(PRINTS)
+    quiet = launched(path)
+    assert quiet.returncode == 0
+    assert quiet.stdout == ""
+    assert "[py-1] out" in (tmp_path / "logs" / "latest" / "launch.log").read_text()
+    assert launched("-a", path).stdout == "[py-1] out\n"
+
+
+def test_debug(write: Write) -> None:
+    done = launched("--debug", write(PRINTS))
+    assert "[INFO] [launch]: Default logging verbosity is set to DEBUG" in done.stderr
+    assert "[DEBUG] [launch]: processing event: 'launch.events.process.ProcessStarted'" in done.stderr
+
+
+def test_a_prefix_for_some_programs(write: Write) -> None:
+    path = write("ExecuteProcess(cmd=['echo', 'a'])", "ExecuteProcess(cmd=['true', 'b'])")
+    done = launched("-a", "--launch-prefix", "echo before", "--launch-prefix-filter", "tr", path)
+    assert sorted(done.stdout.splitlines()) == ["[echo-1] a", "[true-2] before true b"]
+
+
+def test_isolate(write: Write) -> None:
+    node = "Node(package='demo_nodes_py', executable='talker_qos', arguments=['-n', '1'])"
+    assert "[talker_qos-1]: started in the launcher's process" in launched(write(node)).stderr
+    assert "[talker_qos-1]: process started with pid [" in launched("--isolate", write(node)).stderr
+
+
+def test_the_description_is_printed(write: Write, capsys: pytest.CaptureFixture[str]) -> None:
+    path = write("LogInfo(msg='hello')", "Node(package='p', executable='e', name='n')")
+    assert main(["launch", "--print", str(path)]) == 0
+    out = capsys.readouterr().out
+    assert out.startswith("LaunchDescription(2 entities)\n")
+    assert "Node(cmd=[ExecInPkg(pkg='p', exec='e'), '--ros-args', '-r'," in out
+
+
+def test_show_arguments_has_two_spellings(write: Write, capsys: pytest.CaptureFixture[str]) -> None:
+    path = str(write("DeclareLaunchArgument('gui', default_value='true')"))
+    assert main(["launch", "--show-arguments", path]) == 0
+    listed = capsys.readouterr().out
+    assert "'gui':" in listed
+    assert main(["launch", "-s", path]) == 0
+    assert capsys.readouterr().out == listed

@@ -1,0 +1,79 @@
+"""The figures of ``topic hz``, ``delay`` and ``bw``, and their texts."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.cli.topic.rates import BandwidthWindow, DelayWindow, RateWindow, Spread, rate_table, rate_text
+
+MS = 1_000_000
+
+
+def test_a_steady_rate():
+    window = RateWindow(100)
+    for tick in range(11):
+        assert not window.add(tick * 100 * MS)
+    spread = window.spread()
+    assert spread is not None
+    assert rate_text(spread) == "average rate: 10.000\n\tmin: 0.100s max: 0.100s std dev: 0.00000s window: 10"
+
+
+def test_nothing_is_told_twice():
+    window = RateWindow(100)
+    window.add(0)
+    assert window.spread() is None
+    window.add(MS)
+    assert window.spread() is not None
+    assert window.spread() is None
+
+
+def test_a_window_forgets():
+    window = RateWindow(2)
+    for now in (0, 10 * MS, 20 * MS, 120 * MS):
+        window.add(now)
+    spread = window.spread()
+    assert spread is not None
+    assert (spread.count, spread.least, spread.most) == (2, 10 * MS, 100 * MS)
+
+
+def test_time_that_goes_back_begins_anew():
+    window = RateWindow(10)
+    window.add(100 * MS)
+    window.add(200 * MS)
+    assert window.add(50 * MS)
+    assert window.spread() is None
+
+
+def test_several_topics_are_a_table():
+    table = rate_table({"/a": Spread(100 * MS, 90 * MS, 110 * MS, MS, 7), "/longer": Spread(MS, MS, MS, 0, 1000)})
+    assert table.splitlines() == [
+        "  topic        rate       min_delta     max_delta      stddev     window ",
+        "=" * 61,
+        "/a          10.000       0.090         0.110         0.00100     7       ",
+        "/longer     1000.000     0.001         0.001         0.00000     1000    ",
+    ]
+
+
+def test_a_delay():
+    window = DelayWindow(10)
+    assert window.text() is None
+    window.add(1000 * MS, 900 * MS)
+    window.add(2000 * MS, 1700 * MS)
+    assert window.text() == "average delay: 0.200\n\tmin: 0.100s max: 0.300s std dev: 0.10000s window: 2"
+    assert window.text() == "no new messages"
+
+
+@pytest.mark.parametrize(
+    ("size", "printed"),
+    [
+        (100, "200 B/s from 2 messages\n\tMessage size mean: 100 B min: 100 B max: 100 B"),
+        (5_000, "10.00 KB/s from 2 messages\n\tMessage size mean: 5.00 KB min: 5.00 KB max: 5.00 KB"),
+        (2_000_000, "4.00 MB/s from 2 messages\n\tMessage size mean: 2.00 MB min: 2.00 MB max: 2.00 MB"),
+    ],
+)
+def test_bandwidth(size, printed):
+    window = BandwidthWindow(10)
+    window.add(0, size)
+    assert window.text(500 * MS) is None
+    window.add(500 * MS, size)
+    assert window.text(1000 * MS) == printed

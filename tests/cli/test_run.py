@@ -1,0 +1,154 @@
+"""``linkwright run``, as a user types it."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from linkwright.cli import main
+from linkwright.cli.command import FINDINGS, USAGE
+
+COMMAND = [sys.executable, "-c", "import sys; from linkwright.cli import main; sys.exit(main())", "run"]
+NODE = """
+import signal
+import sys
+import time
+
+
+def main():
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(9))
+    try:
+        print(sys.argv[1:], flush=True)
+        time.sleep(30 if "wait" in sys.argv else 0)
+    except KeyboardInterrupt:
+        return 4
+    return 6
+"""
+
+Run = Callable[..., "subprocess.Popen[str]"]
+
+
+@pytest.fixture(autouse=True)
+def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The current folder: a workspace with the package ``arm``, which nobody has built."""
+    package = tmp_path / "src" / "arm"
+    (package / "arm").mkdir(parents=True)
+    (package / "package.xml").write_text("<package><name>arm</name></package>")
+    (package / "setup.py").write_text(
+        "from setuptools import setup\n"
+        "setup(name='arm', packages=['arm'], entry_points={'console_scripts': ['wave = arm.wave:main']})\n"
+    )
+    (package / "arm" / "__init__.py").write_text("")
+    (package / "arm" / "wave.py").write_text(NODE)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "logs"))
+    monkeypatch.setenv("LINKWRIGHT_DDS", "0")
+    monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
+    return tmp_path
+
+
+@pytest.fixture
+def run() -> Iterator[Run]:
+    running: list[subprocess.Popen[str]] = []
+
+    def begin(*words: str) -> subprocess.Popen[str]:
+        running.append(subprocess.Popen([*COMMAND, *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True))
+        return running[-1]
+
+    yield begin
+    for each in running:
+        each.kill()
+        each.communicate()
+
+
+def test_an_entry_point_gets_its_words_and_gives_its_exit_status(run: Run) -> None:
+    process = run("arm", "wave", "--fast", "-h", "--ros-args", "-r", "a:=b")
+    out, err = process.communicate(timeout=30)
+    assert out == "['--fast', '-h', '--ros-args', '-r', 'a:=b']\n", err
+    assert process.returncode == 6
+
+
+@pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 4), (signal.SIGTERM, 9)])
+def test_signals_are_the_executables(run: Run, number: int, status: int) -> None:
+    process = run("arm", "wave", "wait")
+    assert process.stdout is not None
+    assert process.stdout.readline() == "['wait']\n"
+    process.send_signal(number)
+    assert process.wait(10) == status
+
+
+def test_a_prefix(run: Run, workspace: Path) -> None:
+    process = run("--prefix", "echo 'a b'", "arm", "wave", "c")
+    out, _ = process.communicate(timeout=30)
+    assert out.startswith(f"a b {workspace}")
+    assert out.endswith("/lib/arm/wave c\n")
+
+
+def test_one_of_our_nodes(run: Run) -> None:
+    process = run("demo_nodes_py", "talker_qos", "-n", "1", "--ros-args", "-r", "__node:=tk", "-r", "__ns:=/x")
+    _, err = process.communicate(timeout=30)
+    assert process.returncode == 0
+    assert '] [x.tk]: Publishing: "Hello World: 0"' in err
+
+
+def test_one_of_our_nodes_ends_with_a_signal(run: Run) -> None:
+    process = run("demo_nodes_cpp", "talker")
+    assert process.stderr is not None
+    assert "Publishing" in process.stderr.readline()
+    began = time.monotonic()
+    process.send_signal(signal.SIGINT)
+    assert process.wait(10) == 0
+    assert time.monotonic() - began < 2.0
+
+
+def test_the_viewer(run: Run) -> None:
+    process = run("--no-open", "rviz2", "rviz2")
+    assert process.stdout is not None
+    assert process.stdout.readline().startswith("Viewer: http://127.0.0.1:")
+    process.send_signal(signal.SIGINT)
+    assert process.wait(10) == 130
+
+
+@pytest.mark.parametrize(
+    ("words", "message", "hint"),
+    [
+        (["arm", "wav"], "package 'arm' has no executable 'wav'", "did you mean 'wave'?"),
+        (["amr", "wave"], "package 'amr' of node executable 'wave' not found", "did you mean 'arm'?"),
+        (["tf2_ros", "tf2_ecko"], "package 'tf2_ros' has no executable 'tf2_ecko'", "did you mean 'tf2_echo'"),
+    ],
+)
+def test_names_that_are_not_there(
+    capsys: pytest.CaptureFixture[str], words: list[str], message: str, hint: str
+) -> None:
+    assert main(["run", *words]) == FINDINGS
+    err = capsys.readouterr().err
+    assert message in err
+    assert hint in err
+
+
+def test_a_prefix_that_does_not_exist(run: Run) -> None:
+    process = run("--prefix", "no-such-program", "arm", "wave")
+    _, err = process.communicate(timeout=30)
+    assert process.returncode == FINDINGS
+    assert "error[CLI110]: 'no-such-program' cannot be run: No such file or directory" in err
+
+
+def test_usage(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", "arm"]) == USAGE
+    assert "usage: linkwright run [options] PACKAGE EXECUTABLE [ARGUMENT ...]" in capsys.readouterr().err
+
+
+def test_a_node_that_is_killed_leaves_nothing_behind(run: Run) -> None:
+    process = run("arm", "wave", "wait")
+    assert process.stdout is not None
+    process.stdout.readline()
+    os.kill(process.pid, signal.SIGKILL)
+    assert process.wait(5) == -signal.SIGKILL

@@ -1,0 +1,448 @@
+"""``linkwright topic``: what ros2 topic prints, and what is said of mistakes."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from linkwright.cli import main
+from linkwright.graph import DESCRIPTION_QOS, Graph, QoSProfile, ReliabilityPolicy
+from linkwright.graph.qos import QoSPresetProfiles
+from linkwright.messages import Header, JointState, String, Time, get_message
+
+COMMON = ["/parameter_events", "/rosout"]
+
+
+def talker(graph: Graph, *, topic: str = "chatter", period: float = 0.02, qos: QoSProfile | int = 10) -> None:
+    node = graph.create_node("talker", start_parameter_services=False)
+    publisher = node.create_publisher(String, topic, qos)
+    count = 0
+
+    def publish() -> None:
+        nonlocal count
+        count += 1
+        publisher.publish(String(data=f"Hello {count}"))
+
+    node.create_timer(period, publish)
+
+
+def out(capsys) -> str:
+    return capsys.readouterr().out
+
+
+# list, type, find, info
+
+
+def test_list(in_graph, capsys):
+    in_graph(talker)
+    assert main(["topic", "list"]) == 0
+    assert out(capsys).splitlines() == ["/chatter", *COMMON]
+
+
+def test_list_with_types(in_graph, capsys):
+    in_graph(talker)
+    assert main(["topic", "list", "-t"]) == 0
+    assert "/chatter [std_msgs/msg/String]" in out(capsys).splitlines()
+
+
+def test_list_counts(in_graph, capsys):
+    in_graph(talker)
+    assert main(["topic", "list", "-c"]) == 0
+    assert out(capsys) == "3\n"
+
+
+@pytest.mark.parametrize(
+    "words", [["list", "-a"], ["list", "--include-hidden-topics"], ["--include-hidden-topics", "list"]]
+)
+def test_hidden_topics_are_listed_when_asked_for(in_graph, capsys, words):
+    in_graph(lambda graph: talker(graph, topic="_secret"))
+    assert main(["topic", *words]) == 0
+    assert "/_secret" in out(capsys)
+    assert main(["topic", "list"]) == 0
+    assert "/_secret" not in out(capsys)
+
+
+def test_list_verbose(in_graph, capsys):
+    in_graph(talker)
+    assert main(["topic", "list", "-v"]) == 0
+    lines = out(capsys).splitlines()
+    assert lines[0] == "Published topics:"
+    assert " * /chatter [std_msgs/msg/String] 1 publisher" in lines
+    assert lines[lines.index("") + 1] == "Subscribed topics:"
+
+
+def test_type(in_graph, capsys):
+    in_graph(talker)
+    assert main(["topic", "type", "chatter"]) == 0
+    assert out(capsys) == "std_msgs/msg/String\n"
+
+
+def test_type_of_an_unknown_topic_names_the_nearest(in_graph, capsys):
+    in_graph(talker)
+    assert main(["topic", "type", "/chater"]) == 1
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert "did you mean '/chatter'?" in captured.err
+
+
+def test_find(in_graph, capsys):
+    in_graph(talker)
+    assert main(["topic", "find", "std_msgs/msg/String"]) == 0
+    assert out(capsys) == "/chatter\n"
+    assert main(["topic", "find", "-c", "std_msgs/msg/String"]) == 0
+    assert out(capsys) == "1\n"
+
+
+def test_info(in_graph, capsys):
+    in_graph(talker)
+    assert main(["topic", "info", "/chatter"]) == 0
+    assert out(capsys) == "Type: std_msgs/msg/String\nPublisher count: 1\nSubscription count: 0\n"
+
+
+def test_info_of_an_unknown_topic(in_graph, capsys):
+    in_graph(talker)
+    assert main(["topic", "info", "/unknown_topic"]) == 1
+    assert "Unknown topic '/unknown_topic'" in capsys.readouterr().err
+
+
+def test_info_verbose(in_graph, capsys):
+    in_graph(talker)
+    assert main(["topic", "info", "-v", "/chatter"]) == 0
+    text = out(capsys)
+    lines = [line for line in text.splitlines() if not line.startswith("Topic type hash: RIHS01_")]
+    assert lines[:9] == [
+        "Type: std_msgs/msg/String",
+        "",
+        "Publisher count: 1",
+        "",
+        "Node name: talker",
+        "Node namespace: /",
+        "Topic type: std_msgs/msg/String",
+        "Endpoint type: PUBLISHER",
+        lines[8],
+    ]
+    assert re.fullmatch(r"GID: ([0-9a-f]{2}\.){15}[0-9a-f]{2}", lines[8])
+    assert lines[9:] == [
+        "QoS profile:",
+        "  Reliability: RELIABLE",
+        "  History (Depth): KEEP_LAST (10)",
+        "  Durability: VOLATILE",
+        "  Lifespan: Infinite",
+        "  Deadline: Infinite",
+        lines[15],
+        "  Liveliness lease duration: Infinite",
+        "",
+        "Subscription count: 0",
+        "",
+    ]
+
+
+# echo
+
+
+def test_echo_once(in_graph, capsys):
+    in_graph(talker)
+    assert main(["topic", "echo", "--once", "/chatter"]) == 0
+    assert re.fullmatch(r"data: Hello \d+\n---\n", out(capsys))
+
+
+def latched(graph: Graph) -> None:
+    node = graph.create_node("description", start_parameter_services=False)
+    node.create_publisher(String, "robot_description", DESCRIPTION_QOS).publish(String(data="<robot/>"))
+
+
+def test_what_was_published_before_is_printed_at_once(in_graph, capsys):
+    in_graph(latched)
+    assert main(["topic", "echo", "--once", "robot_description", "--timeout", "2"]) == 0
+    assert out(capsys) == "data: <robot/>\n---\n"
+
+
+def state(graph: Graph) -> None:
+    node = graph.create_node("arm", start_parameter_services=False)
+    publisher = node.create_publisher(JointState, "joint_states", 10)
+    message = JointState(
+        header=Header(stamp=Time(sec=1, nanosec=2), frame_id="base"), name=["a", "b"], position=[0.5, 1.0]
+    )
+    node.create_timer(0.02, lambda: publisher.publish(message))
+
+
+STATE_YAML = """\
+header:
+  stamp:
+    sec: 1
+    nanosec: 2
+  frame_id: base
+name:
+- a
+- b
+position:
+- 0.5
+- 1.0
+velocity: []
+effort: []
+---
+"""
+
+
+@pytest.mark.parametrize(
+    ("options", "printed"),
+    [
+        ([], STATE_YAML),
+        (["--field", "header.stamp"], "sec: 1\nnanosec: 2\n---\n"),
+        (["--field", "header.frame_id"], "base\n---\n"),
+        (["--csv"], "1,2,base,a,b,0.5,1.0,,\n"),
+        (["--no-arr", "--field", "header"], "stamp:\n  sec: 1\n  nanosec: 2\nframe_id: base\n---\n"),
+        (["--flow-style"], STATE_YAML.replace("\n- a\n- b", " [a, b]").replace("\n- 0.5\n- 1.0", " [0.5, 1.0]")),
+        (["--filter", "len(m.name) == 2 and m.position[1] > 0.7"], STATE_YAML),
+    ],
+)
+def test_echo_options(in_graph, capsys, options, printed):
+    in_graph(state)
+    assert main(["topic", "echo", "--once", "--timeout", "5", *options, "/joint_states"]) == 0
+    assert out(capsys) == printed
+
+
+def test_echo_cuts_long_texts(in_graph, capsys):
+    in_graph(latched)
+    assert main(["topic", "echo", "--once", "-l", "4", "/robot_description"]) == 0
+    assert out(capsys) == "data: <rob...\n---\n"
+
+
+def test_echo_raw_prints_the_bytes(in_graph, capsys):
+    in_graph(latched)
+    assert main(["topic", "echo", "--once", "--raw", "/robot_description"]) == 0
+    assert out(capsys).startswith("b'\\x00\\x01\\x00\\x00\\t\\x00\\x00\\x00<robot/>\\x00")
+
+
+def test_echo_with_message_info(in_graph, capsys):
+    in_graph(state)
+    words = ["--once", "-i", "--field", "header.stamp", "/joint_states"]
+    assert main(["topic", "echo", *words]) == 0
+    assert re.match(r"received_timestamp: \d{19}\nsource_timestamp: \d{19}\n---\nsec: 1\n", out(capsys))
+
+
+def test_echo_waits_for_a_topic_whose_type_is_given(in_graph, capsys):
+    in_graph(lambda graph: None)
+    assert main(["topic", "echo", "/later", "std_msgs/msg/String", "--timeout", "0.1"]) == 0
+    assert out(capsys) == ""
+
+
+def test_echo_of_a_topic_that_is_not_there(in_graph, capsys):
+    in_graph(talker)
+    assert main(["topic", "echo", "/chattr"]) == 1
+    err = capsys.readouterr().err
+    assert err.startswith("WARNING: topic [/chattr] does not appear to be published yet\n")
+    assert "Could not determine the type for the passed topic" in err
+    assert "did you mean '/chatter'?" in err
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["/joint_states", "--field", "header.stmp"], "did you mean 'stamp'?"),
+        (["/joint_states", "--field", "header..stamp"], "Invalid field 'header..stamp'"),
+        (["/joint_states", "sensor_msgs/msg/JointStat"], "did you mean 'JointState'"),
+        (["/joint_states", "--filter", "x.data"], "a filter knows no 'x'"),
+        (["/joint_states", "--filter", "m.__class__"], "a filter cannot use '__class__'"),
+        (["/joint_states", "--filter", "m.nothing > 1"], "the filter fails"),
+        (["/joint_states", "--filter", "m."], "the filter is not a Python expression"),
+    ],
+)
+def test_mistakes_of_echo(in_graph, capsys, words, said):
+    in_graph(state)
+    assert main(["topic", "echo", "--timeout", "5", *words]) == 1
+    assert said in capsys.readouterr().err
+
+
+def test_echo_names_quality_of_service_that_does_not_match(in_graph, capsys):
+    in_graph(lambda graph: talker(graph, qos=QoSProfile(10, ReliabilityPolicy.BEST_EFFORT)))
+    assert main(["topic", "echo", "/chatter", "--qos-reliability", "reliable", "--timeout", "0.2"]) == 0
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert "New publisher discovered on topic '/chatter', offering incompatible QoS" in captured.err
+    assert "RELIABILITY" in captured.err
+
+
+def two_types(graph: Graph) -> None:
+    node = graph.create_node("both", start_parameter_services=False)
+    node.create_publisher(String, "mixed", 10)
+    node.create_publisher(Header, "mixed", 10)
+
+
+def test_echo_of_a_topic_with_two_types(in_graph, capsys):
+    in_graph(two_types)
+    assert main(["topic", "echo", "/mixed"]) == 1
+    err = capsys.readouterr().err
+    assert "contains more than one type: [std_msgs/msg/Header, std_msgs/msg/String]" in err
+
+
+def test_the_profiles_are_those_of_the_graph():
+    from linkwright.cli import qos
+
+    assert set(qos._PROFILES) == set(QoSPresetProfiles.short_keys())
+
+
+# pub
+
+
+def listener(heard: list, kind=String, topic: str = "chatter"):
+    def make(graph: Graph) -> None:
+        node = graph.create_node("listener", start_parameter_services=False)
+        node.create_subscription(kind, topic, heard.append, 10)
+
+    return make
+
+
+def test_pub_once(in_graph, capsys):
+    heard: list = []
+    in_graph(listener(heard))
+    words = ["pub", "--once", "/chatter", "std_msgs/msg/String", "data: hello"]
+    assert main(["topic", *words, "--keep-alive", "0.02"]) == 0
+    assert [message.data for message in heard] == ["hello"]
+    assert out(capsys) == "publisher: beginning loop\npublishing #1: std_msgs.msg.String(data='hello')\n\n"
+
+
+def test_pub_times(in_graph, capsys):
+    heard: list = []
+    in_graph(listener(heard))
+    words = ["pub", "-t", "3", "-r", "100", "-p", "2", "/chatter", "std_msgs/String", "{data: x}"]
+    assert main(["topic", *words, "--keep-alive", "0.02"]) == 0
+    assert len(heard) == 3
+    assert out(capsys) == "publisher: beginning loop\npublishing #2: std_msgs.msg.String(data='x')\n\n"
+
+
+def test_pub_waits_for_a_subscription_and_gives_up(in_graph, capsys):
+    in_graph(lambda graph: None)
+    words = ["pub", "-1", "/chatter", "std_msgs/msg/String", "--max-wait-time-secs", "0.1"]
+    assert main(["topic", *words]) == 1
+    captured = capsys.readouterr()
+    assert captured.out == "Waiting for at least 1 matching subscription(s)...\n"
+    assert "Timed out" in captured.err
+
+
+def test_pub_stamps_with_the_time_of_publishing(in_graph):
+    heard: list = []
+    in_graph(listener(heard, JointState, "joint_states"))
+    words = ["pub", "-1", "/joint_states", "sensor_msgs/msg/JointState", "{header: auto, name: [a], position: [1]}"]
+    assert main(["topic", *words, "--keep-alive", "0.02"]) == 0
+    assert heard[0].header.stamp.sec > 1_500_000_000
+    assert list(heard[0].position) == [1.0]
+
+
+def test_pub_from_a_file(in_graph, tmp_path):
+    heard: list = []
+    in_graph(listener(heard))
+    file = tmp_path / "messages.yaml"
+    file.write_text("data: one\n---\ndata: two\n---\n", encoding="utf-8")
+    words = ["pub", "/chatter", "std_msgs/msg/String", "--yaml-file", str(file), "-r", "50", "-w", "1"]
+    assert main(["topic", *words, "--keep-alive", "0.02"]) == 0
+    assert [message.data for message in heard] == ["one", "two"]
+
+
+@pytest.mark.parametrize(
+    ("kind", "values", "said"),
+    [
+        ("std_msgs/msg/String", "data: [", "the values are not YAML"),
+        ("std_msgs/msg/String", "data:hello", "YAML wants a blank after the colon: 'data: hello'"),
+        ("std_msgs/msg/String", "{dat: x}", "did you mean 'data'?"),
+        ("geometry_msgs/msg/Twist", "{linear: {x: fast}}", "field 'linear.x' is of type double"),
+        ("geometry_msgs/msg/Twist", "{linear: {w: 1.0}, angular: {q: 2}}", "has no field 'q'"),
+        ("geometry_msgs/msg/Twistt", "{}", "did you mean"),
+        ("std_msgs/msg/UInt8", "{data: 300}", "field 'data' is of type uint8"),
+    ],
+)
+def test_mistakes_in_values_are_shown_where_they_are(in_graph, capsys, kind, values, said):
+    in_graph(lambda graph: None)
+    assert main(["topic", "pub", "-1", "/t", kind, values]) == 1
+    assert said in capsys.readouterr().err
+
+
+def test_a_wrong_field_is_pointed_at(in_graph, capsys):
+    in_graph(lambda graph: None)
+    main(["topic", "pub", "-1", "/t", "geometry_msgs/msg/Twist", "{linear: {x: 1.0, w: 2.0}}"])
+    err = capsys.readouterr().err
+    assert "<values>:1:19" in err
+    assert "1 | {linear: {x: 1.0, w: 2.0}}\n  |                   ^" in err
+
+
+# hz, bw, delay
+
+
+def run_for(seconds: float, words: list[str], monkeypatch: pytest.MonkeyPatch) -> int:
+    """Run an endless command for some seconds."""
+    from linkwright.cli.session import Session
+
+    original = Session.finished
+
+    async def finished(self, timeout: float | None = None) -> int | None:
+        return await original(self, seconds)
+
+    monkeypatch.setattr(Session, "finished", finished)
+    return main(words)
+
+
+def test_hz(in_graph, capsys, monkeypatch):
+    in_graph(lambda graph: talker(graph, period=0.01))
+    assert run_for(1.2, ["topic", "hz", "/chatter"], monkeypatch) == 0
+    text = out(capsys)
+    found = re.fullmatch(
+        r"average rate: (\d+\.\d{3})\n\tmin: \d\.\d{3}s max: \d\.\d{3}s std dev: \d\.\d{5}s window: \d+\n", text
+    )
+    assert found, text
+    assert 80 < float(found[1]) < 120
+
+
+def test_hz_of_several_topics_is_a_table(in_graph, capsys, monkeypatch):
+    def make(graph: Graph) -> None:
+        talker(graph, topic="a")
+        state(graph)
+
+    in_graph(make)
+    assert run_for(1.2, ["topic", "hz", "/a", "/joint_states"], monkeypatch) == 0
+    lines = out(capsys).splitlines()
+    assert lines[:2] == ["Subscribed to [/a]", "Subscribed to [/joint_states]"]
+    assert lines[2].split() == ["topic", "rate", "min_delta", "max_delta", "stddev", "window"]
+    assert set(lines[3]) == {"="}
+    assert lines[4].split()[0] == "/a"
+
+
+def test_hz_counts_what_the_filter_lets_through(in_graph, capsys, monkeypatch):
+    in_graph(lambda graph: talker(graph, period=0.01))
+    words = ["topic", "hz", "/chatter", "--filter", "m.data.endswith('0')"]
+    assert run_for(1.2, words, monkeypatch) == 0
+    assert 6 < float(out(capsys).split()[2]) < 14
+
+
+def test_bw(in_graph, capsys, monkeypatch):
+    in_graph(lambda graph: talker(graph, period=0.01))
+    assert run_for(1.2, ["topic", "bw", "/chatter"], monkeypatch) == 0
+    text = out(capsys)
+    pattern = r"Subscribed to \[/chatter\]\n[\d.]+ K?B/s from \d+ messages\n\tMessage size mean: .* min: .* max: .*\n"
+    assert re.fullmatch(pattern, text), text
+
+
+def test_delay(in_graph, capsys, monkeypatch):
+    def make(graph: Graph) -> None:
+        node = graph.create_node("camera", start_parameter_services=False)
+        publisher = node.create_publisher("sensor_msgs/msg/Range", "range", 10)
+        kind = get_message("sensor_msgs/msg/Range")
+
+        def publish() -> None:
+            message = kind()
+            message.header.stamp = node.get_clock().now().to_msg()
+            publisher.publish(message)
+
+        node.create_timer(0.02, publish)
+
+    in_graph(make)
+    assert run_for(1.2, ["topic", "delay", "/range"], monkeypatch) == 0
+    found = re.match(r"average delay: (-?\d\.\d{3})\n\tmin: ", out(capsys))
+    assert found
+    assert abs(float(found[1])) < 0.5
+
+
+def test_delay_needs_a_header(in_graph, capsys):
+    in_graph(talker)
+    assert main(["topic", "delay", "/chatter"]) == 1
+    assert "msg does not have header" in capsys.readouterr().err

@@ -1,0 +1,191 @@
+"""The verbs as a user runs them: processes of their own, which meet over DDS."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+
+import pytest
+
+from linkwright.graph import dds
+
+pytestmark = pytest.mark.skipif(not dds.available(), reason="there is no cyclonedds here")
+
+# A domain for each worker of xdist, so that they do not see each other's nodes.
+DOMAIN = str(107 + int(os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw")) % 8)
+TALKER = """
+import asyncio
+from linkwright.graph import Graph, dds
+from linkwright.messages import String
+
+async def main():
+    graph = Graph()
+    node = graph.create_node("talker")
+    node.declare_parameter("speed", 1.5)
+    publisher = node.create_publisher(String, "chatter", 10)
+    count = 0
+    def publish():
+        nonlocal count
+        count += 1
+        publisher.publish(String(data=f"Hello {count}"))
+    node.create_timer(0.02, publish)
+    node.create_service("std_srvs/srv/SetBool", "power", lambda request, response: response)
+    dds.join(graph).wait_until_ready(5)
+    print("ready", flush=True)
+    await asyncio.sleep(120)
+
+asyncio.run(main())
+"""
+
+
+def environment() -> dict[str, str]:
+    return {**os.environ, "ROS_DOMAIN_ID": DOMAIN, "LINKWRIGHT_LANG": "en"}
+
+
+@pytest.fixture(scope="module")
+def talker() -> Iterator[None]:
+    process = subprocess.Popen([sys.executable, "-c", TALKER], stdout=subprocess.PIPE, text=True, env=environment())
+    assert process.stdout is not None
+    assert process.stdout.readline() == "ready\n"
+    yield
+    process.kill()
+    process.wait()
+    process.stdout.close()
+
+
+def linkwright(*words: str, timeout: float = 30.0, status: int = 0) -> str:
+    done = subprocess.run(
+        [sys.executable, "-m", "linkwright", *words],
+        capture_output=True,
+        text=True,
+        env=environment(),
+        timeout=timeout,
+        check=False,
+    )
+    assert done.returncode == status, done.stderr
+    return done.stdout
+
+
+def begin(*words: str) -> subprocess.Popen[str]:
+    return subprocess.Popen(
+        [sys.executable, "-m", "linkwright", *words],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        env=environment(),
+    )
+
+
+@pytest.mark.usefixtures("talker")
+class TestAgainstATalker:
+    def test_list(self):
+        assert linkwright("node", "list") == "/talker\n"
+        assert "/chatter [std_msgs/msg/String]\n" in linkwright("topic", "list", "-t")
+
+    def test_a_listing_is_there_within_two_seconds(self):
+        begun = time.monotonic()
+        linkwright("topic", "list")
+        assert time.monotonic() - begun < 4.0
+
+    def test_echo_once(self):
+        assert re.fullmatch(r"data: Hello \d+\n---\n", linkwright("topic", "echo", "--once", "/chatter"))
+
+    def test_parameters(self):
+        assert linkwright("param", "get", "/talker", "speed") == "Double value is: 1.5\n"
+        assert linkwright("param", "set", "/talker", "speed", "2.5") == "Set parameter successful\n"
+        assert linkwright("param", "get", "/talker", "speed") == "Double value is: 2.5\n"
+
+    def test_service(self):
+        said = linkwright("service", "call", "/power", "std_srvs/srv/SetBool", "{data: true}")
+        assert "std_srvs.srv.SetBool_Response(success=False, message='')" in said
+
+    def test_ctrl_c_ends_echo_at_once_with_130(self):
+        process = begin("topic", "echo", "/chatter")
+        assert process.stdout is not None
+        assert process.stdout.readline().startswith("data: Hello")
+        begun = time.monotonic()
+        process.send_signal(signal.SIGINT)
+        _, err = process.communicate(timeout=10)
+        assert process.returncode == 130
+        assert time.monotonic() - begun < 3.0
+        assert err == ""
+
+    def test_ctrl_c_while_it_starts(self):
+        for delay in (0.05, 0.15, 0.3, 0.5):
+            process = begin("topic", "hz", "/chatter")
+            time.sleep(delay)
+            process.send_signal(signal.SIGINT)
+            out, err = process.communicate(timeout=10)
+            # Before Python has set its handler the signal itself ends the process.
+            assert process.returncode in (130, -signal.SIGINT), (delay, out, err)
+
+    def test_termination_leaves_the_graph_too(self):
+        process = begin("topic", "echo", "/chatter")
+        assert process.stdout is not None
+        process.stdout.readline()
+        process.terminate()
+        _, err = process.communicate(timeout=10)
+        assert process.returncode == 143
+        assert err == ""
+
+    def test_a_reader_that_goes_away_is_no_error(self):
+        command = f"{sys.executable} -m linkwright topic echo /chatter | head -n 3"
+        done = subprocess.run(
+            ["bash", "-o", "pipefail", "-c", command],
+            capture_output=True,
+            text=True,
+            env=environment(),
+            timeout=20,
+            check=False,
+        )
+        assert len(done.stdout.splitlines()) == 3
+        assert done.stderr == ""
+
+
+def test_pub_reaches_an_echo_that_was_there_before():
+    echo = begin("topic", "echo", "/orders", "std_msgs/msg/String", "--once", "--timeout", "15")
+    said = linkwright("topic", "pub", "--once", "/orders", "std_msgs/msg/String", "data: go")
+    assert "publishing #1: std_msgs.msg.String(data='go')" in said
+    out, _ = echo.communicate(timeout=20)
+    assert out == "data: go\n---\n"
+
+
+def test_a_description_published_before_is_echoed_by_a_late_comer():
+    words = ["topic", "pub", "/robot_description", "std_msgs/msg/String", "data: <robot/>"]
+    publisher = begin(*words, "--qos-durability", "transient_local", "-r", "0.01")
+    assert publisher.stdout is not None
+    publisher.stdout.readline()
+    try:
+        assert linkwright("topic", "echo", "--once", "/robot_description") == "data: <robot/>\n---\n"
+    finally:
+        publisher.send_signal(signal.SIGINT)
+        publisher.communicate(timeout=10)
+
+
+def test_the_doctor_sees_what_runs_outside():
+    publisher = begin("topic", "pub", "/cmd_vel", "geometry_msgs/msg/Twist", "-n", "teleop")
+    other = begin("topic", "echo", "/cmd_vel", "geometry_msgs/msg/TwistStamped")
+    try:
+        assert publisher.stdout is not None
+        publisher.stdout.readline()
+        done = subprocess.run(
+            [sys.executable, "-m", "linkwright", "doctor", "--seconds", "1", "--format", "json"],
+            capture_output=True,
+            text=True,
+            env=environment(),
+            timeout=30,
+            check=False,
+        )
+        codes = [each["code"] for each in json.loads(done.stdout)["diagnostics"]]
+        # What another command subscribes to is no part of what runs, so only the domain is spoken of.
+        assert codes == ["DOC803"]
+    finally:
+        for process in (publisher, other):
+            process.send_signal(signal.SIGINT)
+            process.communicate(timeout=10)

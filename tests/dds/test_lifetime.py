@@ -1,0 +1,119 @@
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import textwrap
+import threading
+import time
+from pathlib import Path
+
+import pytest
+
+from linkwright.graph.qos import QoSProfile
+from linkwright.messages import String, get_message
+
+on_linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="looks into /proc")
+
+
+def run(text: str, seconds: float = 20) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-c", textwrap.dedent(text)], capture_output=True, text=True, timeout=seconds, check=False
+    )
+
+
+def descriptors() -> set[str]:
+    return {str(each.readlink()) for each in Path("/proc/self/fd").iterdir() if each.is_symlink()}
+
+
+@on_linux
+def test_nothing_is_left_after_closing(processes):
+    processes("warm").close()
+    threads, sockets = threading.active_count(), {each for each in descriptors() if each.startswith("socket")}
+    tasks = len(list(Path("/proc/self/task").iterdir()))
+    us = processes("ours")
+    us.node.create_publisher(String, "chatter", 10)
+    assert len(list(Path("/proc/self/task").iterdir())) > tasks
+    us.close()
+    assert threading.active_count() == threads
+    assert {each for each in descriptors() if each.startswith("socket")} == sockets
+    assert len(list(Path("/proc/self/task").iterdir())) <= tasks
+
+
+def test_closing_twice_and_before_being_ready_is_fine(processes):
+    us = processes("ours", join_now=False)
+    from linkwright.graph.dds import join
+
+    transport = join(us.graph)
+    transport.close()
+    transport.close()
+    assert transport.remote_nodes() == []
+
+
+def test_what_was_sent_reliably_before_closing_arrives(processes):
+    b = processes("b")
+    got: list[int] = []
+    deep = QoSProfile(500)
+    b.node.create_subscription("std_msgs/msg/Int32", "chatter", lambda message: got.append(message.data), deep)
+    a = processes("a")
+    publisher = a.node.create_publisher("std_msgs/msg/Int32", "chatter", deep)
+    a.spin_until(lambda: publisher.get_subscription_count() == 1)
+    for number in range(300):
+        publisher.publish(get_message("std_msgs/msg/Int32")(data=number))
+    a.close()
+    b.spin_until(lambda: len(got) == 300)
+
+
+def test_a_program_that_closes_nothing_ends(domain):
+    begin = time.monotonic()
+    done = run(
+        """
+        from linkwright.graph import Graph
+        from linkwright.graph.dds import join
+        from linkwright.messages import String
+        graph = Graph(threads=True)
+        publisher = graph.create_node("ours").create_publisher(String, "chatter", 10)
+        transport = join(graph)
+        assert transport.wait_until_ready(10)
+        """
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    assert time.monotonic() - begin < 10
+
+
+def test_a_program_that_fails_ends(domain):
+    done = run(
+        """
+        from linkwright.graph import Graph
+        from linkwright.graph.dds import join
+        graph = Graph(threads=True)
+        transport = join(graph)
+        raise SystemExit(3)
+        """
+    )
+    assert (done.returncode, done.stderr) == (3, "")
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork here")
+@pytest.mark.filterwarnings("ignore:.*fork.*:DeprecationWarning")
+def test_a_child_that_is_forked_off_takes_no_part(processes, programs):
+    us = processes("ours")
+    us.node.create_subscription("std_msgs/msg/Int32", "/flood", print, 10)
+    other = programs("our_program", "forking")
+    other.ask_until(bool, "subscribers", "/flood")
+    assert other.ask("fork")[0] == 7
+    assert other.ask("nodes") == ["forking", "ours"]
+
+
+def test_a_peer_that_is_killed_does_not_hold_us_up(processes, programs):
+    us = processes("ours")
+    publisher = us.node.create_publisher(String, "/to_ros", 10)
+    peer = programs("ros_peer", "humble", "victim", "localhost")
+    us.spin_until(lambda: publisher.get_subscription_count() == 1)
+    peer.kill()
+    begin = time.monotonic()
+    for _ in range(2000):
+        publisher.publish(String(data="x" * 1000))
+    assert time.monotonic() - begin < 2
+    us.close()
+    assert time.monotonic() - begin < 5

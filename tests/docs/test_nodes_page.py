@@ -1,0 +1,58 @@
+"""The node of the page about own nodes runs, and so do its tests."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from linkwright.cli import main
+from linkwright.standins import process
+from tests.docs.pages import DOCS, blocks, commands
+
+PAGE = DOCS / "nodes.md"
+
+
+@pytest.fixture(scope="module")
+def sources(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder ``src`` of a reader who did what the page says."""
+    folder = tmp_path_factory.mktemp("ros2_ws") / "src"
+    folder.mkdir()
+    for line in commands(PAGE):
+        words = shlex.split(line)[1:]
+        if words[:2] == ["pkg", "create"]:
+            assert main([*words, "--destination-directory", str(folder)]) == 0
+    for block in blocks(PAGE):
+        if block.title:
+            path = folder / block.title
+            path.parent.mkdir(exist_ok=True)
+            path.write_text(block.text, encoding="utf-8")
+    return folder
+
+
+def test_the_tests_of_the_page_pass(sources: Path) -> None:
+    environment = process.environment({**os.environ, "LINKWRIGHT_DDS": "0"})
+    result = subprocess.run(
+        [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "-p", "no:asyncio", "test/test_robot.py"],
+        cwd=sources / "my_nodes",
+        env=environment,
+        capture_output=True,
+        encoding="utf-8",
+        timeout=60,
+        check=False,
+    )
+    assert result.returncode == 0, result.stdout + result.stderr
+    assert "3 passed" in result.stdout
+
+
+def test_the_interfaces_need_no_build(sources: Path, monkeypatch: pytest.MonkeyPatch, capsys) -> None:
+    monkeypatch.chdir(sources)
+    assert main(["interface", "package", "my_interfaces"]) == 0
+    listed = "my_interfaces/action/Drive\nmy_interfaces/msg/Battery\nmy_interfaces/srv/SetSpeed\n"
+    assert capsys.readouterr().out == listed
+    assert main(["pkg", "executables", "my_nodes"]) == 0
+    assert capsys.readouterr().out == "my_nodes robot\n"

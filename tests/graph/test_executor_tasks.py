@@ -1,0 +1,296 @@
+"""Tasks: callables and coroutines that executors run, in turns."""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+import time
+
+import pytest
+
+from linkwright.graph import Graph
+from linkwright.graph.executors import MultiThreadedExecutor, SingleThreadedExecutor, Task
+from linkwright.graph.future import Future
+
+
+@pytest.fixture
+def executor():
+    with SingleThreadedExecutor() as executor:
+        yield executor
+
+
+class TestByHand:
+    """A task without an executor runs a step at each call."""
+
+    def test_a_callable(self):
+        task = Task(lambda word: word.upper(), ("done",))
+        assert not task.done()
+        task()
+        assert task.result() == "DONE"
+
+    def test_keyword_arguments(self):
+        task = Task(lambda word=None: word, kwargs={"word": "done"})
+        task()
+        assert task.result() == "done"
+
+    def test_a_coroutine_function_runs_in_steps(self):
+        steps = []
+
+        async def work():
+            steps.append(1)
+            await asyncio.sleep(0)
+            steps.append(2)
+            return "done"
+
+        task = Task(work)
+        task()
+        assert (steps, task.done()) == ([1], False)
+        task()
+        assert (steps, task.result()) == ([1, 2], "done")
+
+    def test_a_coroutine(self):
+        async def work():
+            return "done"
+
+        task = Task(work())
+        task()
+        assert task.result() == "done"
+
+    def test_a_callable_that_gives_a_coroutine(self):
+        async def work():
+            return "done"
+
+        task = Task(lambda: work())  # noqa: PLW0108  # a callable that is no coroutine function
+        task()
+        assert task.result() == "done"
+
+    def test_a_fault_is_kept(self):
+        def fail():
+            raise ValueError("mine")
+
+        task = Task(fail)
+        task()
+        assert task.done()
+        assert str(task.exception()) == "mine"
+        with pytest.raises(ValueError, match="mine"):
+            task.result()
+
+    def test_it_runs_once(self):
+        runs = []
+        task = Task(lambda: runs.append(1))
+        task()
+        task()
+        assert runs == [1]
+
+    def test_a_cancelled_one_does_not_run(self):
+        runs = []
+        task = Task(lambda: runs.append(1))
+        task.cancel()
+        task()
+        assert task.cancelled()
+        assert not task.done()
+        assert runs == []
+
+    def test_cancelling_after_the_end_does_nothing(self):
+        task = Task(lambda: None)
+        task()
+        task.cancel()
+        assert not task.cancelled()
+
+    def test_cancelling_closes_the_coroutine(self):
+        closed = []
+
+        async def work():
+            try:
+                await Future()
+            finally:
+                closed.append(1)
+
+        task = Task(work)
+        task()
+        task.cancel()
+        assert closed == [1]
+
+    def test_whether_it_runs(self):
+        during = []
+        task = Task(lambda: during.append(task.executing()))
+        assert not task.executing()
+        task()
+        assert during == [True]
+        assert not task.executing()
+
+
+class TestByAnExecutor:
+    def test_it_runs_when_the_executor_spins(self, executor):
+        task = executor.create_task(lambda: "done")
+        assert not task.done()
+        executor.spin_once(timeout_sec=0)
+        assert task.result() == "done"
+
+    def test_in_the_order_of_creation(self, executor):
+        order = []
+        for number in range(5):
+            executor.create_task(order.append, number)
+        for _ in range(5):
+            executor.spin_once(timeout_sec=0)
+        assert order == [0, 1, 2, 3, 4]
+
+    def test_it_ends_a_wait(self, executor):
+        done = []
+        threading.Timer(0.05, executor.create_task, [done.append, 1]).start()
+        executor.spin_once(timeout_sec=2.0)
+        assert done == [1]
+
+    def test_a_coroutine_waits_for_a_future(self, executor):
+        future = Future()
+
+        async def work():
+            return await future
+
+        task = executor.create_task(work)
+        executor.spin_once(timeout_sec=0)
+        executor.spin_once(timeout_sec=0)
+        assert not task.done()
+        future.set_result("done")
+        executor.spin_once(timeout_sec=0)
+        assert task.result() == "done"
+
+    def test_waiting_for_a_future_costs_nothing(self, executor):
+        async def work():
+            await Future()
+
+        executor.create_task(work)
+        executor.spin_once(timeout_sec=0)
+        start = time.process_time()
+        executor.spin_once(timeout_sec=0.3)
+        assert time.process_time() - start < 0.1
+
+    def test_the_fault_of_a_future_comes_out_of_its_await(self, executor):
+        future = Future()
+
+        async def work():
+            with pytest.raises(ValueError, match="mine"):
+                await future
+            return "caught"
+
+        task = executor.create_task(work)
+        executor.spin_once(timeout_sec=0)
+        future.set_exception(ValueError("mine"))
+        executor.spin_once(timeout_sec=0)
+        assert task.result() == "caught"
+
+    def test_tasks_that_await_each_other_take_turns(self, executor):
+        async def first():
+            return 1
+
+        one = executor.create_task(first)
+
+        async def second():
+            return await one + 1
+
+        two = executor.create_task(second)
+        executor.spin_once(timeout_sec=0)
+        executor.spin_once(timeout_sec=0)
+        assert (one.done(), two.done()) == (True, False)
+        executor.spin_once(timeout_sec=0)
+        assert two.result() == 2
+
+    def test_one_that_awaits_a_later_one(self, executor):
+        later = []
+
+        async def first():
+            return await later[0] + 1
+
+        async def second():
+            return 1
+
+        one = executor.create_task(first)
+        later.append(executor.create_task(second))
+        executor.spin_until_future_complete(one, timeout_sec=1.0)
+        assert one.result() == 2
+
+    def test_done_callbacks_are_run_by_the_executor(self, executor):
+        order = []
+        future = executor.create_future()
+        future.add_done_callback(lambda done: order.append(done.result()))
+        future.set_result("done")
+        assert order == []
+        executor.spin_once(timeout_sec=0)
+        assert order == ["done"]
+
+    def test_a_deep_chain_of_awaits(self, executor):
+        future = Future()
+
+        async def deep(level):
+            return await future if level == 0 else await deep(level - 1) + 1
+
+        task = executor.create_task(deep, 100)
+        executor.spin_once(timeout_sec=0)
+        future.set_result(0)
+        executor.spin_until_future_complete(task, timeout_sec=1.0)
+        assert task.result() == 100
+
+    def test_a_timer_that_is_a_coroutine_goes_on_in_the_next_turn(self, executor):
+        graph = Graph(threads=True)
+        node = graph.create_node("tested", start_parameter_services=False)
+        steps = []
+
+        async def work():
+            steps.append(1)
+            await asyncio.sleep(0)
+            steps.append(2)
+
+        node.create_timer(0.02, work)
+        executor.add_node(node)
+        executor.spin_once(timeout_sec=1.0)
+        assert steps == [1]
+        executor.spin_once(timeout_sec=0)
+        assert steps == [1, 2]
+        graph.close_now()
+
+    def test_a_hundred_coroutines_in_four_threads_end(self):
+        futures = [Future() for _ in range(100)]
+
+        async def work(number):
+            value = await futures[number]
+            await asyncio.sleep(0)
+            return value + 1
+
+        with MultiThreadedExecutor(4) as executor:
+            tasks = [executor.create_task(work, number) for number in range(100)]
+            thread = threading.Thread(target=executor.spin, daemon=True)
+            thread.start()
+            for number, future in enumerate(futures):
+                future.set_result(number)
+            for number, task in enumerate(tasks):
+                assert task.wait(3.0)
+                assert task.result() == number + 1
+            executor.shutdown()
+            thread.join(2.0)
+
+    async def test_inside_of_a_running_event_loop(self, executor):
+        future = Future()
+
+        async def work():
+            return await future
+
+        task = executor.create_task(work)
+        executor.spin_once(timeout_sec=0)
+        future.set_result("done")
+        await asyncio.sleep(0)
+        executor.spin_once(timeout_sec=0)
+        assert task.result() == "done"
+
+    async def test_a_task_can_be_awaited_by_asyncio(self, executor):
+        async def work():
+            return "done"
+
+        task = executor.create_task(work)
+        waiting = asyncio.ensure_future(_result_of(task))
+        await asyncio.sleep(0)
+        executor.spin_once(timeout_sec=0)
+        assert await waiting == "done"
+
+
+async def _result_of(task):
+    return await task

@@ -1,0 +1,599 @@
+"""Executors: which thread runs what, when waits end, what becomes of faults."""
+
+from __future__ import annotations
+
+import threading
+import time
+
+import pytest
+
+from linkwright.graph import Graph
+from linkwright.graph.executors import (
+    ConditionReachedException,
+    Executor,
+    ExternalShutdownException,
+    MultiThreadedExecutor,
+    MutuallyExclusiveCallbackGroup,
+    ReentrantCallbackGroup,
+    ShutdownException,
+    SingleThreadedExecutor,
+    TimeoutException,
+)
+from linkwright.graph.future import Future
+from linkwright.messages import String
+
+BOTH = pytest.mark.parametrize("kind", [SingleThreadedExecutor, MultiThreadedExecutor])
+
+
+class Context:
+    """A context as executors see it."""
+
+    def __init__(self):
+        self.is_ok = True
+        self.callbacks = []
+
+    def ok(self):
+        return self.is_ok
+
+    def on_shutdown(self, callback):
+        self.callbacks.append(callback)
+
+    def shutdown(self):
+        self.is_ok = False
+        for callback in self.callbacks:
+            callback()
+
+
+@pytest.fixture
+def graph():
+    graph = Graph(threads=True, on_log=lambda _record: None)
+    yield graph
+    graph.close_now()
+
+
+@pytest.fixture
+def node(graph):
+    return graph.create_node("tested", start_parameter_services=False, enable_rosout=False)
+
+
+@pytest.fixture
+def executor(node):
+    with SingleThreadedExecutor() as executor:
+        executor.add_node(node)
+        yield executor
+
+
+def wait_until(holds, timeout=3.0):
+    end = time.monotonic() + timeout
+    while not holds():
+        assert time.monotonic() < end, "it did not come true in time"
+        time.sleep(0.002)
+
+
+def spun(executor):
+    """Threads are daemons so that a test that fails does not hang the others."""
+    thread = threading.Thread(target=executor.spin, daemon=True)
+    thread.start()
+    return thread
+
+
+class TestWaiting:
+    @BOTH
+    def test_a_timer_is_waited_for_and_called(self, kind, node):
+        called = threading.Event()
+        node.create_timer(0.02, called.set)
+        with kind() as executor:
+            executor.add_node(node)
+            executor.spin_once(timeout_sec=1.0)
+            assert called.wait(1.0)
+
+    def test_without_work_the_wait_takes_as_long_as_said(self, executor):
+        start = time.monotonic()
+        executor.spin_once(timeout_sec=0.05)
+        assert 0.05 <= time.monotonic() - start < 0.5
+
+    def test_timeout_zero_does_not_wait(self, executor):
+        start = time.monotonic()
+        executor.spin_once(timeout_sec=0)
+        assert time.monotonic() - start < 0.02
+
+    def test_timeout_zero_runs_what_is_ready(self, node, executor):
+        got = []
+        node.create_subscription(String, "chatter", got.append, 10)
+        node.create_publisher(String, "chatter", 10).publish(String(data="here"))
+        executor.spin_once(timeout_sec=0)
+        assert [message.data for message in got] == ["here"]
+
+    def test_one_callback_at_a_time(self, node, executor):
+        got = []
+        node.create_subscription(String, "chatter", got.append, 10)
+        publisher = node.create_publisher(String, "chatter", 10)
+        publisher.publish(String(data="1"))
+        publisher.publish(String(data="2"))
+        executor.spin_once(timeout_sec=0)
+        assert len(got) == 1
+        executor.spin_once(timeout_sec=0)
+        assert len(got) == 2
+
+    def test_the_queue_keeps_as_many_as_the_quality_of_service_says(self, node, executor):
+        got = []
+        node.create_subscription(String, "chatter", lambda message: got.append(message.data), 3)
+        publisher = node.create_publisher(String, "chatter", 10)
+        for number in range(10):
+            publisher.publish(String(data=str(number)))
+        for _ in range(10):
+            executor.spin_once(timeout_sec=0)
+        assert got == ["7", "8", "9"]
+
+    def test_a_node_that_is_added_ends_the_wait(self, graph):
+        node = graph.create_node("late")
+        called = threading.Event()
+        with SingleThreadedExecutor() as executor:
+            thread = threading.Thread(target=executor.spin, daemon=True)
+            thread.start()
+            time.sleep(0.05)
+            node.create_timer(0.01, called.set)
+            executor.add_node(node)
+            assert called.wait(2.0)
+        thread.join(2.0)
+        assert not thread.is_alive()
+
+    def test_a_message_from_another_thread_ends_the_wait_at_once(self, node, executor):
+        times = []
+        node.create_subscription(String, "chatter", lambda _message: times.append(time.monotonic()), 10)
+        publisher = node.create_publisher(String, "chatter", 10)
+        thread = spun(executor)
+        time.sleep(0.05)
+        start = time.monotonic()
+        publisher.publish(String())
+        wait_until(lambda: times)
+        assert times[0] - start < 0.05
+        executor.shutdown()
+        thread.join(2.0)
+
+    def test_waiting_costs_no_time_of_the_processor(self, node, executor):
+        node.create_timer(10.0, lambda: None)
+        start = time.process_time()
+        executor.spin_once(timeout_sec=0.3)
+        assert time.process_time() - start < 0.1
+
+    def test_a_cancelled_timer_is_not_called(self, node, executor):
+        called = []
+        timer = node.create_timer(0.01, lambda: called.append(1))
+        timer.cancel()
+        executor.spin_once(timeout_sec=0.05)
+        assert called == []
+
+    def test_many_cancelled_timers_leave_nothing_behind(self, node, executor):
+        timer = node.create_timer(100.0, lambda: None)
+        for _ in range(1000):
+            timer.reset()
+        assert len(executor._work._alarms) < 200
+
+
+class TestNodes:
+    def test_nodes_are_listed(self, graph, node, executor):
+        other = graph.create_node("other")
+        assert executor.add_node(other) is True
+        assert executor.add_node(other) is False
+        assert executor.get_nodes() == [node, other]
+        executor.remove_node(other)
+        assert executor.get_nodes() == [node]
+
+    def test_a_node_that_was_removed_is_not_run(self, node, executor):
+        called = []
+        node.create_timer(0.01, lambda: called.append(1))
+        executor.remove_node(node)
+        executor.spin_once(timeout_sec=0.05)
+        assert called == []
+
+    def test_what_is_due_waits_for_the_next_executor(self, node, executor):
+        got = []
+        node.create_subscription(String, "chatter", got.append, 10)
+        publisher = node.create_publisher(String, "chatter", 10)
+        publisher.publish(String(data="1"))
+        executor.remove_node(node)
+        publisher.publish(String(data="2"))
+        executor.spin_once(timeout_sec=0)
+        assert got == []
+        with SingleThreadedExecutor() as other:
+            other.add_node(node)
+            other.spin_once(timeout_sec=0)
+            other.spin_once(timeout_sec=0)
+        assert [message.data for message in got] == ["1", "2"]
+
+    def test_what_was_destroyed_is_not_run(self, node, executor):
+        got = []
+        subscription = node.create_subscription(String, "chatter", got.append, 10)
+        node.create_publisher(String, "chatter", 10).publish(String())
+        node.destroy_subscription(subscription)
+        executor.spin_once(timeout_sec=0)
+        assert got == []
+
+
+class TestFaults:
+    def test_what_a_callback_raises_leaves_spin(self, node, executor):
+        def fail():
+            raise ValueError("mine")
+
+        node.create_timer(0.01, fail)
+        with pytest.raises(ValueError, match="mine"):
+            executor.spin()
+
+    def test_what_a_callback_in_a_thread_raises_leaves_spin(self, node):
+        def fail():
+            raise ValueError("mine")
+
+        node.create_timer(0.01, fail)
+        with MultiThreadedExecutor(2) as executor:
+            executor.add_node(node)
+            with pytest.raises(ValueError, match="mine"):
+                executor.spin()
+
+    def test_what_a_task_raises_leaves_spin(self, executor):
+        def fail():
+            raise ValueError("mine")
+
+        task = executor.create_task(fail)
+        with pytest.raises(ValueError, match="mine"):
+            executor.spin_once(timeout_sec=0)
+        assert isinstance(task.exception(), ValueError)
+
+    def test_what_a_coroutine_raises_after_an_await_leaves_spin(self, node, executor):
+        future = Future()
+
+        async def fail():
+            await future
+            raise ValueError("mine")
+
+        timer = node.create_timer(0.01, fail)
+        executor.spin_once(timeout_sec=1.0)
+        timer.cancel()
+        future.set_result(None)
+        with pytest.raises(ValueError, match="mine"):
+            executor.spin_once(timeout_sec=1.0)
+
+    def test_spinning_goes_on_after_a_fault(self, node, executor):
+        got = []
+
+        def receive(message):
+            got.append(message.data)
+            if message.data == "bad":
+                raise ValueError
+
+        node.create_subscription(String, "chatter", receive, 10)
+        publisher = node.create_publisher(String, "chatter", 10)
+        publisher.publish(String(data="bad"))
+        publisher.publish(String(data="good"))
+        with pytest.raises(ValueError):
+            executor.spin_once(timeout_sec=0)
+        executor.spin_once(timeout_sec=0)
+        assert got == ["bad", "good"]
+
+
+class TestShutdown:
+    def test_it_ends_spin_in_another_thread(self, node, executor):
+        node.create_timer(10.0, lambda: None)
+        thread = spun(executor)
+        time.sleep(0.05)
+        start = time.monotonic()
+        assert executor.shutdown() is True
+        thread.join(2.0)
+        assert time.monotonic() - start < 0.5
+        assert not thread.is_alive()
+
+    def test_it_may_come_from_a_callback(self, node, executor):
+        node.create_timer(0.01, executor.shutdown)
+        executor.spin()
+
+    def test_it_waits_for_a_callback_that_runs(self, node, executor):
+        begun, ended = threading.Event(), []
+
+        def work():
+            begun.set()
+            time.sleep(0.2)
+            ended.append(1)
+
+        node.create_timer(0.01, work)
+        thread = spun(executor)
+        assert begun.wait(2.0)
+        assert executor.shutdown(timeout_sec=0.01) is False
+        assert executor.shutdown() is True
+        assert ended == [1]
+        thread.join(2.0)
+
+    def test_threads_end(self, node):
+        before = threading.active_count()
+        called = threading.Event()
+        node.create_timer(0.01, called.set)
+        executor = MultiThreadedExecutor(4)
+        executor.add_node(node)
+        executor.spin_once(timeout_sec=1.0)
+        assert called.wait(2.0)
+        assert threading.active_count() > before
+        assert executor.shutdown() is True
+        assert threading.active_count() == before
+
+    @BOTH
+    def test_waiting_for_work_afterwards_says_so(self, kind):
+        executor = kind()
+        executor.shutdown()
+        with pytest.raises(ShutdownException):
+            executor.wait_for_ready_callbacks()
+
+    @BOTH
+    def test_spinning_afterwards_ends_at_once(self, kind):
+        executor = kind()
+        executor.shutdown()
+        executor.spin()
+        executor.spin_once()
+        assert executor.add_node(object()) is False
+
+
+class TestContext:
+    def test_its_end_raises_in_a_wait(self):
+        context = Context()
+        executor = SingleThreadedExecutor(context=context)
+        threading.Timer(0.05, context.shutdown).start()
+        with pytest.raises(ExternalShutdownException):
+            executor.spin()
+
+    def test_its_end_ends_spin_of_many_threads(self):
+        context = Context()
+        executor = MultiThreadedExecutor(2, context=context)
+        threading.Timer(0.05, context.shutdown).start()
+        executor.spin()
+        executor.shutdown()
+
+    def test_its_end_in_a_callback_ends_spin(self, node):
+        context = Context()
+        with SingleThreadedExecutor(context=context) as executor:
+            executor.add_node(node)
+            node.create_timer(0.01, context.shutdown)
+            executor.spin()
+
+
+class TestFutures:
+    @BOTH
+    def test_it_is_waited_for(self, kind):
+        future = Future()
+        with kind() as executor:
+            threading.Timer(0.05, future.set_result, ["done"]).start()
+            executor.spin_until_future_complete(future, timeout_sec=2.0)
+        assert future.result() == "done"
+
+    @BOTH
+    def test_it_is_not_waited_for_longer_than_said(self, kind, node):
+        node.create_timer(0.003, lambda: None)
+        with kind() as executor:
+            executor.add_node(node)
+            start = time.monotonic()
+            executor.spin_until_future_complete(Future(), timeout_sec=0.1)
+            assert 0.1 <= time.monotonic() - start < 0.5
+
+    def test_timeout_zero_does_not_wait(self, executor):
+        executor.spin_until_future_complete(Future(), timeout_sec=0)
+
+    def test_a_negative_timeout_is_none(self, executor):
+        future = Future()
+        threading.Timer(0.05, future.set_result, [1]).start()
+        executor.spin_until_future_complete(future, timeout_sec=-1)
+        assert future.done()
+
+    def test_a_cancelled_one_ends_the_wait(self, executor):
+        future = Future()
+        threading.Timer(0.05, future.cancel).start()
+        executor.spin_until_future_complete(future, timeout_sec=5)
+        assert future.cancelled()
+
+    def test_waiting_again_and_again_leaves_nothing_behind(self, executor):
+        future = Future()
+        for _ in range(50):
+            executor.spin_until_future_complete(future, timeout_sec=0)
+        assert len(future._waiters) == 1
+
+    def test_one_that_is_done_runs_nothing(self, node, executor):
+        got = []
+        node.create_subscription(String, "chatter", got.append, 10)
+        node.create_publisher(String, "chatter", 10).publish(String())
+        future = Future()
+        future.set_result(None)
+        executor.spin_once_until_future_complete(future, timeout_sec=1.0)
+        assert got == []
+
+
+class TestGroups:
+    def test_members_of_an_exclusive_group_take_turns(self, node):
+        running, most = [], []
+        group = MutuallyExclusiveCallbackGroup()
+
+        def work(_message):
+            running.append(1)
+            most.append(len(running))
+            time.sleep(0.01)
+            running.pop()
+
+        for topic in ("one", "two", "three"):
+            node.create_subscription(String, topic, work, 10, callback_group=group)
+        publishers = [node.create_publisher(String, topic, 10) for topic in ("one", "two", "three")]
+        with MultiThreadedExecutor(4) as executor:
+            executor.add_node(node)
+            thread = spun(executor)
+            for publisher in publishers * 5:
+                publisher.publish(String())
+            wait_until(lambda: len(most) == 15)
+            executor.shutdown()
+            thread.join(2.0)
+        assert max(most) == 1
+
+    def test_the_default_group_is_exclusive(self, node):
+        most, running = [], []
+
+        def work(_message):
+            running.append(1)
+            most.append(len(running))
+            time.sleep(0.01)
+            running.pop()
+
+        node.create_subscription(String, "one", work, 10)
+        node.create_subscription(String, "two", work, 10)
+        publishers = [node.create_publisher(String, topic, 10) for topic in ("one", "two")]
+        with MultiThreadedExecutor(4) as executor:
+            executor.add_node(node)
+            thread = spun(executor)
+            for publisher in publishers * 5:
+                publisher.publish(String())
+            wait_until(lambda: len(most) == 10)
+            executor.shutdown()
+            thread.join(2.0)
+        assert max(most) == 1
+
+    def test_one_callback_of_a_reentrant_group_runs_beside_itself(self, node):
+        barrier = threading.Barrier(3, timeout=3.0)
+        passed = []
+
+        def meet(_message):
+            barrier.wait()
+            passed.append(1)
+
+        node.create_subscription(String, "chatter", meet, 10, callback_group=ReentrantCallbackGroup())
+        publisher = node.create_publisher(String, "chatter", 10)
+        with MultiThreadedExecutor(3) as executor:
+            executor.add_node(node)
+            thread = spun(executor)
+            for _ in range(3):
+                publisher.publish(String())
+            wait_until(lambda: len(passed) == 3)
+            executor.shutdown()
+            thread.join(2.0)
+
+    def test_messages_of_an_exclusive_group_keep_their_order(self, node):
+        got = []
+        node.create_subscription(String, "chatter", lambda message: got.append(int(message.data)), 1000)
+        publisher = node.create_publisher(String, "chatter", 1000)
+        with MultiThreadedExecutor(4) as executor:
+            executor.add_node(node)
+            thread = spun(executor)
+            for number in range(500):
+                publisher.publish(String(data=str(number)))
+            wait_until(lambda: len(got) == 500)
+            executor.shutdown()
+            thread.join(2.0)
+        assert got == list(range(500))
+
+    def test_a_coroutine_keeps_its_exclusive_group_until_its_end(self, node, executor):
+        future, order = Future(), []
+        group = MutuallyExclusiveCallbackGroup()
+
+        async def first():
+            order.append("begins")
+            await future
+            order.append("ends")
+
+        guard = node.create_guard_condition(first, callback_group=group)
+        other = node.create_guard_condition(lambda: order.append("other"), callback_group=group)
+        guard.trigger()
+        other.trigger()
+        for _ in range(3):
+            executor.spin_once(timeout_sec=0)
+        assert order == ["begins"]
+        future.set_result(None)
+        for _ in range(3):
+            executor.spin_once(timeout_sec=0)
+        assert order == ["begins", "ends", "other"]
+
+    def test_a_nested_spin_runs_other_groups(self, node, executor):
+        got = []
+        inner = node.create_guard_condition(lambda: got.append("inner"), callback_group=ReentrantCallbackGroup())
+
+        def outer():
+            inner.trigger()
+            executor.spin_once(timeout_sec=1.0)
+            got.append("outer")
+
+        node.create_guard_condition(outer).trigger()
+        executor.spin_once(timeout_sec=1.0)
+        assert got == ["inner", "outer"]
+
+    def test_a_group_of_ones_own_is_asked(self, node, executor):
+        class Every(MutuallyExclusiveCallbackGroup):
+            allowed = False
+
+            def can_execute(self, entity):
+                return self.allowed and super().can_execute(entity)
+
+        group, got = Every(), []
+        guard = node.create_guard_condition(lambda: got.append(1), callback_group=group)
+        guard.trigger()
+        executor.spin_once(timeout_sec=0)
+        assert got == []
+        group.allowed = True
+        executor.wake()
+        executor.spin_once(timeout_sec=0)
+        assert got == [1]
+
+    def test_groups_know_their_members(self, node):
+        group = ReentrantCallbackGroup()
+        inside = node.create_timer(1.0, lambda: None, callback_group=group)
+        outside = node.create_timer(1.0, lambda: None)
+        assert group.has_entity(inside)
+        assert not group.has_entity(outside)
+
+
+class TestOwnExecutors:
+    def test_work_comes_with_its_entity_and_node(self, node, executor):
+        got = []
+        subscription = node.create_subscription(String, "chatter", got.append, 10)
+        node.create_publisher(String, "chatter", 10).publish(String())
+        handler, entity, its_node = executor.wait_for_ready_callbacks(timeout_sec=1.0)
+        assert (entity, its_node) == (subscription, node)
+        assert got == []
+        handler()
+        assert len(got) == 1
+        assert handler.exception() is None
+
+    def test_a_fault_is_kept_in_the_handler(self, node, executor):
+        def fail():
+            raise ValueError("mine")
+
+        node.create_guard_condition(fail).trigger()
+        handler, _, _ = executor.wait_for_ready_callbacks(timeout_sec=1.0)
+        handler()
+        assert str(handler.exception()) == "mine"
+
+    def test_work_of_some_nodes_leaves_that_of_others(self, graph, node, executor):
+        other = graph.create_node("other")
+        executor.add_node(other)
+        got = []
+        node.create_guard_condition(lambda: got.append("node")).trigger()
+        other.create_guard_condition(lambda: got.append("other")).trigger()
+        handler, _, its_node = executor.wait_for_ready_callbacks(timeout_sec=1.0, nodes=[other])
+        assert its_node is other
+        handler()
+        executor.spin_once(timeout_sec=0)
+        assert got == ["other", "node"]
+
+    def test_the_end_of_a_wait_has_a_reason(self, executor):
+        with pytest.raises(TimeoutException):
+            executor.wait_for_ready_callbacks(timeout_sec=0)
+        with pytest.raises(ConditionReachedException):
+            executor.wait_for_ready_callbacks(condition=lambda: True)
+
+    def test_spin_of_the_base_class_spins_once_and_again(self, node):
+        class Own(Executor):
+            times = 0
+
+            def spin_once(self, timeout_sec=None):
+                self.times += 1
+                handler, _, _ = self.wait_for_ready_callbacks(timeout_sec=timeout_sec)
+                handler()
+
+        with Own() as executor:
+            executor.add_node(node)
+            node.create_timer(0.005, lambda: executor.times == 3 and executor.shutdown())
+            executor.spin()
+            assert executor.times == 3
+
+    def test_many_threads_are_one_too_few(self):
+        with pytest.warns(UserWarning, match="single thread"):
+            MultiThreadedExecutor(1)

@@ -1,0 +1,233 @@
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from linkwright.diagnostics import LinkwrightError, SourceText
+from linkwright.graph.parameter_files import parse_parameters, parse_value, read_parameter_file
+
+
+def read(text: str):
+    return parse_parameters(SourceText("params.yaml", text))
+
+
+def values(text: str):
+    return read(f"/**:\n  ros__parameters:\n    {text}\n").for_node("/node")
+
+
+@pytest.mark.parametrize(
+    ("word", "value"),
+    [
+        *((word, True) for word in ("y", "Y", "yes", "Yes", "YES", "true", "True", "TRUE", "on", "On", "ON")),
+        *((word, False) for word in ("n", "N", "no", "No", "NO", "false", "False", "FALSE", "off", "Off", "OFF")),
+        ("yEs", "yEs"),
+        ("12", 12),
+        ("-3", -3),
+        ("+3", 3),
+        ("0x1F", 31),
+        ("-0x10", -16),
+        ("017", 15),
+        ("08", 8.0),
+        ("1_000", "1_000"),
+        ("9223372036854775807", 2**63 - 1),
+        ("9223372036854775808", 9223372036854775808.0),
+        ("1.5", 1.5),
+        ("1.", 1.0),
+        (".5", 0.5),
+        ("1e3", 1000.0),
+        ("1E-2", 0.01),
+        (".inf", math.inf),
+        ("-.INF", -math.inf),
+        ("+.Inf", math.inf),
+        ("inf", math.inf),
+        ("0x1p3", 8.0),
+        ("1.2.3", "1.2.3"),
+        ("null", "null"),
+        ("~", "~"),
+        ('"5"', "5"),
+        ("'yes'", "yes"),
+        ("two words", "two words"),
+        ("!!str 5", "5"),
+        ('""', ""),
+        ("2024-01-01", "2024-01-01"),
+        ("[]", []),
+        ("[1, 2]", [1, 2]),
+        ("[1.0, .5]", [1.0, 0.5]),
+        ("[yes, no]", [True, False]),
+        ("[a, 'b', \"c\"]", ["a", "b", "c"]),
+    ],
+)
+def test_scalars_are_read_as_rcl_reads_them(word, value):
+    found = values(f"p: {word}")["p"]
+    assert (found, type(found)) == (value, type(value))
+    assert parse_value(word, "p") == value
+
+
+def test_not_a_number():
+    assert math.isnan(values("p: .nan")["p"])
+    assert math.isnan(values("p: .NaN")["p"])
+
+
+def test_names_nest_and_later_entries_win():
+    rules = read(
+        """
+talker:
+  ros__parameters: {a: 1, nested: {b: {c: 2}, d: 3}}
+/robot:
+  talker:
+    ros__parameters:
+      a: 4
+  left/arm:
+    ros__parameters: {a: 5}
+talker:
+  ros__parameters: {e: 6}
+"""
+    )
+    assert rules.for_node("/talker") == {"a": 1, "nested.b.c": 2, "nested.d": 3, "e": 6}
+    assert rules.for_node("/robot/talker") == {"a": 4}
+    assert rules.for_node("/robot/left/arm") == {"a": 5}
+    assert rules.for_node("/listener") == {}
+
+
+@pytest.mark.parametrize(
+    ("pattern", "fits", "misses"),
+    [
+        ("/**", ["/a", "/a/b", "/a/b/c"], []),
+        ("/*", ["/a"], ["/a/b"]),
+        ("/**/talker", ["/talker", "/a/talker", "/a/b/talker"], ["/listener", "/talker/x"]),
+        ("/*/talker", ["/a/talker"], ["/talker", "/a/b/talker"]),
+        ("/ns/*/talker", ["/ns/x/talker"], ["/ns/talker", "/other/x/talker"]),
+        ("/ns/**", ["/ns/a", "/ns/a/b"], ["/a"]),
+        ("talker", ["/talker"], ["/a/talker"]),
+    ],
+)
+def test_wildcards(pattern, fits, misses):
+    rules = read(f"{pattern}: {{ros__parameters: {{a: 1}}}}")
+    assert [name for name in [*fits, *misses] if rules.for_node(name)] == fits
+
+
+def test_patterns_count_in_the_order_in_which_they_came_up():
+    rules = read("/**: {ros__parameters: {a: 1, b: 1}}\n/node: {ros__parameters: {a: 2}}")
+    assert rules.for_node("/node") == {"a": 2, "b": 1}
+    more = read("/**: {ros__parameters: {a: 3}}")
+    rules.add(more)
+    assert rules.for_node("/node") == {"a": 2, "b": 1}
+    assert rules.for_node("/other") == {"a": 3, "b": 1}
+    other = read("/node: {ros__parameters: {a: 2}}")
+    other.add(more)
+    assert other.for_node("/node") == {"a": 3}
+
+
+@pytest.mark.parametrize("text", ["", "# only a comment\n", "node:\n  ros__parameters:\n"])
+def test_files_may_say_nothing(text):
+    assert read(text).for_node("/node") == {}
+
+
+@pytest.mark.parametrize(
+    ("text", "place", "message", "hint"),
+    [
+        (
+            "node:\n  ros__parameters:\n    a: [1, 2.5]",
+            "3:12",
+            "the list of parameter 'a' begins with a value of type integer and has one of type double",
+            "write 1.0 in front, or whole numbers only",
+        ),
+        (
+            "node:\n  ros__parameters:\n    a: [1.5, 2]",
+            "3:14",
+            "the list of parameter 'a' begins with a value of type double and has one of type integer",
+            "write 2.0",
+        ),
+        (
+            "node:\n  ros__parameters:\n    a: [x, 2]",
+            "3:12",
+            "the list of parameter 'a' begins with a value of type string and has one of type integer",
+            'write "2"',
+        ),
+        (
+            "node:\n  ros__parameters:\n    a: [[1], [2]]",
+            "3:9",
+            "the list of parameter 'a' has a list in it",
+            "lists hold plain values only",
+        ),
+        (
+            "node:\n  ros__parameters:\n    a: [{b: 1}]",
+            "3:9",
+            "the list of parameter 'a' has a mapping in it",
+            "lists hold plain values only",
+        ),
+        ("node:\n  ros__parameters:\n    a:", "3:7", "parameter 'a' has no value", 'an empty text is ""'),
+        (
+            "node:\n  ros_parameters:\n    a: 1",
+            "3:8",
+            "'a' has a value before 'ros__parameters'",
+            "it maps node names to 'ros__parameters', which maps names to values",
+        ),
+        (
+            "node:\n  ros__parametrs: 1",
+            "2:19",
+            "'ros__parametrs' has a value before 'ros__parameters'",
+            "did you mean 'ros__parameters'?",
+        ),
+        (
+            "ros__parameters:\n  a: 1",
+            "1:1",
+            "there are no node names before 'ros__parameters'",
+            "it maps node names to 'ros__parameters', which maps names to values",
+        ),
+        (
+            "- a",
+            "1:1",
+            "a parameter file must be a mapping",
+            "it maps node names to 'ros__parameters', which maps names to values",
+        ),
+        (
+            "my-node:\n  ros__parameters:\n    a: 1",
+            "1:1",
+            "'my-node' is not a node name",
+            "names have letters, digits and '_', and do not begin with a digit; * and ** stand for any",
+        ),
+        (
+            "node:\n  ros__parameters:\n    a: &x 1\n    b: *x",
+            "4:8",
+            "aliases are not supported in parameter files",
+            "write the value out",
+        ),
+        ("node:\n  ros__parameters: 3", "2:20", "'ros__parameters' must be a mapping of names to values", None),
+    ],
+)
+def test_what_is_wrong_is_told_with_its_place(text, place, message, hint):
+    with pytest.raises(LinkwrightError) as caught:
+        read(text)
+    (diagnostic,) = caught.value.diagnostics
+    assert (diagnostic.code, diagnostic.message, diagnostic.hint) == ("GRAPH212", message, hint)
+    assert str(diagnostic.span) == f"params.yaml:{place}"
+
+
+def test_tabs_and_other_faults_of_yaml():
+    with pytest.raises(LinkwrightError, match=r"params.yaml:2:1: parameter file is not YAML: ") as caught:
+        read("node:\n\tros__parameters:\n\t\ta: 1")
+    assert caught.value.diagnostics[0].hint == "indent with blanks, not with tabs"
+    with pytest.raises(LinkwrightError, match="parameter file is not YAML"):
+        read("node: {ros__parameters: {a: [1, ")
+
+
+def test_files_that_cannot_be_read(tmp_path):
+    (tmp_path / "params.yaml").write_text("node: {ros__parameters: {a: 1}}")
+    assert read_parameter_file(tmp_path / "params.yaml").for_node("/node") == {"a": 1}
+    with pytest.raises(LinkwrightError, match=r"param.yaml' does not exist") as caught:
+        read_parameter_file(tmp_path / "param.yaml")
+    assert "params.yaml" in caught.value.diagnostics[0].hint
+    (tmp_path / "latin").write_bytes(b"\xff")
+    for name in (".", "latin"):
+        with pytest.raises(LinkwrightError, match="cannot be read"):
+            read_parameter_file(tmp_path / name)
+
+
+def test_values_on_the_command_line():
+    assert parse_value("", "p") == ""
+    with pytest.raises(LinkwrightError, match="the value of parameter 'p' is a mapping"):
+        parse_value("{a: 1}", "p")
+    with pytest.raises(LinkwrightError, match="not YAML"):
+        parse_value("[", "p")

@@ -1,0 +1,61 @@
+from __future__ import annotations
+
+import pytest
+
+from linkwright.graph.parameter_qos import InvalidQosOverridesError, QoSOverridingOptions, override_qos
+from linkwright.graph.qos import DurabilityPolicy, HistoryPolicy, QoSPolicyKind, QoSProfile, ReliabilityPolicy
+from linkwright.graph.time import Duration
+
+START = "qos_overrides./chatter.publisher"
+
+
+async def test_parameters_override_what_code_says(graph):
+    node = graph.create_node("node", parameters={f"{START}.depth": 3, f"{START}.reliability": "best_effort"})
+    given = QoSProfile(depth=10)
+    profile = override_qos(node, "publisher", "/chatter", given, QoSOverridingOptions.with_default_policies())
+    assert (profile.depth, profile.reliability, profile.history) == (
+        3,
+        ReliabilityPolicy.BEST_EFFORT,
+        HistoryPolicy.KEEP_LAST,
+    )
+    assert (given.depth, given.reliability) == (10, ReliabilityPolicy.RELIABLE)
+    assert {name: node.get_parameter(f"{START}.{name}").value for name in ("history", "depth", "reliability")} == {
+        "history": "keep_last",
+        "depth": 3,
+        "reliability": "best_effort",
+    }
+    descriptor = node.describe_parameter(f"{START}.depth")
+    assert descriptor.read_only
+    assert descriptor.description == "depth for publisher `/chatter` with id `None`"
+    again = override_qos(node, "publisher", "/chatter", given, QoSOverridingOptions.with_default_policies())
+    assert again.depth == 3
+
+
+async def test_every_policy_and_an_id(graph):
+    start = "qos_overrides./chatter.subscription_left"
+    node = graph.create_node("node", parameters={f"{start}.deadline": 5, f"{start}.durability": "transient_local"})
+    options = QoSOverridingOptions(
+        [QoSPolicyKind.DEADLINE, QoSPolicyKind.DURABILITY, QoSPolicyKind.LIFESPAN, QoSPolicyKind.LIVELINESS],
+        entity_id="left",
+    )
+    profile = override_qos(node, "subscription", "/chatter", QoSProfile(depth=1), options)
+    assert (profile.deadline, profile.durability) == (Duration(nanoseconds=5), DurabilityPolicy.TRANSIENT_LOCAL)
+    assert node.has_parameter(f"{start}.liveliness")
+    assert not node.has_parameter(f"{start}.lifespan")
+
+
+async def test_wrong_overrides(graph):
+    node = graph.create_node("node", parameters={f"{START}.reliability": "relyable"})
+    with pytest.raises(InvalidQosOverridesError, match="Unexpected QoS override for policy `reliability`") as caught:
+        override_qos(
+            node, "publisher", "/chatter", QoSProfile(depth=1), QoSOverridingOptions([QoSPolicyKind.RELIABILITY])
+        )
+    assert caught.value.diagnostics[0].hint == "did you mean 'reliable'?"
+    with pytest.raises(InvalidQosOverridesError, match=r"Provided QoS overrides for publisher `/x` .* are not valid"):
+        override_qos(
+            node,
+            "publisher",
+            "/x",
+            QoSProfile(depth=1),
+            QoSOverridingOptions([QoSPolicyKind.DEPTH], callback=lambda profile: profile.depth > 1),
+        )

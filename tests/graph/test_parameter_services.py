@@ -1,0 +1,167 @@
+from __future__ import annotations
+
+import pytest
+
+from linkwright.graph import Graph, Parameter, ParameterDescriptor, SetParametersResult
+from linkwright.graph.parameter_client import AsyncParameterClient, parameter_dict_from_yaml_file
+from linkwright.graph.parameter_events import ParameterEventHandler
+from linkwright.messages import get_message
+
+
+@pytest.fixture
+def server(graph: Graph):
+    node = graph.create_node("server", namespace="/robot", parameters={"rate": 30})
+    node.declare_parameter("rate", 10)
+    node.declare_parameter("arm.name", "left", ParameterDescriptor(description="which"))
+    node.declare_parameter("any", None, ParameterDescriptor(dynamic_typing=True))
+    node.declare_parameter("late", Parameter.Type.BOOL)
+    return node
+
+
+@pytest.fixture
+def client(graph: Graph, server):
+    return AsyncParameterClient(graph.create_node("asking"), "/robot/server")
+
+
+async def answer(graph, future):
+    await graph.settle()
+    assert future.done()
+    return future.result()
+
+
+async def test_every_node_has_the_six_services(graph, server):
+    services = dict(server.get_service_names_and_types_by_node("server", "/robot"))
+    assert services == {
+        f"/robot/server/{name}": [f"rcl_interfaces/srv/{kind}"]
+        for name, kind in {
+            "describe_parameters": "DescribeParameters",
+            "get_parameters": "GetParameters",
+            "get_parameter_types": "GetParameterTypes",
+            "list_parameters": "ListParameters",
+            "set_parameters": "SetParameters",
+            "set_parameters_atomically": "SetParametersAtomically",
+        }.items()
+    }
+
+
+async def test_a_node_may_do_without(graph):
+    node = graph.create_node("quiet", start_parameter_services=False, enable_rosout=False)
+    assert node.get_service_names_and_types_by_node("quiet", "/") == []
+    assert "/rosout" not in graph.topics()
+
+
+async def test_values_types_and_descriptions_are_asked_for(graph, client):
+    assert client.services_are_ready()
+    assert client.wait_for_services(0.0)
+    values = (await answer(graph, client.get_parameters(["rate", "arm.name"]))).values
+    assert [values[0].integer_value, values[1].string_value] == [30, "left"]
+    assert list((await answer(graph, client.get_parameter_types(["rate", "any", "late"]))).types) == [2, 0, 0]
+    descriptors = (await answer(graph, client.describe_parameters(["arm.name"]))).descriptors
+    assert [(each.name, each.type, each.description) for each in descriptors] == [("arm.name", 4, "which")]
+    listed = (await answer(graph, client.list_parameters(["arm"]))).result
+    assert (list(listed.names), list(listed.prefixes)) == (["arm.name"], ["arm"])
+    assert len((await answer(graph, client.list_parameters(depth=1))).result.names) == 4
+
+
+async def test_one_unknown_name_empties_the_answer(graph, client):
+    for ask in (client.get_parameters, client.get_parameter_types, client.describe_parameters):
+        response = await answer(graph, ask(["rate", "gone"]))
+        (field,) = response.get_fields_and_field_types()
+        assert len(getattr(response, field)) == 0
+    assert len((await answer(graph, client.get_parameters(["rate", "late"]))).values) == 0
+
+
+async def test_setting_from_outside(graph, server, client):
+    server.add_on_set_parameters_callback(
+        lambda given: SetParametersResult(all(each.value != 13 for each in given), "unlucky")
+    )
+    told = []
+    future = client.set_parameters(
+        [Parameter("rate", value=1), Parameter("rate", value=13), Parameter("gone", value=1)],
+        callback=lambda done: told.append(done.result()),
+    )
+    results = (await answer(graph, future)).results
+    assert [each.successful for each in results] == [True, False, False]
+    assert results[1].reason == "unlucky"
+    assert results[2].reason == "Invalid access to undeclared parameter(s): ['gone']"
+    assert len(told) == 1
+    response = await answer(
+        graph, client.set_parameters_atomically([Parameter("rate", value=2), Parameter("rate", value="x")])
+    )
+    assert not response.result.successful
+    assert server.get_parameter("rate").value == 1
+    assert (await answer(graph, client.set_parameters([Parameter("any", value=[1.5])]))).results[0].successful
+    assert (await answer(graph, client.delete_parameters(["any"]))).results[0].successful
+    assert not server.has_parameter("any")
+
+
+async def test_a_value_of_an_unknown_type_is_refused(graph, client):
+    message = Parameter("rate", value=1).to_parameter_msg()
+    message.value.type = 77
+    response = await answer(graph, client.set_parameters([message]))
+    assert not response.results[0].successful
+
+
+async def test_a_file_is_loaded(graph, server, client, tmp_path):
+    file = tmp_path / "p.yaml"
+    file.write_text(
+        "/**: {ros__parameters: {rate: 1}}\n/robot/server: {ros__parameters: {rate: 2, arm: {name: right}}}\n"
+    )
+    assert (await answer(graph, client.load_parameter_file(str(file), use_wildcard=True))).results[0].successful
+    assert (server.get_parameter("rate").value, server.get_parameter("arm.name").value) == (2, "right")
+    response = await answer(graph, client.load_parameter_file_atomically(str(file)))
+    assert response.result.successful
+    messages = parameter_dict_from_yaml_file(str(file), target_nodes=["/robot/server"], namespace="x.")
+    assert list(messages) == ["x.rate", "x.arm.name"]
+    with pytest.raises(RuntimeError, match="does not contain parameters for /gone"):
+        parameter_dict_from_yaml_file(str(file), target_nodes=["/gone"])
+    file.write_text("/**: {ros__parameters: {rate: 1}}\n")
+    with pytest.raises(RuntimeError, match="does not contain selected parameters"):
+        parameter_dict_from_yaml_file(str(file))
+
+
+async def test_changes_are_published_and_refusals_are_not(graph, server, clock):
+    events = []
+    watcher = graph.create_node("watcher")
+    watcher.create_subscription(
+        get_message("rcl_interfaces/msg/ParameterEvent"), "/parameter_events", events.append, 10
+    )
+    server.set_parameters([Parameter("rate", value=3), Parameter("rate", value="x"), Parameter("any", value=1)])
+    server.set_parameters([Parameter("any")])
+    server.declare_parameter("fresh", 1.5)
+    await graph.settle()
+    assert [
+        (
+            [p.name for p in e.new_parameters],
+            [p.name for p in e.changed_parameters],
+            [p.name for p in e.deleted_parameters],
+        )
+        for e in events
+    ] == [([], ["rate"], []), (["any"], [], []), ([], [], ["any"]), (["fresh"], [], [])]
+    assert {event.node for event in events} == {"/robot/server"}
+    assert events[0].stamp.sec == clock.now_ns() // 10**9
+    assert events[0].changed_parameters[0].value.integer_value == 3
+
+
+async def test_the_event_handler_tells_of_single_parameters(graph, server):
+    watcher = graph.create_node("watcher", namespace="/robot")
+    handler = ParameterEventHandler(watcher)
+    told = []
+    rate = handler.add_parameter_callback("rate", "server", lambda p: told.append(("rate", p.value.integer_value)))
+    handler.add_parameter_callback("rate", "/other", lambda p: told.append(("other", p)))
+    own = handler.add_parameter_callback("mine", "", lambda p: told.append(("mine", p.value.bool_value)))
+    event = handler.add_parameter_event_callback(lambda e: told.append(e.node))
+    server.set_parameters([Parameter("rate", value=3)])
+    watcher.declare_parameter("mine", True)
+    await graph.settle()
+    assert told == [("rate", 3), "/robot/server", ("mine", True), "/robot/watcher"]
+    handler.remove_parameter_callback(rate)
+    handler.remove_parameter_callback(own)
+    handler.remove_parameter_event_callback(event)
+    for remove, handle in ((handler.remove_parameter_callback, rate), (handler.remove_parameter_event_callback, event)):
+        with pytest.raises(RuntimeError, match="Callback doesn't exist"):
+            remove(handle)
+    server.set_parameters([Parameter("rate", value=4)])
+    await graph.settle()
+    assert len(told) == 4
+    handler.destroy()

@@ -1,0 +1,306 @@
+"""What the graph asks of a transport, and what it does with what that brings."""
+
+import pytest
+
+from linkwright.graph import (
+    DurabilityPolicy,
+    EndpointInfo,
+    EndpointKind,
+    MessageInfo,
+    NodeIdentity,
+    QoSProfile,
+)
+from linkwright.messages import String, get_service, serialize
+
+Trigger = get_service("std_srvs/srv/Trigger")
+LATCHED = QoSProfile(depth=3, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+ELSEWHERE = NodeIdentity("elsewhere", "/far")
+OWN = ("/parameter_events", "/rosout")
+
+
+class FakeTransport:
+    def __init__(self):
+        self.open = []
+        self.nodes, self.endpoints = [], []
+        self.closed = False
+        self.tell = None
+
+    def _known(self, endpoint):
+        return endpoint.name not in OWN and "parameter" not in endpoint.name
+
+    def open_node(self, node):
+        self.open.append(node.name)
+
+    def close_node(self, node):
+        self.open.remove(node.name)
+
+    def _open(self, endpoint):
+        if self._known(endpoint):
+            self.open.append((endpoint.kind, endpoint.name))
+
+    def _close(self, endpoint):
+        if self._known(endpoint):
+            self.open.remove((endpoint.kind, endpoint.name))
+
+    open_publisher = open_subscription = open_service = open_client = _open
+    close_publisher = close_subscription = close_service = close_client = _close
+
+    def remote_nodes(self):
+        return self.nodes
+
+    def remote_endpoints(self):
+        return self.endpoints
+
+    def watch(self, changed):
+        self.tell = changed
+
+    def close(self):
+        self.closed = True
+
+
+@pytest.fixture
+def transport():
+    return FakeTransport()
+
+
+async def test_what_there_is_and_what_comes_is_mirrored(graph, transport):
+    node = graph.create_node("early")
+    node.create_publisher(String, "topic", 1)
+    graph.attach(transport)
+    assert transport.open == ["early", (EndpointKind.PUBLISHER, "/topic")]
+    late = graph.create_node("late")
+    late.create_subscription(String, "topic", print, 1)
+    late.create_service(Trigger, "trigger", print)
+    client = late.create_client(Trigger, "trigger")
+    assert transport.open[2:] == [
+        "late",
+        (EndpointKind.SUBSCRIPTION, "/topic"),
+        (EndpointKind.SERVICE, "/trigger"),
+        (EndpointKind.CLIENT, "/trigger"),
+    ]
+    client.destroy()
+    node.destroy_node()
+    assert transport.open == ["late", (EndpointKind.SUBSCRIPTION, "/topic"), (EndpointKind.SERVICE, "/trigger")]
+    await graph.close()
+    assert transport.open == []
+    assert transport.closed
+
+
+async def test_there_is_one_transport_at_most(graph, transport):
+    graph.attach(transport)
+    with pytest.raises(RuntimeError, match="has a transport already"):
+        graph.attach(FakeTransport())
+    graph.detach()
+    assert transport.closed
+    graph.attach(FakeTransport())
+
+
+async def test_what_is_published_goes_out_while_somebody_matches(graph):
+    publisher = graph.create_node("node").create_publisher(String, "topic", 1)
+    sent = []
+    publisher.publish(String("before"))
+    publisher.set_outside(sent.append)
+    publisher.set_outside_count(2)
+    assert publisher.get_subscription_count() == 2
+    publisher.publish(String("out"))
+    data = serialize(String("raw"))
+    publisher.publish(data)
+    publisher.set_outside(None)
+    publisher.publish(String("after"))
+    assert sent == [String("out"), data]
+
+
+async def test_what_is_kept_for_late_comers_goes_out_first_and_once(graph):
+    publisher = graph.create_node("node").create_publisher(String, "topic", LATCHED)
+    for text in "abcd":
+        publisher.publish(String(text))
+    sent = []
+    publisher.set_outside(sent.append)
+    publisher.set_outside(sent.append)
+    publisher.publish(String("e"))
+    assert [message.data for message in sent] == list("bcde")
+
+
+async def test_acknowledgements_are_waited_for(graph):
+    from linkwright.graph import Duration
+
+    publisher = graph.create_node("node").create_publisher(String, "topic", LATCHED)
+    assert publisher.wait_for_all_acked()
+    asked = []
+    publisher.set_outside(print, lambda seconds: asked.append(seconds) or False)
+    assert not publisher.wait_for_all_acked(Duration(seconds=2))
+    assert not publisher.wait_for_all_acked(Duration(seconds=-1))
+    assert asked == [2.0, None]
+
+
+async def test_bytes_that_come_in_are_read_when_their_turn_comes(graph, log):
+    node = graph.create_node("node")
+    messages, raw, told = [], [], []
+    readers = [
+        node.create_subscription(String, "topic", messages.append, 10),
+        node.create_subscription(String, "topic", raw.append, 10, raw=True),
+        node.create_subscription(String, "topic", lambda message, info: told.append((message, info)), 10),
+    ]
+    data = serialize(String("hello"))
+    info = MessageInfo(1, 2, b"g" * 16, from_outside=True)
+    for reader in readers:
+        reader.receive(data, info)
+    await graph.settle()
+    assert messages == [String("hello")]
+    assert raw == [data]
+    assert told == [(String("hello"), info)]
+    assert (info["source_timestamp"], dict(info)["received_timestamp"]) == (1, 2)
+    with pytest.raises(KeyError):
+        info["sender"]
+
+
+async def test_malformed_bytes_are_dropped_and_told_once(graph, log):
+    node = graph.create_node("node")
+    received = []
+    reader = node.create_subscription(String, "topic", received.append, 10)
+    for _ in range(3):
+        reader.receive(b"\x00\x01\x00\x00\xff\xff\xff\x7f", MessageInfo(0, 0, from_outside=True))
+    reader.receive(serialize(String("good")), MessageInfo(0, 0))
+    await graph.settle()
+    assert received == [String("good")]
+    assert reader.malformed == 3
+    (record,) = log
+    assert record.text.startswith("Dropped a malformed message of topic '/topic'")
+
+
+async def test_raw_subscriptions_and_publications_inside_the_process(graph):
+    node = graph.create_node("node")
+    messages, raw = [], []
+    node.create_subscription(String, "topic", messages.append, 10)
+    node.create_subscription(String, "topic", raw.append, 10, raw=True)
+    publisher = node.create_publisher(String, "topic", 10)
+    publisher.publish(String("object"))
+    publisher.publish(serialize(String("bytes")))
+    await graph.settle()
+    assert [message.data for message in messages] == ["object", "bytes"]
+    assert raw == [serialize(String("object")), serialize(String("bytes"))]
+
+
+async def test_the_sender_is_told_to_callbacks_that_ask(graph, clock):
+    node = graph.create_node("node")
+    told = []
+    node.create_subscription(String, "topic", lambda _message, info: told.append(info), 10)
+    publisher = node.create_publisher(String, "topic", 10)
+    publisher.publish(String())
+    await graph.settle()
+    assert told[0].publisher_gid == publisher.gid
+    assert told[0].source_timestamp == clock.now_ns()
+    assert not told[0].from_outside
+
+
+async def test_requests_go_out_where_this_process_has_no_server(graph):
+    node = graph.create_node("node")
+    client = node.create_client(Trigger, "trigger")
+    early = client.call_async(Trigger.Request())
+    asked, forgotten = [], []
+
+    class Outside:
+        def send(self, request, answer):
+            asked.append(answer)
+            return lambda: forgotten.append(request)
+
+    assert not client.service_is_ready()
+    client.set_outside(Outside())
+    assert client.service_is_ready()
+    late = client.call_async(Trigger.Request())
+    assert len(asked) == 2
+    for number, answer in enumerate(asked):
+        answer(Trigger.Response(message=str(number)))
+        answer(Trigger.Response(message="again"))
+    assert ((await early).message, (await late).message) == ("0", "1")
+    given_up = client.call_async(Trigger.Request())
+    client.remove_pending_request(given_up)
+    assert len(forgotten) == 1
+    node.create_service(Trigger, "trigger", lambda _request, _response: Trigger.Response(message="here"))
+    assert (await client.call_async(Trigger.Request())).message == "here"
+    assert len(asked) == 3
+
+
+async def test_requests_that_come_in_are_answered(graph):
+    node = graph.create_node("node")
+    service = node.create_service(Trigger, "trigger", lambda _request, _response: Trigger.Response(message="yes"))
+    answers = []
+    service.receive(Trigger.Request(), answers.append, MessageInfo(0, 0))
+    await graph.settle()
+    assert [answer.message for answer in answers] == ["yes"]
+
+
+async def test_mismatches_outside_are_told(graph, log):
+    node = graph.create_node("node")
+    node.create_publisher(String, "topic", 1).incompatible_outside("DURABILITY", "/far/elsewhere")
+    node.create_subscription(String, "topic", print, 1).incompatible_outside("RELIABILITY", "/far/elsewhere")
+    assert [record.text.rpartition("Last")[2] for record in log] == [
+        " incompatible policy: DURABILITY_QOS_POLICY ('/far/elsewhere' is outside)",
+        " incompatible policy: RELIABILITY_QOS_POLICY ('/far/elsewhere' is outside)",
+    ]
+
+
+async def test_queries_tell_of_both_sides(graph, transport):
+    node = graph.create_node("here")
+    node.create_publisher(String, "topic", LATCHED)
+    node.create_service(Trigger, "trigger", print)
+    graph.attach(transport)
+    transport.nodes.append(ELSEWHERE)
+    transport.endpoints.extend(
+        EndpointInfo(kind, ELSEWHERE, name, kind_name, QoSProfile(5), bytes(range(16)), "RIHS01_x")
+        for kind, name, kind_name in (
+            (EndpointKind.PUBLISHER, "/topic", "std_msgs/msg/Bool"),
+            (EndpointKind.SUBSCRIPTION, "/topic", "std_msgs/msg/String"),
+            (EndpointKind.CLIENT, "/trigger", "std_srvs/srv/Trigger"),
+            (EndpointKind.PUBLISHER, "/count/_action/feedback", "example_interfaces/action/Fibonacci_FeedbackMessage"),
+        )
+    )
+    assert node.get_node_names() == ["here", "elsewhere"]
+    assert node.get_node_names_and_namespaces_with_enclaves() == [("here", "/", "/"), ("elsewhere", "/far", "/")]
+    topics = dict(node.get_topic_names_and_types())
+    assert topics["/topic"] == ["std_msgs/msg/Bool", "std_msgs/msg/String"]
+    assert dict(node.get_topic_names_and_types(no_demangle=True))["rt/topic"] == [
+        "std_msgs::msg::dds_::Bool_",
+        "std_msgs::msg::dds_::String_",
+    ]
+    assert ("/trigger", ["std_srvs/srv/Trigger"]) in node.get_service_names_and_types()
+    assert node.get_client_names_and_types_by_node("elsewhere", "/far") == [("/trigger", ["std_srvs/srv/Trigger"])]
+    assert node.get_subscriber_names_and_types_by_node("elsewhere", "/far") == [("/topic", ["std_msgs/msg/String"])]
+    assert ("/topic", ["std_msgs/msg/String"]) in node.get_publisher_names_and_types_by_node("here", "/")
+    assert graph.get_action_server_names_and_types_by_node("elsewhere", "/far") == [
+        ("/count", ["example_interfaces/action/Fibonacci"])
+    ]
+    assert (node.count_publishers("topic"), node.count_subscribers("topic")) == (2, 1)
+    assert (node.count_services("trigger"), node.count_clients("trigger")) == (1, 1)
+    mine, theirs = node.get_publishers_info_by_topic("topic")
+    assert (mine.node_name, mine.topic_type, mine.qos_profile.depth) == ("here", "std_msgs/msg/String", 3)
+    assert (theirs.node_namespace, theirs.endpoint_gid, theirs.topic_type_hash) == ("/far", list(range(16)), "RIHS01_x")
+    assert theirs.endpoint_type.name == "PUBLISHER"
+    with pytest.raises(RuntimeError, match="'nobody' in namespace '/'"):
+        node.get_publisher_names_and_types_by_node("nobody", "/")
+
+
+async def test_what_is_waited_for_comes_from_outside(graph, transport):
+    import asyncio
+
+    graph.attach(transport)
+    loop = asyncio.get_running_loop()
+    waiting = loop.run_in_executor(None, graph.wait_for_node, "/far/elsewhere", 10.0)
+    await asyncio.sleep(0.01)
+    transport.nodes.append(ELSEWHERE)
+    transport.tell()
+    assert await waiting
+    assert not graph.wait_for_node("/far/nobody", 0.01)
+    assert not graph.wait_for_publishers("/topic", timeout_sec=0.01)
+    graph.create_node("node").create_publisher(String, "topic", 1)
+    assert graph.wait_for_publishers("/topic", timeout_sec=0.01)
+
+
+async def test_who_watches_is_told_of_changes(graph):
+    told = []
+    graph.watch(lambda: told.append(len(graph.endpoints())))
+    node = graph.create_node("node", start_parameter_services=False, enable_rosout=False)
+    before = len(told)
+    node.create_publisher(String, "topic", 1)
+    assert len(told) == before + 1
+    assert told[-1] > told[before - 1]

@@ -1,0 +1,91 @@
+"""A launcher in a process of its own, for tests of how launches begin and end."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+DRIVER = """
+import sys
+from linkwright.diagnostics import LinkwrightError, print_diagnostics
+from linkwright.launch import LaunchOptions, parse_launch_words, run_launch, run_view
+from linkwright.standins import activate
+activate()
+options = LaunchOptions(open_browser=False)
+try:
+    if sys.argv[1] == "view":
+        sys.exit(run_view(sys.argv[2], {}, options))
+    sys.exit(run_launch(*parse_launch_words(sys.argv[1:]), options))
+except LinkwrightError as error:
+    print_diagnostics(error.diagnostics, sys.stderr)
+    sys.exit(1)
+"""
+
+
+class Running:
+    """A launch in a process of its own; what it writes is collected in files.
+
+    Attributes:
+        identity: a number by which a test knows it again.
+    """
+
+    identity = 0
+
+    def __init__(self, folder: Path, words: list[str], cwd: Path) -> None:
+        self._files = [folder / f"{len(list(folder.glob('*-out')))}-{name}" for name in ("out", "err")]
+        streams = [path.open("w") for path in self._files]
+        self.process = subprocess.Popen(
+            [sys.executable, "-c", DRIVER, *words], stdout=streams[0], stderr=streams[1], cwd=cwd
+        )
+        for stream in streams:
+            stream.close()
+
+    @property
+    def out(self) -> str:
+        return self._files[0].read_text()
+
+    @property
+    def err(self) -> str:
+        return self._files[1].read_text()
+
+    def until(self, text: str, seconds: float = 15.0) -> None:
+        deadline = time.monotonic() + seconds
+        while text not in self.out and text not in self.err:
+            assert self.process.poll() is None, f"it ended:\n{self.out}\n{self.err}"
+            assert time.monotonic() < deadline, f"'{text}' never came:\n{self.out}\n{self.err}"
+            time.sleep(0.01)
+
+    def end(self, number: int = signal.SIGINT) -> tuple[int, float]:
+        """Send a signal; gives the exit status and how long the end took, in seconds."""
+        began = time.monotonic()
+        self.process.send_signal(number)
+        return self.process.wait(5.0), time.monotonic() - began
+
+    @property
+    def url(self) -> str:
+        self.until("Viewer: ")
+        found = re.search(r"^Viewer: (http://127\.0\.0\.1:\d+/\?token=\S+)$", self.out, re.MULTILINE)
+        assert found
+        return found[1]
+
+
+def is_gone(pid: int) -> bool:
+    with contextlib.suppress(ProcessLookupError):
+        os.kill(pid, 0)
+        return "\nState:\tZ" in Path(f"/proc/{pid}/status").read_text()
+    return True
+
+
+def launch_file(*actions: str, head: str = "") -> str:
+    lines = ",\n        ".join(actions)
+    return (
+        "import sys, time\nfrom launch import LaunchDescription\nfrom launch.actions import *\n"
+        "from launch.substitutions import *\nfrom launch_ros.actions import Node\n"
+        f"{head}\ndef generate_launch_description():\n    return LaunchDescription([\n        {lines}\n    ])\n"
+    )

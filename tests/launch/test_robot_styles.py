@@ -1,0 +1,373 @@
+"""Launch files written in the ways of public robots: they load, and say what is wrong where something is."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from textwrap import dedent
+from typing import Any
+
+import pytest
+import yaml
+from launch.conditions import IfCondition
+from launch.substitutions import LaunchConfiguration
+from nav2_common.launch import (
+    HasNodeParams,
+    LaunchConfigAsBool,
+    ParseMultiRobotPose,
+    ReplaceString,
+    RewrittenYaml,
+)
+
+from launch import LaunchContext
+from linkwright.diagnostics import LinkwrightError
+from linkwright.launch.arguments import argument_listing
+from linkwright.launch.description import LaunchDescription
+from linkwright.launch.launch_file import load_launch_file
+from linkwright.workspace import PackageFinder, use_finder
+
+HEAD = """\
+import os
+from ament_index_python.packages import get_package_share_directory
+from launch import LaunchDescription
+from launch.actions import *
+from launch.conditions import IfCondition, UnlessCondition
+from launch.event_handlers import OnExecutionComplete, OnProcessExit, OnProcessStart, OnShutdown
+from launch.events import Shutdown as ShutdownEvent
+from launch.launch_description_sources import PythonLaunchDescriptionSource, AnyLaunchDescriptionSource
+from launch.substitutions import *
+"""
+
+
+@pytest.fixture
+def robot(write: Any, tmp_path: Path) -> Path:
+    """A package with a model, parameters and launch files."""
+    write("src/bot/package.xml", "<package format='3'><name>bot</name><version>1.0.0</version></package>")
+    write("src/bot/urdf/bot.urdf.xacro", '<robot name="bot" xmlns:xacro="x"><link name="base"/></robot>')
+    write(
+        "src/bot/config/nav.yaml",
+        "amcl:\n  ros__parameters:\n    use_sim_time: false\n    alpha: 0.2\n    base: <ns>/base\n"
+        "controller:\n  ros__parameters:\n    plugins: [a]\n    a: {speed: 0.1}\n",
+    )
+    return tmp_path / "src" / "bot"
+
+
+def check(folder: Path) -> PackageFinder:
+    return PackageFinder(start=folder, environment={})
+
+
+NAVIGATION = (
+    HEAD
+    + """
+from nav2_common.launch import RewrittenYaml
+
+def generate_launch_description():
+    bringup = get_package_share_directory('bot')
+    namespace = LaunchConfiguration('namespace')
+    params = RewrittenYaml(
+        source_file=LaunchConfiguration('params_file'), root_key=namespace,
+        param_rewrites={'use_sim_time': LaunchConfiguration('use_sim_time')}, convert_types=True)
+    ld = LaunchDescription()
+    ld.add_action(SetEnvironmentVariable('RCUTILS_LOGGING_BUFFERED_STREAM', '1'))
+    ld.add_action(DeclareLaunchArgument('namespace', default_value='robot1', description='Top-level namespace'))
+    ld.add_action(DeclareLaunchArgument('use_sim_time', default_value='true', choices=['true', 'false']))
+    ld.add_action(DeclareLaunchArgument('params_file', default_value=os.path.join(bringup, 'config', 'nav.yaml')))
+    ld.add_action(DeclareLaunchArgument('use_composition', default_value='False'))
+    ld.add_action(GroupAction(
+        condition=IfCondition(PythonExpression(['not ', LaunchConfiguration('use_composition')])),
+        actions=[LogInfo(msg=['params ', params])]))
+    return ld
+"""
+)
+
+MOVEIT = (
+    HEAD
+    + """
+import yaml
+
+def load_yaml(package, path):
+    with open(os.path.join(get_package_share_directory(package), path)) as file:
+        return yaml.safe_load(file)
+
+def launch_setup(context, *args, **kwargs):
+    sim = LaunchConfiguration('sim').perform(context)
+    limits = load_yaml('bot', 'config/nav.yaml')
+    description = Command([PathJoinSubstitution([FindExecutable(name='xacro')]), ' ',
+                           PathJoinSubstitution([get_package_share_directory('bot'), 'urdf', 'bot.urdf.xacro']),
+                           ' ', 'sim:=', LaunchConfiguration('sim')])
+    return [LogInfo(msg=f"sim {sim} {sorted(limits)}"), LogInfo(msg=description)]
+
+def generate_launch_description():
+    declared = []
+    declared.append(DeclareLaunchArgument('sim', default_value='false', description='Simulate'))
+    return LaunchDescription(declared + [OpaqueFunction(function=launch_setup)])
+"""
+)
+
+EVENTS = (
+    HEAD
+    + """
+def generate_launch_description():
+    first = ExecuteProcess(cmd=['sh', '-c', 'echo one'], output='screen', name='first')
+    second = ExecuteProcess(cmd=[['sh', ' -c', ' "echo two"']], shell=True, output='both')
+    third = ExecuteProcess(cmd=['sleep', '60'], on_exit=[LogInfo(msg='third ended')])
+    return LaunchDescription([
+        first,
+        RegisterEventHandler(OnProcessStart(target_action=first, on_start=[LogInfo(msg='first started')])),
+        RegisterEventHandler(event_handler=OnProcessExit(target_action=first, on_exit=[second, third])),
+        RegisterEventHandler(OnProcessExit(target_action=second,
+            on_exit=[TimerAction(period=0.1, actions=[EmitEvent(event=ShutdownEvent(reason='all done'))])])),
+        RegisterEventHandler(OnShutdown(on_shutdown=[LogInfo(msg=['ended: ', LocalSubstitution('event.reason')])])),
+    ])
+"""
+)
+
+ROBOTS = (
+    HEAD
+    + """
+def generate_launch_description():
+    robots = [{'name': 'r1', 'x': 0.0}, {'name': 'r2', 'x': 1.0}]
+    groups = []
+    for robot in robots:
+        groups.append(GroupAction([
+            SetLaunchConfiguration('namespace', robot['name']),
+            IncludeLaunchDescription(
+                AnyLaunchDescriptionSource(os.path.join(os.path.dirname(__file__), 'one.launch.xml')),
+                launch_arguments={'x': str(robot['x']), 'name': TextSubstitution(text=robot['name'])}.items()),
+        ]))
+    return LaunchDescription([*groups, LogInfo(msg=LaunchConfiguration('namespace', default='none left'))])
+"""
+)
+
+ONE_XML = """
+    <launch>
+      <arg name="name"/>
+      <arg name="x" default="0.0"/>
+      <arg name="model" default="$(dirname)/../urdf/bot.urdf.xacro"/>
+      <let name="description" value="$(command 'xacro $(var model)')"/>
+      <group>
+        <log_info message="$(var namespace) $(var name) at $(var x)" if="$(eval '$(var x) &gt; 0.5')"/>
+        <log_info message="$(var name) is at home" unless="$(eval '$(var x) &gt; 0.5')"/>
+      </group>
+    </launch>
+"""
+
+SYSTEM_YAML = """
+    launch:
+    - arg: {name: rviz, default: 'true', description: Show it}
+    - group:
+        if: $(var rviz)
+        children:
+        - include:
+            file: $(dirname)/one.launch.xml
+            arg:
+            - {name: name, value: yamlbot}
+            - {name: x, value: '0.75'}
+        - log_info: {message: '$(env HOME_OF_ROBOT ''nowhere else'')'}
+"""
+
+
+async def test_navigation(launch: Any, write: Any, robot: Path) -> None:
+    path = write("src/bot/launch/nav.launch.py", NAVIGATION)
+    finder = check(robot)
+    with use_finder(finder):
+        done = await launch(load_launch_file(path), finder=finder)
+    assert done.succeeded, done.err
+    assert done.messages[0].startswith("params ")
+
+
+async def test_manipulation(launch: Any, write: Any, robot: Path) -> None:
+    path = write("src/bot/launch/move_group.launch.py", MOVEIT)
+    finder = check(robot)
+    with use_finder(finder):
+        done = await launch(load_launch_file(path), finder=finder)
+    assert done.messages[0] == "sim false ['amcl', 'controller']"
+    assert '<link name="base"/>' in done.err
+
+
+async def test_chains_of_events(launch: Any, write: Any, robot: Path) -> None:
+    done = await launch(load_launch_file(write("src/bot/launch/events.launch.py", EVENTS)))
+    assert done.succeeded, done.err
+    assert "[first-1] one" in done.out
+    assert "two" in done.out
+    assert done.messages == ["first started", "ended: all done", "third ended"]
+
+
+async def test_several_robots(launch: Any, write: Any, robot: Path) -> None:
+    write("src/bot/launch/one.launch.xml", dedent(ONE_XML))
+    path = write("src/bot/launch/robots.launch.py", ROBOTS)
+    done = await launch(load_launch_file(path))
+    assert done.messages == ["r1 is at home", "r2 r2 at 1.0", "none left"], done.err
+
+
+async def test_yaml_includes_xml(launch: Any, write: Any, robot: Path) -> None:
+    write("src/bot/launch/one.launch.xml", dedent(ONE_XML))
+    path = write("src/bot/launch/system.launch.yaml", dedent(SYSTEM_YAML))
+    description = load_launch_file(path)
+    done = await launch(description, namespace="ns", current="x")
+    assert "the launch description comes from no file" in done.err  # $(dirname) outside of a launch file
+    done = await launch(_file(path), namespace="ns")
+    assert done.messages == ["ns yamlbot at 0.75", "nowhere else"], done.err
+
+
+def _file(path: Path) -> Any:
+    from launch.actions import IncludeLaunchDescription
+
+    return IncludeLaunchDescription(path)
+
+
+LISTING = """\
+Arguments (pass arguments as '<name>:=<value>'):
+
+    'rviz':
+        Show it
+        (default: 'true')"""
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("a.launch.xml", '<launch><arg name="rviz" default="true" description="Show it"/></launch>'),
+        ("a.launch.yaml", "launch:\n- arg: {name: rviz, default: 'true', description: Show it}"),
+        (
+            "a.launch.py",
+            HEAD + "def generate_launch_description():\n    return LaunchDescription([\n"
+            "        DeclareLaunchArgument('rviz', default_value='true', description='Show it')])\n",
+        ),
+    ],
+)
+def test_show_args_is_alike_for_all_kinds(write: Any, name: str, text: str) -> None:
+    assert argument_listing(load_launch_file(write(name, text))) == LISTING
+
+
+async def test_an_error_three_includes_down_names_them_all(launch: Any, write: Any) -> None:
+    write("c.launch.xml", "<launch>\n  <arg name='x'/>\n  <log_info message='$(var y)'/>\n</launch>")
+    write("b.launch.yaml", "launch:\n- include:\n    file: $(dirname)/c.launch.xml\n    arg: [{name: x, value: '1'}]\n")
+    path = write(
+        "a.launch.py",
+        HEAD + "def generate_launch_description():\n    here = os.path.dirname(__file__)\n"
+        "    return LaunchDescription([IncludeLaunchDescription(here + '/b.launch.yaml')])\n",
+    )
+    done = await launch(_file(path))
+    assert not done.succeeded
+    assert "error[LAUNCH121]: launch configuration 'y' is not set" in done.err
+    lines = done.err.splitlines()
+    assert any("c.launch.xml:3:" in line for line in lines)
+    included = [line for line in lines if "included from here" in line]
+    assert len(included) >= 2
+    assert "b.launch.yaml:2:3" in done.err
+    assert "a.launch.py:12:" in done.err
+
+
+async def test_what_an_include_does_not_get(launch: Any, write: Any) -> None:
+    write("b.launch.xml", "<launch><arg name='model'/></launch>")
+    path = write(
+        "a.launch.xml",
+        '<launch><include file="$(dirname)/b.launch.xml"><arg name="modle" value="1"/></include></launch>',
+    )
+    done = await launch(_file(path))
+    assert "the included launch file requires argument 'model', which is not given" in done.err
+    assert "it is given 'modle': is that the one?" in done.err
+
+
+async def test_a_package_that_is_not_installed(launch: Any, write: Any) -> None:
+    text = (
+        '<launch><arg name="a" default="1"/><include file="$(find-pkg-share no_such_bot)/launch/a.launch.py"/></launch>'
+    )
+    path = write("a.launch.xml", text)
+    assert "'a':" in argument_listing(load_launch_file(path))
+    done = await launch(_file(path))
+    assert "no_such_bot" in done.err
+    assert not done.succeeded
+
+
+class TestNavigationSubstitutions:
+    @pytest.fixture
+    def source(self, write: Any) -> str:
+        return str(
+            write(
+                "nav.yaml",
+                "amcl:\n  ros__parameters: {sim: false, base: <ns>/base}\n"
+                "ctl:\n  ros__parameters: {list: [{v: 1}], a: {speed: 0.1}, sim: false}\n",
+            )
+        )
+
+    def test_rewritten_yaml(self, source: str) -> None:
+        context = LaunchContext()
+        context.launch_configurations["sim"] = "True"
+        rewritten = RewrittenYaml(
+            source_file=source,
+            param_rewrites={
+                "sim": LaunchConfiguration("sim"),
+                "ctl.ros__parameters.a.speed": "0.5",
+                "ctl.ros__parameters.list.0.v": "7",
+                "new.ros__parameters.deep.x": "text",
+                "absent": "1",
+            },
+            root_key="robot1",
+            key_rewrites={"amcl": "loc"},
+            value_rewrites={"<ns>/base": "r/base"},
+            convert_types=True,
+        )
+        content = yaml.safe_load(Path(rewritten.perform(context)).read_text())
+        assert content == {
+            "robot1": {
+                "loc": {"ros__parameters": {"sim": True, "base": "r/base"}},
+                "ctl": {"ros__parameters": {"list": [{"v": 7}], "a": {"speed": 0.5}, "sim": True}},
+                "new": {"ros__parameters": {"deep": {"x": "text"}}},
+            }
+        }
+        plain = RewrittenYaml(source, {"v": "7"}).perform(context)
+        assert yaml.safe_load(Path(plain).read_text())["ctl"]["ros__parameters"]["list"] == [{"v": "7"}]
+
+    def test_a_missing_file(self) -> None:
+        with pytest.raises(LinkwrightError) as raised:
+            RewrittenYaml("/no/such.yaml", {}).perform(LaunchContext())
+        assert raised.value.diagnostics[0].code == "LAUNCH152"
+
+    def test_the_others(self, source: str) -> None:
+        context = LaunchContext()
+        context.launch_configurations["on"] = "Yes"
+        replaced = ReplaceString(source_file=source, replacements={"<ns>": "bot"}).perform(context)
+        assert "bot/base" in Path(replaced).read_text()
+        kept = ReplaceString(source, {"<ns>": "bot"}, condition=IfCondition("false"))
+        assert kept.perform(context) == source
+        assert HasNodeParams(source, "amcl").perform(context) == "True"
+        assert HasNodeParams(source, "acml").perform(context) == "False"
+        assert LaunchConfigAsBool("on").perform(context) == "True"
+
+    def test_robots_and_poses(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        context = LaunchContext()
+        context.launch_configurations["robots"] = "r1={x: 1.0, yaw: 0.5}; r2={y: 2}"
+        parsed = ParseMultiRobotPose(LaunchConfiguration("robots")).perform(context)
+        assert parsed["r1"] == {"x": 1.0, "y": 0.0, "z": 0.0, "roll": 0.0, "pitch": 0.0, "yaw": 0.5}
+        assert parsed["r2"]["y"] == 2
+        monkeypatch.setattr("sys.argv", ["ros2", "launch", "robots:=r3={x: 3}"])
+        assert list(ParseMultiRobotPose("robots").value()) == ["r3"]
+
+
+def test_a_description_can_be_deprecated(caplog: pytest.LogCaptureFixture) -> None:
+    description = LaunchDescription(deprecated_reason="use b.launch.py")
+    assert description.deprecated
+    assert description.deprecated_reason == "use b.launch.py"
+
+
+async def test_a_launch_file_of_a_test_can_be_launched(launch: Any, write: Any) -> None:
+    text = (
+        HEAD
+        + """
+import launch_testing.actions
+import launch_testing.markers
+
+@launch_testing.markers.keep_alive
+def generate_test_description():
+    return LaunchDescription([LogInfo(msg='up'), launch_testing.actions.ReadyToTest(),
+                              TimerAction(period=0.4, actions=[Shutdown(reason='enough')])]), {}
+
+def generate_launch_description():
+    return generate_test_description()[0]
+"""
+    )
+    done = await launch(load_launch_file(write("a.launch.py", text)))
+    assert done.messages == ["up"]
+    assert "keep_alive-1" in done.err
+    assert done.succeeded

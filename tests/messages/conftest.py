@@ -1,0 +1,41 @@
+"""A package of interface files in a workspace of its own."""
+
+from __future__ import annotations
+
+from itertools import count
+from pathlib import Path
+
+import pytest
+
+from linkwright.messages import find_interfaces_with
+from linkwright.workspace import PackageFinder
+
+_numbers = count(1)
+_MANIFEST = """<?xml version="1.0"?>
+<package format="3"><name>{}</name><version>0.0.1</version><description>d</description>
+<maintainer email="a@example.com">a</maintainer><license>MIT</license></package>
+"""
+
+
+class InterfacePackage:
+    """A package that is found; each has another name, because what was read of one is kept."""
+
+    def __init__(self, folder: Path, name: str) -> None:
+        self.folder = folder / "src" / name
+        self.name = name
+        self.folder.mkdir(parents=True)
+        (self.folder / "package.xml").write_text(_MANIFEST.format(name))
+
+    def write(self, kind: str, name: str, text: str, ending: str = "") -> Path:
+        path = self.folder / kind / f"{name}.{ending or kind}"
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+        return path
+
+
+@pytest.fixture
+def interface_package(tmp_path):
+    package = InterfacePackage(tmp_path, f"test{next(_numbers)}_msgs")
+    find_interfaces_with(PackageFinder(start=tmp_path, environment={}))
+    yield package
+    find_interfaces_with(None)

@@ -1,0 +1,232 @@
+"""Messages as bytes: as rosbags writes them, whatever is in them, and never a crash for bytes that are none."""
+
+from __future__ import annotations
+
+import contextlib
+import struct
+import tracemalloc
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from linkwright.messages import (
+    Header,
+    JointState,
+    MessageDataError,
+    String,
+    Time,
+    deserialize,
+    get_interface,
+    get_message,
+    interface_names,
+    serialize,
+)
+from tests.messages.random_messages import random_message, rosbags_object, rosbags_store
+
+OF_ROSBAGS = sorted(name for name in rosbags_store().fielddefs)
+ALL = sorted(interface_names("msg"))
+
+
+@pytest.mark.parametrize("name", OF_ROSBAGS)
+def test_the_bytes_are_those_of_rosbags(name):
+    for seed in range(6):
+        message = random_message(get_message(name), seed)
+        ours = serialize(message)
+        assert ours == bytes(rosbags_store().serialize_cdr(rosbags_object(message), name))
+        big = bytes(rosbags_store().serialize_cdr(rosbags_object(message), name, little_endian=False))
+        assert deserialize(big, type(message)) == message
+
+
+@given(name=st.sampled_from(ALL), seed=st.integers(0, 2**32))
+@settings(max_examples=400, deadline=None)
+def test_a_message_comes_back_as_it_was(name, seed):
+    message = random_message(get_message(name), seed)
+    data = serialize(message)
+    for form in (data, bytearray(data), memoryview(data), data + b"\0\0\0"):
+        assert deserialize(form, type(message)) == message
+
+
+def parts(name):
+    cls = get_interface(name)
+    if hasattr(cls, "Goal"):
+        return [cls.Goal, cls.Result, cls.Feedback, cls.Impl.FeedbackMessage, cls.Impl.SendGoalService.Request,
+                cls.Impl.SendGoalService.Response, cls.Impl.GetResultService.Response]  # fmt: skip
+    return [cls.Request, cls.Response, cls.Event]
+
+
+@pytest.mark.parametrize("name", interface_names("srv") + interface_names("action"))
+def test_the_parts_of_services_and_actions_come_back(name):
+    for cls in parts(name):
+        message = random_message(cls, 3)
+        assert deserialize(serialize(message), cls) == message
+
+
+@given(name=st.sampled_from(ALL), seed=st.integers(0, 2**32), data=st.data())
+@settings(max_examples=600, deadline=None)
+def test_damaged_bytes_are_refused_or_read_and_nothing_else(name, seed, data):
+    cls = get_message(name)
+    raw = bytearray(serialize(random_message(cls, seed)))
+    raw[1] = data.draw(st.sampled_from([1, 1, 1, 0]))
+    for _ in range(data.draw(st.integers(1, 6))):
+        raw[data.draw(st.integers(4, max(4, len(raw) - 1))) % len(raw)] = data.draw(
+            st.sampled_from([0, 1, 127, 128, 255])
+        )
+    del raw[data.draw(st.integers(4, len(raw))) :]
+    try:
+        message = deserialize(bytes(raw), cls)
+    except MessageDataError:
+        return
+    # What was read is a message like any other.
+    assert type(deserialize(serialize(message), cls)) is cls
+
+
+@pytest.mark.parametrize("name", ["sensor_msgs/msg/JointState", "tf2_msgs/msg/TFMessage", "nav_msgs/msg/Odometry",
+                                  "rcl_interfaces/msg/ParameterEvent", "visualization_msgs/msg/MarkerArray",
+                                  "sensor_msgs/msg/PointCloud2", "test_msgs/msg/MultiNested"])  # fmt: skip
+def test_every_beginning_of_a_message_is_refused(name):
+    cls = get_message(name)
+    data = serialize(random_message(cls, 5))
+    for length in range(0, len(data) - 1, max(1, len(data) // 400)):
+        with pytest.raises(MessageDataError):
+            deserialize(data[:length], cls)
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "std_msgs/msg/String",
+        "std_msgs/msg/Float64MultiArray",
+        "sensor_msgs/msg/Image",
+        "diagnostic_msgs/msg/DiagnosticArray",
+        "rcl_interfaces/msg/ParameterValue",
+    ],
+)
+def test_a_length_beyond_the_data_reserves_nothing(name):
+    cls = get_message(name)
+    data = serialize(cls())
+    tracemalloc.start()
+    for at in range(4, len(data) - 3):
+        for length in (0x7FFFFFFF, 0xFFFFFFFF, 0x10000000):
+            wrong = data[:at] + struct.pack("<I", length) + data[at + 4 :]
+            with contextlib.suppress(MessageDataError):
+                deserialize(wrong, cls)
+    _, most = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert most < 2_000_000
+
+
+class TestRefused:
+    def refused(self, data, cls):
+        with pytest.raises(MessageDataError) as caught:
+            deserialize(data, cls)
+        assert caught.value.diagnostics[0].code == "MSG201"
+        return caught.value.diagnostics[0].message
+
+    def test_headers(self):
+        assert "0 bytes are too few for the header" in self.refused(b"", String)
+        assert "its header says CDR2_LE" in self.refused(b"\0\7\0\0\1\0\0\0\0", String)
+        assert "it begins with 48 69 21 21" in self.refused(b"Hi!!", String)
+
+    def test_a_text_that_is_not_utf_8(self):
+        assert "a text in it is not UTF-8" in self.refused(b"\0\1\0\0\3\0\0\0\xff\xfe\0", String)
+
+    def test_a_text_without_its_end(self):
+        assert "does not end where its length says" in self.refused(b"\0\1\0\0\2\0\0\0ab", String)
+
+    def test_a_bool_that_is_none(self):
+        assert "a bool in it is 2" in self.refused(b"\0\1\0\0\2", get_message("std_msgs/msg/Bool"))
+        raw = serialize(get_message("test_msgs/msg/UnboundedSequences")(bool_values=[True, False]))
+        assert "a bool in it is 7" in self.refused(raw[:8] + b"\7" + raw[9:],
+                                                   get_message("test_msgs/msg/UnboundedSequences"))  # fmt: skip
+
+    def test_more_than_a_bound_allows(self):
+        cls = get_message("rcl_interfaces/msg/ParameterDescriptor")
+        data = bytearray(serialize(cls()))
+        data[-4:] = b"\2\0\0\0"
+        assert "'integer_range' is longer than its bound of 1" in self.refused(bytes(data), cls)
+        cls = get_message("type_description_interfaces/msg/FieldType")
+        text = b"\0\1\0\0" + bytes(24) + struct.pack("<I", 301) + b"a" * 300 + b"\0"
+        assert "'nested_type_name' is longer than its bound of 255" in self.refused(text, cls)
+
+
+def test_a_text_of_length_zero_is_empty():
+    # Some writers leave the NUL of an empty text away.
+    assert deserialize(b"\0\1\0\0\0\0\0\0", String) == String()
+
+
+def test_what_was_put_past_the_checks_is_named_when_it_is_written():
+    message = JointState(name=["a"])
+    message.name.append(3)
+    with pytest.raises(MessageDataError, match="cannot be written: The 'name' field must be a set or sequence"):
+        serialize(message)
+    message = get_message("nav_msgs/msg/Path")()
+    message.poses.append(get_message("geometry_msgs/msg/PoseStamped")())
+    message.poses[0].pose.position._x = "far"
+    with pytest.raises(MessageDataError, match=r"The 'poses\[0\].pose.position.x' field must be of type 'float'"):
+        serialize(message)
+    message = get_message("test_msgs/msg/Arrays")()
+    message.string_values.append("one too many")
+    with pytest.raises(MessageDataError, match="with length 3"):
+        serialize(message)
+    with pytest.raises(MessageDataError, match="'int' is no message class"):
+        serialize(5)
+
+
+def test_values_out_of_range_are_not_wrapped():
+    stamp = Time()
+    stamp._nanosec = -1
+    with pytest.raises(MessageDataError, match="must be an unsigned integer"):
+        serialize(stamp)
+
+
+def test_wide_texts_are_utf_16_with_the_number_of_units():
+    cls = get_message("example_interfaces/msg/WString")
+    assert serialize(cls(data="a😀")) == b"\0\1\0\0\3\0\0\0a\0\x3d\xd8\x00\xde"
+    assert deserialize(b"\0\0\0\0\0\0\0\2\0a\0b", cls).data == "ab"
+
+
+def test_an_empty_message_is_one_byte():
+    cls = get_message("std_msgs/msg/Empty")
+    assert serialize(cls()) == b"\0\1\0\0\0"
+    assert deserialize(b"\0\1\0\0\0", cls) == cls()
+
+
+def test_arrays_that_are_no_rows_in_memory_are_written_by_value():
+    cls = get_message("geometry_msgs/msg/PoseWithCovariance")
+    numbers = np.arange(72, dtype=np.float64)
+    assert serialize(cls(covariance=numbers[::2])) == serialize(cls(covariance=numbers[::2].copy()))
+    square = cls()
+    square.covariance = np.arange(36.0).reshape(6, 6).T
+    assert deserialize(serialize(square), cls).covariance.tolist() == np.arange(36.0).reshape(6, 6).T.ravel().tolist()
+
+
+def test_what_was_read_can_be_changed_and_is_nobody_elses():
+    data = serialize(JointState(Header(Time(1, 2), "a"), ["x", "y"], [1.0, 2.0]))
+    first, second = deserialize(data, JointState), deserialize(data, JointState)
+    first.name.append("z")
+    first.position[0] = 5.0
+    assert second.name == ["x", "y"]
+    assert second.position[0] == 1.0
+    assert deserialize(data, JointState).name == ["x", "y"]
+
+
+def test_names_that_come_again_with_other_names_between_them():
+    one = serialize(JointState(name=["a", "b"]))
+    other = serialize(JointState(name=["a", "c"]))
+    longer = serialize(JointState(name=["a", "b", "d" * 100]))
+    for _ in range(3):
+        assert deserialize(one, JointState).name == ["a", "b"]
+        assert deserialize(other, JointState).name == ["a", "c"]
+        assert deserialize(longer, JointState).name == ["a", "b", "d" * 100]
+
+
+def test_types_within_types_within_types(tmp_path, interface_package):
+    for depth in range(12):
+        inner = f"Level{depth + 1}[] below\nLevel{depth + 1} one" if depth < 11 else "int8 n"
+        interface_package.write("msg", f"Level{depth}", f"bool b\n{inner}\n")
+    cls = get_message(f"{interface_package.name}/msg/Level0")
+    lower = [get_message(f"{interface_package.name}/msg/Level{depth}") for depth in range(12)]
+    message = cls(below=[lower[1](b=True, below=[lower[2]()])])
+    assert deserialize(serialize(message), cls) == message

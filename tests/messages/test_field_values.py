@@ -1,0 +1,117 @@
+"""Messages from YAML values, as ``ros2 topic pub`` takes them."""
+
+from __future__ import annotations
+
+from array import array
+
+import numpy as np
+import pytest
+import yaml
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from linkwright.messages import (
+    FieldValueError,
+    JointState,
+    Time,
+    from_dict,
+    get_message,
+    interface_names,
+    set_fields,
+    to_dict,
+    to_yaml,
+)
+from tests.messages.random_messages import random_message
+
+
+@given(name=st.sampled_from(interface_names("msg")), seed=st.integers(0, 1000))
+@settings(max_examples=150, deadline=None)
+def test_what_was_written_is_read(name, seed):
+    message = random_message(get_message(name), seed)
+    assert from_dict(type(message), to_dict(message)) == message
+    assert from_dict(type(message), yaml.safe_load(to_yaml(message))) == message
+
+
+def test_values_are_brought_to_their_types():
+    message = from_dict(JointState, {"header": {"frame_id": 3, "stamp": {"sec": "5"}}, "position": [1, "2.5", True]})
+    assert message.header.frame_id == "3"
+    assert message.header.stamp.sec == 5
+    assert message.position == array("d", [1.0, 2.5, 1.0])
+    assert from_dict(get_message("std_msgs/msg/Byte"), {"data": 7}).data == b"\7"
+    assert from_dict(get_message("std_msgs/msg/UInt8MultiArray"), {"data": b"ab"}).data == array("B", b"ab")
+    assert from_dict(get_message("std_msgs/msg/String"), {"data": True}).data == "true"
+    covariance = {"covariance": np.zeros(36)}
+    assert from_dict(get_message("geometry_msgs/msg/PoseWithCovariance"), covariance).covariance.shape == (36,)
+
+
+def test_fields_that_are_not_given_keep_their_values_nested_ones_their_defaults():
+    message = JointState(name=["a"])
+    message.header.stamp.sec = 4
+    message.header.frame_id = "base"
+    assert set_fields(message, {"header": {"frame_id": "map"}}) == []
+    assert message.name == ["a"]
+    assert (message.header.frame_id, message.header.stamp.sec) == ("map", 0)
+    assert from_dict(JointState, {"header": message.header}).header is message.header
+
+
+def test_stamps_of_the_time_of_sending():
+    message = get_message("geometry_msgs/msg/PoseStamped")()
+    (set_stamp,) = set_fields(message, {"header": "auto"}, expand_header_auto=True)
+    set_stamp(Time(7, 8))
+    assert message.header.stamp == Time(7, 8)
+    array_message = get_message("visualization_msgs/msg/MarkerArray")()
+    values = {"markers": [{"header": {"stamp": "now", "frame_id": "a"}}, {"header": "auto"}]}
+    setters = set_fields(array_message, values, expand_header_auto=True, expand_time_now=True)
+    for each in setters:
+        each(Time(9))
+    assert [marker.header.stamp.sec for marker in array_message.markers] == [9, 9]
+    assert array_message.markers[0].header.frame_id == "a"
+    with pytest.raises(FieldValueError):
+        set_fields(message, {"header": "auto"})
+
+
+@pytest.mark.parametrize(
+    ("name", "values", "code", "message", "hint"),
+    [
+        ("JointState", {"positon": [1]}, "MSG301", "JointState has no field 'positon'", "did you mean 'position'?"),
+        ("JointState", {"header": {"stmp": 1}}, "MSG301", "Header ('header') has no field 'stmp'", "'stamp'"),
+        ("JointState", {"xyz": 1}, "MSG301", "has no field 'xyz'", "its fields: header, name, position"),
+        ("JointState", {"name": "a"}, "MSG302", "'name' cannot be 'a'", "it is a list (string[])"),
+        ("JointState", {"effort": ["x"]}, "MSG302", "'effort' cannot be ['x']", "it is a number"),
+        ("JointState", {"header": 5}, "MSG302", "'header' is given as 5, not as fields and values", "stamp, frame_id"),
+        ("JointState", 5, "MSG302", "a sensor_msgs/msg/JointState is given as 5", "its fields: header"),
+        ("CameraInfo", {"k": [1, 2]}, "MSG302", "'k' cannot be [1, 2]", "a list of 9 (float64[9]), not of 2 values"),
+        ("CameraInfo", {"height": -1}, "MSG302", "'height' cannot be -1", "unsigned integer in [0, 4294967295]"),
+        ("CameraInfo", {"height": 1.5}, "MSG302", "'height' cannot be 1.5", "a whole number, 0 to 4294967295"),
+        ("CameraInfo", {"height": float("inf")}, "MSG302", "'height' cannot be inf", "a whole number"),
+        ("CameraInfo", {"roi": {"do_rectify": "no"}}, "MSG302", "'roi.do_rectify' cannot be 'no'", "true or false"),
+        ("CameraInfo", {"distortion_model": [1]}, "MSG302", "cannot be [1]", "it is a text"),
+        ("PointCloud2", {"fields": [{"offset": "x"}]}, "MSG302", "'fields[0].offset' cannot be 'x'", "whole number"),
+        ("PointCloud2", {"fields": [{"ofset": 1}]}, "MSG301", "PointField ('fields[0]') has no", "'offset'"),
+        ("PointCloud2", {"data": [256]}, "MSG302", "'data' cannot be [256]", "unsigned integer in [0, 255]"),
+        ("PointCloud2", {"header": None}, "MSG302", "'header' is given as None", "its fields"),
+    ],
+)
+def test_what_is_wrong_is_told(name, values, code, message, hint):
+    with pytest.raises(FieldValueError) as caught:
+        from_dict(get_message(f"sensor_msgs/msg/{name}"), values)
+    (found,) = caught.value.diagnostics
+    assert found.code == code
+    assert message in found.message
+    assert hint in (found.hint or "")
+    assert isinstance(caught.value, AttributeError if code == "MSG301" else TypeError)
+
+
+def test_all_mistakes_are_told_together():
+    with pytest.raises(FieldValueError) as caught:
+        from_dict(JointState, {"nam": 1, "position": "a", "header": {"stamp": {"sec": "x", "nsec": 1}}})
+    assert [each.code for each in caught.value.diagnostics] == ["MSG301", "MSG302", "MSG302", "MSG301"]
+
+
+def test_a_byte_and_its_like():
+    with pytest.raises(FieldValueError):
+        from_dict(get_message("std_msgs/msg/Byte"), {"data": 256})
+    with pytest.raises(FieldValueError):
+        from_dict(get_message("test_msgs/msg/BoundedSequences"), {"bool_values": [True] * 4})
+    with pytest.raises(FieldValueError):
+        from_dict(get_message("test_msgs/msg/Strings"), {"bounded_string_value": "x" * 23})

@@ -1,0 +1,375 @@
+"""Interface files of the workspace: what is understood, and where it is said what is wrong."""
+
+from __future__ import annotations
+
+import contextlib
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from linkwright.diagnostics import LinkwrightError, SourceText
+from linkwright.messages import (
+    DefinitionError,
+    definition_text,
+    deserialize,
+    get_action,
+    get_message,
+    get_service,
+    interface_names,
+    serialize,
+    type_hash,
+)
+from linkwright.messages.idl import parse_idl
+from linkwright.messages.parser import parse_interface
+from linkwright.workspace import PackageFinder, use_finder
+from linkwright.workspace.interface_files import interface_file
+
+
+class Everything:
+    """Any message is known."""
+
+    def has_message(self, type_name):
+        return True
+
+    def hint_for(self, type_name):
+        return None
+
+
+def parsed(text, kind="msg"):
+    return parse_interface(SourceText("F.msg", text), f"my_msgs/{kind}/F", Everything())
+
+
+def fields(text):
+    return {field.name: (field.type.spelled("my_msgs"), field.default) for field in parsed(text).fields}
+
+
+def faults(text, kind="msg"):
+    with pytest.raises(DefinitionError) as caught:
+        parsed(text, kind)
+    return [(each.code, str(each.span), each.message) for each in caught.value.diagnostics]
+
+
+class TestFields:
+    def test_types(self):
+        text = """
+        # comment
+        bool a  # the robot's
+        byte[] b\t
+        float64[3] c
+        string<=10 d
+        string<=5[<=2] e
+        wstring f
+        std_msgs/Header g
+        std_msgs/msg/Header h
+        Other i
+        Other[<=4]   j
+        """
+        assert {name: kind for name, (kind, _) in fields(text).items()} == {
+            "a": "bool",
+            "b": "byte[]",
+            "c": "float64[3]",
+            "d": "string<=10",
+            "e": "string<=5[<=2]",
+            "f": "wstring",
+            "g": "std_msgs/Header",
+            "h": "std_msgs/Header",
+            "i": "Other",
+            "j": "Other[<=4]",
+        }
+
+    @pytest.mark.parametrize(
+        ("line", "value"),
+        [
+            ("bool x true", True),
+            ("bool x FALSE", False),
+            ("bool x 1", True),
+            ("int8 x -128", -128),
+            ("uint8 x 0x1F", 31),
+            ("int32 x 007", 7),
+            ("byte x 200", b"\xc8"),
+            ("char x 65", 65),
+            ("float32 x 1e3", 1000.0),
+            ("float64 x 3", 3.0),
+            ("float64 x inf", float("inf")),
+            ("string x hello world", "hello world"),
+            ('string x "a # b"  # c', "a # b"),
+            (r"string x 'it\'s'", "it's"),
+            (r'string x "a\tb\\"', "a\tb\\"),
+            ('string x ""', ""),
+            ("string x it's  # not a quote", "it's"),
+            ("int32[] x []", ()),
+            ("int32[] x [1, 2,3]", (1, 2, 3)),
+            ("int32[3] x [1, 2, 3,]", (1, 2, 3)),
+            ("string[] x ['a, b', \"c\", d]", ("a, b", "c", "d")),
+            ("bool[2] x [true, false]", (True, False)),
+        ],
+    )
+    def test_default_values(self, line, value):
+        assert fields(line)["x"][1] == value
+
+    def test_constants(self):
+        text = 'int32 A=1\nint32 B = -2 # b\nstring NAME="a=b"\nstring PLAIN= x y \nfloat64 PI2=6.28\nbool ON=true\n'
+        constants = {each.name: each.value for each in parsed(text).constants}
+        assert constants == {"A": 1, "B": -2, "NAME": "a=b", "PLAIN": "x y", "PI2": 6.28, "ON": True}
+
+    def test_parts(self):
+        service = parsed("int64 a\n---\nint64 sum\n", "srv")
+        assert service.request.type_name == "my_msgs/srv/F_Request"
+        assert service.response.type_name == "my_msgs/srv/F_Response"
+        assert [field.name for field in service.response.fields] == ["sum"]
+        action = parsed("---\n---\n", "action")
+        assert action.goal.fields == action.result.fields == action.feedback.fields == ()
+
+
+class TestFaults:
+    @pytest.mark.parametrize(
+        ("text", "code", "place", "message"),
+        [
+            ("int32", "MSG110", "F.msg:1:1", "'int32' is neither a field ('TYPE name') nor a constant"),
+            ("# a\n  int3 x", "MSG111", "F.msg:2:3", "there is no type 'int3'"),
+            ("a/b/c x", "MSG111", "F.msg:1:1", "'a/b/c' is no type: another package's is written 'package/Name'"),
+            ("int32 Max", "MSG112", "F.msg:1:7", "'Max' is no name for a field"),
+            ("int32 a__b", "MSG112", "F.msg:1:7", "'a__b' is no name for a field"),
+            ("int32 max=5", "MSG113", "F.msg:1:7", "'max' is no name for a constant"),
+            ("int8 x 128", "MSG114", "F.msg:1:8", "the default value of 'x' is wrong: 128 is outside of int8's range"),
+            ("bool x yes", "MSG114", "F.msg:1:8", "'yes' is neither true nor false"),
+            ("int8 x 1.5", "MSG114", "F.msg:1:8", "'1.5' is no whole number"),
+            ("float32 x 1e39", "MSG114", "F.msg:1:11", "1e39 is outside of float32's range"),
+            ("float32 x one", "MSG114", "F.msg:1:11", "'one' is no number"),
+            ("int8[] x 5", "MSG114", "F.msg:1:10", "the default of 'int8[]' is a list in square brackets"),
+            ("int8[2] x [1]", "MSG114", "F.msg:1:11", "'int8[2]' takes 2 values, not 1"),
+            ("int8[<=1] x [1,2]", "MSG114", "F.msg:1:13", "'int8[<=1]' takes at most 1 values, not 2"),
+            ("string<=2 x abc", "MSG114", "F.msg:1:13", "the text is longer than 2 characters"),
+            ('string x "abc', "MSG114", "F.msg:1:10", 'the text that begins with " does not end with it'),
+            ("Other x 5", "MSG114", "F.msg:1:9", "cannot have a default value"),
+            ("int8[] X=5", "MSG114", "F.msg:1:8", "the constant 'X' cannot be of type 'int8[]'"),
+            ("uint8 X=-1", "MSG114", "F.msg:1:8", "the value of 'X' is wrong: -1 is outside of uint8's range"),
+            ("int8 x\nint8 x", "MSG115", "F.msg:2:6", "there are two 'x'"),
+            ("int8[0] x", "MSG119", "F.msg:1:6", "'0' is no length of an array"),
+            ("int8[<=n] x", "MSG119", "F.msg:1:8", "'n' is no length of a sequence"),
+            ("string<=z x", "MSG119", "F.msg:1:9", "'z' is no length of a string"),
+            ("int8<=3 x", "MSG119", "F.msg:1:1", "'int8' is no string and has no length to bound"),
+            ("int8 x\n---\n", "MSG118", "F.msg:2:1", "a .msg file has 1 part, this '---' begins another"),
+        ],
+    )
+    def test_each_says_what_and_where(self, text, code, place, message):
+        ((found_code, found_place, found_message),) = faults(text)
+        assert (found_code, found_place) == (code, place)
+        assert message in found_message
+
+    def test_all_are_told_together(self):
+        assert [code for code, _, _ in faults("int3 x\nint32 Y\nint8 z 300\n\nint32\n")] == [
+            "MSG111",
+            "MSG112",
+            "MSG114",
+            "MSG110",
+        ]
+
+    def test_parts_of_services_and_actions(self):
+        assert faults("int8 x\n", "srv")[0][2] == "a .srv file has 2 parts with '---' between them, this one has 1"
+        assert faults("---\n---\n", "srv")[0][1] == "F.msg:2:1"
+        assert faults("---\n", "action")[0][0] == "MSG118"
+
+    @given(st.text(st.sampled_from("int32 float64[]<=3/x'\"#\n-=AStrinHeader,0.é"), max_size=60))
+    @settings(max_examples=500)
+    def test_any_text_is_understood_or_refused(self, text):
+        with contextlib.suppress(DefinitionError):
+            assert parsed(text).type_name == "my_msgs/msg/F"
+
+
+class TestWorkspace:
+    def found(self, name):
+        with pytest.raises(LinkwrightError) as caught:
+            get_message(name)
+        return caught.value.diagnostics
+
+    def test_messages_services_and_actions_of_a_package(self, interface_package):
+        package = interface_package
+        text = "# how many\nint32 MOST=10\nint32 n 5\nInner[2] inner\nstd_msgs/Header header\n"
+        package.write("msg", "Count", text)
+        package.write("msg", "Inner", "uint8[3] rgb [1, 2, 3]\n")
+        package.write("srv", "Add", "int64 a\n---\nCount sum\n")
+        package.write("action", "Go", "Count order\n---\n---\n")
+        cls = get_message(f"{package.name}/Count")
+        assert (cls().n, cls.MOST, cls().inner[1].rgb.tolist()) == (5, 10, [1, 2, 3])
+        assert deserialize(serialize(cls(n=7)), cls).n == 7
+        assert get_service(f"{package.name}/srv/Add").Response().sum == cls()
+        assert get_action(f"{package.name}/Go").Goal(order=cls(n=1)).order.n == 1
+        assert definition_text(cls) == text
+        assert type_hash(cls).startswith("RIHS01_")
+        assert [name for name in interface_names("msg") if name.startswith(package.name)] == [
+            f"{package.name}/msg/Count",
+            f"{package.name}/msg/Inner",
+        ]
+
+    def test_names_that_are_not_there(self, interface_package):
+        interface_package.write("msg", "Count", "int32 n\n")
+        interface_package.write("msg", "Bad", "Cuont a\nTwist b\nstd_msgs/Headr c\nother/Thing d\n")
+        name = interface_package.name
+        first, second, third, fourth = self.found(f"{name}/msg/Bad")
+        assert (first.message, first.hint) == (f"there is no message '{name}/msg/Cuont'", "did you mean 'Count'?")
+        assert second.hint == "did you mean 'geometry_msgs/msg/Twist'?"
+        assert "'Header'" in third.hint
+        assert fourth.message == "there is no message 'other/msg/Thing'"
+        assert str(fourth.span).endswith("Bad.msg:4:1")
+        assert self.found(f"{name}/msg/Cnt")[0].hint == "did you mean 'Count'?"
+
+    def test_types_of_ros_1(self, interface_package):
+        interface_package.write("msg", "Old", "Header header\ntime stamp\nduration length\n")
+        found = self.found(f"{interface_package.name}/msg/Old")
+        assert [each.code for each in found] == ["MSG117"] * 3
+        assert found[0].hint == "in ROS 2 it is 'std_msgs/Header'"
+
+    def test_a_package_may_have_a_header_of_its_own(self, interface_package):
+        interface_package.write("msg", "Header", "int8 x\n")
+        interface_package.write("msg", "New", "Header header\n")
+        assert get_message(f"{interface_package.name}/msg/New")().header.x == 0
+
+    def test_messages_that_contain_themselves(self, interface_package):
+        interface_package.write("msg", "One", "Two[] two\n")
+        interface_package.write("msg", "Two", "int8 x\nThree a\n")
+        interface_package.write("msg", "Three", "One[] one\n")
+        interface_package.write("msg", "Self", "Self[] me\n")
+        name = interface_package.name
+        for each in ("One", "Two", "Three", "One"):
+            (found,) = self.found(f"{name}/msg/{each}")
+            assert found.code == "MSG116"
+            assert "would contain itself" in found.message
+        (found,) = self.found(f"{name}/msg/Self")
+        assert found.message == f"'{name}/msg/Self' would contain itself: it is part of {name}/msg/Self"
+
+    def test_a_mistake_in_a_file_below_is_told_with_its_place(self, interface_package):
+        interface_package.write("msg", "Outer", "Inner inner\n")
+        interface_package.write("msg", "Inner", "int32 X\n")
+        (found,) = self.found(f"{interface_package.name}/msg/Outer")
+        assert found.code == "MSG112"
+        assert str(found.span).endswith("Inner.msg:1:7")
+
+    def test_files_that_cannot_be_read(self, interface_package):
+        path = interface_package.write("msg", "Latin", "")
+        path.write_bytes(b"# caf\xe9\nint8 x\n")
+        assert self.found(f"{interface_package.name}/msg/Latin")[0].code == "MSG121"
+        path.write_bytes(b"\xef\xbb\xbf# caf\xc3\xa9\r\nint8 x\r\n")
+        assert get_message(f"{interface_package.name}/msg/Latin")().x == 0
+
+    def test_what_comes_with_linkwright_is_not_changed_by_a_workspace(self, tmp_path, interface_package):
+        other = type(interface_package)(tmp_path, "std_msgs")
+        other.write("msg", "Int8", "int8 wrong\n")
+        other.write("msg", "Unheard", "int8 x\n")
+        assert not hasattr(get_message("std_msgs/msg/Int8"), "wrong")
+        assert get_message("std_msgs/msg/Unheard")().x == 0
+
+    def test_the_finder_in_force_is_asked(self, tmp_path, interface_package):
+        other = type(interface_package)(tmp_path / "elsewhere", "elsewhere_msgs")
+        other.write("msg", "Here", "int8 x\n")
+        from linkwright.messages import find_interfaces_with
+
+        find_interfaces_with(None)
+        with use_finder(PackageFinder(start=tmp_path / "elsewhere", environment={})):
+            assert get_message("elsewhere_msgs/msg/Here")().x == 0
+        assert interface_file(other.folder, "msg", "Here") == other.folder / "msg" / "Here.msg"
+
+
+IDL = """\
+// made by rosidl
+#include "std_msgs/msg/Header.idl"
+module my_msgs { module msg {
+  typedef double double__36[36];
+  typedef sequence<string<4>> names;
+  module F_Constants {
+    const int32 MOST = 5;
+    const string NAME = "hi; there";
+    @unit (value="m") const double LENGTH = 1.5;
+  };
+  @verbatim (language="comment", text="a (b) " "c\\n")
+  struct F {
+    std_msgs::msg::Header header; /* where */
+    @default (value=2.5) @unit(value="m")
+    double x;
+    double__36 covariance;
+    sequence<my_msgs::msg::Inner, 4> inners;
+    names words;
+    string<5> short_text;
+    wstring wide;
+    @default (value="(1, 2)")
+    sequence<long> numbers;
+    @default (value=TRUE) boolean flag;
+    octet raw;
+    unsigned long long big, bigger;
+    uint8 pixels[2];
+  };
+}; };
+"""
+
+
+class TestIdl:
+    def parsed(self, text, type_name="my_msgs/msg/F"):
+        return parse_idl(SourceText("F.idl", text), type_name, Everything())
+
+    def test_what_rosidl_writes(self):
+        definition = self.parsed(IDL)
+        assert {field.name: field.type.described() for field in definition.fields} == {
+            "header": "std_msgs/Header",
+            "x": "double",
+            "covariance": "double[36]",
+            "inners": "sequence<my_msgs/Inner, 4>",
+            "words": "sequence<string<4>>",
+            "short_text": "string<5>",
+            "wide": "wstring",
+            "numbers": "sequence<int32>",
+            "flag": "boolean",
+            "raw": "octet",
+            "big": "uint64",
+            "bigger": "uint64",
+            "pixels": "uint8[2]",
+        }
+        defaults = {field.name: field.default for field in definition.fields if field.default is not None}
+        assert defaults == {"x": 2.5, "numbers": (1, 2), "flag": True}
+        constants = {each.name: each.value for each in definition.constants}
+        assert constants == {"MOST": 5, "NAME": "hi; there", "LENGTH": 1.5}
+
+    def test_services_and_empty_structures(self):
+        text = """module a_msgs { module srv {
+            struct Do_Request { uint8 structure_needs_at_least_one_member; };
+            struct Do_Response { boolean done; }; }; };"""
+        service = self.parsed(text, "a_msgs/srv/Do")
+        assert service.request.fields == ()
+        assert service.response.fields[0].name == "done"
+
+    def test_a_package_with_idl(self, interface_package):
+        name = interface_package.name
+        interface_package.write("msg", "F", f"module {name} {{ module msg {{ struct F {{ long x; }}; }}; }};", "idl")
+        interface_package.write("msg", "G", "F f\n")
+        assert get_message(f"{name}/msg/G")().f.x == 0
+
+    @pytest.mark.parametrize(
+        ("text", "code", "message"),
+        [
+            ("union U switch (long) {};", "MSG120", "'union' is not understood in the IDL of messages"),
+            ("enum E { A };", "MSG120", "'enum' is not understood"),
+            ("module a { struct F { char c; }; };", "MSG120", "'char' is not supported in messages"),
+            ("module a { struct F { long double c; }; };", "MSG120", "'long double' is not supported"),
+            ("module a { struct F { sequence<sequence<long>> c; }; };", "MSG120", "sequences of sequences"),
+            ("module a { struct F { long c[2][3]; }; };", "MSG120", "arrays of arrays"),
+            ("module a { struct F { thing c; }; };", "MSG111", "there is no type 'thing'"),
+            ("module a { struct F { string<0> c; }; };", "MSG119", "'0' is no length"),
+            ("module a { struct F { long c }; };", "MSG120", "'}' stands where ';' is expected"),
+            ("module a { struct F { long", "MSG120", "the end of the file stands where a name is expected"),
+            ("module a { const octet X = 300; };", "MSG114", "the value of 'X' is wrong"),
+            ("module a { struct G { long x; }; };", "MSG118", "does not define the structure 'my_msgs::msg::F'"),
+            ("module a ? {}", "MSG120", "'?' is not expected here"),
+        ],
+    )
+    def test_what_is_refused(self, text, code, message):
+        with pytest.raises(DefinitionError) as caught:
+            self.parsed(text)
+        (found,) = caught.value.diagnostics
+        assert found.code == code
+        assert message in found.message
+        assert found.span is not None
+
+    @given(st.lists(st.sampled_from(IDL.split()), max_size=40))
+    def test_any_words_are_understood_or_refused(self, words):
+        with contextlib.suppress(DefinitionError):
+            self.parsed(" ".join(words))

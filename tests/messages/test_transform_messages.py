@@ -1,0 +1,156 @@
+"""TFMessage as objects, as arrays and as bytes: three forms of the same."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from linkwright.messages import (
+    Header,
+    MessageDataError,
+    Quaternion,
+    TFMessage,
+    Time,
+    Transform,
+    TransformBatch,
+    TransformStamped,
+    Vector3,
+    deserialize,
+    serialize,
+)
+from tests.messages.random_messages import rosbags_object, rosbags_store
+
+NAMES = st.sampled_from(["", "a", "base_link", "é漢", "link_17", "x" * 40])
+NUMBERS = st.floats(allow_nan=False)
+STAMPS = st.builds(Time, st.integers(-(2**31), 2**31 - 1), st.integers(0, 2**32 - 1))
+TRANSFORMS = st.builds(
+    TransformStamped,
+    st.builds(Header, STAMPS, NAMES),
+    NAMES,
+    st.builds(
+        Transform, st.builds(Vector3, *[NUMBERS] * 3), st.builds(Quaternion, *[NUMBERS] * 4)
+    ),
+)  # fmt: skip
+
+
+def chain(count, seed=0, prefix="link"):
+    numbers = np.random.default_rng(seed)
+    parents = ("world", *(f"{prefix}_{number}" for number in range(count - 1)))
+    children = tuple(f"{prefix}_{number}" for number in range(count))
+    return TransformBatch(parents, children, 12_345_678_901, numbers.normal(size=(count, 7)))
+
+
+@given(st.lists(TRANSFORMS, max_size=12), st.integers(0, 10))
+@settings(max_examples=150, deadline=None)
+def test_all_forms_are_the_same_message(transforms, changed):
+    message = TFMessage(transforms)
+    data = serialize(message)
+    assert data == bytes(rosbags_store().serialize_cdr(rosbags_object(message), TFMessage.TYPE_NAME))
+    for _ in range(3):  # read one by one, then known again
+        received = deserialize(data, TFMessage)
+        batch = received.batch
+        assert batch.children == tuple(each.child_frame_id for each in transforms)
+        assert batch.stamp_ns == max((each.header.stamp.nanoseconds for each in transforms), default=0)
+        np.testing.assert_array_equal(batch.poses, message.batch.poses)
+        assert serialize(received) == data
+        assert received.transforms == transforms
+        assert serialize(received) == data
+    if transforms:
+        # The same frames with other numbers and stamps.
+        other = copy.deepcopy(transforms)
+        other[changed % len(other)].transform.translation.x = 17.0
+        other[changed % len(other)].header.stamp = Time(1, 2)
+        assert deserialize(serialize(TFMessage(other)), TFMessage).transforms == other
+
+
+@pytest.mark.parametrize("count", [0, 1, 5, 6, 7, 20, 100])
+def test_a_batch_is_written_as_its_objects_are(count):
+    batch = chain(count) if count else TransformBatch((), (), 0, np.zeros((0, 7)))
+    data = serialize(TFMessage(batch=batch))
+    assert data == serialize(TFMessage(batch.to_messages()))
+    received = deserialize(data, TFMessage)
+    assert received == TFMessage(batch=batch)
+    again = deserialize(data, TFMessage).batch
+    assert (again.parents, again.children, again.stamp_ns) == (batch.parents, batch.children, batch.stamp_ns)
+    np.testing.assert_array_equal(again.poses, batch.poses)
+
+
+def test_frames_of_one_length_are_not_mistaken_for_each_other():
+    first, second = chain(20, prefix="left"), chain(20, prefix="rite")
+    data = [serialize(TFMessage(batch=each)) for each in (first, second)]
+    assert len(data[0]) == len(data[1])
+    for _ in range(3):
+        assert deserialize(data[0], TFMessage).batch.children == first.children
+        assert deserialize(data[1], TFMessage).batch.children == second.children
+
+
+def test_frames_are_the_same_tuples_each_time():
+    # Receivers keep what they worked out for them.
+    data = serialize(TFMessage(batch=chain(20)))
+    deserialize(data, TFMessage)
+    assert deserialize(data, TFMessage).batch.children is deserialize(data, TFMessage).batch.children
+
+
+def test_bytes_that_fill_up_may_be_anything():
+    data = bytearray(serialize(TFMessage(batch=chain(20))))
+    wanted = deserialize(bytes(data), TFMessage)
+    deserialize(bytes(data), TFMessage)
+    at = data.index(b"world\0") + 6
+    assert data[at] == 0
+    data[at] = 0xCD
+    assert deserialize(bytes(data), TFMessage) == wanted
+
+
+def test_a_received_message_may_be_changed():
+    data = serialize(TFMessage(batch=chain(20)))
+    message = deserialize(data, TFMessage)
+    message = deserialize(data, TFMessage)
+    message.transforms[3].transform.translation.x = 99.0
+    assert message.batch.poses[3, 0] == 99.0
+    assert deserialize(serialize(message), TFMessage).transforms[3].transform.translation.x == 99.0
+    del message.transforms[1:]
+    assert len(deserialize(serialize(message), TFMessage).transforms) == 1
+
+
+def test_damaged_messages_of_known_frames_are_refused():
+    data = serialize(TFMessage(batch=chain(20)))
+    deserialize(data, TFMessage)
+    with pytest.raises(MessageDataError):
+        deserialize(data[:-1], TFMessage)
+    with pytest.raises(MessageDataError):
+        deserialize(data[:4] + b"\xff\xff\xff\x7f" + data[8:], TFMessage)
+
+
+def test_what_rclpys_class_has():
+    message = TFMessage(transforms=[TransformStamped()])
+    assert list(TFMessage.__slots__) == ["_transforms"]
+    assert message._transforms is message.transforms
+    assert TFMessage.get_fields_and_field_types() == {"transforms": "sequence<geometry_msgs/TransformStamped>"}
+    assert repr(message).startswith("tf2_msgs.msg.TFMessage(transforms=[geometry_msgs.msg.TransformStamped(")
+    with pytest.raises(AssertionError, match="each value of type 'TransformStamped'"):
+        message.transforms = [1]
+    with pytest.raises(AssertionError, match="Invalid arguments passed to constructor: transfroms"):
+        TFMessage(transfroms=[])
+    for form in (message, TFMessage(batch=chain(8)), deserialize(serialize(TFMessage(batch=chain(20))), TFMessage)):
+        for other in (copy.copy(form), copy.deepcopy(form), pickle.loads(pickle.dumps(form))):
+            assert other == form
+
+
+def test_a_stamp_beyond_32_bits_is_refused():
+    batch = TransformBatch(("a",), ("b",), 2**63, np.zeros((1, 7)))
+    with pytest.raises(MessageDataError, match="The 'sec' field must be an integer in"):
+        serialize(TFMessage(batch=batch))
+
+
+def test_a_tfmessage_within_another_message(interface_package):
+    from linkwright.messages import get_message
+
+    interface_package.write("msg", "Tree", "tf2_msgs/TFMessage tf\ntf2_msgs/TFMessage[] more\nint8 n\n")
+    cls = get_message(f"{interface_package.name}/msg/Tree")
+    message = cls(tf=TFMessage(batch=chain(9)), more=[TFMessage(batch=chain(2))], n=5)
+    assert deserialize(serialize(message), cls) == message

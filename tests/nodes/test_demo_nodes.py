@@ -1,0 +1,42 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.messages import get_message
+from linkwright.nodes import NodeOptions
+from linkwright.nodes.add_two_ints import AddTwoIntsClient, AddTwoIntsServer
+from linkwright.nodes.demo_camera import DemoCamera
+
+
+async def test_the_client_waits_for_the_server_and_ends(stage, said):
+    client = AddTwoIntsClient(stage.graph, NodeOptions())
+    await stage.clock.advance(2.5)
+    assert said("INFO") == ["service not available, waiting again..."] * 2
+    AddTwoIntsServer(stage.graph, NodeOptions())
+    await stage.clock.advance(0.1)
+    assert said("INFO")[2:] == ["Incoming request\na: 2 b: 3", "Result of add_two_ints: 5"]
+    assert client.finished.result() == 0
+    client.close()
+
+
+async def test_the_test_picture_moves(stage):
+    pictures = []
+    stage.node.create_subscription(get_message("sensor_msgs/msg/Image"), "/image", pictures.append, 10)
+    DemoCamera(stage.graph, stage.options({"width": 64, "height": 48, "frequency": 10.0}))
+    await stage.clock.advance(0.21)
+    assert len(pictures) == 2
+    first, second = (np.asarray(each.data).reshape(48, 64, 3) for each in pictures)
+    assert (pictures[0].encoding, pictures[0].step, pictures[0].header.frame_id) == ("bgr8", 192, "camera_frame")
+    assert (np.roll(first, 4, axis=1) == second).all()
+    assert len(np.unique(first[0], axis=0)) == 8
+
+
+@pytest.mark.parametrize(
+    ("parameters", "message"),
+    [({"width": 0}, "parameter 'width' must be more than 0"), ({"reliability": "maybe"}, "parameter 'reliability'")],
+)
+async def test_bad_parameters_of_the_test_picture(stage, parameters, message):
+    with pytest.raises(LinkwrightError, match=message):
+        DemoCamera(stage.graph, stage.options(parameters))

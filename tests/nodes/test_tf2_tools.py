@@ -1,0 +1,170 @@
+from __future__ import annotations
+
+import asyncio
+from math import pi
+
+import numpy as np
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph import STATIC_TF_PUBLISHER_QOS, TF_QOS
+from linkwright.kinematics import quaternion_from_rpy
+from linkwright.messages import TFMessage, TransformBatch
+from linkwright.nodes import NodeOptions
+from linkwright.nodes.tf2_echo import Tf2Echo, describe
+from linkwright.nodes.tf2_monitor import Tf2Monitor
+from linkwright.nodes.view_frames import ViewFrames
+
+
+@pytest.fixture
+def send(stage):
+    moving = stage.node.create_publisher(TFMessage, "/tf", TF_QOS)
+    static = stage.node.create_publisher(TFMessage, "/tf_static", STATIC_TF_PUBLISHER_QOS)
+
+    async def publish(parent, child, *, rpy=(0.0, 0.0, 0.0), xyz=(0.0, 0.0, 0.0), fixed=False):
+        pose = np.array([[*xyz, *quaternion_from_rpy(rpy)]])
+        batch = TransformBatch((parent,), (child,), stage.clock.now_ns(), pose)
+        (static if fixed else moving).publish(TFMessage(batch=batch))
+        await stage.graph.settle()
+
+    return publish
+
+
+def started(stage, kind, *arguments):
+    printed = []
+    running = kind(stage.graph, NodeOptions(arguments=list(arguments), output=printed.append))
+    return running, printed
+
+
+async def test_tf2_echo_waits_and_prints(stage, send, said):
+    _, printed = started(stage, Tf2Echo, "map", "base", "2")
+    await stage.clock.advance(1.2)
+    waiting = 'Waiting for transform map ->  base: Invalid frame ID "map" passed to canTransform argument target_frame'
+    assert said("INFO")[0] == f"{waiting} - frame does not exist"
+    assert printed == []
+    await send("map", "base", xyz=(1.0, 0.5, 0.0), rpy=(0.0, 0.0, pi / 2))
+    await stage.clock.advance(0.5)
+    assert printed == [
+        (
+            "At time 1700000001.200000000\n"
+            "- Translation: [1.000, 0.500, 0.000]\n"
+            "- Rotation: in Quaternion (xyzw) [0.000, 0.000, 0.707, 0.707]\n"
+            "- Rotation: in RPY (radian) [0.000, -0.000, 1.571]\n"
+            "- Rotation: in RPY (degree) [0.000, -0.000, 90.000]\n"
+            "- Matrix:\n"
+            "  0.000 -1.000  0.000  1.000\n"
+            "  1.000  0.000  0.000  0.500\n"
+            "  0.000  0.000  1.000  0.000\n"
+            "  0.000  0.000  0.000  1.000"
+        )
+    ]
+    await stage.clock.advance(1.0)
+    assert len(printed) == 3
+
+
+async def test_tf2_echo_tells_a_failure(stage, send):
+    running, printed = started(stage, Tf2Echo, "map", "base")
+    await send("map", "base")
+    await stage.clock.advance(1.0)
+    running._buffer.clear()
+    await stage.clock.advance(1.0)
+    assert printed[1].startswith("Failure at 1700000002.000\nException thrown:Could not find a connection")
+    assert printed[1].endswith("The current list of frames is:\nFrame base exists with parent NO_PARENT.\n")
+
+
+@pytest.mark.parametrize("pitch", [pi / 2, -pi / 2])
+async def test_straight_up_and_down(stage, send, pitch):
+    _, printed = started(stage, Tf2Echo, "map", "base")
+    await send("map", "base", rpy=(0.0, pitch, 0.0))
+    await stage.clock.advance(1.0)
+    angle = "1.571" if pitch > 0 else "-1.571"
+    assert f"- Rotation: in RPY (radian) [0.000, {angle}, " in printed[0].replace("[-0.000", "[0.000")
+
+
+async def test_misuse_of_tf2_echo(stage):
+    running, printed = started(stage, Tf2Echo, "map")
+    assert running.finished.result() == 1
+    assert printed[0].startswith("Usage: tf2_echo source_frame target_frame [echo_rate]")
+    with pytest.raises(LinkwrightError, match="Failed to convert rate argument 'fast' to a floating-point number"):
+        started(stage, Tf2Echo, "a", "b", "fast")
+
+
+async def test_tf2_monitor_on_all_frames(stage, send):
+    _, printed = started(stage, Tf2Monitor)
+    for _ in range(4):
+        await send("map", "base")
+        await stage.clock.advance(0.25)
+    await send("base", "arm", fixed=True)
+    await stage.clock.advance(10.0)
+    assert printed == [
+        "Gathering data on all frames for 10 seconds...",
+        (
+            "\n\n\nRESULTS: for all Frames\n\nFrames:\n"
+            "Frame: arm, published by <no authority available>, Average Delay: 0, Max Delay: 0\n"
+            "Frame: base, published by <no authority available>, Average Delay: 0, Max Delay: 0\n\n"
+            "All Broadcasters:\nNode: <no authority available> 5 Hz, Average Delay: 0 Max Delay: 0"
+        ),
+    ]
+
+
+async def test_tf2_monitor_on_the_way_between_two(stage, send):
+    _, printed = started(stage, Tf2Monitor, "map", "arm")
+    await stage.clock.advance(1.0)
+    assert printed == ["Waiting for transform chain to become available between map and arm "]
+    await send("map", "base")
+    await send("base", "arm")
+    await send("base", "leg")
+    await stage.clock.advance(0.5)
+    assert printed[1] == "Gathering data on map -> arm for 10 seconds..."
+    await stage.clock.advance(10.0)
+    lines = printed[2].splitlines()
+    assert lines[3:5] == ["RESULTS: for map to arm", "Chain is: map -> base -> arm"]
+    assert lines[5].startswith("Net delay     avg = ")
+    assert [line.split(",")[0] for line in lines[8:10]] == ["Frame: arm", "Frame: base"]
+    assert started(stage, Tf2Monitor, "one")[0].finished.result() == 255
+
+
+async def test_view_frames_draws_the_tree(stage, send, said, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    running, _ = started(stage, ViewFrames, "-t", "2", "-o", "tree")
+    await send("map", "base")
+    await send("base", "camera", fixed=True)
+    await stage.clock.advance(1.9)
+    assert not running.finished.done()
+    await stage.clock.advance(0.2)
+    assert await asyncio.wait_for(running.finished, 1) == 0
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["tree.gv", "tree.pdf"]
+    drawing = (tmp_path / "tree.gv").read_text()
+    assert '"map" -> "base"[label=" Broadcaster: default_authority\\nAverage rate: 10000.0\\n' in drawing
+    assert drawing.endswith('"Recorded at time: 1700000002.0"->"map";\n}')
+    assert (tmp_path / "tree.pdf").read_bytes().startswith(b"%PDF")
+    texts = said("INFO")
+    assert texts[0] == "Listening to tf data for 2.0 seconds..."
+    assert texts[2].startswith("Result:tf2_msgs.srv.FrameGraph_Response(frame_yaml=\"base: \\n  parent: 'map'")
+    assert texts[3] == "Exporting graph in tree.pdf file..."
+
+
+async def test_view_frames_without_frames(stage, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    running, _ = started(stage, ViewFrames)
+    await stage.clock.advance(5.0)
+    assert running.finished.result() == 0
+    (drawing,) = tmp_path.glob("frames_????-??-??_??.??.??.gv")
+    assert drawing.read_text() == 'digraph G { "No tf data received" }'
+
+
+async def test_misuse_of_view_frames(stage, said, tmp_path):
+    with pytest.raises(LinkwrightError, match="does not know the arguments --wat"):
+        started(stage, ViewFrames, "--wat")
+    with pytest.raises(LinkwrightError, match="-t: invalid float value: 'long'"):
+        started(stage, ViewFrames, "-t", "long")
+    running, _ = started(stage, ViewFrames, "-t", "0", "-o", str(tmp_path / "no" / "folder"))
+    await stage.clock.advance(0.01)
+    assert running.finished.result() == 1
+    assert "cannot be written" in said("ERROR")[0]
+
+
+async def test_describing_a_transform_keeps_the_zeros_of_tf2(stage, send):
+    await send("a", "b")
+    await stage.graph.settle()
+    assert "[0.000, -0.000, 0.000]" in describe(stage.tf[0].transforms[0])

@@ -1,0 +1,40 @@
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from linkwright.graph import dds
+from tests.reliability.running import Machine
+
+FIRST_DOMAIN = 155
+ROS_VARIABLES = (
+    "ROS_LOCALHOST_ONLY",
+    "ROS_AUTOMATIC_DISCOVERY_RANGE",
+    "ROS_STATIC_PEERS",
+    "ROS_DISTRO",
+    "CYCLONEDDS_URI",
+    "LINKWRIGHT_DDS",
+    "PYTHONDONTWRITEBYTECODE",
+)
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Where there is no DDS wheel, processes do not meet."""
+    if not dds.available():
+        for item in items:
+            if Path(__file__).parent in item.path.parents:
+                item.add_marker(pytest.mark.skip(reason="there is no cyclonedds here"))
+
+
+@pytest.fixture
+def machine(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Machine]:
+    """Processes in a domain of this worker's; none of them outlives the test."""
+    for name in ROS_VARIABLES:
+        monkeypatch.delenv(name, raising=False)
+    worker = int(os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw"))
+    made = Machine(tmp_path, FIRST_DOMAIN + worker % 8)
+    yield made
+    made.clean_up()

@@ -1,0 +1,112 @@
+"""Writes bytes that are no messages to DDS topics: ``python -m tests.reliability.garbage DOMAIN``.
+
+What is written: to a topic of strings, to the requests of a service, to ``ros_discovery_info``, and to the UDP ports
+themselves. Cyclone refuses much by itself; the rest is texts that are no UTF-8, and names that no node can have. In the
+end comes a well-formed message, so that whoever listens can be seen to go on.
+"""
+
+from __future__ import annotations
+
+import random
+import socket
+import struct
+import sys
+import time
+from contextlib import suppress
+
+from cyclonedds.core import DDSException
+from cyclonedds.domain import Domain, DomainParticipant
+from cyclonedds.idl import types
+from cyclonedds.pub import DataWriter
+from cyclonedds.qos import Policy, Qos
+from cyclonedds.topic import Topic
+from cyclonedds.util import duration
+
+from linkwright.graph.dds.settings import read_settings
+from tests.dds.ros_peer import described, raw, text
+
+ROUNDS = 40
+HEADER = b"\0\1\0\0"
+RELIABLE = Qos(Policy.Reliability.Reliable(duration(seconds=1)), Policy.History.KeepLast(10))
+LASTING = RELIABLE + Qos(Policy.Durability.TransientLocal)
+
+
+def writer(participant: DomainParticipant, topic: str, kind: type, qos: Qos) -> DataWriter:
+    return DataWriter(participant, Topic(participant, topic, kind), qos)
+
+
+def bodies(lottery: random.Random) -> list[bytes]:
+    """Bytes that are hardly any message, each with an encapsulation header that Cyclone lets through."""
+    found = [HEADER + lottery.randbytes(4 * lottery.randrange(1, 40)) for _ in range(ROUNDS)]
+    found += [HEADER + struct.pack("<I", length) + bytes(4) for length in (2**32 - 1, 2**31, 10_000_000, 0)]
+    found += [HEADER + struct.pack("<I", 3) + bytes([0xFF, byte, 0, 0]) for byte in range(1, 60)]
+    found += [HEADER + b"\2\0\0\0\xff\0\0\0", HEADER]
+    return found
+
+
+def announcements(participant: bytes) -> list[bytes]:
+    """What a participant might say of its nodes, in the layout of Humble, with names that no node can have."""
+
+    def name(value: bytes) -> bytes:
+        return struct.pack("<I", len(value) + 1) + value + bytes(4 - len(value) % 4)
+
+    nodes = [(b"/", b"\xff\xfe"), (b"", b""), (b"/", b"\x1b[2Jred"), (b"no slash", b"a b"), (b"//", b"x" * 200)] * 20
+    told = []
+    for count in (1, 2, 3, len(nodes)):
+        said = b"".join(name(space) + name(node) + bytes(8) for space, node in nodes[:count])
+        told.append(HEADER + participant + bytes(8) + struct.pack("<I", count) + said)
+    return told
+
+
+def shout(lottery: random.Random, first_port: int) -> None:
+    """Datagrams to the ports of the first participants of the domain."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
+        for port in range(first_port, first_port + 20):
+            for _ in range(20):
+                junk = lottery.randbytes(lottery.randrange(1, 400))
+                for datagram in (junk, b"RTPS" + junk, b"RTPS\2\1\1\x10" + junk, b"RTPS\2\5" + bytes(14) + junk):
+                    sender.sendto(datagram, ("127.0.0.1", port))
+
+
+def main() -> None:
+    number = int(sys.argv[1])
+    domain = Domain(number, read_settings(domain_id=number).configurations[0])
+    participant = DomainParticipant(number)
+    header = {"client_guid": types.uint64, "sequence_number": types.int64}
+    string = raw(described("std_msgs.msg.dds_.String_", {"data": str}))
+    request = raw(described("std_srvs.srv.dds_.SetBool_Request_", {**header, "data": bool}))
+    prefix = "rmw_dds_common.msg.dds_."
+    gid = described(prefix + "Gid_", {"data": types.array[types.uint8, 24]})
+    names = {"node_namespace": types.bounded_str[256], "node_name": types.bounded_str[256]}
+    gids = {"reader_gid_seq": types.sequence[gid], "writer_gid_seq": types.sequence[gid]}
+    node = described(prefix + "NodeEntitiesInfo_", {**names, **gids})
+    members = {"gid": gid, "node_entities_info_seq": types.sequence[node]}
+    info = raw(described(prefix + "ParticipantEntitiesInfo_", members))
+    lottery = random.Random(7)
+    writers = {
+        "rt/words": writer(participant, "rt/words", string, RELIABLE),
+        "rq/flipRequest": writer(participant, "rq/flipRequest", request, RELIABLE),
+        "ros_discovery_info": writer(participant, "ros_discovery_info", info, LASTING),
+    }
+    limit = time.monotonic() + 10
+    while time.monotonic() < limit and not all(each.get_matched_subscriptions() for each in writers.values()):
+        time.sleep(0.02)
+    print("matched", *(name for name, each in writers.items() if each.get_matched_subscriptions()), flush=True)
+    shout(lottery, 7400 + 250 * number + 10)
+    for name, each in writers.items():
+        written = 0
+        for body in bodies(lottery) + announcements(participant.guid.bytes):
+            with suppress(DDSException):  # Cyclone refuses some by itself
+                each.write(each.data_type(body))
+                written += 1
+        print("written", name, written, flush=True)
+    time.sleep(0.5)
+    writers["rt/words"].write(string(HEADER + text("fine")))
+    print("last", flush=True)
+    time.sleep(3.0)
+    print("done", flush=True)
+    del domain
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,209 @@
+"""Real processes: the `linkwright` command and users' programs, and what is left of them."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import textwrap
+import threading
+import time
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from pathlib import Path
+
+import psutil
+
+from linkwright.standins.process import environment
+
+LINKWRIGHT = str(Path(sys.executable).with_name("linkwright"))
+PROGRAM = """\
+import sys, time
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+from std_msgs.msg import Int32, String
+
+EVERYTHING = QoSProfile(depth=0, history=HistoryPolicy.KEEP_ALL)
+
+
+def say(*words):
+    print(*words, flush=True)
+
+
+{program}
+
+rclpy.init()
+node = None
+try:
+    node = Program()
+    rclpy.spin(node)
+except (KeyboardInterrupt, ExternalShutdownException):
+    pass
+finally:
+    if node is not None:
+        node.destroy_node()
+    rclpy.try_shutdown()
+"""
+MARK = "LINKWRIGHT_RELIABILITY"
+
+
+def until(condition: Callable[[], object], seconds: float = 10.0, what: object = "") -> None:
+    """Wait until something holds."""
+    limit = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < limit, f"not so within {seconds} s: {what() if callable(what) else what}"
+        time.sleep(0.02)
+
+
+class Running:
+    """A process and the lines that it has written, standard output and errors together."""
+
+    def __init__(self, command: list[str], variables: Mapping[str, str], folder: Path) -> None:
+        self.mark = f"{os.getpid()}-{time.monotonic_ns()}"
+        self.process = subprocess.Popen(
+            command,
+            env={**os.environ, **variables, MARK: self.mark},
+            cwd=folder,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            start_new_session=True,
+        )
+        self.lines: list[str] = []
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+
+    @property
+    def text(self) -> str:
+        return "".join(self.lines)
+
+    def count(self, text: str) -> int:
+        """How many lines have a text in them."""
+        return sum(text in line for line in self.lines)
+
+    def last_number(self, word: str) -> int:
+        """The number behind a word in the last line that begins with it; -1 when there is none."""
+        found = [line.split() for line in tuple(self.lines) if line.split()[:1] == [word]]
+        return int(found[-1][1]) if found else -1
+
+    def wait_for(self, text: str, seconds: float = 15.0, times: int = 1) -> None:
+        """Wait until a text has come in so many lines."""
+        until(lambda: self.count(text) >= times, seconds, lambda: f"'{text}' in\n{self.text}")
+
+    def interrupt(self, seconds: float = 10.0) -> tuple[int, float]:
+        """Ctrl-C; the exit status, and how long the end took in seconds."""
+        begin = time.monotonic()
+        with suppress(ProcessLookupError):
+            self.process.send_signal(signal.SIGINT)
+        status = self.process.wait(seconds)
+        self._reader.join(5.0)
+        return status, time.monotonic() - begin
+
+    def kill(self) -> None:
+        """As ``kill -9`` does."""
+        self.process.kill()
+        self.process.wait()
+
+    def wait(self, seconds: float = 20.0) -> int:
+        """Wait for the end; the exit status."""
+        status = self.process.wait(seconds)
+        self._reader.join(5.0)
+        return status
+
+    def left_behind(self) -> list[psutil.Process]:
+        """Processes that it started and that live on, wherever they are now, itself included."""
+        return [each for each in psutil.process_iter() if _is_marked(each, self.mark)]
+
+    def clean_up(self) -> None:
+        """Let nothing outlive the test, and close what was open."""
+        for each in self.left_behind():
+            with suppress(psutil.Error):
+                each.kill()
+        self.process.wait(5.0)
+        self._reader.join(5.0)
+        assert self.process.stdout is not None
+        self.process.stdout.close()
+
+    def _read(self) -> None:
+        assert self.process.stdout is not None
+        with suppress(ValueError):
+            for line in self.process.stdout:
+                self.lines.append(line)
+
+
+def _is_marked(process: psutil.Process, mark: str) -> bool:
+    try:
+        return process.status() != psutil.STATUS_ZOMBIE and process.environ().get(MARK) == mark
+    except psutil.Error:
+        return False
+
+
+class Machine:
+    """Starts processes that meet in one domain, in a folder of the test's own."""
+
+    def __init__(self, folder: Path, domain: int) -> None:
+        self.folder = folder
+        self.variables = {
+            "ROS_DOMAIN_ID": str(domain),
+            "ROS_LOG_DIR": str(folder / "ros_log"),
+            "XDG_CACHE_HOME": str(folder / "cache"),
+            "PYTHONUNBUFFERED": "1",
+        }
+        self._started: list[Running] = []
+
+    def command(self, *words: object, **variables: str) -> Running:
+        """Start ``linkwright WORDS``."""
+        return self._start([LINKWRIGHT, *map(str, words)], variables)
+
+    def verb(self, *words: object, seconds: float = 20.0, **variables: str) -> str:
+        """What ``linkwright WORDS`` prints; it must succeed in time."""
+        running = self.command(*words, **variables)
+        status = running.wait(seconds)
+        assert status == 0, running.text
+        return running.text
+
+    def launch(self, path: Path, *words: object, **variables: str) -> Running:
+        """Start a launch."""
+        return self.command("launch", path, *words, "--no-open", **variables)
+
+    def program(self, text: str, *words: object, **variables: str) -> Running:
+        """Start a user's program: a class ``Program`` derived from ``Node``."""
+        path = self.write(f"program_{len(self._started)}.py", program(text))
+        return self._start([sys.executable, str(path), *map(str, words)], {**environment({}), **variables})
+
+    def python(self, *words: object) -> Running:
+        """Start a module or script of the tests."""
+        return self._start([sys.executable, *map(str, words)], {"PYTHONPATH": str(Path(__file__).parents[2])})
+
+    def write(self, name: str, text: str) -> Path:
+        """Write a file."""
+        path = self.folder / name
+        path.write_text(textwrap.dedent(text), encoding="utf-8")
+        return path
+
+    def _start(self, command: list[str], variables: Mapping[str, str]) -> Running:
+        self._started.append(Running(command, {**self.variables, **variables}, self.folder))
+        return self._started[-1]
+
+    def clean_up(self) -> None:
+        for each in self._started:
+            each.clean_up()
+
+
+def program(text: str) -> str:
+    """The text of a program around its class ``Program``."""
+    return PROGRAM.replace("{program}", textwrap.dedent(text).strip())
+
+
+def launch_file(*actions: str) -> str:
+    """A launch file with actions; ``rclpy_node(name, path)`` runs a program with respawn."""
+    lines = ",\n        ".join(actions)
+    return (
+        "import sys\nfrom launch import LaunchDescription\nfrom launch.actions import *\n"
+        "from launch_ros.actions import Node\n\n\n"
+        f"def generate_launch_description():\n    return LaunchDescription([\n        {lines}\n    ])\n"
+    )

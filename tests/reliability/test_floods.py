@@ -1,0 +1,215 @@
+"""One busy or slow part does not take the others with it."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.reliability.running import Machine, until
+
+FLOOD = """
+class Program(Node):
+    '''Floods one topic, and speaks twenty times a second on another.'''
+
+    def __init__(self):
+        super().__init__("flood")
+        self.flood = self.create_publisher(String, "flood", 10)
+        self.calm = self.create_publisher(Int32, "calm", 10)
+        self.number = 0
+        self.create_timer(0.0005, self.rush)
+        self.create_timer(0.05, self.speak)
+
+    def rush(self):
+        for _ in range(20):
+            self.flood.publish(String(data="x" * 200))
+
+    def speak(self):
+        self.number += 1
+        self.calm.publish(Int32(data=self.number))
+        say("spoke", self.number, time.monotonic())
+"""
+BOTH = """
+class Program(Node):
+    def __init__(self):
+        super().__init__("both")
+        self.flooded = 0
+        self.create_subscription(String, "flood", self.swallow, 10)
+        self.create_subscription(Int32, "calm", lambda message: say("calm", message.data, time.monotonic()), 10)
+
+    def swallow(self, _message):
+        self.flooded += 1
+        if self.flooded == 1000:
+            say("flooded")
+"""
+
+
+def times(lines: list[str], word: str) -> dict[int, float]:
+    """When a number was said, by number; the clock is the machine's."""
+    found = [line.split() for line in tuple(lines) if line.startswith(word + " ")]
+    return {int(number): float(when) for _, number, when in found}
+
+
+def test_a_flood_on_one_topic_does_not_starve_another(machine: Machine) -> None:
+    listener = machine.program(BOTH)
+    flood = machine.program(FLOOD)
+    listener.wait_for("flooded")
+    before = listener.count("calm")
+    listener.wait_for("calm", times=before + 60)
+    heard, spoken = times(listener.lines, "calm"), times(flood.lines, "spoke")
+    numbers = list(heard)[before:]
+    assert numbers == list(range(numbers[0], numbers[-1] + 1))
+    delays = sorted(heard[number] - spoken[number] for number in numbers if number in spoken)
+    assert delays[len(delays) // 2] < 0.2
+    assert listener.interrupt()[0] == flood.interrupt()[0] == 0
+
+
+def test_a_subscriber_that_blocks_harms_nobody_else(machine: Machine) -> None:
+    """Its own process sleeps; the publisher's other subscribers and other topics go on."""
+    sleeper = machine.program(
+        """
+        class Program(Node):
+            def __init__(self):
+                super().__init__("sleeper")
+                self.create_subscription(Int32, "numbers", self.hear, 10)
+
+            def hear(self, message):
+                say("asleep")
+                time.sleep(60)
+        """
+    )
+    awake = machine.program(
+        """
+        class Program(Node):
+            def __init__(self):
+                super().__init__("awake")
+                self.create_subscription(Int32, "numbers", lambda message: say("number", message.data), 100)
+                self.create_subscription(Int32, "others", lambda message: say("other", message.data), 100)
+        """
+    )
+    talker = machine.program(
+        """
+        class Program(Node):
+            def __init__(self):
+                super().__init__("talker")
+                self.publishers_ = [self.create_publisher(Int32, name, 100) for name in ("numbers", "others")]
+                self.number = 0
+                self.create_timer(0.005, self.tick)
+
+            def tick(self):
+                self.number += 1
+                before = time.monotonic()
+                for publisher in self.publishers_:
+                    publisher.publish(Int32(data=self.number))
+                if time.monotonic() - before > 0.5:
+                    say("held up")
+        """
+    )
+    sleeper.wait_for("asleep")
+    first = awake.count("number"), awake.count("other")
+    awake.wait_for("number", times=first[0] + 400)
+    awake.wait_for("other", times=first[1] + 400)
+    for word in ("number", "other"):
+        heard = [int(line.split()[1]) for line in tuple(awake.lines) if line.startswith(word + " ")]
+        assert heard == list(range(heard[0], heard[0] + len(heard)))
+    assert not talker.count("held up")
+    assert sleeper.count("asleep") == 1
+
+
+@pytest.mark.parametrize("size", [10, 20_000])
+def test_nothing_reliable_is_lost_when_the_subscriber_is_slow(machine: Machine, size: int) -> None:
+    """A queue without an end: the flood is over long before the subscriber has read it."""
+    listener = machine.program(
+        """
+        class Program(Node):
+            def __init__(self):
+                super().__init__("slow")
+                self.expected = 0
+                self.create_subscription(String, "numbers", self.hear, EVERYTHING)
+
+            def hear(self, message):
+                number = int(message.data.split()[0])
+                if number != self.expected:
+                    say("lost", self.expected, number)
+                self.expected = number + 1
+                time.sleep(0.001)
+                if number == 1999:
+                    say("all")
+        """
+    )
+    talker = machine.program(
+        f"""
+        class Program(Node):
+            def __init__(self):
+                super().__init__("fast")
+                publisher = self.create_publisher(String, "numbers", EVERYTHING)
+                while not publisher.get_subscription_count():
+                    time.sleep(0.01)
+                for number in range(2000):
+                    publisher.publish(String(data=f"{{number}} " + "x" * {size}))
+                say("sent")
+        """
+    )
+    talker.wait_for("sent")
+    listener.wait_for("all", 30.0)
+    assert not listener.count("lost"), listener.text
+
+
+def test_a_queue_of_ten_keeps_the_last_ten(machine: Machine) -> None:
+    listener = machine.program(
+        """
+        class Program(Node):
+            def __init__(self):
+                super().__init__("late")
+                self.create_subscription(Int32, "numbers", lambda message: say("number", message.data), 10)
+                self.create_timer(0.1, self.sleep_once)
+                self.slept = False
+
+            def sleep_once(self):
+                if not self.slept and self.count_publishers("numbers"):
+                    self.slept = True
+                    say("sleeping")
+                    time.sleep(2.0)
+        """
+    )
+    talker = machine.program(
+        """
+        class Program(Node):
+            def __init__(self):
+                super().__init__("fast")
+                publisher = self.create_publisher(Int32, "numbers", 10)
+                while not publisher.get_subscription_count():
+                    time.sleep(0.01)
+                time.sleep(0.7)
+                for number in range(500):
+                    publisher.publish(Int32(data=number))
+                say("sent")
+        """
+    )
+    talker.wait_for("sent")
+    listener.wait_for("number 499")
+    numbers = [int(line.split()[1]) for line in listener.lines if line.startswith("number")]
+    assert numbers == list(range(490, 500))
+
+
+def test_a_service_answers_while_its_process_is_flooded(machine: Machine) -> None:
+    machine.program(FLOOD)
+    server = machine.program(
+        """
+        from std_srvs.srv import Trigger
+
+        class Program(Node):
+            def __init__(self):
+                super().__init__("server")
+                self.count = 0
+                self.create_subscription(String, "flood", self.swallow, 10)
+                self.create_service(Trigger, "ask", lambda request, response: response)
+
+            def swallow(self, message):
+                self.count += 1
+                if self.count == 500:
+                    say("flooded")
+        """
+    )
+    server.wait_for("flooded")
+    until(lambda: "/ask" in machine.verb("service", "list"))
+    for _ in range(3):
+        assert "response" in machine.verb("service", "call", "/ask", "std_srvs/srv/Trigger")

@@ -1,0 +1,204 @@
+"""Ctrl-C at every moment: the end comes at once, with the right status, and nothing is left behind."""
+
+from __future__ import annotations
+
+import os
+import pty
+import random
+import re
+import signal
+import subprocess
+import termios
+import threading
+import time
+from contextlib import suppress
+
+import pytest
+
+from tests.reliability.running import LINKWRIGHT, MARK, Machine, launch_file, program, until
+
+TALKER = """
+class Program(Node):
+    def __init__(self):
+        super().__init__("talker")
+        self.number = 0
+        self.publisher = self.create_publisher(Int32, "chatter", 10)
+        self.create_timer(0.02, self.tick)
+
+    def tick(self):
+        self.number += 1
+        self.publisher.publish(Int32(data=self.number))
+"""
+
+
+def traceback_in(text: str) -> bool:
+    return re.search(r"^(\[\S+\] )?Traceback", text, re.MULTILINE) is not None
+
+
+@pytest.mark.slow
+def test_a_launch_at_twenty_random_moments_of_its_start(machine: Machine) -> None:
+    path = machine.write("talker.py", program(TALKER))
+    launch = machine.write(
+        "a.launch.py",
+        launch_file(
+            "Node(package='demo_nodes_cpp', executable='talker')",
+            "Node(package='rviz2', executable='rviz2')",
+            f"ExecuteProcess(cmd=[sys.executable, {str(path)!r}], respawn=True, output='screen')",
+        ),
+    )
+    for delay in sorted(random.Random(11).uniform(0.0, 1.5) for _ in range(20)):
+        running = machine.launch(launch)
+        time.sleep(delay)
+        status, seconds = running.interrupt()
+        where = f"interrupted after {delay:.3f} s, status {status}:\n{running.text}"
+        # Python itself ends like this when the signal comes before our program has begun.
+        assert status in ((130,) if "[launch]" in running.text else (130, 1, -signal.SIGINT)), where
+        assert seconds < 3.0, where
+        if "[launch]" in running.text:
+            assert not re.search(r"^Traceback", running.text, re.MULTILINE), where
+        until(lambda running=running: not running.left_behind(), 3.0, where)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("delay", [0.05, 0.2, 0.35, 0.6, 1.2])
+def test_the_terminal_is_as_it_was(machine: Machine, delay: float) -> None:
+    """A launch and a recording, which reads keys, on a terminal of their own; Ctrl-C is typed there."""
+    path = machine.write("a.launch.py", launch_file("Node(package='demo_nodes_cpp', executable='talker')"))
+    bag = machine.folder / f"bag_{delay}"
+    for words in (["launch", str(path)], ["bag", "record", "-a", "-o", str(bag)]):
+        main, terminal = pty.openpty()
+        before = termios.tcgetattr(terminal)
+        process = subprocess.Popen(
+            [LINKWRIGHT, *words],
+            stdin=terminal,
+            stdout=terminal,
+            stderr=terminal,
+            env={**os.environ, **machine.variables, MARK: "terminal"},
+            cwd=machine.folder,
+            start_new_session=True,
+            preexec_fn=lambda terminal=terminal: _take(terminal),
+        )
+        heard: list[bytes] = []
+        reader = threading.Thread(target=_drain, args=(main, heard), daemon=True)
+        reader.start()
+        time.sleep(delay)
+        os.write(main, b"\x03")
+        begin = time.monotonic()
+        status = process.wait(10.0)
+        text = b"".join(heard).decode(errors="replace")
+        assert time.monotonic() - begin < 3.0, text
+        assert status in (130, 0, 1, -signal.SIGINT), text
+        after = termios.tcgetattr(terminal)
+        assert after[:4] == before[:4], text
+        os.close(terminal)
+        reader.join(5.0)
+        os.close(main)
+
+
+def _take(terminal: int) -> None:
+    import fcntl
+
+    fcntl.ioctl(terminal, termios.TIOCSCTTY, 0)
+
+
+def _drain(main: int, heard: list[bytes]) -> None:
+    with suppress(OSError):
+        while data := os.read(main, 4096):
+            heard.append(data)
+
+
+@pytest.mark.parametrize(
+    ("words", "shown"),
+    [
+        (("topic", "echo", "/chatter"), "data:"),
+        (("topic", "hz", "/chatter"), "average rate"),
+        (("topic", "bw", "/chatter"), "from"),
+        (("topic", "pub", "/words", "std_msgs/msg/String", "{data: hi}"), "publishing #"),
+        (("topic", "echo", "/nobody", "std_msgs/msg/String"), ""),
+        (("run", "demo_nodes_cpp", "listener"), ""),
+    ],
+)
+def test_verbs_that_go_on_until_then(machine: Machine, words: tuple[str, ...], shown: str) -> None:
+    machine.program(TALKER)
+    running = machine.command(*words)
+    if shown:
+        running.wait_for(shown)
+    else:
+        time.sleep(1.2)
+    status, seconds = running.interrupt()
+    assert status in (0, 130), running.text
+    assert seconds < 1.5
+    assert not traceback_in(running.text), running.text
+
+
+@pytest.mark.slow
+def test_a_verb_at_random_moments_of_its_start(machine: Machine) -> None:
+    machine.program(TALKER)
+    for delay in sorted(random.Random(5).uniform(0.0, 0.9) for _ in range(10)):
+        running = machine.command("topic", "echo", "/chatter")
+        time.sleep(delay)
+        status, seconds = running.interrupt()
+        where = f"interrupted after {delay:.3f} s, status {status}:\n{running.text}"
+        assert seconds < 2.0, where
+        assert status in (0, 130, 1, -signal.SIGINT), where
+        if delay > 0.3:
+            assert not traceback_in(running.text), where
+
+
+def test_a_recording_is_whole(machine: Machine) -> None:
+    machine.program(TALKER)
+    bag = machine.folder / "bag"
+    recorder = machine.command("bag", "record", "/chatter", "-o", bag)
+    until(lambda: sum(each.stat().st_size for each in bag.glob("*")) > 100 if bag.is_dir() else False)
+    recorder.wait_for("Subscribed to topic '/chatter'")
+    time.sleep(1.5)
+    status, seconds = recorder.interrupt()
+    assert status in (0, 130), recorder.text
+    assert seconds < 2.0
+    info = machine.verb("bag", "info", bag)
+    found = re.search(r"Topic: /chatter .*Count: (\d+)", info)
+    assert found, info
+    assert int(found[1]) >= 40, info
+    heard = machine.command("topic", "echo", "/chatter_again")
+    heard.wait_for("", 1.0, times=0)
+    from rosbags.highlevel import AnyReader
+    from rosbags.typesys import Stores, get_typestore
+
+    with AnyReader([bag], default_typestore=get_typestore(Stores.ROS2_HUMBLE)) as reader:
+        numbers = [reader.deserialize(data, each.msgtype).data for each, _, data in reader.messages()]
+    assert numbers == list(range(numbers[0], numbers[0] + len(numbers)))
+
+
+def test_a_call_on_its_way(machine: Machine) -> None:
+    """Both sides: who waits for the answer ends, and who is asked goes on and ends when told to."""
+    server = machine.program(
+        """
+        from std_srvs.srv import Trigger
+
+        class Program(Node):
+            def __init__(self):
+                super().__init__("server")
+                self.create_service(Trigger, "slow", self.answer)
+                say("up")
+
+            def answer(self, request, response):
+                say("asked")
+                time.sleep(1.0)
+                say("answered")
+                return response
+        """
+    )
+    server.wait_for("up")
+    client = machine.command("service", "call", "/slow", "std_srvs/srv/Trigger")
+    server.wait_for("asked")
+    status, seconds = client.interrupt()
+    assert status == 130, client.text
+    assert seconds < 1.0
+    assert not traceback_in(client.text), client.text
+    server.wait_for("answered")
+    assert "response" in machine.verb("service", "call", "/slow", "std_srvs/srv/Trigger")
+    second = machine.command("service", "call", "/slow", "std_srvs/srv/Trigger")
+    server.wait_for("asked", times=3)
+    assert server.interrupt()[1] < 2.5
+    assert not traceback_in(server.text), server.text
+    second.interrupt()

@@ -1,0 +1,107 @@
+"""What happens to the others when a process is killed with -9."""
+
+from __future__ import annotations
+
+import psutil
+
+from tests.reliability.running import Machine, launch_file, program, until
+
+TALKER = """
+class Program(Node):
+    def __init__(self):
+        super().__init__("talker")
+        self.publisher = self.create_publisher(Int32, "chatter", 10)
+        self.number = 0
+        self.create_timer(0.05, self.tick)
+        say("up", __import__("os").getpid())
+
+    def tick(self):
+        self.number += 1
+        self.publisher.publish(Int32(data=self.number))
+"""
+LISTENER = """
+class Program(Node):
+    def __init__(self):
+        super().__init__("listener")
+        self.count = 0
+        self.create_subscription(Int32, "chatter", self.hear, 10)
+
+    def hear(self, message):
+        self.count += 1
+        say("heard", message.data, self.count)
+"""
+
+
+def test_a_node_that_is_killed_comes_back_and_is_heard_again(machine: Machine) -> None:
+    path = machine.write("talker.py", program(TALKER))
+    launch = machine.launch(
+        machine.write(
+            "a.launch.py",
+            launch_file(f"ExecuteProcess(cmd=[sys.executable, {str(path)!r}], name='talker', respawn=True)"),
+        )
+    )
+    listener = machine.program(LISTENER)
+    listener.wait_for("heard", times=3)
+    for round_number in (1, 2):
+        before = listener.count("heard")
+        (victim,) = [each for each in launch.left_behind() if str(path) in " ".join(_words(each))]
+        victim.kill()
+        launch.wait_for("has died", times=round_number)
+        launch.wait_for("process started with pid", times=round_number + 1)
+        listener.wait_for("heard", times=before + 6)
+        # The one that was killed is not listed though its lease of five seconds still runs.
+        assert machine.verb("node", "list").split() == ["/listener", "/talker"]
+    assert launch.interrupt()[0] == 130
+    until(lambda: not launch.left_behind(), 3.0)
+    until(lambda: machine.verb("node", "list").split() == ["/listener"], 8.0)
+
+
+def _words(process: psutil.Process) -> list[str]:
+    try:
+        return process.cmdline()
+    except psutil.Error:
+        return []
+
+
+def test_a_subscriber_goes_on_when_its_publisher_is_killed(machine: Machine) -> None:
+    listener = machine.program(LISTENER)
+    for _ in range(3):
+        before = listener.count("heard")
+        talker = machine.program(TALKER)
+        listener.wait_for("heard", times=before + 3)
+        talker.kill()
+    assert listener.process.poll() is None
+    assert listener.interrupt()[0] == 0
+    assert "Traceback" not in listener.text
+
+
+def test_a_publisher_goes_on_when_its_subscriber_is_killed(machine: Machine) -> None:
+    talker = machine.program(TALKER)
+    for _ in range(3):
+        listener = machine.program(LISTENER)
+        listener.wait_for("heard", times=3)
+        listener.kill()
+    listener = machine.program(LISTENER)
+    listener.wait_for("heard", times=10)
+    numbers = [int(line.split()[1]) for line in listener.lines if line.startswith("heard")]
+    assert numbers == list(range(numbers[0], numbers[0] + len(numbers)))
+    assert talker.interrupt()[0] == 0
+    assert "Traceback" not in talker.text
+
+
+def test_a_launcher_that_is_killed_leaves_no_process_and_no_node(machine: Machine) -> None:
+    path = machine.write("talker.py", program(TALKER))
+    launch = machine.launch(
+        machine.write(
+            "a.launch.py",
+            launch_file(
+                f"ExecuteProcess(cmd=[sys.executable, {str(path)!r}], respawn=True, output='screen')",
+                "Node(package='demo_nodes_cpp', executable='listener')",
+            ),
+        )
+    )
+    launch.wait_for("up ")
+    assert len(launch.left_behind()) >= 2
+    launch.kill()
+    until(lambda: not launch.left_behind(), 4.0, launch.left_behind)
+    until(lambda: machine.verb("node", "list").split() == [], 8.0)

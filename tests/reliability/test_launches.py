@@ -1,0 +1,131 @@
+"""Launches beside each other, large ones, and what they show to others."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+
+import psutil
+import pytest
+
+from tests.reliability.running import Machine, launch_file, until
+
+ROBOT = Path(__file__).parents[2] / "robots" / "my_robot_description"
+
+
+def test_two_of_one_kind_warn_and_both_work(machine: Machine) -> None:
+    actions = (
+        "Node(package='demo_nodes_cpp', executable='talker')",
+        "Node(package='demo_nodes_cpp', executable='listener')",
+    )
+    path = machine.write("a.launch.py", launch_file(*actions))
+    launches = [machine.launch(path), machine.launch(path)]
+    for each in launches:
+        each.wait_for("Another process has a node of the exact name '/talker' too")
+        each.wait_for("I heard: ", times=4)
+    for each in launches:
+        assert each.count("Another process has a node of the exact name '/talker' too") == 1
+    assert machine.verb("node", "list").count("/talker") == 2
+    assert launches[0].interrupt()[0] == 130
+    before = launches[1].count("I heard: ")
+    launches[1].wait_for("I heard: ", times=before + 2)
+    assert machine.verb("node", "list").count("/talker") == 1
+
+
+@pytest.mark.slow
+def test_five_hundred_nodes(machine: Machine) -> None:
+    path = machine.write(
+        "a.launch.py",
+        "from launch import LaunchDescription\nfrom launch_ros.actions import Node\n\n\n"
+        "def generate_launch_description():\n    return LaunchDescription([\n"
+        "        Node(package='tf2_ros', executable='static_transform_publisher', name=f'frames_{number}',\n"
+        "             arguments=['--frame-id', 'base', '--child-frame-id', f'frame_{number}'])\n"
+        "        for number in range(500)])\n",
+    )
+    launch = machine.launch(path)
+    launch.wait_for("started in the launcher's process", times=500)
+    names = {f"/frames_{number}" for number in range(500)}
+    until(lambda: set(machine.verb("node", "list", seconds=30.0).split()) >= names, 40.0)
+    echo = machine.command("topic", "echo", "/tf_static", "--field", "transforms")
+    echo.wait_for("child_frame_id: frame_499", 20.0)
+    status, seconds = launch.interrupt(20.0)
+    assert status == 130
+    assert seconds < 5.0
+    until(lambda: not launch.left_behind(), 3.0)
+
+
+def test_a_late_comer_gets_the_description_and_the_fixed_frames(machine: Machine) -> None:
+    launch = machine.launch(ROBOT / "launch" / "display.launch.py")
+    launch.wait_for("Robot initialized")
+    time.sleep(2.0)
+    late = machine.program(
+        """
+        from rclpy.time import Time
+        from tf2_ros import Buffer, TransformListener
+
+        class Program(Node):
+            def __init__(self):
+                super().__init__("late")
+                lasting = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+                self.create_subscription(String, "robot_description", self.hear, lasting)
+                self.buffer = Buffer()
+                self.listener = TransformListener(self.buffer, self, spin_thread=True)
+                self.create_timer(0.1, self.look)
+
+            def hear(self, message):
+                say("described", message.data.count("<link "))
+
+            def look(self):
+                for name in self.buffer.all_frames_as_yaml().splitlines():
+                    if name.startswith("base_link"):
+                        say("frame", name)
+        """
+    )
+    late.wait_for("described")
+    late.wait_for("frame base_link")
+    assert late.count("described") == 1
+    echoed = machine.verb("topic", "echo", "/tf_static", "--once")
+    assert "child_frame_id: base_link" in echoed
+
+
+def test_a_process_that_keeps_to_itself(machine: Machine) -> None:
+    """LINKWRIGHT_DDS=0: it works, has no socket that others could reach, and sees nobody."""
+    path = machine.write(
+        "a.launch.py",
+        launch_file(
+            "Node(package='demo_nodes_cpp', executable='talker')",
+            "Node(package='demo_nodes_cpp', executable='listener')",
+        ),
+    )
+    alone, seen = machine.launch(path, LINKWRIGHT_DDS="0"), machine.launch(path)
+    for each in (alone, seen):
+        each.wait_for("I heard: ", times=3)
+    sockets = psutil.Process(alone.process.pid).net_connections("udp")
+    assert sockets == []
+    assert machine.verb("node", "list").split() == ["/listener", "/talker"]
+    assert machine.verb("node", "list", LINKWRIGHT_DDS="0").split() == []
+    assert not alone.count("Another process")
+    assert alone.interrupt()[0] == seen.interrupt()[0] == 130
+
+
+def test_nothing_outlives_a_launch(machine: Machine) -> None:
+    """Threads and processes of one that was started, looked at from outside, and interrupted."""
+    program = machine.write("p.py", "import time\nprint('up', flush=True)\ntime.sleep(60)\n")
+    path = machine.write(
+        "a.launch.py",
+        launch_file(
+            "Node(package='demo_nodes_cpp', executable='talker')",
+            "Node(package='rviz2', executable='rviz2')",
+            f"ExecuteProcess(cmd=[sys.executable, {str(program)!r}], output='screen')",
+            f"ExecuteProcess(cmd=[sys.executable + ' ' + {str(program)!r}], shell=True, output='screen')",
+        ),
+    )
+    launch = machine.launch(path, "--isolate")
+    launch.wait_for("up", times=2)
+    launch.wait_for("Publishing")
+    assert "/talker" in machine.verb("node", "list").split()
+    assert len(launch.left_behind()) >= 5
+    status, seconds = launch.interrupt()
+    assert status == 130
+    assert seconds < 3.0
+    assert launch.left_behind() == []

@@ -1,0 +1,147 @@
+"""The shell: which programs are found, where real ones come first, statuses and signals."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.shell import PROGRAMS, run_shell, shell_environment, write_programs
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="the commands used are those of POSIX")
+
+BARE = "/usr/bin:/bin"
+
+
+def script(folder: Path, name: str, text: str) -> Path:
+    """An executable shell script."""
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / name
+    path.write_text(f"#!/bin/sh\n{text}\n")
+    path.chmod(0o755)
+    return path
+
+
+def inside(words: list[str], **variables: str) -> subprocess.CompletedProcess[str]:
+    """Run ``linkwright shell -- WORDS`` as a user does."""
+    environment = {"PATH": BARE, "HOME": os.environ.get("HOME", "/"), **variables}
+    return subprocess.run(
+        [sys.executable, "-m", "linkwright", "shell", "--", *words],
+        capture_output=True,
+        text=True,
+        env=environment,
+        timeout=60,
+        check=False,
+    )
+
+
+def test_every_program_is_found_in_the_shell() -> None:
+    names = " ".join(PROGRAMS)
+    result = inside(["sh", "-c", f"for name in {names}; do command -v $name || echo no $name; done"])
+    assert len(result.stdout.splitlines()) == len(PROGRAMS)
+    assert "no " not in result.stdout
+
+
+def test_a_real_program_comes_before_ours(tmp_path: Path) -> None:
+    script(tmp_path / "bin", "xacro", "echo the real one")
+    result = inside(["xacro"], PATH=f"{tmp_path / 'bin'}:{BARE}")
+    assert result.stdout == "the real one\n"
+
+
+def test_without_a_real_ros_python_is_ours() -> None:
+    result = inside(["python3", "-c", "import linkwright, sys; print(sys.prefix)"])
+    assert result.stdout.strip() == sys.prefix
+
+
+def test_with_a_real_ros_the_search_path_keeps_its_order(tmp_path: Path) -> None:
+    script(tmp_path / "opt", "ros2", "echo real ros2")
+    folder = tmp_path / "programs"
+    folder.mkdir()
+    path = shell_environment(folder, {"PATH": f"{tmp_path / 'opt'}:{BARE}"})["PATH"].split(os.pathsep)
+    assert path == [str(tmp_path / "opt"), *BARE.split(":"), str(folder)]
+
+
+def test_a_shell_within_a_shell_does_not_stack_up(tmp_path: Path) -> None:
+    first, second = tmp_path / "first", tmp_path / "second"
+    for folder in (first, second):
+        folder.mkdir()
+        write_programs(folder)
+    outer = shell_environment(first, {"PATH": BARE})
+    inner = shell_environment(second, outer)
+    assert str(first) not in inner["PATH"].split(os.pathsep)
+    assert inner["PATH"].split(os.pathsep)[-1] == str(second)
+
+
+def test_the_status_is_that_of_the_command() -> None:
+    assert inside(["sh", "-c", "exit 7"]).returncode == 7
+    assert inside(["sh", "-c", "kill -TERM $$"]).returncode == 128 + signal.SIGTERM
+
+
+def test_options_of_the_command_are_its_own() -> None:
+    assert inside(["sh", "-c", "echo $0 $1", "-h", "--help"]).stdout == "-h --help\n"
+
+
+def test_an_unknown_command_is_told_with_the_nearest_name() -> None:
+    with pytest.raises(LinkwrightError) as caught:
+        run_shell(["colcn"], {"PATH": BARE})
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.code == "SHELL101"
+    assert "colcon" in (diagnostic.hint or "")
+
+
+def test_a_bash_start_file_that_sets_the_path_leaves_our_commands_behind_it(tmp_path: Path) -> None:
+    script(tmp_path / "opt", "ros2", "echo real ros2")
+    (tmp_path / ".bashrc").write_text(f"export PATH={tmp_path / 'opt'}:{BARE}\nunset PYTHONPATH\n")
+    result = subprocess.run(
+        [sys.executable, "-m", "linkwright", "shell"],
+        input='ros2; command -v check_urdf; echo "$PYTHONPATH"; exit 5\n',
+        capture_output=True,
+        text=True,
+        env={"PATH": BARE, "HOME": str(tmp_path), "SHELL": "/bin/bash"},
+        timeout=60,
+        check=False,
+    )
+    ros2, check_urdf, python_path = result.stdout.splitlines()
+    assert ros2 == "real ros2"
+    assert check_urdf.endswith("/check_urdf")
+    assert "standins" in python_path
+    assert result.returncode == 5
+
+
+def test_termination_is_passed_on_and_the_folder_of_programs_goes(tmp_path: Path) -> None:
+    told = tmp_path / "told"
+    command = f'trap "echo ended > {told}; exit 3" TERM; echo $LINKWRIGHT_SHELL; while :; do sleep 0.05; done'
+    process = subprocess.Popen(
+        [sys.executable, "-m", "linkwright", "shell", "--", "sh", "-c", command], stdout=subprocess.PIPE, text=True
+    )
+    with process:
+        assert process.stdout is not None
+        folder = Path(process.stdout.readline().strip())
+        assert (folder / "ros2").exists()
+        process.terminate()
+        assert process.wait(timeout=20) == 3
+    assert told.read_text() == "ended\n"
+    assert not folder.exists()
+
+
+def test_ctrl_c_is_for_the_command(tmp_path: Path) -> None:
+    command = 'trap "exit 4" INT; echo ready; while :; do sleep 0.05; done'
+    process = subprocess.Popen(
+        [sys.executable, "-m", "linkwright", "shell", "--", "sh", "-c", command],
+        stdout=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+        cwd=tmp_path,
+    )
+    with process:
+        assert process.stdout is not None
+        process.stdout.readline()
+        time.sleep(0.1)
+        os.killpg(process.pid, signal.SIGINT)
+        assert process.wait(timeout=20) == 4

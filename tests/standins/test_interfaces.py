@@ -1,0 +1,195 @@
+"""``from sensor_msgs.msg import JointState`` and its like, in a Python that has no ROS."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import textwrap
+from pathlib import Path
+
+import pytest
+
+import linkwright
+from linkwright.messages import get_message
+from linkwright.standins.interfaces import find_spec
+
+SOURCES = Path(linkwright.__file__).parent.parent
+PATH = Path(linkwright.__file__).parent / "standins" / "path"
+
+PREAMBLE = f"""
+import sys
+sys.path.insert(0, {str(SOURCES)!r})
+from linkwright.standins import interfaces
+interfaces.install()
+interfaces.install()
+sys.path.append({str(PATH)!r})
+"""
+
+MANIFEST = """<?xml version="1.0"?>
+<package format="3"><name>my_msgs</name><version>0.0.1</version><description>d</description>
+<maintainer email="a@example.com">a</maintainer><license>MIT</license></package>
+"""
+
+
+def run(program, folder):
+    """What a program prints that runs in a folder."""
+    done = subprocess.run(
+        [sys.executable, "-c", PREAMBLE + textwrap.dedent(program)],
+        cwd=folder, capture_output=True, text=True, check=False, timeout=60,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+@pytest.fixture
+def workspace(tmp_path):
+    package = tmp_path / "src" / "my_msgs"
+    (package / "msg").mkdir(parents=True)
+    (package / "package.xml").write_text(MANIFEST)
+    (package / "msg" / "Count.msg").write_text("int32 n 5\n")
+    (package / "msg" / "Wrong.msg").write_text("int32 X\n")
+    return tmp_path
+
+
+def test_messages_services_and_actions_are_imported(tmp_path):
+    program = """
+        from sensor_msgs.msg import JointState
+        from sensor_msgs.msg._joint_state import JointState as Same
+        from std_srvs.srv import SetBool, Trigger
+        from std_srvs.srv._set_bool import SetBool_Request, SetBool_Response
+        from example_interfaces.action import Fibonacci
+        from example_interfaces.action._fibonacci import Fibonacci_Goal, Fibonacci_SendGoal_Request
+        import nav_msgs
+        import geometry_msgs.msg as geometry
+        from linkwright import messages
+        assert JointState is Same is messages.JointState
+        assert SetBool.Request is SetBool_Request and SetBool.Response is SetBool_Response
+        assert Fibonacci.Goal is Fibonacci_Goal
+        assert Fibonacci.Impl.SendGoalService.Request is Fibonacci_SendGoal_Request
+        print(nav_msgs.msg.Odometry, geometry.Twist().linear.x, 'TwistStamped' in dir(geometry))
+        from tf2_msgs.msg import *
+        assert TFMessage is messages.TFMessage
+    """
+    assert run(program, tmp_path) == "<class 'nav_msgs.msg._odometry.Odometry'> 0.0 True\n"
+
+
+def test_names_that_are_not_there(tmp_path):
+    program = """
+        for line in ("from std_msgs.msg import Strng", "from std_msgs.msg import JointState", "import nomsgs.msg",
+                     "from std_msgs.srv import A", "import std_msgs.msg._strng", "import std_msgs.other",
+                     "from std_msgs.msg import strng"):
+            try:
+                exec(line)
+            except ImportError as error:
+                print(type(error).__name__, error)
+        import std_msgs.msg
+        print(hasattr(std_msgs.msg, "something"), hasattr(std_msgs, "other"))
+    """
+    lines = run(program, tmp_path).splitlines()
+    assert lines[0] == "ImportError cannot import name 'Strng' from 'std_msgs.msg': did you mean 'String'?"
+    assert lines[1].startswith("ImportError cannot import name 'JointState' from 'std_msgs.msg': it has Bool, Byte, ")
+    assert lines[2] == "ModuleNotFoundError No module named 'nomsgs'"
+    assert lines[3] == "ModuleNotFoundError No module named 'std_msgs.srv'"
+    assert lines[4] == "ModuleNotFoundError No module named 'std_msgs.msg._strng'"
+    assert lines[5] == "ModuleNotFoundError No module named 'std_msgs.other'"
+    assert lines[6].startswith("ImportError cannot import name 'strng' from 'std_msgs.msg'")
+    assert lines[7] == "False False"
+
+
+@pytest.mark.parametrize("below", ["", "src", "src/my_msgs"])
+def test_a_package_of_the_workspace_is_imported_without_a_build(workspace, below):
+    # In src, Python itself sees folders my_msgs and my_msgs/msg, and would take them for empty packages.
+    program = """
+        sys.path.insert(0, "")
+        from my_msgs.msg import Count
+        from my_msgs.msg._count import Count as Same
+        assert Count is Same
+        print(Count())
+        try:
+            from my_msgs.msg import Wrong
+        except ImportError as error:
+            print(error)
+    """
+    first, second = run(program, workspace / below).splitlines()
+    assert first == "my_msgs.msg.Count(n=5)"
+    assert second.endswith("Wrong.msg:1:7: 'X' is no name for a field")
+
+
+def test_what_is_installed_comes_first(tmp_path):
+    package = tmp_path / "std_msgs" / "msg"
+    package.mkdir(parents=True)
+    (tmp_path / "std_msgs" / "__init__.py").touch()
+    (package / "__init__.py").write_text("class String: installed = True\n")
+    program = """
+        sys.path.insert(0, "")
+        from std_msgs.msg import String
+        print(String.installed)
+    """
+    assert run(program, tmp_path) == "True\n"
+
+
+def test_a_python_package_and_messages_of_one_name(workspace):
+    module = workspace / "src" / "my_msgs" / "my_msgs"
+    module.mkdir()
+    (module / "__init__.py").write_text("helper = 1\n")
+    program = """
+        sys.path.insert(0, "src/my_msgs")
+        import my_msgs
+        from my_msgs.msg import Count
+        print(my_msgs.helper, Count().n)
+    """
+    assert run(program, workspace) == "1 5\n"
+
+
+def test_rosidl_runtime_py(tmp_path):
+    program = """
+        from rosidl_runtime_py import message_to_yaml, message_to_csv, message_to_ordereddict, set_message_fields
+        from rosidl_runtime_py import get_message_interfaces, get_interfaces
+        from rosidl_runtime_py.convert import get_message_slot_types
+        from rosidl_runtime_py.utilities import get_message, get_service, get_action, get_interface
+        from rosidl_parser.definition import BasicType, UnboundedSequence
+        from rosidl_runtime_py.utilities import import_message_from_namespaced_type
+        Header = get_message("std_msgs/msg/Header")
+        message = Header(frame_id="a")
+        print(message_to_yaml(message), message_to_csv(message), message_to_ordereddict(message)["frame_id"])
+        set_message_fields(message, {"frame_id": "b"})
+        assert message.frame_id == "b"
+        slots = get_message_slot_types(get_message("sensor_msgs/msg/JointState"))
+        assert slots["position"] == UnboundedSequence(BasicType("double"))
+        assert import_message_from_namespaced_type(slots["header"]) is Header
+        assert get_action("turtlesim/action/RotateAbsolute") and get_service("std_srvs/srv/Empty")
+        assert get_message_interfaces(["turtlesim"]) == {"turtlesim": ["msg/Color", "msg/Pose"]}
+        assert get_interfaces(["std_srvs"]) == {"std_srvs": ["srv/Empty", "srv/SetBool", "srv/Trigger"]}
+        for wrong in ("std_msgs/msg/Foo", "foo_msgs/msg/Foo", "std_msgs/Foo", "std_srvs/srv/Empty"):
+            try:
+                get_message(wrong)
+            except Exception as error:
+                print(type(error).__name__)
+        for values, kind in (({"frame": "a"}, AttributeError), ({"stamp": 3}, TypeError)):
+            try:
+                set_message_fields(message, values)
+            except kind as error:
+                print(error)
+    """
+    assert run(program, tmp_path).splitlines() == [
+        "stamp:",
+        "  sec: 0",
+        "  nanosec: 0",
+        "frame_id: a",
+        " 0,0,a a",
+        "AttributeError",
+        "ModuleNotFoundError",
+        "ValueError",
+        "ValueError",
+        "std_msgs/msg/Header has no field 'frame'",
+        "'stamp' is given as 3, not as fields and values",
+    ]
+
+
+def test_modules_of_no_interfaces_are_left_to_others():
+    assert find_spec("std_msgs.msg.something.deeper") is None
+    assert find_spec("std_msgs.launch") is None
+    assert find_spec("Std_msgs") is None
+    assert find_spec("json") is None
+    assert find_spec("std_msgs.msg") is not None
+    assert get_message("std_msgs/msg/String")

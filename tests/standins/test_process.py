@@ -1,0 +1,183 @@
+"""Processes in which the stand-ins can be imported, with nothing but an environment variable set."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import textwrap
+from pathlib import Path
+
+import pytest
+
+from linkwright.standins import process
+
+
+def run(*arguments, cwd=None, env=None, **variables):
+    base = {"PATH": os.environ["PATH"], "HOME": str(cwd or "/"), "LINKWRIGHT_DDS": "0", **variables}
+    return subprocess.run(
+        [sys.executable, *map(str, arguments)],
+        env=env or process.environment(base),
+        cwd=cwd,
+        check=False,
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
+
+
+def said(*arguments, **options):
+    ended = run(*arguments, **options)
+    assert ended.returncode == 0, ended.stderr
+    return ended.stdout.strip()
+
+
+NODE = """\
+import rclpy
+from std_msgs.msg import String
+def main():
+    rclpy.init()
+    node = rclpy.create_node("mine")
+    got = []
+    node.create_subscription(String, "chatter", got.append, 1)
+    node.create_publisher(String, "chatter", 1).publish(String(data="hello"))
+    rclpy.spin_once(node, timeout_sec=1.0)
+    print(got[0].data)
+    rclpy.shutdown()
+if __name__ == "__main__":
+    main()
+"""
+
+
+class TestRunning:
+    def test_a_file(self, tmp_path):
+        (tmp_path / "my_node.py").write_text(NODE)
+        assert said("my_node.py", cwd=tmp_path) == "hello"
+
+    def test_with_nothing_but_the_path_set(self, tmp_path):
+        (tmp_path / "my_node.py").write_text(NODE)
+        variables = {"PATH": os.environ["PATH"], "PYTHONPATH": process.standin_path(), "LINKWRIGHT_DDS": "0"}
+        assert said("my_node.py", cwd=tmp_path, env=variables) == "hello"
+
+    def test_a_module(self, tmp_path):
+        package = tmp_path / "my_package"
+        package.mkdir()
+        (package / "__init__.py").touch()
+        (package / "my_node.py").write_text(NODE)
+        assert said("-m", "my_package.my_node", cwd=tmp_path) == "hello"
+
+    def test_an_entry_point(self, tmp_path):
+        (tmp_path / "my_node.py").write_text(NODE)
+        script = tmp_path / "bin" / "talker"
+        script.parent.mkdir()
+        script.write_text(
+            f"import sys\nsys.path.insert(0, {str(tmp_path)!r})\nfrom my_node import main\nsys.exit(main())\n"
+        )
+        assert said(script) == "hello"
+
+    def test_a_process_of_a_process(self, tmp_path):
+        (tmp_path / "my_node.py").write_text(NODE)
+        parent = "import subprocess, sys; sys.exit(subprocess.call([sys.executable, 'my_node.py']))"
+        assert said("-c", parent, cwd=tmp_path) == "hello"
+
+    @pytest.mark.slow
+    def test_a_virtual_environment_of_its_own(self, tmp_path):
+        subprocess.run([sys.executable, "-m", "venv", "--without-pip", tmp_path / "venv"], check=True, timeout=60)
+        (tmp_path / "my_node.py").write_text(NODE)
+        python = tmp_path / "venv" / "bin" / "python"
+        environment = process.environment({"PATH": os.environ["PATH"], "LINKWRIGHT_DDS": "0"})
+        ended = subprocess.run(
+            [python, "my_node.py"],
+            cwd=tmp_path,
+            env=environment,
+            check=False,
+            capture_output=True,
+            text=True,
+            timeout=60,
+        )
+        assert (ended.stdout, ended.returncode) == ("hello\n", 0), ended.stderr
+
+    def test_all_stand_ins(self):
+        names = sorted(path.name for path in (Path(process.__file__).parent / "path").iterdir() if path.name[0] != "_")
+        assert {"rclpy", "tf2_ros", "tf2_py", "tf2_geometry_msgs", "tf_transformations", "launch", "xacro"} <= set(
+            names
+        )
+        imports = "; ".join(f"import {name}; assert {name}.__file__" for name in names)
+        assert said("-c", f"{imports}; print('all')") == "all"
+
+    def test_interfaces(self, tmp_path):
+        code = "from sensor_msgs.msg import JointState; from std_srvs.srv import SetBool; print(JointState.__name__)"
+        assert said("-c", code, cwd=tmp_path) == "JointState"
+
+    def test_interfaces_of_the_workspace_without_a_build(self, tmp_path):
+        package = tmp_path / "src" / "my_robot"
+        (package / "msg").mkdir(parents=True)
+        (package / "msg" / "Count.msg").write_text("int32 number\nstring[] names\n")
+        (package / "package.xml").write_text(
+            "<package format='3'><name>my_robot</name><version>0.0.1</version><description>d</description>"
+            "<maintainer email='a@example.com'>a</maintainer><license>MIT</license></package>"
+        )
+        code = "from my_robot.msg import Count; print(Count(number=3, names=['a']))"
+        assert said("-c", code, cwd=tmp_path) == "my_robot.msg.Count(number=3, names=['a'])"
+        # Where Python takes the folders for packages.
+        assert said("-c", code, cwd=tmp_path / "src") == "my_robot.msg.Count(number=3, names=['a'])"
+
+
+class TestManners:
+    def test_a_program_that_asks_for_nothing_loads_nothing(self):
+        code = """
+            import sys
+            for name in ("no_such_module", "other._private", "json.nothing"):
+                try:
+                    __import__(name)
+                except ImportError:
+                    pass
+            print([name for name in sys.modules if "linkwright" in name or name in ("numpy", "importlib.util")])
+            """
+        assert said("-c", textwrap.dedent(code)) == "[]"
+
+    def test_a_module_that_is_missing_is_missing(self):
+        ended = run("-c", "import rclpy_of_another_kind")
+        assert "ModuleNotFoundError: No module named 'rclpy_of_another_kind'" in ended.stderr
+
+    def test_the_next_sitecustomize_runs(self, tmp_path):
+        (tmp_path / "sitecustomize.py").write_text("WAS_RUN = 'yes'\n")
+        code = "import sitecustomize; print(sitecustomize.WAS_RUN); import rclpy"
+        assert said("-c", code, PYTHONPATH=str(tmp_path)) == "yes"
+
+    def test_a_real_rclpy_is_used_and_nothing_of_ours_beside_it(self, tmp_path):
+        for name in ("rclpy", "std_msgs"):
+            (tmp_path / name).mkdir()
+            (tmp_path / name / "__init__.py").write_text("REAL = True\n")
+        code = """
+            import rclpy, std_msgs
+            print(rclpy.REAL, std_msgs.REAL)
+            for name in ("tf2_ros", "sensor_msgs.msg", "launch"):
+                try:
+                    __import__(name)
+                except ImportError as error:
+                    print(error)
+            import tf_transformations
+            """
+        assert said("-c", textwrap.dedent(code), PYTHONPATH=str(tmp_path)).splitlines() == [
+            "True True",
+            "No module named 'tf2_ros'",
+            "No module named 'sensor_msgs'",
+            "No module named 'launch'",
+        ]
+
+    def test_the_environment(self, tmp_path):
+        once = process.environment({"PYTHONPATH": str(tmp_path), "OTHER": "kept"})
+        assert once["PYTHONPATH"] == os.pathsep.join([process.standin_path(), str(tmp_path)])
+        assert once["OTHER"] == "kept"
+        assert process.environment(once) == once
+        assert [path.name for path in Path(process.standin_path()).glob("*.py")] == ["sitecustomize.py"]
+
+    def test_the_interpreter(self, tmp_path):
+        assert process.python_command(["node.py"], {}) == [sys.executable, "node.py"]
+        name = f"python{sys.version_info.major}.{sys.version_info.minor}"
+        other = tmp_path / "bin" / name
+        other.parent.mkdir()
+        other.touch()
+        assert process.python_command(["node.py"], {"VIRTUAL_ENV": str(tmp_path)}) == [str(other), "node.py"]
+        assert process.python_command(["node.py"], {"VIRTUAL_ENV": str(tmp_path / "gone")})[0] == sys.executable

@@ -1,0 +1,352 @@
+"""Action servers and clients as users write them, and managed nodes."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections import deque
+
+import pytest
+import rclpy
+from action_msgs.msg import GoalStatus
+from example_interfaces.action import Fibonacci
+from lifecycle_msgs.msg import Transition
+from lifecycle_msgs.srv import ChangeState, GetState
+from rclpy.action import (
+    ActionClient,
+    ActionServer,
+    CancelResponse,
+    GoalResponse,
+    get_action_names_and_types,
+    get_action_server_names_and_types_by_node,
+)
+from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
+from rclpy.lifecycle import LifecycleNode, State, TransitionCallbackReturn
+from rclpy.node import Node
+from std_msgs.msg import String
+
+
+@pytest.fixture(autouse=True)
+def _ros(monkeypatch):
+    monkeypatch.setenv("LINKWRIGHT_DDS", "0")
+    rclpy.init(args=[])
+    yield
+    rclpy.try_shutdown()
+
+
+def fibonacci(order):
+    sequence = [0, 1]
+    while len(sequence) <= order:
+        sequence.append(sequence[-1] + sequence[-2])
+    return sequence
+
+
+class Server(Node):
+    """Counts, tells of it, and can be stopped."""
+
+    def __init__(self, pause=0.005, **options):
+        super().__init__("fibonacci_server")
+        self.pause = pause
+        self._action_server = ActionServer(
+            self,
+            Fibonacci,
+            "fibonacci",
+            execute_callback=self.execute_callback,
+            callback_group=ReentrantCallbackGroup(),
+            goal_callback=lambda goal: GoalResponse.ACCEPT if goal.order < 100 else GoalResponse.REJECT,
+            cancel_callback=lambda _handle: CancelResponse.ACCEPT,
+            **options,
+        )
+
+    async def execute_callback(self, goal_handle):
+        feedback = Fibonacci.Feedback()
+        for length in range(2, goal_handle.request.order + 2):
+            if goal_handle.is_cancel_requested:
+                goal_handle.canceled()
+                return Fibonacci.Result(sequence=fibonacci(length - 2))
+            feedback.sequence = fibonacci(length - 1)
+            goal_handle.publish_feedback(feedback)
+            time.sleep(self.pause)  # noqa: ASYNC251  # as users write it
+        goal_handle.succeed()
+        return Fibonacci.Result(sequence=fibonacci(goal_handle.request.order))
+
+
+class Client(Node):
+    """Sends a goal, and goes on by callbacks."""
+
+    def __init__(self):
+        super().__init__("fibonacci_client")
+        self.client = ActionClient(self, Fibonacci, "fibonacci")
+        self.feedback, self.outcome = [], rclpy.task.Future()
+
+    def send_goal(self, order, cancel_after=None):
+        assert self.client.wait_for_server(timeout_sec=2.0)
+        self.cancel_after = cancel_after
+        sent = self.client.send_goal_async(Fibonacci.Goal(order=order), feedback_callback=self.feedback_callback)
+        sent.add_done_callback(self.goal_response_callback)
+
+    def goal_response_callback(self, future):
+        self.goal = future.result()
+        if not self.goal.accepted:
+            self.outcome.set_result("rejected")
+            return
+        self.goal.get_result_async().add_done_callback(self.get_result_callback)
+
+    def feedback_callback(self, feedback):
+        self.feedback.append(feedback.feedback.sequence.tolist())
+        if len(self.feedback) == self.cancel_after:
+            self.goal.cancel_goal_async().add_done_callback(self.canceled_callback)
+
+    def canceled_callback(self, future):
+        self.canceling = len(future.result().goals_canceling)
+
+    def get_result_callback(self, future):
+        self.outcome.set_result(future.result())
+
+
+@pytest.fixture
+def spun():
+    """Spins nodes in a thread of many."""
+    executor = MultiThreadedExecutor(4)
+    thread = threading.Thread(target=executor.spin, daemon=True)
+    thread.start()
+    yield lambda *nodes: [executor.add_node(node) for node in nodes]
+    executor.shutdown()
+    thread.join(3.0)
+
+
+class TestActions:
+    def test_a_goal_with_feedback_and_a_result(self, spun):
+        server, client = Server(), Client()
+        spun(server, client)
+        client.send_goal(6)
+        assert client.outcome.wait(5.0)
+        outcome = client.outcome.result()
+        assert outcome.status == GoalStatus.STATUS_SUCCEEDED
+        assert outcome.result.sequence.tolist() == fibonacci(6)
+        assert client.feedback == [fibonacci(length) for length in range(1, 7)]
+
+    def test_in_one_thread(self):
+        server, client = Server(), Client()
+        executor = SingleThreadedExecutor()
+        executor.add_node(server)
+        executor.add_node(client)
+        client.send_goal(4)
+        executor.spin_until_future_complete(client.outcome, timeout_sec=5.0)
+        assert client.outcome.result().result.sequence.tolist() == fibonacci(4)
+
+    def test_a_goal_that_is_cancelled(self, spun):
+        server, client = Server(pause=0.02), Client()
+        spun(server, client)
+        client.send_goal(90 // 2, cancel_after=3)
+        assert client.outcome.wait(5.0)
+        assert client.outcome.result().status == GoalStatus.STATUS_CANCELED
+        assert client.canceling == 1
+        assert len(client.feedback) < 40
+
+    def test_a_goal_that_is_rejected(self, spun):
+        server, client = Server(), Client()
+        spun(server, client)
+        client.send_goal(200)
+        assert client.outcome.wait(5.0)
+        assert client.outcome.result() == "rejected"
+
+    def test_a_callback_that_says_nothing_of_the_end_aborts(self, spun):
+        node, client = Node("silent"), Client()
+        ActionServer(node, Fibonacci, "fibonacci", lambda _handle: Fibonacci.Result())
+        spun(node, client)
+        client.send_goal(1)
+        assert client.outcome.wait(5.0)
+        assert client.outcome.result().status == GoalStatus.STATUS_ABORTED
+
+    def test_a_deferred_goal(self, spun):
+        waiting = []
+        server, client = Server(handle_accepted_callback=waiting.append), Client()
+        spun(server, client)
+        client.send_goal(2)
+        _wait_until(lambda: waiting)
+        assert not client.outcome.wait(0.1)
+        waiting[0].execute()
+        assert client.outcome.wait(5.0)
+        assert client.outcome.result().status == GoalStatus.STATUS_SUCCEEDED
+
+    def test_a_queue_of_goals(self, spun):
+        class Queued(Server):
+            def __init__(self):
+                self.queue, self.current, self.lock, self.most = deque(), None, threading.Lock(), 0
+                super().__init__(handle_accepted_callback=self.handle_accepted)
+
+            def handle_accepted(self, handle):
+                with self.lock:
+                    if self.current is not None:
+                        self.queue.append(handle)
+                    else:
+                        self.current = handle
+                        handle.execute()
+
+            async def execute_callback(self, goal_handle):
+                try:
+                    return await super().execute_callback(goal_handle)
+                finally:
+                    with self.lock:
+                        self.current = self.queue.popleft() if self.queue else None
+                        if self.current is not None:
+                            self.current.execute()
+
+        server, clients = Queued(), [Client() for _ in range(3)]
+        spun(server, *clients)
+        for client in clients:
+            client.send_goal(3)
+        for client in clients:
+            assert client.outcome.wait(5.0)
+            assert client.outcome.result().result.sequence.tolist() == fibonacci(3)
+
+    def test_one_goal_at_a_time_aborts_the_one_before(self, spun):
+        class Single(Server):
+            goal = None
+
+            def __init__(self):
+                super().__init__(pause=0.02, handle_accepted_callback=self.handle_accepted)
+
+            def handle_accepted(self, handle):
+                if self.goal is not None and self.goal.is_active:
+                    self.goal.abort()
+                self.goal = handle
+                handle.execute()
+
+            async def execute_callback(self, goal_handle):
+                for _ in range(20):
+                    if not goal_handle.is_active:
+                        return Fibonacci.Result()
+                    time.sleep(self.pause)  # noqa: ASYNC251
+                goal_handle.succeed()
+                return Fibonacci.Result()
+
+        server, first, second = Single(), Client(), Client()
+        spun(server, first, second)
+        first.send_goal(1)
+        _wait_until(lambda: server.goal is not None)
+        second.send_goal(1)
+        assert first.outcome.wait(5.0)
+        assert second.outcome.wait(5.0)
+        assert first.outcome.result().status == GoalStatus.STATUS_ABORTED
+        assert second.outcome.result().status == GoalStatus.STATUS_SUCCEEDED
+
+    def test_a_synchronous_client_beside_a_thread_that_spins(self, spun):
+        server, client = Server(), Client()
+        spun(server, client)
+        result = client.client.send_goal(Fibonacci.Goal(order=3))
+        assert result.result.sequence.tolist() == fibonacci(3)
+
+    def test_awaited_in_a_coroutine(self, spun):
+        server, client = Server(), Client()
+        results = []
+
+        async def work():
+            timer.cancel()
+            handle = await client.client.send_goal_async(Fibonacci.Goal(order=2))
+            results.append((await handle.get_result_async()).result.sequence.tolist())
+
+        timer = client.create_timer(0.01, work, callback_group=ReentrantCallbackGroup())
+        spun(server, client)
+        _wait_until(lambda: results)
+        assert results == [fibonacci(2)]
+
+    def test_names_and_types(self):
+        server = Server()
+        assert ("/fibonacci", ["example_interfaces/action/Fibonacci"]) in get_action_names_and_types(server)
+        assert get_action_server_names_and_types_by_node(server, "fibonacci_server", "/") == [
+            ("/fibonacci", ["example_interfaces/action/Fibonacci"])
+        ]
+
+    def test_no_server(self):
+        client = Client()
+        assert not client.client.wait_for_server(timeout_sec=0.05)
+        assert not client.client.server_is_ready()
+
+
+class Managed(LifecycleNode):
+    """Publishes while it is active."""
+
+    def __init__(self, name, **options):
+        self.seen = []
+        super().__init__(name, **options)
+
+    def publish(self):
+        self.pub.publish(String(data="active"))
+
+    def on_configure(self, state: State) -> TransitionCallbackReturn:
+        self.seen.append(state.label)
+        self.pub = self.create_lifecycle_publisher(String, "lifecycle_chatter", 10)
+        self.timer_ = self.create_timer(0.005, self.publish)
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_activate(self, state: State) -> TransitionCallbackReturn:
+        self.seen.append(state.label)
+        return super().on_activate(state)
+
+    def on_cleanup(self, state: State) -> TransitionCallbackReturn:
+        self.destroy_timer(self.timer_)
+        self.destroy_publisher(self.pub)
+        return TransitionCallbackReturn.SUCCESS
+
+
+class TestLifecycle:
+    def test_by_its_own_methods(self):
+        node = Managed("managed", enable_communication_interface=False)
+        assert node.trigger_configure() == TransitionCallbackReturn.SUCCESS
+        assert node.trigger_activate() == TransitionCallbackReturn.SUCCESS
+        assert node.trigger_deactivate() == TransitionCallbackReturn.SUCCESS
+        assert node.trigger_cleanup() == TransitionCallbackReturn.SUCCESS
+        assert node.trigger_shutdown() == TransitionCallbackReturn.SUCCESS
+        assert node.seen == ["unconfigured", "inactive"]
+
+    def test_its_publisher_is_silent_unless_it_is_active(self):
+        node, heard = Managed("managed", enable_communication_interface=False), []
+        listener = rclpy.create_node("listener")
+        listener.create_subscription(String, "lifecycle_chatter", heard.append, 10)
+        executor = SingleThreadedExecutor()
+        executor.add_node(node)
+        executor.add_node(listener)
+        node.trigger_configure()
+        for _ in range(5):
+            executor.spin_once(timeout_sec=0.02)
+        assert heard == []
+        node.trigger_activate()
+        for _ in range(5):
+            executor.spin_once(timeout_sec=0.05)
+        assert heard
+
+    def test_by_its_services(self, spun):
+        node, client = Managed("managed"), rclpy.create_node("client")
+        spun(node, client)
+        change = client.create_client(ChangeState, "/managed/change_state")
+        state = client.create_client(GetState, "/managed/get_state")
+        assert change.wait_for_service(timeout_sec=2.0)
+        request = ChangeState.Request()
+        request.transition.id = Transition.TRANSITION_CONFIGURE
+        assert change.call(request).success
+        assert state.call(GetState.Request()).current_state.label == "inactive"
+        request.transition.id = Transition.TRANSITION_CONFIGURE
+        assert not change.call(request).success
+
+    def test_a_transition_that_fails(self):
+        class Failing(LifecycleNode):
+            def on_configure(self, _state):
+                raise ValueError("mine")
+
+        node = Failing("failing", enable_communication_interface=False)
+        assert node.trigger_configure() == TransitionCallbackReturn.ERROR
+        assert node._state_machine.state.label == "unconfigured"
+
+    def test_the_interface_is_switched_on_or_off(self):
+        with pytest.raises(TypeError):
+            LifecycleNode("wrong", enable_communication_interface="yes")
+
+
+def _wait_until(holds, timeout=3.0):
+    end = time.monotonic() + timeout
+    while not holds():
+        assert time.monotonic() < end
+        time.sleep(0.005)

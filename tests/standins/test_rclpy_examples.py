@@ -1,0 +1,288 @@
+"""What the less simple of the public examples do: own executors and groups, asyncio, events, messages used again."""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+import time
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+import rclpy
+from example_interfaces.action import Fibonacci
+from example_interfaces.srv import AddTwoInts
+from rclpy.action import ActionClient, ActionServer
+from rclpy.callback_groups import CallbackGroup, MutuallyExclusiveCallbackGroup
+from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
+from rclpy.executors import Executor, SingleThreadedExecutor, TimeoutException
+from rclpy.experimental import EventsExecutor
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rclpy.subscription_content_filter_options import ContentFilterOptions
+from std_msgs.msg import Int64MultiArray, String
+
+
+@pytest.fixture(autouse=True)
+def ros(monkeypatch):
+    monkeypatch.setenv("LINKWRIGHT_DDS", "0")
+    rclpy.init(args=[])
+    yield
+    rclpy.try_shutdown()
+
+
+@pytest.fixture
+def node():
+    return rclpy.create_node("node")
+
+
+class TestMessagesAreSnapshots:
+    """Nothing that is done to a message after it was sent, or after it came, is seen by others."""
+
+    def test_a_message_that_is_filled_again_and_again(self, node):
+        heard, message = [], String()
+        node.create_subscription(String, "topic", lambda each: heard.append(each.data), 10)
+        publisher = node.create_publisher(String, "topic", 10)
+        for word in ("one", "two", "three"):
+            message.data = word
+            publisher.publish(message)
+        for _ in range(3):
+            rclpy.spin_once(node, timeout_sec=1)
+        assert heard == ["one", "two", "three"]
+
+    def test_what_subscriptions_do_to_theirs(self, node):
+        heard = []
+
+        def callback(message):
+            message.data.append(len(message.data))
+            heard.append(message.data.tolist())
+
+        for _ in range(2):
+            node.create_subscription(Int64MultiArray, "topic", callback, 10)
+        sent = Int64MultiArray(data=[7])
+        node.create_publisher(Int64MultiArray, "topic", 10).publish(sent)
+        for _ in range(2):
+            rclpy.spin_once(node, timeout_sec=1)
+        assert heard == [[7, 1], [7, 1]]
+        assert sent.data.tolist() == [7]
+
+    def test_a_request_that_is_used_again(self, node):
+        def add(request, response):
+            response.sum = request.a + request.b
+            return response
+
+        node.create_service(AddTwoInts, "add", add)
+        client = node.create_client(AddTwoInts, "add")
+        request, futures = AddTwoInts.Request(), []
+        for number in range(3):
+            request.a = number
+            futures.append(client.call_async(request))
+        for future in futures:
+            rclpy.spin_until_future_complete(node, future, timeout_sec=1)
+        assert [future.result().sum for future in futures] == [0, 1, 2]
+
+    def test_feedback_that_grows(self, node):
+        heard = []
+
+        def execute(goal_handle):
+            feedback = Fibonacci.Feedback()
+            feedback.sequence = [0, 1]
+            for at in range(1, 4):
+                feedback.sequence.append(feedback.sequence[at] + feedback.sequence[at - 1])
+                goal_handle.publish_feedback(feedback)
+            goal_handle.succeed()
+            return Fibonacci.Result(sequence=feedback.sequence)
+
+        ActionServer(node, Fibonacci, "fibonacci", execute)
+        client = ActionClient(node, Fibonacci, "fibonacci")
+        sent = client.send_goal_async(
+            Fibonacci.Goal(order=4), feedback_callback=lambda each: heard.append(each.feedback.sequence.tolist())
+        )
+        rclpy.spin_until_future_complete(node, sent, timeout_sec=2)
+        result = sent.result().get_result_async()
+        rclpy.spin_until_future_complete(node, result, timeout_sec=2)
+        assert result.result().result.sequence.tolist() == [0, 1, 1, 2, 3]
+        assert heard == [[0, 1, 1], [0, 1, 1, 2], [0, 1, 1, 2, 3]]
+
+
+class PriorityExecutor(Executor):
+    """Nodes of high priority are never kept waiting by the others."""
+
+    def __init__(self):
+        super().__init__()
+        self.high_priority_nodes = set()
+        self.high = ThreadPoolExecutor(max_workers=4)
+        self.low = ThreadPoolExecutor(max_workers=1)
+
+    def add_high_priority_node(self, node):
+        self.high_priority_nodes.add(node)
+        self.add_node(node)
+
+    def spin_once(self, timeout_sec=None):
+        try:
+            handler, _group, node = self.wait_for_ready_callbacks(timeout_sec=timeout_sec)
+        except TimeoutException:
+            pass
+        else:
+            (self.high if node in self.high_priority_nodes else self.low).submit(handler)
+
+
+class ThrottledCallbackGroup(CallbackGroup):
+    """Lets two callbacks begin, and more when a timer says so."""
+
+    def __init__(self, node):
+        super().__init__()
+        self.left = 2
+        self.lock = threading.Lock()
+        self.timer = node.create_timer(0.05, self.refill, callback_group=MutuallyExclusiveCallbackGroup())
+
+    def refill(self):
+        with self.lock:
+            self.left = 2
+
+    def can_execute(self, entity):
+        return self.left > 0
+
+    def beginning_execution(self, entity):
+        with self.lock:
+            if self.left <= 0:
+                return False
+            self.left -= 1
+            return True
+
+    def ending_execution(self, entity):
+        pass
+
+
+class TestOwnParts:
+    def test_an_executor_with_priorities(self, node):
+        order, slow = [], threading.Event()
+        urgent = rclpy.create_node("urgent")
+
+        def dawdle(_message):
+            slow.wait(5)
+            order.append("slow")
+
+        node.create_subscription(String, "slow", dawdle, 10)
+        urgent.create_subscription(String, "urgent", lambda _message: (order.append("urgent"), slow.set()), 10)
+        executor = PriorityExecutor()
+        executor.add_high_priority_node(urgent)
+        executor.add_node(node)
+        for topic in ("slow", "urgent"):
+            node.create_publisher(String, topic, 10).publish(String())
+        deadline = time.monotonic() + 5
+        while len(order) < 2 and time.monotonic() < deadline:
+            executor.spin_once(timeout_sec=0.1)
+        for pool in (executor.high, executor.low):
+            pool.shutdown()
+        assert order == ["urgent", "slow"]
+
+    def test_a_group_that_throttles(self, node):
+        group, begun = ThrottledCallbackGroup(node), []
+        node.create_timer(0.001, lambda: begun.append(time.monotonic()), callback_group=group)
+        end = rclpy.create_node("end").create_timer(0.28, lambda: None)
+        executor = SingleThreadedExecutor()
+        executor.add_node(node)
+        deadline = time.monotonic() + 0.28
+        while time.monotonic() < deadline:
+            executor.spin_once(timeout_sec=0.02)
+        assert end.timer_period_ns == 280_000_000
+        assert 4 <= len(begun) <= 12
+
+    def test_the_events_executor(self, node):
+        executor = EventsExecutor()
+        executor.add_node(node)
+        future = executor.create_task(lambda: "done")
+        executor.spin_until_future_complete(future, timeout_sec=1)
+        assert future.result() == "done"
+
+
+class TestEvents:
+    def test_who_listens_is_told_of(self, node):
+        seen = []
+        node.create_publisher(
+            String,
+            "topic",
+            10,
+            event_callbacks=PublisherEventCallbacks(matched=lambda info: seen.append(("out", info.current_count))),
+        )
+        subscription = node.create_subscription(
+            String,
+            "topic",
+            lambda _message: None,
+            10,
+            event_callbacks=SubscriptionEventCallbacks(matched=lambda info: seen.append(("in", info.current_count))),
+        )
+        for _ in range(2):
+            rclpy.spin_once(node, timeout_sec=1)
+        assert sorted(seen) == [("in", 1), ("out", 1)]
+        node.destroy_subscription(subscription)
+        rclpy.spin_once(node, timeout_sec=1)
+        assert seen[-1] == ("out", 0)
+
+
+class TestAsyncio:
+    def test_a_goal_from_a_coroutine_of_asyncio(self, node):
+        """As the asyncio client among the examples: the loop spins the node between its own steps."""
+
+        def execute(goal_handle):
+            goal_handle.succeed()
+            return Fibonacci.Result(sequence=[goal_handle.request.order])
+
+        ActionServer(node, Fibonacci, "fibonacci", execute)
+        client = ActionClient(node, Fibonacci, "fibonacci")
+
+        async def spinning():
+            while rclpy.ok():
+                rclpy.spin_once(node, timeout_sec=0)
+                await asyncio.sleep(1e-4)
+
+        async def ask():
+            handle = await client.send_goal_async(Fibonacci.Goal(order=5))
+            return await handle.get_result_async()
+
+        async def run():
+            spinner = asyncio.ensure_future(spinning())
+            result = await asyncio.wait_for(ask(), 5)
+            spinner.cancel()
+            return result
+
+        assert asyncio.run(run()).result.sequence.tolist() == [5]
+
+
+class TestLittleThings:
+    def test_a_node_that_is_spun_within_its_own_callback_goes_on(self, node):
+        calls = []
+
+        def callback():
+            calls.append(len(calls))
+            if len(calls) == 1:
+                rclpy.spin_once(node, timeout_sec=0)
+
+        node.create_timer(0.005, callback)
+        rclpy.spin_until_future_complete(node, rclpy.task.Future(), timeout_sec=0.1)
+        assert len(calls) > 3
+
+    def test_destroying_what_is_not_there(self, node):
+        assert node.destroy_timer(None) is False
+        timer = node.create_timer(1, None)
+        assert (node.destroy_timer(timer), node.destroy_timer(timer)) == (True, False)
+
+    def test_names_of_loggers_and_kinds_of_callbacks(self, node):
+        subscription = node.create_subscription(String, "topic", lambda _message, _info: None, 10)
+        assert subscription.logger_name == "node"
+        assert subscription._callback_type is rclpy.subscription.Subscription.CallbackType.WithMessageInfo
+
+    def test_types_in_annotations(self):
+        assert ActionClient[Fibonacci].__origin__ is ActionClient
+        assert Parameter[bool].__args__ == (bool,)
+
+    def test_a_content_filter_is_said_not_to_filter(self, node, capsys):
+        options = ContentFilterOptions(filter_expression="data = %0", expression_parameters=["'yes'"])
+        node.create_subscription(String, "topic", lambda _message: None, 10, content_filter_options=options)
+        assert "not filtered by content" in capsys.readouterr().err
+
+    def test_a_context_may_be_initialised_by_its_block(self):
+        with rclpy.context.Context() as context:
+            assert context.ok()
+            assert Node("other", context=context).context is context
+        assert not context.ok()

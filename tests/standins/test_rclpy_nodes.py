@@ -1,0 +1,477 @@
+"""Nodes as users write them: publishers, subscriptions, timers, services, parameters."""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time
+
+import pytest
+import rclpy
+from example_interfaces.srv import AddTwoInts
+from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
+from rclpy.exceptions import (
+    InvalidHandle,
+    InvalidNamespaceException,
+    InvalidNodeNameException,
+    InvalidServiceNameException,
+    InvalidTopicNameException,
+    NotInitializedException,
+    ParameterAlreadyDeclaredException,
+    ParameterNotDeclaredException,
+)
+from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor, SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rclpy.qos import QoSDurabilityPolicy, QoSProfile, QoSReliabilityPolicy, qos_profile_sensor_data
+from rclpy.task import Future
+from std_msgs.msg import Int64, String
+
+
+class Counter(Node):
+    """Publishes numbers, as the first node of every course does."""
+
+    def __init__(self):
+        super().__init__("counter")
+        self.publisher_ = self.create_publisher(String, "topic", 10)
+        self.timer = self.create_timer(0.01, self.timer_callback)
+        self.i = 0
+        # Names that other classes of nodes use for themselves.
+        self._publishers, self._timers, self._name, self._parameters, self._graph = {}, [], "mine", {}, None
+        self._clock = self._logger = self._subscriptions = self._services = self._clients = None
+
+    def timer_callback(self):
+        msg = String()
+        msg.data = f"Hello {self.i}"
+        self.publisher_.publish(msg)
+        self.get_logger().info(f'Publishing: "{msg.data}"')
+        self.i += 1
+
+
+class Listener(Node):
+    def __init__(self, wanted):
+        super().__init__("listener")
+        self.heard, self.wanted, self.done = [], wanted, Future()
+        self.subscription = self.create_subscription(String, "topic", self.listener_callback, 10)
+
+    def listener_callback(self, msg):
+        self.heard.append(msg.data)
+        if len(self.heard) == self.wanted:
+            self.done.set_result(None)
+
+
+@pytest.fixture(autouse=True)
+def _alone(monkeypatch):
+    monkeypatch.setenv("LINKWRIGHT_DDS", "0")
+
+
+@pytest.fixture
+def ros():
+    before = threading.active_count()
+    rclpy.init(args=[])
+    yield
+    rclpy.try_shutdown()
+    assert threading.active_count() == before
+
+
+@pytest.fixture
+def node(ros):
+    return rclpy.create_node("tested", namespace="/ns")
+
+
+class TestMinimal:
+    def test_talker_and_listener(self, ros):
+        executor = SingleThreadedExecutor()
+        talker, listener = Counter(), Listener(5)
+        executor.add_node(talker)
+        executor.add_node(listener)
+        executor.spin_until_future_complete(listener.done, timeout_sec=5.0)
+        assert listener.heard == [f"Hello {number}" for number in range(5)]
+        executor.shutdown()
+        talker.destroy_node()
+        listener.destroy_node()
+
+    def test_old_school(self, ros):
+        got = []
+        node = rclpy.create_node("minimal")
+        publisher = node.create_publisher(String, "topic", 10)
+        subscription = node.create_subscription(String, "topic", lambda msg: got.append(msg.data), 10)
+        assert subscription.topic_name == "/topic"
+        while rclpy.ok() and len(got) < 3:
+            publisher.publish(String(data="hi"))
+            rclpy.spin_once(node, timeout_sec=1.0)
+        assert got == ["hi"] * 3
+        node.destroy_node()
+
+    def test_a_local_function_as_timer(self, node):
+        i, seen = 0, []
+
+        def timer_callback():
+            nonlocal i
+            i += 1
+            seen.append(i)
+            if i == 3:
+                rclpy.shutdown()
+
+        node.create_timer(0.005, timer_callback)
+        rclpy.spin(node)
+        assert seen == [1, 2, 3]
+        assert not rclpy.ok()
+
+    def test_service_and_client(self, ros):
+        class MinimalService(Node):
+            def __init__(self):
+                super().__init__("minimal_service")
+                self.srv = self.create_service(AddTwoInts, "add_two_ints", self.add)
+
+            def add(self, request, response):
+                response.sum = request.a + request.b
+                return response
+
+        class MinimalClient(Node):
+            def __init__(self):
+                super().__init__("minimal_client")
+                self.cli = self.create_client(AddTwoInts, "add_two_ints")
+                while not self.cli.wait_for_service(timeout_sec=1.0):
+                    self.get_logger().info("service not available, waiting again...")
+                self.req = AddTwoInts.Request()
+
+            def send_request(self):
+                self.req.a, self.req.b = 41, 1
+                self.future = self.cli.call_async(self.req)
+
+        service, client = MinimalService(), MinimalClient()
+
+        def serve():
+            with pytest.raises(ExternalShutdownException):
+                rclpy.spin(service, executor=SingleThreadedExecutor())
+
+        thread = threading.Thread(target=serve, daemon=True)
+        thread.start()
+        client.send_request()
+        rclpy.spin_until_future_complete(client, client.future)
+        assert client.future.result().sum == 42
+        rclpy.shutdown()
+        thread.join(2.0)
+
+    def test_synchronous_call_beside_a_thread_that_spins(self, node):
+        node.create_service(AddTwoInts, "add", _sum)
+        client = node.create_client(AddTwoInts, "add")
+        executor = SingleThreadedExecutor()
+        executor.add_node(node)
+        thread = threading.Thread(target=executor.spin, daemon=True)
+        thread.start()
+        assert client.call(AddTwoInts.Request(a=1, b=2), timeout_sec=2.0).sum == 3
+        executor.shutdown()
+        thread.join(2.0)
+
+    def test_a_client_in_a_callback_of_another_group(self, node):
+        answers = []
+        node.create_service(AddTwoInts, "add", _sum)
+        client = node.create_client(AddTwoInts, "add", callback_group=ReentrantCallbackGroup())
+
+        def ask():
+            answers.append(client.call(AddTwoInts.Request(a=2, b=3)).sum)
+            timer.cancel()
+
+        timer = node.create_timer(0.01, ask, callback_group=MutuallyExclusiveCallbackGroup())
+        executor = MultiThreadedExecutor(3)
+        executor.add_node(node)
+        end = time.monotonic() + 3.0
+        while not answers and time.monotonic() < end:
+            executor.spin_once(timeout_sec=0.1)
+        executor.shutdown()
+        assert answers == [5]
+
+    def test_a_call_that_would_wait_for_itself_says_so(self, node):
+        node.create_service(AddTwoInts, "add", _sum)
+        client = node.create_client(AddTwoInts, "add")
+        node.create_timer(0.01, lambda: client.call(AddTwoInts.Request()))
+        with pytest.raises(RuntimeError, match="call_async"):
+            rclpy.spin_once(node, timeout_sec=1.0)
+
+    def test_a_coroutine_awaits_a_service(self, node):
+        answers = []
+        node.create_service(AddTwoInts, "add", _sum)
+        client = node.create_client(AddTwoInts, "add")
+
+        async def ask():
+            timer.cancel()
+            response = await client.call_async(AddTwoInts.Request(a=3, b=4))
+            answers.append(response.sum)
+
+        timer = node.create_timer(0.01, ask, callback_group=ReentrantCallbackGroup())
+        end = time.monotonic() + 3.0
+        while not answers and time.monotonic() < end:
+            rclpy.spin_once(node, timeout_sec=0.1)
+        assert answers == [7]
+
+    def test_a_service_that_is_a_coroutine(self, node):
+        async def answer(request, response):
+            response.sum = request.a * request.b
+            return response
+
+        node.create_service(AddTwoInts, "multiply", answer)
+        future = node.create_client(AddTwoInts, "multiply").call_async(AddTwoInts.Request(a=6, b=7))
+        rclpy.spin_until_future_complete(node, future, timeout_sec=2.0)
+        assert future.result().sum == 42
+
+    def test_done_callbacks_run_in_the_executor(self, node):
+        seen = []
+        node.create_service(AddTwoInts, "add", _sum)
+        future = node.create_client(AddTwoInts, "add").call_async(AddTwoInts.Request(a=1, b=1))
+        future.add_done_callback(lambda done: seen.append(done.result().sum))
+        end = time.monotonic() + 3.0
+        while not seen and time.monotonic() < end:
+            rclpy.spin_once(node, timeout_sec=0.1)
+        assert seen == [2]
+
+    def test_composed_in_one_executor(self, ros):
+        talker, listener = Counter(), Listener(3)
+        with MultiThreadedExecutor(num_threads=4) as executor:
+            executor.add_node(talker)
+            executor.add_node(listener)
+            executor.spin_until_future_complete(listener.done, timeout_sec=5.0)
+        assert len(listener.heard) >= 3
+
+    def test_guard_condition(self, node):
+        called = []
+        guard = node.create_guard_condition(lambda: called.append(1))
+        guard.trigger()
+        rclpy.spin_once(node, timeout_sec=1.0)
+        assert called == [1]
+        assert node.destroy_guard_condition(guard)
+
+    def test_rate_loop_beside_a_thread_that_spins(self, node):
+        thread = threading.Thread(target=rclpy.spin, args=(node,), daemon=True)
+        thread.start()
+        rate = node.create_rate(50)
+        start = time.monotonic()
+        for _ in range(5):
+            rate.sleep()
+        assert 0.08 <= time.monotonic() - start < 0.5
+        rclpy.shutdown()
+        thread.join(2.0)
+        assert not thread.is_alive()
+
+
+class TestNode:
+    def test_names(self, node):
+        assert node.get_name() == "tested"
+        assert node.get_namespace() == "/ns"
+        assert node.get_fully_qualified_name() == "/ns/tested"
+        assert node.get_logger().name == "ns.tested"
+        assert node.resolve_topic_name("chatter") == "/ns/chatter"
+        assert node.resolve_topic_name("~/chatter") == "/ns/tested/chatter"
+        assert node.resolve_service_name("/add") == "/add"
+
+    def test_invalid_names(self, ros):
+        with pytest.raises(InvalidNodeNameException, match="must not contain characters"):
+            rclpy.create_node("bad?")
+        with pytest.raises(InvalidNamespaceException, match="must not contain characters"):
+            rclpy.create_node("good", namespace="/bad?")
+
+    def test_invalid_topics_and_services(self, node):
+        with pytest.raises(InvalidTopicNameException, match="must not contain characters"):
+            node.create_publisher(String, "chatter?", 1)
+        with pytest.raises(InvalidTopicNameException, match="must not start with a number"):
+            node.create_subscription(String, "/chatter/42", print, 1)
+        with pytest.raises(InvalidServiceNameException, match="must not contain characters"):
+            node.create_client(AddTwoInts, "add?")
+        with pytest.raises(InvalidServiceNameException, match="must not start with a number"):
+            node.create_service(AddTwoInts, "/add/2", print)
+
+    def test_quality_of_service_is_a_profile_or_a_depth(self, node):
+        node.create_publisher(String, "chatter", qos_profile_sensor_data)
+        with pytest.raises(TypeError, match="Expected QoSProfile or int"):
+            node.create_publisher(String, "chatter", "best")
+        with pytest.raises(ValueError, match="greater than or equal to zero"):
+            node.create_publisher(String, "chatter", -1)
+
+    def test_a_type_that_is_none_of_ours(self, node):
+        with pytest.raises(AttributeError, match="not an interface class"):
+            node.create_publisher(int, "chatter", 1)
+        with pytest.raises(RuntimeError, match="might be a service"):
+            node.create_publisher(AddTwoInts, "chatter", 1)
+
+    def test_publishing_another_type(self, node):
+        with pytest.raises(TypeError):
+            node.create_publisher(String, "chatter", 1).publish(Int64())
+
+    def test_without_init(self):
+        with pytest.raises(NotInitializedException, match=r"rclpy.init\(\) has not been called"):
+            rclpy.create_node("early", context=rclpy.context.Context())
+
+    def test_what_it_made_is_listed_and_destroyed(self, node):
+        publisher = node.create_publisher(String, "chatter", 1)
+        assert publisher in list(node.publishers)
+        assert len(list(node.publishers)) == 2  # and /parameter_events
+        subscription = node.create_subscription(String, "chatter", print, 1)
+        assert list(node.subscriptions) == [subscription]
+        timer = node.create_timer(1.0, None)
+        assert list(node.timers) == [timer]
+        assert node.destroy_publisher(publisher) is True
+        assert node.destroy_publisher(publisher) is False
+        assert node.destroy_subscription(subscription) is True
+        assert node.destroy_timer(timer) is True
+        node.destroy_node()
+        assert list(node.publishers) == []
+
+    def test_destroying_it_twice(self, node):
+        node.destroy_node()
+        with pytest.raises(InvalidHandle):
+            node.destroy_node()
+
+    def test_handles(self, node):
+        subscription = node.create_subscription(String, "chatter", print, 1)
+        with subscription.handle:
+            pass
+        node.destroy_subscription(subscription)
+        with pytest.raises(InvalidHandle), subscription.handle:
+            pass
+        with node.handle:
+            node.destroy_node()
+            with node.handle:
+                pass
+        with pytest.raises(InvalidHandle), node.handle:
+            pass
+
+    def test_executor_attribute(self, node):
+        first, second = SingleThreadedExecutor(), SingleThreadedExecutor()
+        assert node.executor is None
+        node.executor = first
+        assert node.executor is first
+        assert first.get_nodes() == [node]
+        assert second.add_node(node)
+        assert node.executor is second
+        assert first.get_nodes() == []
+        node.executor = None
+        assert node.executor is None
+        assert second.get_nodes() == []
+
+    def test_the_graph_around_it(self, node):
+        node.create_publisher(String, "chatter", QoSProfile(depth=3, reliability=QoSReliabilityPolicy.BEST_EFFORT))
+        assert node.count_publishers("chatter") == 1
+        assert ("/ns/chatter", ["std_msgs/msg/String"]) in node.get_topic_names_and_types()
+        assert ("tested", "/ns") in node.get_node_names_and_namespaces()
+        info = node.get_publishers_info_by_topic("/ns/chatter")[0]
+        assert (info.node_name, info.topic_type) == ("tested", "std_msgs/msg/String")
+        assert info.qos_profile.reliability == QoSReliabilityPolicy.BEST_EFFORT
+        assert node.get_subscriptions_info_by_topic("/ns/chatter") == []
+        services = [name for name, _ in node.get_service_names_and_types_by_node("tested", "/ns")]
+        assert "/ns/tested/get_parameters" in services
+
+    def test_message_info(self, node):
+        got = []
+        node.create_subscription(String, "chatter", lambda msg, info: got.append((msg.data, info)), 1)
+        node.create_publisher(String, "chatter", 1).publish(String(data="x"))
+        rclpy.spin_once(node, timeout_sec=1.0)
+        assert got[0][0] == "x"
+        assert got[0][1].source_timestamp > 0
+
+    def test_raw_messages(self, node):
+        got = []
+        node.create_subscription(String, "chatter", got.append, 1, raw=True)
+        node.create_publisher(String, "chatter", 1).publish(String(data="x"))
+        rclpy.spin_once(node, timeout_sec=1.0)
+        assert got == [b"\x00\x01\x00\x00\x02\x00\x00\x00x\x00"]
+
+    def test_a_late_subscription_gets_what_was_kept(self, node):
+        got = []
+        profile = QoSProfile(depth=1, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
+        node.create_publisher(String, "latched", profile).publish(String(data="kept"))
+        node.create_subscription(String, "latched", lambda msg: got.append(msg.data), profile)
+        rclpy.spin_once(node, timeout_sec=1.0)
+        assert got == ["kept"]
+
+    def test_context_managers(self, ros):
+        with rclpy.create_node("managed") as node, node.create_publisher(String, "chatter", 1):
+            assert node.count_publishers("chatter") == 1
+        with pytest.raises(InvalidHandle):
+            node.destroy_node()
+
+    def test_what_it_logs_goes_to_rosout(self, node):
+        from rcl_interfaces.msg import Log
+
+        got = []
+        node.create_subscription(Log, "/rosout", got.append, 10)
+        node.get_logger().warning("careful")
+        rclpy.spin_once(node, timeout_sec=1.0)
+        assert (got[0].name, got[0].msg, got[0].level) == ("ns.tested", "careful", logging.WARNING)
+        assert got[0].file == __file__
+
+    def test_policies_by_their_old_names(self):
+        with pytest.warns(UserWarning, match="Use ReliabilityPolicy.BEST_EFFORT instead"):
+            assert QoSReliabilityPolicy.RMW_QOS_POLICY_RELIABILITY_BEST_EFFORT is QoSReliabilityPolicy.BEST_EFFORT
+
+
+class TestParameters:
+    def test_declared_read_and_set(self, node):
+        assert node.declare_parameter("speed", 1.5).value == 1.5
+        assert node.get_parameter("speed").get_parameter_value().double_value == 1.5
+        results = node.set_parameters([Parameter("speed", Parameter.Type.DOUBLE, 2.5)])
+        assert isinstance(results[0], SetParametersResult)
+        assert results[0].successful
+        assert node.get_parameter("speed").value == 2.5
+        with pytest.raises(ParameterAlreadyDeclaredException):
+            node.declare_parameter("speed", 1.0)
+        with pytest.raises(ParameterNotDeclaredException):
+            node.get_parameter("height")
+        assert node.get_parameter_or("height", Parameter("height", value=3)).value == 3
+
+    def test_descriptors(self, node):
+        node.declare_parameter("speed", 1.5, ParameterDescriptor(description="how fast", read_only=True))
+        assert node.describe_parameter("speed").description == "how fast"
+        assert not node.set_parameters([Parameter("speed", value=2.5)])[0].successful
+
+    def test_a_callback_refuses(self, node):
+        def check(parameters):
+            return SetParametersResult(successful=all(each.value < 10 for each in parameters), reason="too fast")
+
+        node.declare_parameter("speed", 1)
+        node.add_on_set_parameters_callback(check)
+        result = node.set_parameters([Parameter("speed", value=20)])[0]
+        assert (result.successful, result.reason) == (False, "too fast")
+        node.remove_on_set_parameters_callback(check)
+        assert node.set_parameters([Parameter("speed", value=20)])[0].successful
+
+    def test_from_the_constructor_and_the_command_line(self, ros):
+        node = rclpy.create_node(
+            "parametrised",
+            namespace="/ns",
+            parameter_overrides=[Parameter("mine", value=1)],
+            cli_args=["--ros-args", "-p", "mine:=2", "-p", "theirs:=3", "-r", "__ns:=/other", "-r", "chatter:=news"],
+        )
+        assert node.declare_parameter("mine", 0).value == 1
+        assert node.declare_parameter("theirs", 0).value == 3
+        assert node.get_namespace() == "/other"
+        assert node.resolve_topic_name("chatter") == "/other/news"
+
+    def test_undeclared_ones(self, ros):
+        node = rclpy.create_node(
+            "free",
+            allow_undeclared_parameters=True,
+            automatically_declare_parameters_from_overrides=True,
+            parameter_overrides=[Parameter("known", value="x")],
+        )
+        assert node.get_parameter("known").value == "x"
+        assert node.get_parameter("unknown").value is None
+        node.set_parameters([Parameter("new", value=True)])
+        assert node.get_parameter("new").value is True
+
+    def test_quality_of_service_from_parameters(self, ros):
+        from rclpy.qos_overriding_options import QoSOverridingOptions
+
+        node = rclpy.create_node(
+            "overridden", parameter_overrides=[Parameter("qos_overrides./chatter.publisher.depth", value=7)]
+        )
+        publisher = node.create_publisher(
+            String, "chatter", 1, qos_overriding_options=QoSOverridingOptions.with_default_policies()
+        )
+        assert publisher.qos_profile.depth == 7
+
+
+def _sum(request, response):
+    response.sum = request.a + request.b
+    return response

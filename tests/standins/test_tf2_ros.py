@@ -1,0 +1,262 @@
+"""Transforms as nodes use them: broadcasters, listeners, buffers, transformed messages, a buffer server's clients."""
+
+from __future__ import annotations
+
+import math
+import threading
+import time
+
+import pytest
+import rclpy
+import tf2_geometry_msgs
+import tf2_py
+import tf2_ros
+from geometry_msgs.msg import PointStamped, PoseStamped, TransformStamped, Twist, Vector3Stamped
+from rclpy.duration import Duration
+from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.time import Time
+from tf2_msgs.action import LookupTransform
+from tf2_msgs.msg import TF2Error
+from tf2_ros import Buffer, StaticTransformBroadcaster, TransformBroadcaster, TransformListener
+from tf_transformations import euler_from_quaternion, quaternion_from_euler
+
+
+@pytest.fixture(autouse=True)
+def _ros(monkeypatch):
+    monkeypatch.setenv("LINKWRIGHT_DDS", "0")
+    rclpy.init(args=[])
+    yield
+    rclpy.try_shutdown()
+
+
+@pytest.fixture
+def node():
+    return rclpy.create_node("tested")
+
+
+def transform(parent, child, stamp, x=1.0, yaw=0.0):
+    message = TransformStamped()
+    message.header.frame_id, message.child_frame_id = parent, child
+    message.header.stamp = stamp.to_msg()
+    message.transform.translation.x = x
+    rotation = message.transform.rotation
+    rotation.x, rotation.y, rotation.z, rotation.w = quaternion_from_euler(0, 0, yaw)
+    return message
+
+
+def spin(node, times=6):
+    for _ in range(times):
+        rclpy.spin_once(node, timeout_sec=0.01)
+
+
+class FramePublisher(Node):
+    """Tells where a turtle is."""
+
+    def __init__(self):
+        super().__init__("turtle_tf2_frame_publisher")
+        self.turtlename = self.declare_parameter("turtlename", "turtle").get_parameter_value().string_value
+        self.tf_broadcaster = TransformBroadcaster(self)
+        self.timer = self.create_timer(0.01, self.handle_pose)
+
+    def handle_pose(self):
+        self.tf_broadcaster.sendTransform(transform("world", self.turtlename, self.get_clock().now(), 2.0, math.pi / 2))
+
+
+class FrameListener(Node):
+    """Follows a turtle."""
+
+    def __init__(self):
+        super().__init__("turtle_tf2_frame_listener")
+        self.target_frame = self.declare_parameter("target_frame", "turtle").get_parameter_value().string_value
+        self.tf_buffer = Buffer()
+        self.tf_listener = TransformListener(self.tf_buffer, self)
+        self.commands, self.misses, self.done = [], [], rclpy.task.Future()
+        self.timer = self.create_timer(0.01, self.on_timer)
+
+    def on_timer(self):
+        try:
+            found = self.tf_buffer.lookup_transform("world", self.target_frame, rclpy.time.Time())
+        except tf2_ros.TransformException as error:
+            self.misses.append(str(error))
+            return
+        command = Twist()
+        command.linear.x = math.hypot(found.transform.translation.x, found.transform.translation.y)
+        rotation = found.transform.rotation
+        command.angular.z = euler_from_quaternion([rotation.x, rotation.y, rotation.z, rotation.w])[2]
+        self.commands.append(command)
+        self.done.set_result(None)
+
+
+class TestTopics:
+    def test_the_turtles(self):
+        executor = SingleThreadedExecutor()
+        listener, publisher = FrameListener(), FramePublisher()
+        executor.add_node(listener)
+        executor.add_node(publisher)
+        executor.spin_until_future_complete(listener.done, timeout_sec=3.0)
+        assert listener.commands[0].linear.x == pytest.approx(2.0)
+        assert listener.commands[0].angular.z == pytest.approx(math.pi / 2)
+        assert all('"world" passed to lookupTransform' in miss for miss in listener.misses)
+
+    def test_static_transforms_reach_who_comes_late(self, node):
+        broadcaster = StaticTransformBroadcaster(node)
+        broadcaster.sendTransform(transform("base", "laser", Time()))
+        broadcaster.sendTransform(transform("base", "camera", Time()))
+        buffer = Buffer()
+        TransformListener(buffer, node)
+        spin(node)
+        for frame in ("laser", "camera"):
+            assert buffer.lookup_transform("base", frame, Time()).transform.translation.x == 1.0
+
+    def test_a_listener_with_a_thread_of_its_own(self, node):
+        buffer = Buffer()
+        listener = TransformListener(buffer, node, spin_thread=True)
+        TransformBroadcaster(rclpy.create_node("other")).sendTransform(transform("a", "b", Time(seconds=5)))
+        assert buffer.can_transform("a", "b", Time(), timeout=Duration(seconds=2.0))
+        before = threading.active_count()
+        listener.unregister()
+        assert threading.active_count() == before - 1
+
+    def test_waiting_in_a_callback_of_the_same_node(self, node):
+        """The listener's callbacks are in a reentrant group, so a second thread takes them meanwhile."""
+        buffer, found = Buffer(), []
+        TransformListener(buffer, node)
+        broadcaster = TransformBroadcaster(node)
+
+        def look():
+            timer.cancel()
+            threading.Timer(0.05, broadcaster.sendTransform, [transform("a", "b", Time(seconds=5))]).start()
+            found.append(buffer.lookup_transform("a", "b", Time(), timeout=Duration(seconds=2.0)))
+
+        timer = node.create_timer(0.01, look)
+        with MultiThreadedExecutor(2) as executor:
+            executor.add_node(node)
+            thread = threading.Thread(target=executor.spin, daemon=True)
+            thread.start()
+            end = time.monotonic() + 3.0
+            while not found and time.monotonic() < end:
+                time.sleep(0.01)
+            executor.shutdown()
+            thread.join(2.0)
+        assert found[0].transform.translation.x == 1.0
+
+    def test_awaited_in_a_coroutine(self, node):
+        buffer, found = Buffer(), []
+        TransformListener(buffer, node)
+
+        async def look():
+            timer.cancel()
+            found.append(await buffer.lookup_transform_async("a", "b", Time()))
+
+        timer = node.create_timer(0.01, look)
+        spin(node)
+        assert found == []
+        TransformBroadcaster(node).sendTransform(transform("a", "b", Time(seconds=5)))
+        spin(node)
+        assert found[0].child_frame_id == "b"
+
+
+class TestBuffer:
+    def test_errors(self):
+        buffer = Buffer()
+        buffer.set_transform(transform("a", "b", Time(seconds=5)), "test")
+        buffer.set_transform(transform("x", "y", Time(seconds=5)), "test")
+        with pytest.raises(tf2_ros.LookupException, match="does not exist"):
+            buffer.lookup_transform("a", "nowhere", Time())
+        with pytest.raises(tf2_ros.ConnectivityException, match="not part of the same tree"):
+            buffer.lookup_transform("a", "y", Time())
+        with pytest.raises(tf2_ros.ExtrapolationException):
+            buffer.lookup_transform("a", "b", Time(seconds=100))
+        with pytest.raises(tf2_ros.InvalidArgumentException):
+            buffer.lookup_transform("/a", "b", Time())
+        assert issubclass(tf2_py.LookupException, tf2_ros.TransformException)
+
+    def test_the_stamp_of_a_message_is_a_time(self):
+        buffer = Buffer()
+        message = transform("a", "b", Time(seconds=5))
+        assert buffer.set_transform(message, "test") is None
+        assert buffer.lookup_transform("a", "b", message.header.stamp).header.stamp.sec == 5
+
+    def test_messages_are_taken_to_other_frames(self):
+        assert tf2_geometry_msgs.do_transform_point is not None
+        buffer = Buffer()
+        buffer.set_transform(transform("map", "base", Time(seconds=5), 1.0, math.pi / 2), "test")
+        point = PointStamped()
+        point.header.frame_id, point.header.stamp = "base", Time(seconds=5).to_msg()
+        point.point.x = 2.0
+        moved = buffer.transform(point, "map")
+        assert (moved.header.frame_id, moved.point.x, moved.point.y) == ("map", pytest.approx(1.0), pytest.approx(2.0))
+        pose = PoseStamped(header=point.header)
+        pose.pose.orientation.w = 1.0
+        assert buffer.transform(pose, "map").pose.orientation.z == pytest.approx(math.sqrt(0.5))
+        vector = Vector3Stamped(header=point.header)
+        vector.vector.x = 1.0
+        assert buffer.transform(vector, "map").vector.y == pytest.approx(1.0)
+        assert buffer.transform(point, "map", new_type=PointStamped) == moved
+        assert buffer.transform_full(point, "map", Time(seconds=5), "map") == moved
+
+    def test_types_that_are_not_registered(self):
+        with pytest.raises(tf2_ros.TypeException, match="not loaded or supported"):
+            Buffer().transform(Twist(), "map")
+        with pytest.raises(tf2_ros.NotImplementedException):
+            tf2_ros.BufferInterface().lookup_transform("a", "b", Time())
+
+    def test_conversions(self):
+        class Own:
+            def __init__(self, x):
+                self.x = x
+
+        registration = tf2_ros.ConvertRegistration()
+        registration.add_from_msg(Own, lambda message: Own(message.point.x))
+        point = PointStamped()
+        point.point.x = 3.0
+        assert tf2_ros.convert(point, Own).x == 3.0
+        registration.add_convert((PointStamped, Own), lambda _message: Own(7.0))
+        assert tf2_ros.convert(point, Own).x == 7.0
+        copied = tf2_ros.convert(point, PointStamped)
+        assert copied == point
+        assert copied is not point
+        assert tf2_ros.Stamped(Own(1), Time(seconds=2).to_msg(), "map").header.frame_id == "map"
+
+
+class TestClient:
+    @pytest.fixture
+    def client(self, node):
+        """A client of a buffer server that knows one transform."""
+        buffer = tf2_ros.BufferCore()
+        buffer.set_transform_static(transform("a", "b", Time()), "test")
+
+        def answer(handle):
+            result = LookupTransform.Result()
+            goal = handle.request
+            try:
+                result.transform = buffer.lookup_transform_core(
+                    goal.target_frame, goal.source_frame, Time.from_msg(goal.source_time)
+                )
+            except tf2_ros.LookupException as error:
+                result.error.error, result.error.error_string = TF2Error.LOOKUP_ERROR, str(error)
+            handle.succeed()
+            return result
+
+        rclpy.action.ActionServer(node, LookupTransform, "lookup", answer)
+        executor = MultiThreadedExecutor(2)
+        executor.add_node(node)
+        thread = threading.Thread(target=executor.spin, daemon=True)
+        thread.start()
+        yield tf2_ros.BufferClient(node, "lookup", timeout_padding=1.0)
+        executor.shutdown()
+        thread.join(2.0)
+
+    def test_a_transform_of_another_process(self, client):
+        assert client.lookup_transform("a", "b", Time()).transform.translation.x == 1.0
+        assert client.can_transform("a", "b", Time())
+
+    def test_an_error_of_another_process(self, client):
+        with pytest.raises(tf2_ros.LookupException, match="does not exist"):
+            client.lookup_transform("a", "nowhere", Time())
+        assert not client.can_transform("a", "nowhere", Time())
+
+    def test_nobody_there(self, node):
+        with pytest.raises(tf2_ros.TimeoutException, match="not ready"):
+            tf2_ros.BufferClient(node, "nowhere").lookup_transform("a", "b", Time())
