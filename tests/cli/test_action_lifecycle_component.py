@@ -10,8 +10,8 @@ import pytest
 
 from linkwright.cli import main
 from linkwright.graph import ActionServer, Graph
-from linkwright.graph.action_goal import GoalResponse
-from linkwright.graph.lifecycle import LifecycleNodeMixin
+from linkwright.graph.actions.goal import GoalResponse
+from linkwright.graph.lifecycle.node import LifecycleNodeMixin
 from linkwright.messages import get_action
 from linkwright.nodes import NodeOptions
 from linkwright.nodes.component_container import ComponentContainer

@@ -9,7 +9,7 @@ import pytest
 from linkwright.graph import Graph, LogRecord
 from linkwright.graph.dds import DdsTransport, join
 from linkwright.graph.executors import SingleThreadedExecutor
-from linkwright.graph.log_levels import LogLevel
+from linkwright.graph.log.levels import LogLevel
 from tests.dds.programs import Program
 
 ROS_VARIABLES = (

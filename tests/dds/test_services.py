@@ -2,9 +2,9 @@ from __future__ import annotations
 
 import time
 
-from linkwright.graph.action_client import ActionClient
-from linkwright.graph.action_server import ActionServer
-from linkwright.graph.parameter_client import AsyncParameterClient
+from linkwright.graph.actions.client import ActionClient
+from linkwright.graph.actions.server import ActionServer
+from linkwright.graph.parameters.client import AsyncParameterClient
 from linkwright.messages import get_action, get_service
 
 SetBool = get_service("std_srvs/srv/SetBool")

@@ -12,7 +12,7 @@ from linkwright.graph import (
     GoalStatus,
     Graph,
 )
-from linkwright.graph.action_server import ERROR_GOAL_TERMINATED, ERROR_NONE, ERROR_REJECTED, ERROR_UNKNOWN_GOAL_ID
+from linkwright.graph.actions.server import ERROR_GOAL_TERMINATED, ERROR_NONE, ERROR_REJECTED, ERROR_UNKNOWN_GOAL_ID
 from linkwright.graph.executors import MultiThreadedExecutor
 from linkwright.messages import get_action, get_message
 

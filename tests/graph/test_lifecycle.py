@@ -2,9 +2,9 @@ from __future__ import annotations
 
 import pytest
 
-from linkwright.graph.lifecycle import LifecycleNodeMixin, LifecycleTransitionError
-from linkwright.graph.lifecycle_entities import ManagedEntity, SimpleManagedEntity
-from linkwright.graph.lifecycle_states import TransitionCallbackReturn
+from linkwright.graph.lifecycle.entities import ManagedEntity, SimpleManagedEntity
+from linkwright.graph.lifecycle.node import LifecycleNodeMixin, LifecycleTransitionError
+from linkwright.graph.lifecycle.states import TransitionCallbackReturn
 from linkwright.graph.node import Node
 from linkwright.messages import String, get_message, get_service
 

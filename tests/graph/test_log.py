@@ -6,9 +6,9 @@ import re
 import pytest
 
 from linkwright.graph import Graph, JumpClock, LogLevel, LogRecord, console_line
-from linkwright.graph.log_file import LogFile, log_folder
-from linkwright.graph.log_services import LoggerServices
-from linkwright.graph.log_setup import set_up
+from linkwright.graph.log.file import LogFile, log_folder
+from linkwright.graph.log.services import LoggerServices
+from linkwright.graph.log.setup import set_up
 from linkwright.graph.qos import ROSOUT_QOS
 from linkwright.graph.ros_arguments import parse
 from linkwright.messages import get_message, get_service

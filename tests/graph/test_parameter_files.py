@@ -5,7 +5,7 @@ import math
 import pytest
 
 from linkwright.diagnostics import LinkwrightError, SourceText
-from linkwright.graph.parameter_files import parse_parameters, parse_value, read_parameter_file
+from linkwright.graph.parameters.files import parse_parameters, parse_value, read_parameter_file
 
 
 def read(text: str):

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from linkwright.graph.parameter_qos import InvalidQosOverridesError, QoSOverridingOptions, override_qos
+from linkwright.graph.parameters.qos_overrides import InvalidQosOverridesError, QoSOverridingOptions, override_qos
 from linkwright.graph.qos import DurabilityPolicy, HistoryPolicy, QoSPolicyKind, QoSProfile, ReliabilityPolicy
 from linkwright.graph.time import Duration
 

@@ -3,8 +3,8 @@ from __future__ import annotations
 import pytest
 
 from linkwright.graph import Graph, Parameter, ParameterDescriptor, SetParametersResult
-from linkwright.graph.parameter_client import AsyncParameterClient, parameter_dict_from_yaml_file
-from linkwright.graph.parameter_events import ParameterEventHandler
+from linkwright.graph.parameters.client import AsyncParameterClient, parameter_dict_from_yaml_file
+from linkwright.graph.parameters.events import ParameterEventHandler
 from linkwright.messages import get_message
 
 

@@ -16,7 +16,7 @@ from linkwright.graph import (
     ParameterUninitializedException,
     SetParametersResult,
 )
-from linkwright.graph.parameters import Range
+from linkwright.graph.parameters.parameter import Range
 from linkwright.messages import get_message
 
 DescriptorMessage = get_message("rcl_interfaces/msg/ParameterDescriptor")

@@ -15,8 +15,8 @@ from linkwright.graph import (
     LookupException,
 )
 from linkwright.graph.time import Duration, Time
-from linkwright.graph.transform_core import BufferCore
-from linkwright.graph.transform_pose import IDENTITY, compose, interpolate, invert
+from linkwright.graph.transforms.core import BufferCore
+from linkwright.graph.transforms.pose import IDENTITY, compose, interpolate, invert
 from linkwright.kinematics import compose as compose_arrays
 from linkwright.messages import TFMessage, TransformBatch, TransformStamped
 

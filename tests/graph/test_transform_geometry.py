@@ -6,7 +6,7 @@ from math import cos, pi, sin
 import numpy as np
 import pytest
 
-from linkwright.graph.transform_geometry import (
+from linkwright.graph.transforms.geometry import (
     do_transform_point,
     do_transform_polygon_stamped,
     do_transform_pose,

@@ -8,8 +8,8 @@ import pytest
 
 from linkwright.graph import ExtrapolationException, LookupException, TransformListener
 from linkwright.graph.time import Duration, Time
-from linkwright.graph.transform_broadcaster import StaticTransformBroadcaster, TransformBroadcaster
-from linkwright.graph.transform_waiting import Buffer
+from linkwright.graph.transforms.broadcaster import StaticTransformBroadcaster, TransformBroadcaster
+from linkwright.graph.transforms.waiting import Buffer
 from linkwright.messages import TFMessage, get_service
 from tests.graph.test_transform_core import stamped
 

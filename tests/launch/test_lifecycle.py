@@ -12,7 +12,7 @@ from launch_ros.events.lifecycle import ChangeState
 
 from launch import LaunchContext
 from linkwright.graph import Graph
-from linkwright.graph.lifecycle import LifecycleNodeMixin
+from linkwright.graph.lifecycle.node import LifecycleNodeMixin
 from linkwright.nodes import EXECUTABLES, NodeOptions
 
 CONFIGURE, ACTIVATE, DEACTIVATE = 1, 3, 4

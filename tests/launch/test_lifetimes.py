@@ -101,6 +101,19 @@ class TestKilled:
         running.process.wait()
         assert gone_within(4.0, running.identity)
 
+    def test_its_temporary_files_go_too(self, begin: Callable[..., Running], write: Write, tmp_path: Path) -> None:
+        program = "import sys; print('given', sys.argv[3], flush=True); import time; time.sleep(60)"
+        write("python", f'#!/bin/sh\nexec {sys.executable} -c "{program}" "$@"\n').chmod(0o755)
+        node = f"Node(executable='{tmp_path}/python', exec_name='n', parameters=[{{'a': 1}}], output='screen')"
+        running = begin(write("a.launch.py", launch_file(node)))
+        running.until("[n-1] given ")
+        (path,) = re.findall(r"given (\S+)", running.out)
+        assert Path(path).exists()
+        running.process.kill()
+        running.process.wait()
+        assert gone_within(3.0, running.identity)
+        assert not Path(path).parent.exists()
+
     @pytest.mark.slow
     def test_whenever_it_is_killed(self, begin: Callable[..., Running], write: Write) -> None:
         path = write("a.launch.py", launch_file(sleeper("a"), TALKER, sleeper("b")))

@@ -12,7 +12,9 @@ from linkwright.lint.explain import find_page, known_codes, nearest_codes, room_
 from linkwright.lint.registry import all_rules
 
 ROOMS = Path(linkwright.__file__).parent
-CODE = re.compile(r'"((?:XML|XAC|URDF|PKG|KIN|GRAPH|NODE|RVIZ|VIEW|LAUNCH|CLI|LINT|INR|MSG|DOC|DDS|BAG|SHELL)[0-9]{3})"')
+CODE = re.compile(
+    r'"((?:XML|XAC|URDF|PKG|KIN|GRAPH|NODE|RVIZ|VIEW|LAUNCH|CLI|LINT|INR|MSG|DOC|DDS|BAG|SHELL)[0-9]{3})"'
+)
 
 
 def codes_of_the_program() -> set[str]:

@@ -1,4 +1,4 @@
-"""``linkwright pkg``: work with ROS packages; ``pkg create`` makes a new one, the other commands tell of those there are."""
+"""``linkwright pkg``: ``pkg create`` makes a new ROS package, the other commands tell of those there are."""
 
 from __future__ import annotations
 

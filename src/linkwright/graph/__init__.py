@@ -1,8 +1,8 @@
 """The computation graph: nodes, topics, parameters, quality of service, time, logging and transforms."""
 
-from linkwright.graph.action_client import ActionClient, ClientGoalHandle
-from linkwright.graph.action_goal import CancelResponse, GoalResponse, GoalStatus, ServerGoalHandle
-from linkwright.graph.action_server import ActionServer
+from linkwright.graph.actions.client import ActionClient, ClientGoalHandle
+from linkwright.graph.actions.goal import CancelResponse, GoalResponse, GoalStatus, ServerGoalHandle
+from linkwright.graph.actions.server import ActionServer
 from linkwright.graph.client import Client
 from linkwright.graph.clock import Clock, ClockChange, JumpHandle, JumpThreshold, ROSClock, TimeJump
 from linkwright.graph.entity import Entity
@@ -11,7 +11,7 @@ from linkwright.graph.executor import run_logged
 from linkwright.graph.faults import InterruptedWaitError, InvalidHandleError, NodeNotFoundError
 from linkwright.graph.future import Future
 from linkwright.graph.graph import Graph
-from linkwright.graph.log import Logger, LogLevel, LogRecord, LogSink, console_line, print_to_console
+from linkwright.graph.log.logger import Logger, LogLevel, LogRecord, LogSink, console_line, print_to_console
 from linkwright.graph.names import (
     InvalidNameError,
     InvalidNamespaceError,
@@ -20,7 +20,7 @@ from linkwright.graph.names import (
     InvalidTopicNameError,
 )
 from linkwright.graph.node import Node
-from linkwright.graph.parameter_errors import (
+from linkwright.graph.parameters.errors import (
     InvalidParameterException,
     InvalidParameterTypeException,
     InvalidParameterValueException,
@@ -30,7 +30,7 @@ from linkwright.graph.parameter_errors import (
     ParameterNotDeclaredException,
     ParameterUninitializedException,
 )
-from linkwright.graph.parameters import Parameter, ParameterDescriptor, ParameterType, SetParametersResult
+from linkwright.graph.parameters.parameter import Parameter, ParameterDescriptor, ParameterType, SetParametersResult
 from linkwright.graph.publisher import Publisher
 from linkwright.graph.qos import (
     ACTION_STATUS_QOS,
@@ -61,15 +61,15 @@ from linkwright.graph.subscription import Subscription
 from linkwright.graph.time import ClockType, Duration, Time
 from linkwright.graph.timebase import JumpClock, SystemClock, Timebase
 from linkwright.graph.timer import GuardCondition, Timer, TimerInfo
-from linkwright.graph.transform_buffer import FrameSnapshot, TransformBuffer
-from linkwright.graph.transform_errors import (
+from linkwright.graph.transforms.buffer import FrameSnapshot, TransformBuffer
+from linkwright.graph.transforms.errors import (
     ConnectivityException,
     ExtrapolationException,
     InvalidArgumentException,
     LookupException,
     TransformException,
 )
-from linkwright.graph.transform_listener import TransformListener
+from linkwright.graph.transforms.listener import TransformListener
 from linkwright.graph.transport import EndpointInfo, EndpointKind, MessageInfo, NodeIdentity, Transport
 
 __all__ = [

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph.dispatch import Alarm, CallbackGroup
-from linkwright.graph.log import Logger
+from linkwright.graph.log.logger import Logger
 from linkwright.graph.timebase import Timebase
 
 if TYPE_CHECKING:

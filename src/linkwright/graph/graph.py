@@ -15,12 +15,12 @@ from linkwright.graph.executor import LoopDispatcher
 from linkwright.graph.faults import InvalidHandleError
 from linkwright.graph.future import Future
 from linkwright.graph.graph_queries import GraphQueries
-from linkwright.graph.log import Logger, LogSink, print_to_console
-from linkwright.graph.log_levels import LogLevels
+from linkwright.graph.log.levels import LogLevels
+from linkwright.graph.log.logger import Logger, LogSink, print_to_console
 from linkwright.graph.names import absolute_namespace, check_node_name, join
 from linkwright.graph.namesakes import Namesakes
 from linkwright.graph.node import Node
-from linkwright.graph.parameters import Parameter
+from linkwright.graph.parameters.parameter import Parameter
 from linkwright.graph.publisher import Publisher
 from linkwright.graph.qos import ROSOUT_QOS, QoSProfile
 from linkwright.graph.remapping import Remappings

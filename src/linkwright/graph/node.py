@@ -16,10 +16,10 @@ from linkwright.graph.events import (
     SubscriptionEventCallbacks,
     SubscriptionEvents,
 )
-from linkwright.graph.log import Logger
+from linkwright.graph.log.logger import Logger
 from linkwright.graph.names import expand_service_name, expand_topic_name, join
-from linkwright.graph.node_parameters import NodeParameters
 from linkwright.graph.node_queries import NodeQueries
+from linkwright.graph.parameters.node_parameters import NodeParameters
 from linkwright.graph.publisher import Publisher
 from linkwright.graph.qos import SERVICES_QOS, QoSProfile
 from linkwright.graph.qos_compatibility import best_available
@@ -35,7 +35,7 @@ from linkwright.graph.transport import NodeIdentity
 
 if TYPE_CHECKING:
     from linkwright.graph.graph import Graph
-    from linkwright.graph.parameters import Parameter
+    from linkwright.graph.parameters.parameter import Parameter
 
 M = TypeVar("M")
 E = TypeVar("E", bound=Entity)

@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean
-from linkwright.graph.log_levels import LogLevel, level_named
-from linkwright.graph.parameter_files import parse_value, read_parameter_file
-from linkwright.graph.parameter_rules import ANY_NODE, ParameterRules
+from linkwright.graph.log.levels import LogLevel, level_named
+from linkwright.graph.parameters.files import parse_value, read_parameter_file
+from linkwright.graph.parameters.rules import ANY_NODE, ParameterRules
 
 BEGIN = "--ros-args"
 END = "--"

@@ -38,7 +38,7 @@ class SimulatedTime:
         node.add_post_set_parameters_callback(self._changed)
 
     def _check(self, parameters: list[Any]) -> Any:
-        from linkwright.graph.parameters import SetParametersResult
+        from linkwright.graph.parameters.parameter import SetParametersResult
 
         for parameter in parameters:
             if parameter.name == PARAMETER and not isinstance(parameter.value, bool):

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, print_diagnostics
 
 if TYPE_CHECKING:
-    from linkwright.graph.log_setup import Logging
+    from linkwright.graph.log.setup import Logging
     from linkwright.nodes.options import Factory
 
 _SIGNALS = (signal.SIGINT, signal.SIGTERM)
@@ -29,7 +29,7 @@ def main(package: str, executable: str, arguments: Sequence[str]) -> int:
     Returns:
         The exit status: 0, the node's own, or 1 when it could not start.
     """
-    from linkwright.graph.log_setup import set_up
+    from linkwright.graph.log.setup import set_up
     from linkwright.graph.ros_arguments import parse
 
     try:

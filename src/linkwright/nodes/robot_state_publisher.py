@@ -30,7 +30,7 @@ from linkwright.graph import (
     SetParametersResult,
     Timer,
 )
-from linkwright.graph.parameter_qos import QoSOverridingOptions, override_qos
+from linkwright.graph.parameters.qos_overrides import QoSOverridingOptions, override_qos
 from linkwright.graph.qos import QoSPolicyKind, QoSProfile
 from linkwright.messages import JointState, String, TFMessage
 from linkwright.nodes.options import NodeOptions, create_node, starting

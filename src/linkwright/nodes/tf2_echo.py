@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from linkwright.diagnostics import Diagnostic, LinkwrightError
 from linkwright.graph import Graph, Node, TransformException
 from linkwright.graph.time import Time
-from linkwright.graph.transform_core import BufferCore
-from linkwright.graph.transform_listener import TransformListener
+from linkwright.graph.transforms.core import BufferCore
+from linkwright.graph.transforms.listener import TransformListener
 from linkwright.kinematics import rotation_matrix
 from linkwright.nodes.options import NodeOptions, create_node, starting
 

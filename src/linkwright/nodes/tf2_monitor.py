@@ -8,7 +8,7 @@ from collections.abc import Iterable
 
 from linkwright.graph import STATIC_TF_SUBSCRIPTION_QOS, TF_QOS, Graph, Node, TransformException
 from linkwright.graph.time import Time
-from linkwright.graph.transform_core import BufferCore, nanoseconds_of
+from linkwright.graph.transforms.core import BufferCore, nanoseconds_of
 from linkwright.messages import TFMessage
 from linkwright.nodes.options import NodeOptions, create_node
 

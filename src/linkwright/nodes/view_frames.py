@@ -11,8 +11,8 @@ from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError
 from linkwright.graph import Graph, Node
-from linkwright.graph.transform_listener import DEFAULT_STATIC_TF_TOPIC, DEFAULT_TF_TOPIC, TransformListener
-from linkwright.graph.transform_waiting import Buffer
+from linkwright.graph.transforms.listener import DEFAULT_STATIC_TF_TOPIC, DEFAULT_TF_TOPIC, TransformListener
+from linkwright.graph.transforms.waiting import Buffer
 from linkwright.nodes.options import NodeOptions, create_node, starting
 
 

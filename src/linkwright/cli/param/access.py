@@ -109,7 +109,7 @@ def parameter_of(name: str, text: str) -> Any:
     """A parameter (rcl_interfaces/msg/Parameter) with the value that a word stands for, read as YAML as ros2 does."""
     import yaml
 
-    from linkwright.graph.parameters import Parameter, ParameterType
+    from linkwright.graph.parameters.parameter import Parameter, ParameterType
 
     try:
         value = yaml.safe_load(text)
@@ -131,7 +131,7 @@ def parameter_of(name: str, text: str) -> Any:
 
 def plain_value(value: Any) -> Any:
     """A parameter's value as plain Python data; arrays as lists."""
-    from linkwright.graph.parameters import parameter_value_to_python
+    from linkwright.graph.parameters.parameter import parameter_value_to_python
 
     found = parameter_value_to_python(value)
     return found if found is None or isinstance(found, (bool, int, float, str)) else list(found)

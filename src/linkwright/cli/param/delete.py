@@ -24,7 +24,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Delete it, and say whether it was."""
-    from linkwright.graph.parameters import Parameter, ParameterType
+    from linkwright.graph.parameters.parameter import Parameter, ParameterType
 
     async def job(session: Session) -> int:
         parameters = await RemoteParameters.of(session, arguments)

@@ -29,8 +29,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Set them, and say of each whether it was."""
-    from linkwright.graph.parameter_files import read_parameter_file
-    from linkwright.graph.parameters import Parameter
+    from linkwright.graph.parameters.files import read_parameter_file
+    from linkwright.graph.parameters.parameter import Parameter
 
     rules = read_parameter_file(arguments.parameter_file)
 

@@ -22,7 +22,7 @@ from linkwright.graph.dds.settings import Settings
 from linkwright.graph.dds.topics import IncomingTopic, OutgoingTopic
 from linkwright.graph.dds.waiting import WaitingThread
 from linkwright.graph.dds.wire_types import WireTypes
-from linkwright.graph.log import Logger
+from linkwright.graph.log.logger import Logger
 from linkwright.graph.transport import NodeIdentity
 
 CLOSING_TIME = 1.0

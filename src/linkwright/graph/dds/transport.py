@@ -15,7 +15,7 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.graph.dds.remote import RemoteGraph
 from linkwright.graph.dds.settings import Range, Settings
 from linkwright.graph.dds.trouble import tell
-from linkwright.graph.log import Logger
+from linkwright.graph.log.logger import Logger
 from linkwright.graph.transport import EndpointInfo, NodeIdentity
 
 if TYPE_CHECKING:

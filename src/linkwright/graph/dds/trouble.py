@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from linkwright.diagnostics import LinkwrightError, render
-from linkwright.graph.log import Logger
+from linkwright.graph.log.logger import Logger
 
 
 def tell(logger: Logger, error: LinkwrightError) -> None:

@@ -24,6 +24,7 @@ class Guardian:
         self._identity = os.urandom(16).hex()
         self._process: subprocess.Popen[bytes] | None = None
         self._closed = False
+        self._folder: Path | None = None
 
     def marked(self, environment: dict[str, str]) -> dict[str, str]:
         """The environment for a process that the guardian is to find; starts the guardian."""
@@ -33,6 +34,11 @@ class Guardian:
     def watch(self, pid: int) -> None:
         """Take charge of the process group that a process leads."""
         self._tell(f"+{pid}\n")
+
+    def owns(self, folder: Path) -> None:
+        """Take charge of a folder of temporary files too."""
+        self._folder = folder
+        self._tell(f"={folder}\n")
 
     def release(self, pid: int) -> None:
         """Forget a group that is gone."""
@@ -68,6 +74,8 @@ class Guardian:
                 start_new_session=True,
                 bufsize=0,
             )
+        if self._folder is not None:
+            self.owns(self._folder)
 
     def _tell(self, line: str) -> None:
         if self._process is not None and self._process.stdin is not None:

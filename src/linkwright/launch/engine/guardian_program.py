@@ -2,7 +2,8 @@
 
 It is run by its path with a bare interpreter and imports little, so that it costs a launch next to nothing. Its
 standard input is a pipe from the launcher with a line for each event: ``+PID`` a process group was started, ``-PID``
-it is gone, ``.`` the launch is over and in order. When the pipe ends without that, the launcher was killed.
+it is gone, ``=PATH`` a folder of temporary files was made, ``.`` the launch is over and in order. When the pipe ends
+without that, the launcher was killed.
 """
 
 from __future__ import annotations
@@ -25,14 +26,21 @@ def main(mark: str) -> None:
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_IGN)
     groups: set[int] = set()
+    folder = ""
     for line in sys.stdin:
         if line.startswith("+"):
             groups.add(int(line[1:]))
         elif line.startswith("-"):
             groups.discard(int(line[1:]))
+        elif line.startswith("="):
+            folder = line[1:].rstrip("\n")
         else:
             return
     end(groups | marked_groups(mark.encode()))
+    if folder:
+        import shutil
+
+        shutil.rmtree(folder, ignore_errors=True)
 
 
 def marked_groups(mark: bytes) -> set[int]:

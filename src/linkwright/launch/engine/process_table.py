@@ -11,6 +11,8 @@ from linkwright.launch.engine.guardian import Guardian
 from linkwright.launch.engine.processes import ProcessPlan, RunningProcess
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from linkwright.launch.actions.execute import ExecuteLocal
     from linkwright.launch.context import LaunchContext
     from linkwright.launch.engine.session import LaunchSession
@@ -76,6 +78,10 @@ class ProcessTable:
         """End all processes at once, and what ended ones left behind; safe to call from a signal handler."""
         for process in (*self._running, *self._left_behind):
             process.signal_group(getattr(signal, "SIGKILL", signal.SIGTERM))
+
+    def owns(self, folder: Path) -> None:
+        """Have a folder deleted should the launcher be killed."""
+        self._guardian.owns(folder)
 
     def close(self) -> None:
         """Take note that all processes are gone."""

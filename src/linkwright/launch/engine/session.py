@@ -137,6 +137,7 @@ class LaunchSession:
             import tempfile
 
             self._scratch = tempfile.TemporaryDirectory(prefix="linkwright_launch_")
+            self.processes.owns(Path(self._scratch.name))
         return Path(self._scratch.name)
 
     def include(self, description: LaunchDescriptionEntity) -> None:

@@ -203,4 +203,3 @@ def load(text: str, name: str) -> Any:
         raise LinkwrightError(Diagnostic("LAUNCH108", f"YAML syntax in '{name}': {error}")) from error
     finally:
         loader.dispose()
-

@@ -20,7 +20,7 @@ from linkwright.launch.substitution import (
 )
 
 if TYPE_CHECKING:
-    from linkwright.graph.parameter_rules import ParameterRules
+    from linkwright.graph.parameters.rules import ParameterRules
 
 
 class ParameterFile:
@@ -78,7 +78,7 @@ class ParameterFile:
         Raises:
             LinkwrightError: LAUNCH133, what is wrong with the file.
         """
-        from linkwright.graph.parameter_files import parse_parameters
+        from linkwright.graph.parameters.files import parse_parameters
 
         path = self.evaluate(context)
         source = self._source or _read(path, self.place)

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from linkwright.graph import action_client, action_server
+from linkwright.graph.actions import client as action_client
+from linkwright.graph.actions import server as action_server
 from linkwright.graph.introspection import NamesAndTypes
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ class ActionServer(action_server.ActionServer):
         action_type: the action class.
         action_name: relative, absolute or private (``~/``) name.
         execute_callback: called with the handle of each goal that is executed; gives the result.
-        options: what else `linkwright.graph.action_server.ActionServer` takes.
+        options: what else `linkwright.graph.actions.server.ActionServer` takes.
     """
 
     def __init__(
@@ -41,7 +42,7 @@ class ActionClient(action_client.ActionClient):
         node: whose it is.
         action_type: the action class.
         action_name: relative, absolute or private (``~/``) name.
-        options: what else `linkwright.graph.action_client.ActionClient` takes.
+        options: what else `linkwright.graph.actions.client.ActionClient` takes.
     """
 
     def __init__(self, node: Node, action_type: Any, action_name: str, **options: Any) -> None:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import Graph
-from linkwright.graph.log_setup import Logging, set_up
+from linkwright.graph.log.setup import Logging, set_up
 from linkwright.graph.ros_arguments import RosArguments, parse
 from linkwright.standins.rclpy_api import logging
 from linkwright.standins.rclpy_api.errors import RCLInvalidROSArgsError, UnknownROSArgsError

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from linkwright.graph.dispatch import CallbackGroup
-from linkwright.graph.lifecycle import LifecycleNodeMixin
+from linkwright.graph.lifecycle.node import LifecycleNodeMixin
 from linkwright.standins.rclpy_api.node import Node
 
 

@@ -6,8 +6,8 @@ import os
 import time
 from pathlib import Path
 
-from linkwright.graph.log import Logger, LogLevel, LogRecord, LogSink, print_to_console
-from linkwright.graph.log_levels import LogLevels, level_named
+from linkwright.graph.log.levels import LogLevels, level_named
+from linkwright.graph.log.logger import Logger, LogLevel, LogRecord, LogSink, print_to_console
 
 LEVELS = LogLevels()
 """The levels of all loggers of the process."""

@@ -14,11 +14,11 @@ from linkwright.graph.dispatch import CallbackGroup, Dispatcher
 from linkwright.graph.executors import MutuallyExclusiveCallbackGroup
 from linkwright.graph.faults import InvalidHandleError
 from linkwright.graph.handle import Handle
-from linkwright.graph.log import Logger
-from linkwright.graph.log_services import LoggerServices
+from linkwright.graph.log.logger import Logger
+from linkwright.graph.log.services import LoggerServices
 from linkwright.graph.names import absolute_namespace, join
-from linkwright.graph.parameter_qos import QoSOverridingOptions, override_qos
-from linkwright.graph.parameters import Parameter
+from linkwright.graph.parameters.parameter import Parameter
+from linkwright.graph.parameters.qos_overrides import QoSOverridingOptions, override_qos
 from linkwright.graph.publisher import Publisher
 from linkwright.graph.qos import ROSOUT_QOS, SERVICES_QOS, QoSProfile
 from linkwright.graph.rate import Rate

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from linkwright.graph import transform_waiting
+from linkwright.graph.transforms import waiting as transform_waiting
 from linkwright.standins.tf2_api.interface import BufferInterface
 
 

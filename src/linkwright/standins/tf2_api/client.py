@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from linkwright.graph.time import Duration, Time
-from linkwright.graph.transform_errors import (
+from linkwright.graph.transforms.errors import (
     ConnectivityException,
     ExtrapolationException,
     InvalidArgumentException,

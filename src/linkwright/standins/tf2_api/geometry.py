@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from linkwright.graph import transform_geometry
+from linkwright.graph.transforms import geometry as transform_geometry
 from linkwright.messages import get_message
 from linkwright.standins.tf2_api.conversion import ConvertRegistration, TransformRegistration
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from linkwright.graph.executors import ExternalShutdownException, ReentrantCallbackGroup
 from linkwright.graph.qos import STATIC_TF_SUBSCRIPTION_QOS, TF_QOS, QoSProfile
-from linkwright.graph.transform_listener import DEFAULT_STATIC_TF_TOPIC, DEFAULT_TF_TOPIC
+from linkwright.graph.transforms.listener import DEFAULT_STATIC_TF_TOPIC, DEFAULT_TF_TOPIC
 from linkwright.messages import TFMessage
 from linkwright.standins.rclpy_api.executors import SingleThreadedExecutor
 from linkwright.standins.rclpy_api.node import Node

@@ -2,7 +2,7 @@
 
 from linkwright.graph.executors import Task
 from linkwright.graph.future import Future
-from linkwright.graph.parameters import Parameter
+from linkwright.graph.parameters.parameter import Parameter
 from linkwright.standins.rclpy_api.context import Context
 from linkwright.standins.rclpy_api.node import Node
 from linkwright.standins.rclpy_api.session import (

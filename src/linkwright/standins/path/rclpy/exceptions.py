@@ -7,7 +7,7 @@ from linkwright.graph.names import InvalidNamespaceError as InvalidNamespaceExce
 from linkwright.graph.names import InvalidNodeNameError as InvalidNodeNameException
 from linkwright.graph.names import InvalidServiceNameError as InvalidServiceNameException
 from linkwright.graph.names import InvalidTopicNameError as InvalidTopicNameException
-from linkwright.graph.parameter_errors import (
+from linkwright.graph.parameters.errors import (
     InvalidParameterException,
     InvalidParameterTypeException,
     InvalidParameterValueException,

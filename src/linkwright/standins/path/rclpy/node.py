@@ -1,8 +1,8 @@
 """Stands in for ``rclpy.node``."""
 
 from linkwright.graph.client import Client
-from linkwright.graph.parameter_errors import ParameterAlreadyDeclaredException, ParameterNotDeclaredException
-from linkwright.graph.parameters import Parameter
+from linkwright.graph.parameters.errors import ParameterAlreadyDeclaredException, ParameterNotDeclaredException
+from linkwright.graph.parameters.parameter import Parameter
 from linkwright.graph.publisher import Publisher
 from linkwright.graph.qos import QoSProfile
 from linkwright.graph.rate import Rate

@@ -1,5 +1,5 @@
 """Stands in for ``rclpy.parameter_client``."""
 
-from linkwright.graph.parameter_client import AsyncParameterClient
+from linkwright.graph.parameters.client import AsyncParameterClient
 
 __all__ = ["AsyncParameterClient"]

@@ -1,6 +1,6 @@
 """Stands in for ``rclpy.parameter_event_handler``."""
 
-from linkwright.graph.parameter_events import (
+from linkwright.graph.parameters.events import (
     ParameterCallbackHandle,
     ParameterEventCallbackHandle,
     ParameterEventHandler,

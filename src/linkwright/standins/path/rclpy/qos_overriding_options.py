@@ -1,5 +1,5 @@
 """Stands in for ``rclpy.qos_overriding_options``."""
 
-from linkwright.graph.parameter_qos import InvalidQosOverridesError, QoSOverridingOptions
+from linkwright.graph.parameters.qos_overrides import InvalidQosOverridesError, QoSOverridingOptions
 
 __all__ = ["InvalidQosOverridesError", "QoSOverridingOptions"]

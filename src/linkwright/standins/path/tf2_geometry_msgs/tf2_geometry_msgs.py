@@ -1,6 +1,6 @@
 """Stands in for ``tf2_geometry_msgs.tf2_geometry_msgs``."""
 
-from linkwright.graph.transform_geometry import (
+from linkwright.graph.transforms.geometry import (
     do_transform_point,
     do_transform_polygon_stamped,
     do_transform_pose,

@@ -1,7 +1,7 @@
 """Stands in for ``tf2_py``."""
 
-from linkwright.graph.transform_core import BufferCore
-from linkwright.graph.transform_errors import (
+from linkwright.graph.transforms.core import BufferCore
+from linkwright.graph.transforms.errors import (
     ConnectivityException,
     ExtrapolationException,
     InvalidArgumentException,

@@ -1,8 +1,8 @@
 """Stands in for ``tf2_ros``."""
 
-from linkwright.graph.transform_broadcaster import StaticTransformBroadcaster, TransformBroadcaster
-from linkwright.graph.transform_core import BufferCore
-from linkwright.graph.transform_errors import (
+from linkwright.graph.transforms.broadcaster import StaticTransformBroadcaster, TransformBroadcaster
+from linkwright.graph.transforms.core import BufferCore
+from linkwright.graph.transforms.errors import (
     ConnectivityException,
     ExtrapolationException,
     InvalidArgumentException,

@@ -1,5 +1,5 @@
 """Stands in for ``tf2_ros.transform_broadcaster``."""
 
-from linkwright.graph.transform_broadcaster import TransformBroadcaster
+from linkwright.graph.transforms.broadcaster import TransformBroadcaster
 
 __all__ = ["TransformBroadcaster"]

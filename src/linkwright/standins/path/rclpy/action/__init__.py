@@ -1,6 +1,6 @@
 """Stands in for ``rclpy.action``."""
 
-from linkwright.graph.action_goal import CancelResponse, GoalResponse
+from linkwright.graph.actions.goal import CancelResponse, GoalResponse
 from linkwright.standins.rclpy_api.action import (
     ActionClient,
     ActionServer,

@@ -1,7 +1,7 @@
 """Stands in for ``rclpy.action.server``."""
 
-from linkwright.graph.action_goal import CancelResponse, GoalEvent, GoalResponse, ServerGoalHandle
-from linkwright.graph.action_server import (
+from linkwright.graph.actions.goal import CancelResponse, GoalEvent, GoalResponse, ServerGoalHandle
+from linkwright.graph.actions.server import (
     default_cancel_callback,
     default_goal_callback,
     default_handle_accepted_callback,

@@ -1,9 +1,9 @@
 """Stands in for ``rclpy.lifecycle``."""
 
-from linkwright.graph.lifecycle_entities import LifecyclePublisher, ManagedEntity, SimpleManagedEntity
-from linkwright.graph.lifecycle_entities import LifecyclePublisher as Publisher
-from linkwright.graph.lifecycle_states import LifecycleState, TransitionCallbackReturn
-from linkwright.graph.lifecycle_states import LifecycleState as State
+from linkwright.graph.lifecycle.entities import LifecyclePublisher, ManagedEntity, SimpleManagedEntity
+from linkwright.graph.lifecycle.entities import LifecyclePublisher as Publisher
+from linkwright.graph.lifecycle.states import LifecycleState, TransitionCallbackReturn
+from linkwright.graph.lifecycle.states import LifecycleState as State
 from linkwright.standins.rclpy_api.lifecycle import LifecycleNode, LifecycleNodeMixin
 from linkwright.standins.rclpy_api.lifecycle import LifecycleNode as Node
 

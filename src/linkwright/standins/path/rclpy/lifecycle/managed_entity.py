@@ -1,5 +1,5 @@
 """Stands in for ``rclpy.lifecycle.managed_entity``."""
 
-from linkwright.graph.lifecycle_entities import ManagedEntity, SimpleManagedEntity
+from linkwright.graph.lifecycle.entities import ManagedEntity, SimpleManagedEntity
 
 __all__ = ["ManagedEntity", "SimpleManagedEntity"]

@@ -1,6 +1,6 @@
 """Stands in for ``rclpy.lifecycle.node``."""
 
-from linkwright.graph.lifecycle_states import LifecycleState, TransitionCallbackReturn
+from linkwright.graph.lifecycle.states import LifecycleState, TransitionCallbackReturn
 from linkwright.standins.rclpy_api.lifecycle import LifecycleNode, LifecycleNodeMixin
 
 __all__ = ["LifecycleNode", "LifecycleNodeMixin", "LifecycleState", "TransitionCallbackReturn"]

@@ -1,5 +1,5 @@
 """Stands in for ``rclpy.lifecycle.publisher``."""
 
-from linkwright.graph.lifecycle_entities import LifecyclePublisher
+from linkwright.graph.lifecycle.entities import LifecyclePublisher
 
 __all__ = ["LifecyclePublisher"]

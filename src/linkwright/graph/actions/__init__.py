@@ -1,0 +1,1 @@
+"""Actions: servers, clients and goals."""

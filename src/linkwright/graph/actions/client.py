@@ -1,0 +1,304 @@
+"""Sends goals to an action, and hears what becomes of them."""
+
+from __future__ import annotations
+
+import uuid
+import weakref
+from collections.abc import Callable
+from functools import partial
+from inspect import iscoroutinefunction
+from types import GenericAlias
+from typing import TYPE_CHECKING, Any
+
+from linkwright.graph.actions.goal import ACTIVE, GoalStatus
+from linkwright.graph.dispatch import CallbackGroup
+from linkwright.graph.future import Future
+from linkwright.graph.qos import ACTION_STATUS_QOS, DEFAULT_QOS, SERVICES_QOS, QoSProfile
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
+
+    from linkwright.graph.client import Client
+    from linkwright.graph.node import Node
+
+
+class ClientGoalHandle:
+    """A goal that was sent, as its sender knows it (rclpy ``ClientGoalHandle``).
+
+    Attributes:
+        goal_id: its id (unique_identifier_msgs/msg/UUID).
+        accepted: whether the server took it.
+        stamp: when (builtin_interfaces/msg/Time).
+        status: its state as last heard of.
+    """
+
+    __class_getitem__: Any = classmethod(GenericAlias)  # annotations name the type of the action, as in rclpy
+
+    def __init__(self, action_client: ActionClient, goal_id: Any, goal_response: Any) -> None:
+        self._action_client = action_client
+        self.goal_id = goal_id
+        self.accepted: bool = goal_response.accepted
+        self.stamp = goal_response.stamp
+        self.status = int(GoalStatus.UNKNOWN)
+
+    def __eq__(self, other: object) -> bool:
+        return bytes(self.goal_id.uuid) == bytes(other.goal_id.uuid) if isinstance(other, ClientGoalHandle) else False
+
+    def __hash__(self) -> int:
+        return hash(bytes(self.goal_id.uuid))
+
+    def __repr__(self) -> str:
+        return f"ClientGoalHandle <id={self.goal_id.uuid}, accepted={self.accepted}, status={self.status}>"
+
+    def cancel_goal(self, timeout_sec: float | None = None) -> Any:
+        """Ask for the goal to be canceled, and block until the server has answered; see `Client.call`."""
+        return _waited_for(self.cancel_goal_async(), timeout_sec)
+
+    def cancel_goal_async(self) -> Future[Any]:
+        """Ask for the goal to be canceled; the future gets an action_msgs/srv/CancelGoal response."""
+        return self._action_client.cancel(self)
+
+    def get_result(self, timeout_sec: float | None = None) -> Any:
+        """Ask for the result, and block until it is there; see `Client.call`."""
+        return _waited_for(self.get_result_async(), timeout_sec)
+
+    def get_result_async(self) -> Future[Any]:
+        """Ask for the result; the future gets a response with ``status`` and ``result``."""
+        return self._action_client.request_result(self)
+
+
+class ActionClient:
+    """Sends goals to an action (rclpy ``ActionClient``).
+
+    Args:
+        node: whose it is.
+        action_type: the class of the action, or its name.
+        action_name: relative, absolute or private name.
+        callback_group: for the feedback callbacks.
+        goal_service_qos_profile: for the service that takes goals.
+        result_service_qos_profile: for the service that gives results.
+        cancel_service_qos_profile: for the service that cancels.
+        feedback_sub_qos_profile: for the feedback topic.
+        status_sub_qos_profile: for the status topic.
+
+    Raises:
+        TypeError: the type is none of an action.
+        InvalidServiceNameError: the name is not valid.
+    """
+
+    __class_getitem__: Any = classmethod(GenericAlias)  # annotations name the type of the action, as in rclpy
+
+    def __init__(
+        self,
+        node: Node,
+        action_type: Any,
+        action_name: str,
+        *,
+        callback_group: CallbackGroup | None = None,
+        goal_service_qos_profile: QoSProfile = SERVICES_QOS,
+        result_service_qos_profile: QoSProfile = SERVICES_QOS,
+        cancel_service_qos_profile: QoSProfile = SERVICES_QOS,
+        feedback_sub_qos_profile: QoSProfile = DEFAULT_QOS,
+        status_sub_qos_profile: QoSProfile = ACTION_STATUS_QOS,
+    ) -> None:
+        from linkwright.messages import get_action, get_message
+
+        self._node = node
+        self._action_type = get_action(action_type) if isinstance(action_type, str) else action_type
+        self._action_name = node.resolve_service_name(action_name)
+        self._uuid = get_message("unique_identifier_msgs/msg/UUID")
+        impl = self._action_type.Impl
+        base = f"{self._action_name}/_action"
+
+        def client(kind: Any, name: str, qos: QoSProfile) -> Client[Any, Any]:
+            return node.create_client(kind, f"{base}/{name}", qos_profile=qos, callback_group=callback_group)
+
+        self._goal_client = client(impl.SendGoalService, "send_goal", goal_service_qos_profile)
+        self._cancel_client = client(impl.CancelGoalService, "cancel_goal", cancel_service_qos_profile)
+        self._result_client = client(impl.GetResultService, "get_result", result_service_qos_profile)
+        self._feedback = node.create_subscription(
+            impl.FeedbackMessage,
+            f"{base}/feedback",
+            self._on_feedback,
+            feedback_sub_qos_profile,
+            callback_group=callback_group,
+        )
+        self._status = node.create_subscription(
+            impl.GoalStatusMessage,
+            f"{base}/status",
+            self._on_status,
+            status_sub_qos_profile,
+            callback_group=callback_group,
+        )
+        self._goal_handles: dict[bytes, weakref.ref[ClientGoalHandle]] = {}
+        self._feedback_callbacks: dict[bytes, Callable[[Any], Any]] = {}
+        self._destroyed = False
+        node.add_cleanup(self.destroy)
+
+    @property
+    def action_type(self) -> Any:
+        """The class of the action."""
+        return self._action_type
+
+    @property
+    def action_name(self) -> str:
+        """The action's absolute name."""
+        return self._action_name
+
+    def server_is_ready(self) -> bool:
+        """Whether a server of the action is there, with all its services and topics."""
+        clients = (self._goal_client, self._cancel_client, self._result_client)
+        return all(client.service_is_ready() for client in clients) and all(
+            subscription.get_publisher_count() for subscription in (self._feedback, self._status)
+        )
+
+    def wait_for_server(self, timeout_sec: float | None = None) -> bool:
+        """Block the calling thread until a server is there; see `Client.wait_for_service`."""
+        return self._node.graph.wait_until(self.server_is_ready, timeout_sec)
+
+    def send_goal(self, goal: Any, timeout_sec: float | None = None, **options: Any) -> Any:
+        """Send a goal, and block the calling thread until its result is there. Another thread must run callbacks.
+
+        Args:
+            goal: the goal message.
+            timeout_sec: how many seconds to wait for the server to accept it, and then for the result.
+            options: as for `send_goal_async`.
+
+        Returns:
+            The response with ``status`` and ``result``; None when the goal was rejected.
+
+        Raises:
+            TypeError: it is not a goal of the action.
+            TimeoutError: it took too long.
+        """
+        handle = _waited_for(self.send_goal_async(goal, **options), timeout_sec)
+        return handle.get_result(timeout_sec) if handle.accepted else None
+
+    def send_goal_async(
+        self, goal: Any, feedback_callback: Callable[[Any], Any] | None = None, goal_uuid: Any = None
+    ) -> Future[ClientGoalHandle]:
+        """Send a goal.
+
+        Args:
+            goal: the goal message.
+            feedback_callback: called with each feedback message about this goal (``.feedback`` is the action's).
+            goal_uuid: the goal's id; a random one when left out.
+
+        Returns:
+            A future that gets the goal's handle when the server has accepted or rejected it.
+
+        Raises:
+            TypeError: it is not a goal of the action.
+        """
+        if not isinstance(goal, self._action_type.Goal):
+            raise TypeError(f"Expected {self._action_type.Goal}, got {type(goal)}")
+        request = self._action_type.Impl.SendGoalService.Request()
+        request.goal_id = self._uuid(uuid=list(uuid.uuid4().bytes)) if goal_uuid is None else goal_uuid
+        request.goal = goal
+        key = bytes(request.goal_id.uuid)
+        if feedback_callback is not None:
+            self._feedback_callbacks[key] = feedback_callback
+        handed: Future[ClientGoalHandle] = Future()
+        answer = self._goal_client.call_async(request)
+        answer.add_waiter(partial(self._goal_answered, answer, request.goal_id, handed))
+        return handed
+
+    def cancel(self, goal: ClientGoalHandle) -> Future[Any]:
+        """Ask for a goal to be canceled; see `ClientGoalHandle.cancel_goal_async`.
+
+        Raises:
+            TypeError: it is not the handle of a goal.
+        """
+        _check_handle(goal)
+        request = self._action_type.Impl.CancelGoalService.Request()
+        request.goal_info.goal_id = goal.goal_id
+        return self._cancel_client.call_async(request)
+
+    def request_result(self, goal: ClientGoalHandle) -> Future[Any]:
+        """Ask for the result of a goal; see `ClientGoalHandle.get_result_async`.
+
+        Raises:
+            TypeError: it is not the handle of a goal.
+        """
+        _check_handle(goal)
+        request = self._action_type.Impl.GetResultService.Request()
+        request.goal_id = goal.goal_id
+        handed: Future[Any] = Future()
+        answer = self._result_client.call_async(request)
+        answer.add_waiter(partial(self._result_came, answer, bytes(goal.goal_id.uuid), handed))
+        return handed
+
+    def destroy(self) -> None:
+        """Leave the graph; pending futures stay as they are. A second call does nothing."""
+        if self._destroyed:
+            return
+        self._destroyed = True
+        node = self._node
+        for client in (self._goal_client, self._cancel_client, self._result_client):
+            node.destroy_client(client)
+        for subscription in (self._feedback, self._status):
+            node.destroy_subscription(subscription)
+        node.remove_cleanup(self.destroy)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.destroy()
+
+    def _goal_answered(self, answer: Future[Any], goal_id: Any, handed: Future[ClientGoalHandle]) -> None:
+        if answer.cancelled():
+            handed.cancel()
+            return
+        handle = ClientGoalHandle(self, goal_id, answer.result())
+        key = bytes(goal_id.uuid)
+        if handle.accepted:
+            self._goal_handles[key] = weakref.ref(handle)
+        else:
+            self._feedback_callbacks.pop(key, None)
+        self._give(handed, handle)
+
+    def _result_came(self, answer: Future[Any], key: bytes, handed: Future[Any]) -> None:
+        if answer.cancelled():
+            handed.cancel()
+            return
+        callback = self._feedback_callbacks.get(key)
+        if callback is not None and not iscoroutinefunction(callback):
+            # What was published before the end is told before the end.
+            while (call := self._feedback.take()) is not None:
+                call()
+        self._feedback_callbacks.pop(key, None)
+        self._give(handed, answer.result())
+
+    def _give(self, future: Future[Any], result: Any) -> None:
+        if not future.ended():
+            if hasattr(self._node.dispatcher, "create_task"):
+                future.set_executor(self._node.dispatcher)
+            future.set_result(result)
+
+    def _on_feedback(self, message: Any) -> Any:
+        callback = self._feedback_callbacks.get(bytes(message.goal_id.uuid))
+        return None if callback is None else callback(message)
+
+    def _on_status(self, message: Any) -> None:
+        for status in message.status_list:
+            key = bytes(status.goal_info.goal_id.uuid)
+            reference = self._goal_handles.get(key)
+            if reference is None:
+                continue
+            handle = reference()
+            if handle is not None:
+                handle.status = status.status
+            if handle is None or GoalStatus(status.status) not in ACTIVE:
+                del self._goal_handles[key]
+
+
+def _check_handle(goal: object) -> None:
+    if not isinstance(goal, ClientGoalHandle):
+        raise TypeError(f"Expected type ClientGoalHandle but received {type(goal)}")
+
+
+def _waited_for(future: Future[Any], timeout_sec: float | None) -> Any:
+    if not future.wait(timeout_sec):
+        raise TimeoutError("no response of the action's server in time")
+    return future.result()

@@ -1,0 +1,195 @@
+"""The states of an action's goals, and the handle by which a server works with one (rclpy ``rclpy.action.server``)."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from enum import Enum, IntEnum
+from types import GenericAlias
+from typing import TYPE_CHECKING, Any
+
+from linkwright.graph.future import Future
+
+if TYPE_CHECKING:
+    from linkwright.graph.actions.server import ActionServer
+
+
+class GoalStatus(IntEnum):
+    """The states of a goal; numbers as in action_msgs/msg/GoalStatus."""
+
+    UNKNOWN = 0
+    ACCEPTED = 1
+    EXECUTING = 2
+    CANCELING = 3
+    SUCCEEDED = 4
+    CANCELED = 5
+    ABORTED = 6
+
+
+class GoalEvent(Enum):
+    """What takes a goal from one state to another; numbers as in rcl_action."""
+
+    EXECUTE = 1
+    CANCEL_GOAL = 2
+    SUCCEED = 3
+    ABORT = 4
+    CANCELED = 5
+
+
+class GoalResponse(Enum):
+    """Whether a server takes a goal."""
+
+    REJECT = 1
+    ACCEPT = 2
+
+
+class CancelResponse(Enum):
+    """Whether a server lets a goal be canceled."""
+
+    REJECT = 1
+    ACCEPT = 2
+
+
+ACTIVE = frozenset({GoalStatus.ACCEPTED, GoalStatus.EXECUTING, GoalStatus.CANCELING})
+"""The states in which something is still to come of a goal."""
+
+CANCELABLE = frozenset({GoalStatus.ACCEPTED, GoalStatus.EXECUTING})
+"""The states in which a goal can be asked to be canceled."""
+
+_NEXT = {
+    (GoalStatus.ACCEPTED, GoalEvent.EXECUTE): GoalStatus.EXECUTING,
+    (GoalStatus.ACCEPTED, GoalEvent.CANCEL_GOAL): GoalStatus.CANCELING,
+    (GoalStatus.EXECUTING, GoalEvent.CANCEL_GOAL): GoalStatus.CANCELING,
+    (GoalStatus.EXECUTING, GoalEvent.SUCCEED): GoalStatus.SUCCEEDED,
+    (GoalStatus.EXECUTING, GoalEvent.ABORT): GoalStatus.ABORTED,
+    (GoalStatus.CANCELING, GoalEvent.SUCCEED): GoalStatus.SUCCEEDED,
+    (GoalStatus.CANCELING, GoalEvent.ABORT): GoalStatus.ABORTED,
+    (GoalStatus.CANCELING, GoalEvent.CANCELED): GoalStatus.CANCELED,
+}
+
+
+class ServerGoalHandle:
+    """An accepted goal, as its server works with it. It may be used from any thread.
+
+    Attributes:
+        request: the goal message.
+        goal_info: its id and when it was accepted (action_msgs/msg/GoalInfo).
+        ended_ns: when it came to an end, by the server's clock; None before.
+    """
+
+    __class_getitem__: Any = classmethod(GenericAlias)  # annotations name the type of the action, as in rclpy
+
+    def __init__(self, action_server: ActionServer, goal_info: Any, goal_request: Any) -> None:
+        self._server = action_server
+        self._status = GoalStatus.ACCEPTED
+        self._destroyed = False
+        self._lock = threading.RLock()
+        self.request = goal_request
+        self.goal_info = goal_info
+        self.ended_ns: int | None = None
+        self.result: Future[Any] = Future()
+        """The response to those who ask for the result."""
+
+    def __eq__(self, other: object) -> bool:
+        return bytes(self.goal_id.uuid) == bytes(other.goal_id.uuid) if isinstance(other, ServerGoalHandle) else False
+
+    def __hash__(self) -> int:
+        return hash(bytes(self.goal_id.uuid))
+
+    @property
+    def goal_id(self) -> Any:
+        """The goal's id (unique_identifier_msgs/msg/UUID)."""
+        return self.goal_info.goal_id
+
+    @property
+    def status(self) -> int:
+        """The goal's state; UNKNOWN when the handle was destroyed."""
+        return int(GoalStatus.UNKNOWN if self._destroyed else self._status)
+
+    @property
+    def is_active(self) -> bool:
+        """Whether something is still to come of it."""
+        return not self._destroyed and self._status in ACTIVE
+
+    @property
+    def is_cancel_requested(self) -> bool:
+        """Whether it is to be canceled."""
+        return not self._destroyed and self._status is GoalStatus.CANCELING
+
+    def execute(self, execute_callback: Callable[[ServerGoalHandle], Any] | None = None) -> None:
+        """Begin the work, soon: have a callback called, the server's when it is left out.
+
+        A goal that was canceled before is given to the callback as well, to end as it likes.
+        """
+        with self._lock:
+            if not self.is_cancel_requested:
+                self.update(GoalEvent.EXECUTE)
+        self._server.start_execution(self, execute_callback)
+
+    def publish_feedback(self, feedback: Any) -> None:
+        """Tell how far the work has come.
+
+        Raises:
+            TypeError: it is not a feedback message of the action.
+        """
+        kind = self._server.action_type
+        if not isinstance(feedback, kind.Feedback):
+            raise TypeError(f"Expected {kind.Feedback}, got {type(feedback)}")
+        if not self._destroyed:
+            self._server.publish_feedback(self.goal_id, feedback)
+
+    def succeed(self, response: Any = None) -> None:
+        """The goal was reached; `response` is its result, unless the execute callback gives that.
+
+        Raises:
+            RuntimeError: the goal is in no state in which this can be.
+        """
+        self._end(GoalEvent.SUCCEED, response)
+
+    def abort(self, response: Any = None) -> None:
+        """The goal cannot be reached; see `succeed`."""
+        self._end(GoalEvent.ABORT, response)
+
+    def canceled(self, response: Any = None) -> None:
+        """The work was broken off, as was asked for; see `succeed`."""
+        self._end(GoalEvent.CANCELED, response)
+
+    def update(self, event: GoalEvent) -> None:
+        """Take the goal to another state, and tell it on the status topic. Nothing happens to a destroyed handle.
+
+        Raises:
+            RuntimeError: the event cannot happen in the goal's state.
+        """
+        with self._lock:
+            if self._destroyed:
+                return
+            following = _NEXT.get((self._status, event))
+            if following is None:
+                raise RuntimeError(
+                    "Failed to update goal state: goal_handle attempted invalid transition from state "
+                    f"{self._status.name} with event {event.name}"
+                )
+            self._status = following
+        self._server.state_changed(self)
+
+    def destroy(self) -> None:
+        """Forget the goal."""
+        self._destroyed = True
+        self._server.forget(self)
+
+    def retire(self) -> None:
+        """Do nothing any more; the server forgets the goal by itself."""
+        self._destroyed = True
+
+    def set_result(self, result: Any) -> None:
+        """Answer those who ask for the result, unless they were answered."""
+        if not self.result.ended():
+            response = self._server.action_type.Impl.GetResultService.Response()
+            response.status = int(self._status)
+            response.result = result
+            self.result.set_result(response)
+
+    def _end(self, event: GoalEvent, response: Any) -> None:
+        self.update(event)
+        if response is not None:
+            self.set_result(response)

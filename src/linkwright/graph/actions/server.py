@@ -1,0 +1,399 @@
+"""Serves an action: takes goals, works on them, tells how far it has come and what came of it."""
+
+from __future__ import annotations
+
+import threading
+from collections import deque
+from collections.abc import Callable
+from functools import partial
+from inspect import isawaitable
+from types import GenericAlias
+from typing import TYPE_CHECKING, Any
+
+from linkwright.graph.actions.goal import (
+    ACTIVE,
+    CANCELABLE,
+    CancelResponse,
+    GoalEvent,
+    GoalResponse,
+    GoalStatus,
+    ServerGoalHandle,
+)
+from linkwright.graph.dispatch import FREE_GROUP, CallbackGroup
+from linkwright.graph.entity import Entity
+from linkwright.graph.qos import ACTION_STATUS_QOS, DEFAULT_QOS, SERVICES_QOS, QoSProfile
+from linkwright.graph.time import NANOSECONDS_PER_SECOND, Time
+
+if TYPE_CHECKING:
+    from linkwright.graph.node import Node
+    from linkwright.graph.timer import Timer
+
+ERROR_NONE, ERROR_REJECTED, ERROR_UNKNOWN_GOAL_ID, ERROR_GOAL_TERMINATED = range(4)
+"""What a request to cancel is answered with (action_msgs/srv/CancelGoal)."""
+
+
+def default_goal_callback(goal_request: Any) -> GoalResponse:  # noqa: ARG001  # a callback's signature
+    """Accept every goal."""
+    return GoalResponse.ACCEPT
+
+
+def default_handle_accepted_callback(goal_handle: ServerGoalHandle) -> None:
+    """Begin the work at once."""
+    goal_handle.execute()
+
+
+def default_cancel_callback(cancel_request: ServerGoalHandle) -> CancelResponse:  # noqa: ARG001
+    """Let nothing be canceled."""
+    return CancelResponse.REJECT
+
+
+async def outcome_of(value: Any) -> Any:
+    """What a callback gave, or what came of it when it was a coroutine."""
+    return await value if isawaitable(value) else value
+
+
+class ActionServer:
+    """Serves an action (rclpy ``ActionServer``).
+
+    It is made of three services and two topics below ``NAME/_action/``. Callbacks may be coroutine functions; an
+    execute callback that is none runs in the dispatcher's thread and holds up whatever else that runs.
+
+    Args:
+        node: whose it is.
+        action_type: the class of the action, or its name.
+        action_name: relative, absolute or private name.
+        execute_callback: called with the handle of a goal to work on; gives the result.
+        callback_group: for the callbacks below; goals are worked on outside of all groups.
+        goal_callback: called with a goal, decides whether it is accepted.
+        handle_accepted_callback: called with the handle of an accepted goal; begins the work, now or later.
+        cancel_callback: called with the handle of a goal that is to be canceled, decides whether it is.
+        goal_service_qos_profile: for the service that takes goals.
+        result_service_qos_profile: for the service that gives results.
+        cancel_service_qos_profile: for the service that cancels.
+        feedback_pub_qos_profile: for the feedback topic.
+        status_pub_qos_profile: for the status topic.
+        result_timeout: how many seconds a goal's result is kept after its end; negative for ever.
+
+    Raises:
+        TypeError: the execute callback cannot be called, or the type is none of an action.
+        InvalidServiceNameError: the name is not valid.
+    """
+
+    __class_getitem__: Any = classmethod(GenericAlias)  # annotations name the type of the action, as in rclpy
+
+    def __init__(
+        self,
+        node: Node,
+        action_type: Any,
+        action_name: str,
+        execute_callback: Callable[[ServerGoalHandle], Any],
+        *,
+        callback_group: CallbackGroup | None = None,
+        goal_callback: Callable[[Any], Any] | None = default_goal_callback,
+        handle_accepted_callback: Callable[[ServerGoalHandle], Any] | None = default_handle_accepted_callback,
+        cancel_callback: Callable[[ServerGoalHandle], Any] | None = default_cancel_callback,
+        goal_service_qos_profile: QoSProfile = SERVICES_QOS,
+        result_service_qos_profile: QoSProfile = SERVICES_QOS,
+        cancel_service_qos_profile: QoSProfile = SERVICES_QOS,
+        feedback_pub_qos_profile: QoSProfile = DEFAULT_QOS,
+        status_pub_qos_profile: QoSProfile = ACTION_STATUS_QOS,
+        result_timeout: float = 900,
+    ) -> None:
+        from linkwright.messages import get_action, get_message
+
+        self.register_execute_callback(execute_callback)
+        self.register_goal_callback(goal_callback)
+        self.register_handle_accepted_callback(handle_accepted_callback)
+        self.register_cancel_callback(cancel_callback)
+        self._node = node
+        self._action_type = get_action(action_type) if isinstance(action_type, str) else action_type
+        self._action_name = node.resolve_service_name(action_name)
+        self._result_timeout_ns = round(result_timeout * NANOSECONDS_PER_SECOND)
+        self._lock = threading.RLock()
+        self._goal_handles: dict[bytes, ServerGoalHandle] = {}
+        self._goal_info = get_message("action_msgs/msg/GoalInfo")
+        self._goal_status = get_message("action_msgs/msg/GoalStatus")
+        self._expiry: Timer | None = None
+        self._destroyed = False
+        self._executions = node.add_entity(_Executions(node))
+        impl = self._action_type.Impl
+        base = f"{self._action_name}/_action"
+        self._services = [
+            node.create_service(kind, f"{base}/{name}", answer, qos_profile=qos, callback_group=group, replying=True)
+            for kind, name, answer, qos, group in (
+                (impl.SendGoalService, "send_goal", self._on_goal, goal_service_qos_profile, callback_group),
+                (impl.CancelGoalService, "cancel_goal", self._on_cancel, cancel_service_qos_profile, callback_group),
+                (impl.GetResultService, "get_result", self._on_result, result_service_qos_profile, FREE_GROUP),
+            )
+        ]
+        self._feedback = node.create_publisher(impl.FeedbackMessage, f"{base}/feedback", feedback_pub_qos_profile)
+        self._status = node.create_publisher(impl.GoalStatusMessage, f"{base}/status", status_pub_qos_profile)
+        node.add_cleanup(self.destroy)
+
+    @property
+    def action_type(self) -> Any:
+        """The class of the action."""
+        return self._action_type
+
+    @property
+    def action_name(self) -> str:
+        """The action's absolute name."""
+        return self._action_name
+
+    def register_execute_callback(self, execute_callback: Callable[[ServerGoalHandle], Any]) -> None:
+        """Have goals worked on by another callback.
+
+        Raises:
+            TypeError: it cannot be called.
+        """
+        if not callable(execute_callback):
+            raise TypeError("Failed to register goal execution callback: not callable")
+        self._execute_callback = execute_callback
+
+    def register_goal_callback(self, goal_callback: Callable[[Any], Any] | None) -> None:
+        """Have another callback decide which goals are accepted; None for all."""
+        self._goal_callback = goal_callback or default_goal_callback
+
+    def register_handle_accepted_callback(
+        self, handle_accepted_callback: Callable[[ServerGoalHandle], Any] | None
+    ) -> None:
+        """Have another callback begin the work on accepted goals; None for at once."""
+        self._handle_accepted_callback = handle_accepted_callback or default_handle_accepted_callback
+
+    def register_cancel_callback(self, cancel_callback: Callable[[ServerGoalHandle], Any] | None) -> None:
+        """Have another callback decide what may be canceled; None for nothing."""
+        self._cancel_callback = cancel_callback or default_cancel_callback
+
+    def destroy(self) -> None:
+        """Leave the graph; goals on their way come to nothing. A second call does nothing."""
+        with self._lock:
+            if self._destroyed:
+                return
+            self._destroyed = True
+            goals = list(self._goal_handles.values())
+            self._goal_handles.clear()
+        for goal in goals:
+            goal.retire()
+        node = self._node
+        for service in self._services:
+            node.destroy_service(service)
+        node.destroy_publisher(self._feedback)
+        node.destroy_publisher(self._status)
+        node.remove_entity(self._executions)
+        if self._expiry is not None:
+            node.destroy_timer(self._expiry)
+        node.remove_cleanup(self.destroy)
+
+    # --- for goal handles --------------------------------------------------------------------------------------------
+
+    def start_execution(self, goal: ServerGoalHandle, callback: Callable[[ServerGoalHandle], Any] | None) -> None:
+        """Have a goal worked on soon."""
+        if not self._destroyed:
+            self._executions.add(partial(self._execute, callback or self._execute_callback, goal))
+
+    def publish_feedback(self, goal_id: Any, feedback: Any) -> None:
+        """Publish the feedback of a goal."""
+        if not self._destroyed:
+            message = self._action_type.Impl.FeedbackMessage()
+            message.goal_id = goal_id
+            message.feedback = feedback
+            self._feedback.publish(message)
+
+    def state_changed(self, goal: ServerGoalHandle) -> None:
+        """Tell the states of all goals; the result of one that ended is kept for a while."""
+        if GoalStatus(goal.status) not in ACTIVE:
+            goal.ended_ns = self._node.get_clock().now_ns()
+            self._watch_expiry()
+        self._publish_status()
+
+    def forget(self, goal: ServerGoalHandle) -> None:
+        """Know nothing of a goal any more."""
+        with self._lock:
+            self._goal_handles.pop(bytes(goal.goal_id.uuid), None)
+
+    # --- the services ------------------------------------------------------------------------------------------------
+
+    async def _on_goal(self, request: Any, reply: Callable[[Any], None]) -> None:
+        logger = self._node.get_logger()
+        uuid = bytes(request.goal_id.uuid)
+        logger.debug(f"New goal request with ID: {request.goal_id.uuid}")
+        response = self._action_type.Impl.SendGoalService.Response()
+        goal = None
+        if uuid not in self._goal_handles:
+            answer = await outcome_of(self._goal_callback(request.goal))
+            if not isinstance(answer, GoalResponse):
+                logger.warning("Goal request callback did not return a GoalResponse type. Rejecting goal.")
+            elif answer is GoalResponse.ACCEPT:
+                goal = self._accept(request)
+                response.accepted = True
+                response.stamp = goal.goal_info.stamp
+        reply(response)
+        if goal is None:
+            logger.debug(f"New goal rejected: {request.goal_id.uuid}")
+            return
+        logger.debug(f"New goal accepted: {request.goal_id.uuid}")
+        self._publish_status()
+        await outcome_of(self._handle_accepted_callback(goal))
+
+    def _accept(self, request: Any) -> ServerGoalHandle:
+        info = self._goal_info()
+        info.goal_id = request.goal_id
+        info.stamp = self._node.get_clock().now().to_msg()
+        goal = ServerGoalHandle(self, info, request.goal)
+        with self._lock:
+            self._goal_handles[bytes(request.goal_id.uuid)] = goal
+        return goal
+
+    async def _on_cancel(self, request: Any, reply: Callable[[Any], None]) -> None:
+        response = self._action_type.Impl.CancelGoalService.Response()
+        response.return_code, goals = self._to_cancel(request.goal_info)
+        canceling = []
+        for goal in goals:
+            answer = await outcome_of(self._cancel_callback(goal))
+            if answer is CancelResponse.ACCEPT and GoalStatus(goal.status) in CANCELABLE:
+                goal.update(GoalEvent.CANCEL_GOAL)
+                canceling.append(goal.goal_info)
+        if goals and not canceling:
+            response.return_code = ERROR_REJECTED
+        response.goals_canceling = canceling
+        reply(response)
+
+    def _to_cancel(self, info: Any) -> tuple[int, list[ServerGoalHandle]]:
+        """The goals that a request means (rcl_action ``process_cancel_request``), and the answer so far.
+
+        An id means that goal, a stamp all goals accepted up to then, both both, and neither all goals.
+        """
+        uuid = bytes(info.goal_id.uuid)
+        has_id = any(uuid)
+        stamp_ns = info.stamp.sec * NANOSECONDS_PER_SECOND + info.stamp.nanosec
+        with self._lock:
+            goals = list(self._goal_handles.values())
+            chosen = self._goal_handles.get(uuid)
+        if has_id and not stamp_ns:
+            if chosen is None:
+                return ERROR_UNKNOWN_GOAL_ID, []
+            if GoalStatus(chosen.status) not in CANCELABLE:
+                return ERROR_GOAL_TERMINATED, []
+            return ERROR_NONE, [chosen]
+        return ERROR_NONE, [
+            goal
+            for goal in goals
+            if GoalStatus(goal.status) in CANCELABLE
+            and (goal is chosen or not stamp_ns or Time.from_msg(goal.goal_info.stamp).nanoseconds <= stamp_ns)
+        ]
+
+    def _on_result(self, request: Any, reply: Callable[[Any], None]) -> None:
+        goal = self._goal_handles.get(bytes(request.goal_id.uuid))
+        if goal is None:
+            self._node.get_logger().debug(f"Sending result response for unknown goal ID: {request.goal_id.uuid}")
+            response = self._action_type.Impl.GetResultService.Response()
+            response.status = int(GoalStatus.UNKNOWN)
+            reply(response)
+            return
+        goal.result.add_done_callback(lambda future: reply(future.result()))
+
+    # --- the work ----------------------------------------------------------------------------------------------------
+
+    async def _execute(self, callback: Callable[[ServerGoalHandle], Any], goal: ServerGoalHandle) -> None:
+        result = None
+        try:
+            result = await outcome_of(callback(goal))
+        except Exception as error:  # noqa: BLE001  # whoever asked for the goal is to be told that it failed
+            self._executions.report(error)
+        kind = self._action_type.Result
+        if self._destroyed:
+            return
+        if goal.is_active:
+            self._node.get_logger().warning(f"Goal state not set, assuming aborted. Goal ID: {goal.goal_id.uuid}")
+            if GoalStatus(goal.status) is GoalStatus.ACCEPTED:
+                goal.update(GoalEvent.EXECUTE)
+            goal.abort()
+        elif result is None and not goal.result.ended():
+            self._node.get_logger().warning(
+                f"the execute callback of action '{self._action_name}' gave no result: an empty one is sent"
+            )
+        if result is not None and not isinstance(result, kind):
+            self._node.get_logger().error(
+                f"the execute callback of action '{self._action_name}' gave {type(result)}, not {kind}: "
+                "an empty result is sent"
+            )
+            result = None
+        goal.set_result(kind() if result is None else result)
+
+    def _publish_status(self) -> None:
+        if self._destroyed:
+            return
+        message = self._action_type.Impl.GoalStatusMessage()
+        with self._lock:
+            goals = list(self._goal_handles.values())
+        statuses = []
+        for goal in goals:
+            status = self._goal_status()
+            status.goal_info = goal.goal_info
+            status.status = goal.status
+            statuses.append(status)
+        message.status_list = statuses
+        self._status.publish(message)
+
+    # --- the keeping of results --------------------------------------------------------------------------------------
+
+    def _watch_expiry(self) -> None:
+        with self._lock:
+            if self._result_timeout_ns < 0 or self._destroyed:
+                return
+            if self._expiry is None:
+                self._expiry = self._node.create_timer(0.0, self._expire, FREE_GROUP, autostart=False)
+            if self._expiry.is_canceled():
+                self._expiry.timer_period_ns = self._result_timeout_ns
+                self._expiry.reset()
+
+    def _expire(self) -> None:
+        assert self._expiry is not None
+        self._expiry.cancel()
+        now_ns = self._node.get_clock().now_ns()
+        with self._lock:
+            ends = {
+                uuid: goal.ended_ns + self._result_timeout_ns
+                for uuid, goal in self._goal_handles.items()
+                if goal.ended_ns is not None
+            }
+            for uuid, end_ns in ends.items():
+                if end_ns <= now_ns:
+                    self._goal_handles.pop(uuid).retire()
+            later = [end_ns for end_ns in ends.values() if end_ns > now_ns]
+        if later:
+            self._expiry.timer_period_ns = min(later) - now_ns
+            self._expiry.reset()
+
+
+class _Executions(Entity):
+    """The work on goals that waits to begin."""
+
+    def __init__(self, node: Node) -> None:
+        super().__init__(node, FREE_GROUP)
+        self._waiting: deque[Callable[[], object]] = deque()
+
+    @property
+    def what(self) -> str:
+        """What it is, for messages."""
+        return "execute callback of an action"
+
+    def add(self, call: Callable[[], object]) -> None:
+        """Have something done."""
+        self._waiting.append(call)
+        self.announce()
+
+    def has_work(self) -> bool:
+        """Whether something waits."""
+        return bool(self._waiting)
+
+    def take(self) -> Callable[[], object] | None:
+        """What waits longest."""
+        self._announced = False
+        try:
+            call = self._waiting.popleft()
+        except IndexError:
+            return None
+        if self._waiting:
+            self.announce()
+        return call

@@ -1,0 +1,90 @@
+"""Things of a managed node that take part in its transitions: publishers that are silent unless it is active."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import wraps
+from typing import Any
+
+from linkwright.graph.lifecycle.states import LifecycleState, TransitionCallbackReturn
+from linkwright.graph.publisher import Publisher
+
+
+class ManagedEntity:
+    """Something that hears of the transitions of its node; what it answers decides how they go on."""
+
+    def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:  # noqa: ARG002  # for who overrides it
+        """The node is configured, coming from a state."""
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:  # noqa: ARG002
+        """The node is cleaned up."""
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:  # noqa: ARG002
+        """The node is shut down."""
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:  # noqa: ARG002
+        """The node is activated."""
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:  # noqa: ARG002
+        """The node is deactivated."""
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:  # noqa: ARG002
+        """A transition of the node failed with an error."""
+        return TransitionCallbackReturn.SUCCESS
+
+
+class SimpleManagedEntity(ManagedEntity):
+    """Something that is enabled while its node is active."""
+
+    def __init__(self) -> None:
+        self._enabled = False
+
+    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:  # noqa: ARG002
+        """Be enabled."""
+        self._enabled = True
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:  # noqa: ARG002
+        """Be not."""
+        self._enabled = False
+        return TransitionCallbackReturn.SUCCESS
+
+    @property
+    def is_activated(self) -> bool:
+        """Whether it is enabled."""
+        return self._enabled
+
+    @staticmethod
+    def when_enabled(
+        wrapped: Callable[..., Any] | None = None, *, when_not_enabled: Callable[..., Any] | None = None
+    ) -> Callable[..., Any]:
+        """Decorates a method that does nothing unless its object is enabled, or calls something else then."""
+
+        def decorate(method: Callable[..., Any]) -> Callable[..., Any]:
+            @wraps(method)
+            def guarded(self: SimpleManagedEntity, *args: Any, **kwargs: Any) -> Any:
+                if self._enabled:
+                    return method(self, *args, **kwargs)
+                return when_not_enabled(self, *args, **kwargs) if when_not_enabled is not None else None
+
+            return guarded
+
+        return decorate if wrapped is None else decorate(wrapped)
+
+
+class LifecyclePublisher(SimpleManagedEntity, Publisher[Any]):
+    """A publisher that publishes only while its node is active."""
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        SimpleManagedEntity.__init__(self)
+        Publisher.__init__(self, *args, **kwargs)
+
+    def publish(self, msg: Any) -> None:
+        """Publish a message, or drop it while the node is not active."""
+        if self._enabled:
+            super().publish(msg)

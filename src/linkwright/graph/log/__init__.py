@@ -1,0 +1,1 @@
+"""Logging: records, levels, formats, files, ``/rosout``."""

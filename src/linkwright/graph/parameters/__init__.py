@@ -1,0 +1,1 @@
+"""Node parameters: their values, rules, services, events and files."""

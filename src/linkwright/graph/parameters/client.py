@@ -1,0 +1,197 @@
+"""A client for the parameters of another node, as ``rclpy.parameter_client`` has it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
+from linkwright.graph.parameters.files import read_parameter_file
+from linkwright.graph.parameters.parameter import Parameter
+from linkwright.graph.parameters.rules import ANY_NODE
+from linkwright.graph.qos import PARAMETER_EVENTS_QOS, SERVICES_QOS, QoSProfile
+
+if TYPE_CHECKING:
+    from linkwright.graph.dispatch import CallbackGroup
+    from linkwright.graph.future import Future
+
+_SERVICES = {
+    "describe_parameters": "DescribeParameters",
+    "get_parameters": "GetParameters",
+    "get_parameter_types": "GetParameterTypes",
+    "list_parameters": "ListParameters",
+    "set_parameters": "SetParameters",
+    "set_parameters_atomically": "SetParametersAtomically",
+}
+_LOOK_EVERY_SECONDS = 0.05
+
+Done = Callable[..., Any]
+
+
+class AsyncParameterClient:
+    """Reads and sets the parameters of a node through its services.
+
+    Every method that asks gives a future of the service's response, and takes a callback for when it is there.
+
+    Args:
+        node: makes the clients.
+        remote_node_name: the name of the node, absolute or relative to the namespace of `node`.
+        qos_profile: that of the clients.
+        callback_group: that of the clients.
+    """
+
+    def __init__(
+        self,
+        node: Any,
+        remote_node_name: str,
+        qos_profile: QoSProfile = SERVICES_QOS,
+        callback_group: CallbackGroup | None = None,
+    ) -> None:
+        self.remote_node_name = remote_node_name
+        self.node = node
+        self._clients: dict[str, Any] = {
+            service: node.create_client(
+                _service_type(type_name),
+                f"{remote_node_name}/{service}",
+                qos_profile=qos_profile,
+                callback_group=callback_group,
+            )
+            for service, type_name in _SERVICES.items()
+        }
+
+    def services_are_ready(self) -> bool:
+        """Whether the node offers all the services."""
+        return all(client.service_is_ready() for client in self._clients.values())
+
+    def wait_for_services(self, timeout_sec: float | None = None) -> bool:
+        """Wait, in a thread that need not spin, until the node offers all the services.
+
+        Args:
+            timeout_sec: how long, seconds; None for as long as it takes.
+
+        Returns:
+            Whether it does.
+        """
+        end = None if timeout_sec is None else time.monotonic() + timeout_sec
+        while not self.services_are_ready():
+            if end is not None and time.monotonic() >= end:
+                return False
+            time.sleep(_LOOK_EVERY_SECONDS)
+        return True
+
+    def destroy(self) -> None:
+        """Take the clients away."""
+        for client in self._clients.values():
+            self.node.destroy_client(client)
+        self._clients.clear()
+
+    def list_parameters(
+        self, prefixes: list[str] | None = None, depth: int | None = None, callback: Done | None = None
+    ) -> Future[Any]:
+        """Ask for the names of parameters; see `NodeParameters.list_parameters`."""
+        return self._ask("list_parameters", callback, prefixes=prefixes or [], depth=depth or 0)
+
+    def get_parameters(self, names: list[str], callback: Done | None = None) -> Future[Any]:
+        """Ask for the values of parameters."""
+        return self._ask("get_parameters", callback, names=names)
+
+    def get_parameter_types(self, names: list[str], callback: Done | None = None) -> Future[Any]:
+        """Ask for the types of parameters."""
+        return self._ask("get_parameter_types", callback, names=names)
+
+    def describe_parameters(self, names: list[str], callback: Done | None = None) -> Future[Any]:
+        """Ask for the descriptors of parameters."""
+        return self._ask("describe_parameters", callback, names=names)
+
+    def set_parameters(self, parameters: Sequence[Any], callback: Done | None = None) -> Future[Any]:
+        """Have parameters set one by one; they are `Parameter` objects or messages."""
+        return self._ask("set_parameters", callback, parameters=_messages(parameters))
+
+    def set_parameters_atomically(self, parameters: Sequence[Any], callback: Done | None = None) -> Future[Any]:
+        """Have all of the parameters set or none."""
+        return self._ask("set_parameters_atomically", callback, parameters=_messages(parameters))
+
+    def delete_parameters(self, names: list[str], callback: Done | None = None) -> Future[Any]:
+        """Have parameters undeclared, which their node must allow by dynamic typing."""
+        return self.set_parameters([Parameter(name) for name in names], callback)
+
+    def load_parameter_file(
+        self, parameter_file: str, use_wildcard: bool = False, callback: Done | None = None
+    ) -> Future[Any]:
+        """Have the parameters set that a file gives; see `parameter_dict_from_yaml_file`."""
+        return self.set_parameters(list(parameter_dict_from_yaml_file(parameter_file, use_wildcard).values()), callback)
+
+    def load_parameter_file_atomically(
+        self, parameter_file: str, use_wildcard: bool = False, callback: Done | None = None
+    ) -> Future[Any]:
+        """Have all of the parameters set that a file gives, or none."""
+        parameters = parameter_dict_from_yaml_file(parameter_file, use_wildcard)
+        return self.set_parameters_atomically(list(parameters.values()), callback)
+
+    def on_parameter_event(
+        self, callback: Callable[..., Any], qos_profile: QoSProfile = PARAMETER_EVENTS_QOS, **options: Any
+    ) -> Any:
+        """Subscribe to the changes of parameters of all nodes."""
+        event_type = _message_type("ParameterEvent")
+        return self.node.create_subscription(event_type, "/parameter_events", callback, qos_profile, **options)
+
+    def _ask(self, service: str, callback: Done | None, **fields: Any) -> Future[Any]:
+        client = self._clients[service]
+        request = client.srv_type.Request()
+        for name, value in fields.items():
+            setattr(request, name, value)
+        future: Future[Any] = client.call_async(request)
+        if callback is not None:
+            future.add_done_callback(callback)
+        return future
+
+
+def parameter_dict_from_yaml_file(
+    parameter_file: str, use_wildcard: bool = False, target_nodes: list[str] | None = None, namespace: str = ""
+) -> dict[str, Any]:
+    """The parameters in a file as messages (rcl_interfaces/msg/Parameter) by name.
+
+    Args:
+        parameter_file: its path.
+        use_wildcard: whether what the file has for any node (``/**``) counts, before what it has for single ones.
+        target_nodes: the nodes whose parameters are wanted; all in the file when left out.
+        namespace: put before each name.
+
+    Raises:
+        LinkwrightError: the file cannot be read, or is none (GRAPH211, GRAPH212).
+        RuntimeError: it has nothing for one of the nodes, or nothing at all (rclpy).
+    """
+    sections = dict(read_parameter_file(parameter_file))
+    chosen = [ANY_NODE] if use_wildcard and ANY_NODE in sections else []
+    if target_nodes:
+        for node in target_nodes:
+            pattern = node if node.startswith("/") else f"/{node}"
+            if pattern not in sections:
+                raise RuntimeError(
+                    f"Param file does not contain parameters for {node},only for nodes: {list(sections)} "
+                )
+            chosen.append(pattern)
+    else:
+        chosen += [pattern for pattern in sections if pattern != ANY_NODE]
+    if not chosen:
+        raise RuntimeError("Param file does not contain selected parameters")
+    values = {name: value for pattern in chosen for name, value in sections[pattern].items()}
+    return {
+        namespace + name: Parameter(namespace + name, value=value).to_parameter_msg() for name, value in values.items()
+    }
+
+
+def _messages(parameters: Sequence[Any]) -> list[Any]:
+    return [each.to_parameter_msg() if isinstance(each, Parameter) else each for each in parameters]
+
+
+def _service_type(name: str) -> Any:
+    from linkwright.messages import get_service
+
+    return get_service(f"rcl_interfaces/srv/{name}")
+
+
+def _message_type(name: str) -> Any:
+    from linkwright.messages import get_message
+
+    return get_message(f"rcl_interfaces/msg/{name}")

@@ -1,0 +1,111 @@
+"""What can go wrong with parameters: rclpy's exceptions, by its names and in its words, with our hints."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean
+
+if TYPE_CHECKING:
+    from linkwright.graph.parameters.parameter import Parameter
+
+
+class ParameterException(LinkwrightError):  # noqa: N818  # rclpy's name, which users' code catches
+    """What rclpy's parameter exceptions have in common.
+
+    Args:
+        error_msg: what is wrong.
+        parameters: the name, or the names, of the parameters concerned.
+        code: the diagnostic's code.
+        hint: how to mend it.
+    """
+
+    def __init__(
+        self, error_msg: str, parameters: str | list[str], *, code: str = "GRAPH201", hint: str | None = None
+    ) -> None:
+        super().__init__(Diagnostic(code, f"{error_msg}: {parameters}", hint=hint))
+
+
+class ParameterNotDeclaredException(ParameterException):
+    """A parameter is used that the node has not declared.
+
+    Args:
+        parameters: its name, or the names of several.
+        declared: the names that there are, for the hint.
+    """
+
+    def __init__(self, parameters: str | list[str], declared: Iterable[str] = ()) -> None:
+        first = parameters if isinstance(parameters, str) else next(iter(parameters), "")
+        hint = did_you_mean(first, declared)
+        super().__init__("Invalid access to undeclared parameter(s)", parameters, code="GRAPH202", hint=hint)
+
+
+class ParameterAlreadyDeclaredException(ParameterException):
+    """A parameter is declared twice."""
+
+    def __init__(self, parameters: str | list[str]) -> None:
+        super().__init__("Parameter(s) already declared", parameters, code="GRAPH203")
+
+
+class InvalidParameterException(ParameterException):
+    """A parameter is declared with a name that is none."""
+
+    def __init__(self, parameter_name: str) -> None:
+        super().__init__("Invalid parameter name", parameter_name, code="GRAPH205")
+
+
+class InvalidParameterTypeException(ParameterException):
+    """A parameter is given a value of another type than it is declared with.
+
+    Args:
+        desired_parameter: the parameter with the value.
+        expected_type: the name of the type it is declared with.
+    """
+
+    def __init__(self, desired_parameter: Parameter, expected_type: object) -> None:
+        name, value = desired_parameter.name, desired_parameter.value
+        expected = getattr(expected_type, "name", expected_type)
+        hint = f"write {value}.0" if expected == "DOUBLE" and type(value) is int else None
+        super().__init__(
+            f"Trying to set parameter '{name}' to '{value}' of type '{desired_parameter.type_.name}', "
+            f"expecting type '{expected}'",
+            name,
+            code="GRAPH201",
+            hint=hint,
+        )
+
+
+class InvalidParameterValueException(ParameterException):
+    """A parameter is given a value that a callback or its descriptor refuses.
+
+    Args:
+        parameter: its name.
+        value: the value.
+        reason: why it is refused.
+    """
+
+    def __init__(self, parameter: str, value: Any, reason: str) -> None:
+        super().__init__(
+            f"Invalid parameter value ({value}) for parameter. Reason: {reason}", parameter, code="GRAPH204"
+        )
+        self.reason = reason
+
+
+class ParameterImmutableException(ParameterException):
+    """A read-only parameter is to be changed."""
+
+    def __init__(self, parameter_name: str) -> None:
+        super().__init__("Attempted to modify read-only parameter", parameter_name, code="GRAPH206")
+
+
+class ParameterUninitializedException(ParameterException):
+    """A parameter is read that was declared with a type and has no value yet."""
+
+    def __init__(self, parameter_name: str) -> None:
+        super().__init__(
+            f"The parameter '{parameter_name}' is not initialized",
+            parameter_name,
+            code="GRAPH207",
+            hint="give it a default when it is declared, or a value in a parameter file or with -p",
+        )

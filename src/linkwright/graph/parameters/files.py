@@ -1,0 +1,231 @@
+"""Parameter files: YAML that names nodes, and below ``ros__parameters`` the values of their parameters.
+
+Read as rcl_yaml_param_parser reads it: nested names of namespaces and nodes, nested parameter names, its own idea of
+scalars (see `parameter_scalars`), lists of one type, neither anchors nor lists in lists. What it would refuse is
+refused here, with the place.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText, did_you_mean, display_path
+from linkwright.graph.parameters.rules import ParameterRules
+from linkwright.graph.parameters.scalars import scalar_value
+
+PARAMETERS_KEY = "ros__parameters"
+_KINDS = {bool: "bool", int: "integer", float: "double", str: "string"}
+_FORM = f"it maps node names to '{PARAMETERS_KEY}', which maps names to values"
+
+
+def read_parameter_file(path: str | Path) -> ParameterRules:
+    """Read a parameter file.
+
+    Raises:
+        LinkwrightError: GRAPH211 if it cannot be read, GRAPH212 if what is in it is none.
+    """
+    path = Path(path)
+    shown = display_path(path)
+    try:
+        text = path.read_text(encoding="utf-8")
+    except FileNotFoundError:
+        near = [str(each) for each in path.parent.glob("*.y*ml")] if path.parent.is_dir() else []
+        hint = did_you_mean(str(path), near)
+        raise LinkwrightError(Diagnostic("GRAPH211", f"parameter file '{shown}' does not exist", hint=hint)) from None
+    except (OSError, UnicodeDecodeError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise LinkwrightError(Diagnostic("GRAPH211", f"parameter file '{shown}' cannot be read: {reason}")) from error
+    return parse_parameters(SourceText(str(path), text))
+
+
+def parse_parameters(source: SourceText) -> ParameterRules:
+    """Read the text of a parameter file.
+
+    Raises:
+        LinkwrightError: GRAPH212, what is wrong with it and where.
+    """
+    return _Reader(source).read()
+
+
+def parse_value(text: str, name: str) -> Any:
+    """The value in a word of the command line, ``-p name:=value``: a scalar, or a list of one type.
+
+    Args:
+        text: the value.
+        name: the parameter's name, for the message.
+
+    Raises:
+        LinkwrightError: GRAPH212, it is neither.
+    """
+    return _Reader(SourceText(f"<{name}>", text)).read_value(name)
+
+
+class _Reader:
+    """Goes through the events of one text, the current one being `_event`."""
+
+    def __init__(self, source: SourceText) -> None:
+        self._source = source
+        self._rules = ParameterRules()
+        self._events = self._parsed()
+
+    def read(self) -> ParameterRules:
+        self._advance()
+        if self._is("StreamEnd"):
+            return self._rules
+        if self._is("Scalar") and not self._event.value:
+            return self._rules
+        if not self._is("MappingStart"):
+            raise self._error("a parameter file must be a mapping", _FORM)
+        self._read_names(())
+        return self._rules
+
+    def read_value(self, name: str) -> Any:
+        self._advance()
+        if self._is("StreamEnd"):
+            return ""
+        if self._is("MappingStart"):
+            raise self._error(f"the value of parameter '{name}' is a mapping", "give its entries one by one")
+        return self._read_value(name)
+
+    def _parsed(self) -> Iterator[Any]:
+        import yaml
+
+        try:
+            for event in yaml.parse(self._source.text, Loader=_loader()):
+                if not isinstance(event, (yaml.StreamStartEvent, yaml.DocumentStartEvent, yaml.DocumentEndEvent)):
+                    yield event
+        except yaml.YAMLError as error:
+            raise self._not_yaml(error) from error
+
+    def _advance(self) -> None:
+        self._event = next(self._events)
+        if type(self._event).__name__ == "AliasEvent":
+            raise self._error("aliases are not supported in parameter files", "write the value out")
+
+    def _is(self, kind: str) -> bool:
+        return type(self._event).__name__ == f"{kind}Event"
+
+    def _read_names(self, above: tuple[str, ...]) -> None:
+        """Read a mapping of namespaces, node names and ``ros__parameters``; the current event is its start."""
+        self._advance()
+        while not self._is("MappingEnd"):
+            key = self._read_key()
+            if key == PARAMETERS_KEY:
+                if not above:
+                    raise self._error(f"there are no node names before '{PARAMETERS_KEY}'", _FORM)
+                section = self._rules.section("/" + "/".join(above))
+                self._advance()
+                if self._is("MappingStart"):
+                    self._read_parameters("", section)
+                elif not (self._is("Scalar") and not self._event.value):
+                    raise self._error(f"'{PARAMETERS_KEY}' must be a mapping of names to values")
+            else:
+                parts = tuple(part for part in key.split("/") if part)
+                self._check_names(key, parts)
+                self._advance()
+                if not self._is("MappingStart"):
+                    raise self._error(
+                        f"'{key}' has a value before '{PARAMETERS_KEY}'", did_you_mean(key, [PARAMETERS_KEY]) or _FORM
+                    )
+                self._read_names((*above, *parts))
+            self._advance()
+
+    def _read_parameters(self, prefix: str, section: dict[str, Any]) -> None:
+        """Read a mapping of parameter names; the current event is its start."""
+        self._advance()
+        while not self._is("MappingEnd"):
+            name = prefix + self._read_key()
+            self._advance()
+            if self._is("MappingStart"):
+                self._read_parameters(f"{name}.", section)
+            else:
+                section[name] = self._read_value(name)
+            self._advance()
+
+    def _read_key(self) -> str:
+        if not self._is("Scalar"):
+            raise self._error("a name must be a word, not a list or a mapping")
+        key = str(self._event.value)
+        if not key:
+            raise self._error("a name must not be empty")
+        return key
+
+    def _read_value(self, name: str) -> Any:
+        if self._is("SequenceStart"):
+            return self._read_list(name)
+        return self._read_scalar(name)
+
+    def _read_scalar(self, name: str) -> Any:
+        event = self._event
+        plain = event.style not in ("'", '"') and event.tag != "tag:yaml.org,2002:str"
+        if plain and not event.value:
+            raise self._error(f"parameter '{name}' has no value", 'an empty text is ""')
+        return scalar_value(event.value, plain=plain)
+
+    def _read_list(self, name: str) -> list[Any]:
+        values: list[Any] = []
+        self._advance()
+        while not self._is("SequenceEnd"):
+            if not self._is("Scalar"):
+                kind = "list" if self._is("SequenceStart") else "mapping"
+                raise self._error(f"the list of parameter '{name}' has a {kind} in it", "lists hold plain values only")
+            value = self._read_scalar(name)
+            if values and type(value) is not type(values[0]):
+                first, other = _KINDS[type(values[0])], _KINDS[type(value)]
+                raise self._error(
+                    f"the list of parameter '{name}' begins with a value of type {first} and has one of type {other}",
+                    _uniform_hint(values[0], value, self._event.value),
+                )
+            values.append(value)
+            self._advance()
+        return values
+
+    def _check_names(self, key: str, parts: tuple[str, ...]) -> None:
+        for part in parts:
+            if part not in ("*", "**") and not re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]*", part):
+                raise self._error(
+                    f"'{key}' is not a node name",
+                    "names have letters, digits and '_', and do not begin with a digit; * and ** stand for any",
+                )
+        if not parts:
+            raise self._error(f"'{key}' is not a node name", "any node is /**")
+
+    def _error(self, message: str, hint: str | None = None) -> LinkwrightError:
+        mark = self._event.start_mark
+        return self._error_at(mark.line, mark.column, message, hint)
+
+    def _error_at(self, line: int, column: int, message: str, hint: str | None) -> LinkwrightError:
+        source = self._source
+        span = source.span(source.offset(line + 1, column + 1))
+        return LinkwrightError(Diagnostic("GRAPH212", message, span, hint=hint, source=source))
+
+    def _not_yaml(self, error: Exception) -> LinkwrightError:
+        mark = getattr(error, "problem_mark", None)
+        problem = getattr(error, "problem", None) or str(error)
+        if mark is None:
+            return LinkwrightError(Diagnostic("GRAPH212", f"parameter file is not YAML: {problem}"))
+        hint = None
+        if "\t" in self._source.line(mark.line + 1)[: mark.column + 1] or "'\\t'" in problem:
+            hint = "indent with blanks, not with tabs"
+        return self._error_at(mark.line, mark.column, f"parameter file is not YAML: {problem}", hint)
+
+
+@lru_cache(maxsize=1)
+def _loader() -> Any:
+    import yaml
+
+    return getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+
+
+def _uniform_hint(first: Any, value: Any, text: str) -> str:
+    if type(first) is float and type(value) is int:
+        return f"write {text}.0"
+    if type(first) is int and type(value) is float:
+        return f"write {first}.0 in front, or whole numbers only"
+    if type(first) is str:
+        return f'write "{text}"'
+    return "all values of a list must be of one type"

@@ -1,0 +1,351 @@
+"""The parameter methods of a node, as ``rclpy.node.Node`` has them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, cast
+
+from linkwright.graph.parameters.parameter import (
+    PARAMETER_SEPARATOR_STRING,
+    Parameter,
+    ParameterDescriptor,
+    parameter_value_to_python,
+)
+from linkwright.graph.parameters.store import (
+    OnSetParameters,
+    ParameterStore,
+    PostSetParameters,
+    PreSetParameters,
+)
+from linkwright.graph.qos import ROSOUT_QOS, QoSProfile
+
+if TYPE_CHECKING:
+    from linkwright.graph.log.rosout import Rosout
+    from linkwright.graph.node import Node
+
+
+class NodeParameters:
+    """What a node does with parameters; `Node` derives from it.
+
+    Descriptors, results and parameter values are accepted as our own small classes and as messages of rcl_interfaces;
+    what is given back are messages, as in rclpy.
+    """
+
+    _parameters: ParameterStore
+    _rosout: Rosout | None = None
+
+    def declare_parameter(
+        self, name: str, value: Any = None, descriptor: Any = None, ignore_override: bool = False
+    ) -> Parameter:
+        """Declare a parameter. Its value is the one given to the node from outside, else the default.
+
+        Args:
+            name: its name.
+            value: the default, whose type every later value must have too, or a ``Parameter.Type`` for a parameter
+                that has no value until it gets one.
+            descriptor: what else is to be said of it; its name and type are filled in.
+            ignore_override: whether the value from outside is left aside.
+
+        Raises:
+            ParameterAlreadyDeclaredException: it is declared already.
+            InvalidParameterException: the name is empty.
+            InvalidParameterTypeException: the value from outside has another type than the default.
+            InvalidParameterValueException: a callback or the descriptor refuses the value.
+        """
+        only_name = value is None and descriptor is None
+        return self._parameters.declare(
+            name,
+            _plain(value),
+            ParameterDescriptor() if descriptor is None else descriptor,
+            only_name=only_name,
+            ignore_override=ignore_override,
+        )
+
+    def declare_parameters(
+        self, namespace: str, parameters: Sequence[Any], ignore_override: bool = False
+    ) -> list[Parameter]:
+        """Declare several parameters, each a tuple ``(name,)``, ``(name, default or type)`` or those and a descriptor.
+
+        Args:
+            namespace: put before each name with a dot, unless it is empty.
+            parameters: the tuples.
+            ignore_override: whether values from outside are left aside.
+
+        Raises:
+            TypeError: a tuple has another form.
+            ParameterException: as `declare_parameter`; those declared up to then stay declared.
+        """
+        declarations = [_checked(index, declaration) for index, declaration in enumerate(parameters)]
+        return [
+            self._parameters.declare(
+                f"{namespace}.{name}" if namespace else name,
+                _plain(value),
+                descriptor,
+                only_name=only_name,
+                ignore_override=ignore_override,
+            )
+            for name, value, descriptor, only_name in declarations
+        ]
+
+    def declare_parameters_from_overrides(self) -> None:
+        """Declare every parameter that was given to the node from outside and is not declared yet, with its type."""
+        for name, value in self._parameters.overrides.items():
+            if name not in self._parameters:
+                self._parameters.declare(name, value, ParameterDescriptor(), ignore_override=True)
+
+    def undeclare_parameter(self, name: str) -> None:
+        """Forget a parameter. No callback is asked, and no event published.
+
+        Raises:
+            ParameterNotDeclaredException: it is not declared.
+            ParameterImmutableException: it is read-only.
+        """
+        self._parameters.undeclare(name)
+
+    def has_parameter(self, name: str) -> bool:
+        """Whether a parameter is declared."""
+        return name in self._parameters
+
+    def parameter_names(self) -> list[str]:
+        """Names of the declared parameters, in order of declaration."""
+        return self._parameters.names()
+
+    def get_parameter(self, name: str) -> Parameter:
+        """A declared parameter; where undeclared ones are allowed, one without a value for any other.
+
+        Raises:
+            ParameterNotDeclaredException: it is not declared.
+            ParameterUninitializedException: it was declared with a type only, and has no value yet.
+        """
+        return self._parameters.get(name)
+
+    def get_parameters(self, names: Sequence[str]) -> list[Parameter]:
+        """Several declared parameters; see `get_parameter`."""
+        _check_names(names)
+        return [self._parameters.get(name) for name in names]
+
+    def get_parameter_or(self, name: str, alternative_value: Parameter | None = None) -> Parameter:
+        """A parameter that has a value, else the alternative, else one without a value."""
+        found = self._parameters.value_or_none(name)
+        if found is not None:
+            return found
+        return Parameter(name) if alternative_value is None else alternative_value
+
+    def get_parameters_by_prefix(self, prefix: str) -> dict[str, Parameter]:
+        """The parameters ``prefix.rest``, by ``rest``; all of them for an empty prefix."""
+        return self._parameters.with_prefix(prefix)
+
+    def get_parameter_type(self, name: str) -> int:
+        """The number of the type of a parameter's value.
+
+        Raises:
+            ParameterNotDeclaredException: it is not declared.
+        """
+        return self._parameters.type_of(name).value
+
+    def get_parameter_types(self, names: Sequence[str]) -> list[int]:
+        """The types of several parameters; see `get_parameter_type`."""
+        _check_names(names)
+        return [self.get_parameter_type(name) for name in names]
+
+    def set_parameters(self, parameter_list: Sequence[Parameter]) -> list[Any]:
+        """Set parameters one by one; each is set or not, for a reason.
+
+        One that gets no value is undeclared, where its descriptor allows dynamic typing.
+
+        Raises:
+            ParameterNotDeclaredException: one is not declared; those before it stay set.
+        """
+        return [self.set_parameters_atomically([parameter]) for parameter in parameter_list]
+
+    def set_parameters_atomically(self, parameter_list: Sequence[Parameter]) -> Any:
+        """Set all of the parameters or none.
+
+        Raises:
+            ParameterNotDeclaredException: one is not declared; none is set.
+        """
+        from linkwright.graph.parameters.messages import result_message
+
+        return result_message(self._parameters.set_together(parameter_list))
+
+    def list_parameters(self, prefixes: list[str], depth: int) -> Any:
+        """The names of parameters and their prefixes: rcl_interfaces/msg/ListParametersResult.
+
+        Args:
+            prefixes: names are listed that are one of these or below one; all where there is none.
+            depth: how many levels below a prefix are listed; 0 for all of them.
+
+        Raises:
+            TypeError: an argument has another type.
+            ValueError: the depth is negative.
+        """
+        if not isinstance(prefixes, list):
+            raise TypeError("The prefixes argument must be a list")
+        if not all(isinstance(prefix, str) for prefix in prefixes):
+            raise TypeError("All prefixes must be instances of type str")
+        if not isinstance(depth, int):
+            raise TypeError("The depth must be instance of type int")
+        if depth < 0:
+            raise ValueError("The depth must be greater than or equal to zero")
+        from linkwright.graph.parameters.messages import interface
+
+        names = [name for name in self._parameters.names() if _is_listed(name, prefixes, depth)]
+        found = [name.rpartition(PARAMETER_SEPARATOR_STRING)[0] for name in names]
+        result = interface("ListParametersResult")()
+        result.names = names
+        result.prefixes = [prefix for prefix in dict.fromkeys(found) if prefix]
+        return result
+
+    def describe_parameter(self, name: str) -> Any:
+        """The descriptor of a parameter: rcl_interfaces/msg/ParameterDescriptor.
+
+        Raises:
+            ParameterNotDeclaredException: it is not declared.
+        """
+        from linkwright.graph.parameters.messages import descriptor_message
+
+        descriptor = self._parameters.descriptor(name)
+        message = descriptor_message(descriptor)
+        if message is not descriptor and name in self._parameters:
+            self._parameters.keep_descriptor(name, message)
+        return message
+
+    def describe_parameters(self, names: Sequence[str]) -> list[Any]:
+        """The descriptors of several parameters; see `describe_parameter`."""
+        return [self.describe_parameter(name) for name in names]
+
+    def set_descriptor(self, name: str, descriptor: Any, alternative_value: Any = None) -> Any:
+        """Give a parameter another descriptor.
+
+        Args:
+            name: the parameter.
+            descriptor: the new one.
+            alternative_value: an rcl_interfaces/msg/ParameterValue to set if the value so far does not go with it.
+
+        Returns:
+            The value that holds then, as such a message.
+
+        Raises:
+            ParameterNotDeclaredException: it is not declared.
+            ParameterImmutableException: it is read-only.
+            InvalidParameterValueException: neither value goes with the descriptor.
+        """
+        parameter = self._parameters.set_descriptor(name, descriptor, _plain(alternative_value))
+        return (Parameter(name) if parameter is None else parameter).get_parameter_value()
+
+    def add_pre_set_parameters_callback(self, callback: PreSetParameters) -> None:
+        """Have a callback change the list of parameters that are to be set; the one added last comes first."""
+        self._parameters.pre_set.insert(0, callback)
+
+    def add_on_set_parameters_callback(self, callback: OnSetParameters) -> None:
+        """Have a callback asked before parameters are declared or set; it may refuse with a reason."""
+        self._parameters.on_set.insert(0, callback)
+
+    def add_post_set_parameters_callback(self, callback: PostSetParameters) -> None:
+        """Have a callback told after parameters were declared or set."""
+        self._parameters.post_set.insert(0, callback)
+
+    def remove_pre_set_parameters_callback(self, callback: PreSetParameters) -> None:
+        """Take a callback away.
+
+        Raises:
+            ValueError: it was not added.
+        """
+        self._parameters.pre_set.remove(callback)
+
+    def remove_on_set_parameters_callback(self, callback: OnSetParameters) -> None:
+        """Take a callback away.
+
+        Raises:
+            ValueError: it was not added.
+        """
+        self._parameters.on_set.remove(callback)
+
+    def remove_post_set_parameters_callback(self, callback: PostSetParameters) -> None:
+        """Take a callback away.
+
+        Raises:
+            ValueError: it was not added.
+        """
+        self._parameters.post_set.remove(callback)
+
+    def _start_parameters(
+        self,
+        overrides: Mapping[str, Any] | Sequence[Parameter],
+        *,
+        allow_undeclared: bool = False,
+        declare_overrides: bool = False,
+        services: bool = True,
+        rosout: QoSProfile | None = ROSOUT_QOS,
+    ) -> None:
+        """Begin: the node's publishers and services can be made.
+
+        Args:
+            overrides: values by name, or parameters, that take the place of defaults.
+            allow_undeclared: rclpy's ``allow_undeclared_parameters``.
+            declare_overrides: rclpy's ``automatically_declare_parameters_from_overrides``.
+            services: rclpy's ``start_parameter_services``.
+            rosout: the quality of service of ``/rosout``; None to log nothing there.
+        """
+        from linkwright.graph.log.rosout import Rosout
+        from linkwright.graph.parameters.services import ParameterEvents, ParameterServices
+
+        node = cast("Node", self)
+        if not isinstance(overrides, Mapping):
+            overrides = {parameter.name: parameter.value for parameter in overrides}
+        if rosout is not None:
+            self._rosout = Rosout(node, node.get_logger(), rosout)
+        self._parameters = ParameterStore(
+            overrides, allow_undeclared=allow_undeclared, on_change=ParameterEvents(node).publish
+        )
+        if declare_overrides:
+            self.declare_parameters_from_overrides()
+        if services:
+            ParameterServices(node)
+
+    def _close_parameters(self) -> None:
+        """End: log no more to ``/rosout``. The node takes the publishers and services away itself."""
+        if self._rosout is not None:
+            self._rosout.close()
+            self._rosout = None
+
+
+def _plain(value: Any) -> Any:
+    """A default that is given as an rcl_interfaces/msg/ParameterValue, as a Python value."""
+    if getattr(value, "TYPE_NAME", None) == "rcl_interfaces/msg/ParameterValue":
+        return parameter_value_to_python(value)
+    return value
+
+
+def _checked(index: int, declaration: Any) -> tuple[str, Any, Any, bool]:
+    if not 1 <= len(declaration) <= 3:
+        raise TypeError(
+            f"Invalid parameter tuple length at index {index} in parameters list: {declaration}; "
+            "expecting length between 1 and 3"
+        )
+    words = [*declaration, None, None]
+    name, value, descriptor = words[:3]
+    if not isinstance(name, str):
+        raise TypeError(f"First element {name} at index {index} in parameters list is not a str.")
+    if len(declaration) < 3:
+        descriptor = ParameterDescriptor()
+    elif not hasattr(descriptor, "dynamic_typing"):
+        raise TypeError(f"Third element {descriptor} at index {index} in parameters list is not a ParameterDescriptor.")
+    return name, value, descriptor, len(declaration) == 1
+
+
+def _check_names(names: Sequence[str]) -> None:
+    if not all(isinstance(name, str) for name in names):
+        raise TypeError("All names must be instances of type str")
+
+
+def _is_listed(name: str, prefixes: Sequence[str], depth: int) -> bool:
+    def near(rest: str) -> bool:
+        return depth == 0 or rest.count(PARAMETER_SEPARATOR_STRING) < depth
+
+    if not prefixes:
+        return near(name)
+    return any(
+        name == prefix or (name.startswith(prefix + PARAMETER_SEPARATOR_STRING) and near(name[len(prefix) + 1 :]))
+        for prefix in prefixes
+    )

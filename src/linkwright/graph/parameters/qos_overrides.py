@@ -1,0 +1,126 @@
+"""Quality of service from parameters: ``qos_overrides./topic.publisher.depth``, as ``rclpy.qos_overriding_options``."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from copy import copy
+from typing import Any, Literal
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean
+from linkwright.graph.parameters.parameter import ParameterDescriptor
+from linkwright.graph.qos import (
+    DurabilityPolicy,
+    HistoryPolicy,
+    LivelinessPolicy,
+    QoSPolicyKind,
+    QoSProfile,
+    ReliabilityPolicy,
+)
+from linkwright.graph.time import Duration
+
+_POLICIES: dict[QoSPolicyKind, Any] = {
+    QoSPolicyKind.HISTORY: HistoryPolicy,
+    QoSPolicyKind.RELIABILITY: ReliabilityPolicy,
+    QoSPolicyKind.DURABILITY: DurabilityPolicy,
+    QoSPolicyKind.LIVELINESS: LivelinessPolicy,
+}
+_DURATIONS = (QoSPolicyKind.DEADLINE, QoSPolicyKind.LIFESPAN, QoSPolicyKind.LIVELINESS_LEASE_DURATION)
+
+
+class InvalidQosOverridesError(LinkwrightError):
+    """What parameters say of a quality of service cannot be, or is refused by the node."""
+
+    def __init__(self, message: str, hint: str | None = None) -> None:
+        super().__init__(Diagnostic("GRAPH208", message, hint=hint))
+
+
+class QoSOverridingOptions:
+    """Which policies of a publisher or subscription parameters may override.
+
+    Args:
+        policy_kinds: the policies.
+        callback: says whether the profile that results is valid.
+        entity_id: told apart by it are several publishers or subscriptions of a node on one topic.
+    """
+
+    def __init__(
+        self,
+        policy_kinds: Iterable[QoSPolicyKind],
+        *,
+        callback: Callable[[QoSProfile], bool] | None = None,
+        entity_id: str | None = None,
+    ) -> None:
+        self.policy_kinds = tuple(policy_kinds)
+        self.callback = callback
+        self.entity_id = entity_id
+
+    @classmethod
+    def with_default_policies(
+        cls, *, callback: Callable[[QoSProfile], bool] | None = None, entity_id: str | None = None
+    ) -> QoSOverridingOptions:
+        """History, depth and reliability."""
+        kinds = (QoSPolicyKind.HISTORY, QoSPolicyKind.DEPTH, QoSPolicyKind.RELIABILITY)
+        return cls(kinds, callback=callback, entity_id=entity_id)
+
+
+def override_qos(
+    node: Any,
+    entity: Literal["publisher", "subscription"],
+    topic: str,
+    qos: QoSProfile,
+    options: QoSOverridingOptions,
+) -> QoSProfile:
+    """Declare the parameters of a publisher or subscription that is to be made, and give the profile they make.
+
+    Args:
+        node: declares them, read-only.
+        entity: which of the two.
+        topic: the absolute name of its topic.
+        qos: the profile that its code gives it.
+        options: what may be overridden.
+
+    Raises:
+        InvalidQosOverridesError: GRAPH208, the profile is refused, or a value is none that its policy has.
+    """
+    suffix = "" if options.entity_id is None else f"_{options.entity_id}"
+    profile = copy(qos)
+    for kind in options.policy_kinds:
+        if entity == "subscription" and kind is QoSPolicyKind.LIFESPAN:
+            continue
+        policy = kind.name.lower()
+        name = f"qos_overrides.{topic}.{entity}{suffix}.{policy}"
+        if node.has_parameter(name):
+            value = node.get_parameter(name).value
+        else:
+            said = f"{policy} for {entity} `{topic}` with id `{options.entity_id}`"
+            descriptor = ParameterDescriptor(description=said, read_only=True)
+            value = node.declare_parameter(name, _to_parameter(profile, kind), descriptor).value
+        setattr(profile, policy, _from_parameter(kind, value, name))
+    if options.callback is not None and not options.callback(profile):
+        raise InvalidQosOverridesError(
+            f"Provided QoS overrides for {entity} `{topic}` with id `{options.entity_id}`, are not valid"
+        )
+    return profile
+
+
+def _to_parameter(profile: QoSProfile, kind: QoSPolicyKind) -> Any:
+    value = getattr(profile, kind.name.lower())
+    if kind in _POLICIES:
+        return _POLICIES[kind](value).name.lower()
+    return value.nanoseconds if kind in _DURATIONS else value
+
+
+def _from_parameter(kind: QoSPolicyKind, value: Any, name: str) -> Any:
+    if kind in _DURATIONS:
+        return Duration(nanoseconds=value)
+    policy = _POLICIES.get(kind)
+    if policy is None:
+        return value
+    try:
+        return policy[str(value).upper()]
+    except KeyError:
+        known = [each.name.lower() for each in policy]
+        raise InvalidQosOverridesError(
+            f"Unexpected QoS override for policy `{kind.name.lower()}`: `{value}` (parameter '{name}')",
+            did_you_mean(str(value).lower(), known) or f"there is {', '.join(known)}",
+        ) from None

@@ -1,0 +1,282 @@
+"""The parameters of one node: declared, read, and changed with the node's consent, by rclpy's rules."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from linkwright.graph.parameters.checks import WRONG_TYPE, objection
+from linkwright.graph.parameters.errors import (
+    InvalidParameterException,
+    InvalidParameterTypeException,
+    InvalidParameterValueException,
+    ParameterAlreadyDeclaredException,
+    ParameterImmutableException,
+    ParameterNotDeclaredException,
+    ParameterUninitializedException,
+)
+from linkwright.graph.parameters.parameter import Parameter, ParameterDescriptor, ParameterType, SetParametersResult
+
+PreSetParameters = Callable[[list[Parameter]], list[Parameter]]
+OnSetParameters = Callable[[list[Parameter]], Any]
+"""Gives a `SetParametersResult`, or the message of that name."""
+PostSetParameters = Callable[[list[Parameter]], object]
+
+_EMPTIED = (
+    "parameter list cannot be empty, this might be due to pre_set_parameters_callback modifying the original "
+    "parameters list."
+)
+_ONLY_A_NAME = (
+    "when declaring parameter named '{}', declaring a parameter only providing its name is deprecated. You have to "
+    'either:\n\t- Pass a name and a default value different to "PARAMETER NOT SET" (and optionally a descriptor).\n'
+    "\t- Pass a name and a parameter type.\n\t- Pass a name and a descriptor with `dynamic_typing=True"
+)
+
+
+@dataclass(slots=True)
+class ParameterChange:
+    """What one setting did: parameters that got their first value, got another, or went."""
+
+    new: list[Parameter] = field(default_factory=list)
+    changed: list[Parameter] = field(default_factory=list)
+    deleted: list[Parameter] = field(default_factory=list)
+
+
+class ParameterStore:
+    """The parameters of one node.
+
+    Args:
+        overrides: values that take the place of defaults when parameters of these names are declared. Mappings in it
+            stand for names with dots: ``{"zeros": {"j": 1.0}}`` gives ``zeros.j``.
+        allow_undeclared: whether parameters may be set and read that are not declared.
+        on_change: told of each successful setting, before the callbacks in `post_set`.
+
+    Attributes:
+        pre_set, on_set, post_set: the node's callbacks, the one added last first.
+    """
+
+    def __init__(
+        self,
+        overrides: Mapping[str, Any],
+        *,
+        allow_undeclared: bool = False,
+        on_change: Callable[[ParameterChange], None] = lambda _: None,
+    ) -> None:
+        self.overrides: Mapping[str, Any] = dict(_flattened(overrides))
+        self.allow_undeclared = allow_undeclared
+        self._on_change = on_change
+        self._parameters: dict[str, Parameter] = {}
+        self._descriptors: dict[str, Any] = {}
+        self.pre_set: list[PreSetParameters] = []
+        self.on_set: list[OnSetParameters] = []
+        self.post_set: list[PostSetParameters] = []
+
+    def __contains__(self, name: str) -> bool:
+        return name in self._parameters
+
+    def names(self) -> list[str]:
+        """Names of all declared parameters, in order of declaration."""
+        return list(self._parameters)
+
+    def declare(
+        self, name: str, default: Any, descriptor: Any, *, only_name: bool = False, ignore_override: bool = False
+    ) -> Parameter:
+        """Create a parameter with its override or else the default given; see ``Node.declare_parameter``."""
+        if not name:
+            raise InvalidParameterException(name)
+        if only_name:
+            warnings.warn(_ONLY_A_NAME.format(name), stacklevel=4)
+            descriptor.dynamic_typing = True
+        value = self._settle_type(name, default, descriptor)
+        if not ignore_override and name in self.overrides:
+            value = self.overrides[name]
+        parameter = _parameter(name, value, descriptor)
+        if name in self._parameters:
+            raise ParameterAlreadyDeclaredException([name])
+        verdict = self._set([parameter], descriptors={name: descriptor}, keep_unset=True)
+        if not verdict.successful:
+            if verdict.reason.startswith(WRONG_TYPE):
+                raise InvalidParameterTypeException(parameter, ParameterType(descriptor.type))
+            raise InvalidParameterValueException(name, parameter.value, verdict.reason)
+        return self._parameters[name]
+
+    def undeclare(self, name: str) -> None:
+        """Forget a parameter; see ``Node.undeclare_parameter``."""
+        if name not in self._parameters:
+            raise ParameterNotDeclaredException(name, self._parameters)
+        if self._descriptors[name].read_only:
+            raise ParameterImmutableException(name)
+        del self._parameters[name], self._descriptors[name]
+
+    def get(self, name: str) -> Parameter:
+        """A parameter; see ``Node.get_parameter``."""
+        parameter = self._parameters.get(name)
+        if parameter is not None:
+            if parameter.type_ is ParameterType.NOT_SET and not self._descriptors[name].dynamic_typing:
+                raise ParameterUninitializedException(name)
+            return parameter
+        if self.allow_undeclared:
+            return Parameter(name)
+        raise ParameterNotDeclaredException(name, self._parameters)
+
+    def value_or_none(self, name: str) -> Parameter | None:
+        """A parameter that has a value, or None."""
+        parameter = self._parameters.get(name)
+        return None if parameter is None or parameter.type_ is ParameterType.NOT_SET else parameter
+
+    def type_of(self, name: str) -> ParameterType:
+        """The type of the value that a parameter has."""
+        if name in self._parameters:
+            return self._parameters[name].type_
+        if self.allow_undeclared:
+            return ParameterType.NOT_SET
+        raise ParameterNotDeclaredException(name, self._parameters)
+
+    def with_prefix(self, prefix: str) -> dict[str, Parameter]:
+        """The parameters below a prefix, by the rest of their names after its dot; all of them for an empty one."""
+        start = f"{prefix}." if prefix else ""
+        return {name[len(start) :]: parameter for name, parameter in self._parameters.items() if name.startswith(start)}
+
+    def descriptor(self, name: str) -> Any:
+        """The descriptor of a parameter: the object that it was declared with."""
+        if name in self._descriptors:
+            return self._descriptors[name]
+        if self.allow_undeclared:
+            return ParameterDescriptor()
+        raise ParameterNotDeclaredException(name, self._parameters)
+
+    def keep_descriptor(self, name: str, descriptor: Any) -> None:
+        """Keep another object that says the same as the descriptor so far."""
+        self._descriptors[name] = descriptor
+
+    def set_descriptor(self, name: str, descriptor: Any, alternative: Any) -> Parameter | None:
+        """Give a parameter another descriptor; see ``Node.set_descriptor``."""
+        if name not in self._parameters:
+            if self.allow_undeclared:
+                return None
+            raise ParameterNotDeclaredException(name, self._parameters)
+        if self._descriptors[name].read_only:
+            raise ParameterImmutableException(name)
+        current = self.get(name)
+        fallback = current if alternative is None else Parameter(name, value=alternative)
+        reason = None
+        for candidate in (current, fallback):
+            reason = objection(candidate, descriptor, declared=True, check_read_only=False)
+            if reason is None:
+                self._parameters[name] = candidate
+                self._descriptors[name] = descriptor
+                return candidate
+        raise InvalidParameterValueException(name, fallback.value, reason or "")
+
+    def set_together(self, parameters: Sequence[Parameter]) -> Any:
+        """Set all of them or, if one cannot be set, none; see ``Node.set_parameters_atomically``."""
+        chosen = list(parameters)
+        if self.pre_set:
+            chosen = [each for callback in tuple(self.pre_set) for each in callback(list(parameters))]
+            if not chosen:
+                return SetParametersResult(successful=False, reason=_EMPTIED)
+        if not all(isinstance(each, Parameter) for each in chosen):
+            raise TypeError(f"parameter must be instance of type '{Parameter!r}'")
+        undeclared = [each.name for each in chosen if each.name not in self._parameters]
+        if undeclared and not self.allow_undeclared:
+            raise ParameterNotDeclaredException(undeclared, self._parameters)
+        return self._set([self._as_declared(each) for each in chosen])
+
+    def _as_declared(self, parameter: Parameter) -> Parameter:
+        """An empty list in the array type that is declared: which of them it is cannot be seen from it."""
+        descriptor = self._descriptors.get(parameter.name)
+        if descriptor is None or descriptor.dynamic_typing or not _is_empty_list(parameter.value):
+            return parameter
+        declared = ParameterType(descriptor.type)
+        return Parameter(parameter.name, declared, []) if declared.is_array else parameter
+
+    def _settle_type(self, name: str, default: Any, descriptor: Any) -> Any:
+        """Fill in the descriptor's type; gives the default value, None where only a type is given."""
+        if isinstance(default, ParameterType):
+            if default is ParameterType.NOT_SET:
+                raise ValueError(f"Cannot declare parameter {{{name}}} as statically typed of type NOT_SET")
+            if descriptor.dynamic_typing:
+                raise ValueError(
+                    f"When declaring parameter {{{name}}} passing a descriptor with"
+                    "`dynamic_typing=True` is not allowed when the parameter type is provided"
+                )
+            descriptor.type = default.value
+            return None
+        if not descriptor.dynamic_typing:
+            if _is_empty_list(default) and ParameterType(descriptor.type).is_array:
+                return default
+            found = ParameterType.from_parameter_value(default)
+            if found is ParameterType.NOT_SET:
+                raise ValueError(
+                    "Cannot declare a statically typed parameter with default value of type PARAMETER_NOT_SET"
+                )
+            descriptor.type = found.value
+        return default
+
+    def _set(
+        self, parameters: list[Parameter], *, descriptors: Mapping[str, Any] | None = None, keep_unset: bool = False
+    ) -> Any:
+        """Set all or none. With descriptors the parameters are being declared; unset ones go unless they are kept."""
+        applied = self._descriptors if descriptors is None else descriptors
+        for parameter in parameters:
+            descriptor = applied.get(parameter.name)
+            if descriptor is None:
+                continue
+            declared = parameter.name in self._parameters
+            reason = objection(parameter, descriptor, declared=declared, check_read_only=descriptors is None)
+            if reason is not None:
+                return SetParametersResult(successful=False, reason=reason)
+        for callback in tuple(self.on_set):
+            verdict = callback(parameters)
+            if not verdict.successful:
+                return verdict
+        change = ParameterChange()
+        for parameter in parameters:
+            self._apply(parameter, descriptors, change, keep_unset=keep_unset)
+        self._on_change(change)
+        for callback in tuple(self.post_set):
+            callback(parameters)
+        return SetParametersResult(successful=True)
+
+    def _apply(
+        self, parameter: Parameter, descriptors: Mapping[str, Any] | None, change: ParameterChange, *, keep_unset: bool
+    ) -> None:
+        name = parameter.name
+        if parameter.type_ is ParameterType.NOT_SET and not keep_unset:
+            change.deleted.append(parameter)
+            self._parameters.pop(name, None)
+            self._descriptors.pop(name, None)
+            return
+        if descriptors is not None:
+            self._descriptors[name] = descriptors[name]
+        elif name not in self._descriptors:
+            self._descriptors[name] = ParameterDescriptor(name, parameter.type_.value, dynamic_typing=True)
+        (change.new if self.value_or_none(name) is None else change.changed).append(parameter)
+        self._parameters[name] = parameter
+
+
+def _is_empty_list(value: Any) -> bool:
+    return isinstance(value, (list, tuple)) and not value
+
+
+def _parameter(name: str, value: Any, descriptor: Any) -> Parameter:
+    """A parameter to be declared. A value that no parameter can have came from the user."""
+    if isinstance(value, Parameter):
+        value = value.value
+    declared = ParameterType(descriptor.type)
+    if _is_empty_list(value) and declared.is_array and not descriptor.dynamic_typing:
+        return Parameter(name, declared, [])
+    try:
+        return Parameter(name, value=list(value) if isinstance(value, tuple) else value)
+    except TypeError as error:
+        raise InvalidParameterValueException(name, value, str(error)) from None
+
+
+def _flattened(values: Mapping[str, Any], prefix: str = "") -> Iterable[tuple[str, Any]]:
+    for name, value in values.items():
+        if isinstance(value, Mapping):
+            yield from _flattened(value, f"{prefix}{name}.")
+        else:
+            yield prefix + name, value

@@ -1,0 +1,263 @@
+"""The tf buffer: the latest transform of every frame, and the poses of all of them in any one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.graph.transforms.errors import bad_frame_name, loop, not_connected, unknown_frame
+from linkwright.graph.transforms.frame_tree import FrameTree, Poses, Rows
+from linkwright.kinematics import IDENTITY, compose, invert
+from linkwright.messages import TFMessage, TransformBatch
+
+_QUATERNION_TOLERANCE = 0.01
+"""How far the squared length of a quaternion may be from 1 (tf2 QUATERNION_NORMALIZATION_TOLERANCE)."""
+
+_PLANS_KEPT = 64
+"""Publishers send the same frames again and again; more different lists than this means that they do not."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FrameSnapshot:
+    """All frames at one moment, seen from one of them.
+
+    Attributes:
+        revision: changes whenever `names` or `parents` do, and only then.
+        names: the n frames.
+        parents: for each frame the index of its parent, -1 for frames without one.
+        poses: array, shape (n, 7), of x y z (metres) and qx qy qz qw: each frame in the fixed frame; rows of NaN for
+            frames that no transforms connect with it.
+        ages: array, shape (n,), of the seconds since each frame's transform was last received; 0 for static ones.
+    """
+
+    revision: int
+    names: tuple[str, ...]
+    parents: tuple[int, ...]
+    poses: NDArray[np.float64]
+    ages: NDArray[np.float64]
+
+
+@dataclass(slots=True)
+class _Plan:
+    """Where the transforms of one list of frames go. `revision` is that at which the parents were last looked at."""
+
+    taken: Rows
+    rows: Rows
+    parents: Rows
+    revision: int = -1
+
+
+class TransformBuffer:
+    """Keeps the latest transform of each frame, as a display needs it.
+
+    As in tf2 a frame has one parent, and what is received last holds, whoever sent it; so a frame changes its parent
+    when a transform says so. Unlike tf2 there is no history: stamps are not looked at.
+
+    Args:
+        on_problem: told once, in tf2's words, of each kind of bad transform of each frame.
+    """
+
+    def __init__(self, on_problem: Callable[[str], object] | None = None) -> None:
+        self._on_problem = on_problem
+        self._problems: set[str] = set()
+        self._rows: dict[str, int] = {}
+        self._parents: Rows = np.empty(0, dtype=np.intp)
+        self._local: Poses = np.empty((0, 7))
+        self._received_ns: NDArray[np.int64] = np.empty(0, dtype=np.int64)
+        self._static: NDArray[np.bool_] = np.empty(0, dtype=np.bool_)
+        self._plans: dict[tuple[tuple[str, ...], tuple[str, ...]], _Plan] = {}
+        self._revision = 0
+        self._in_roots: Poses | None = None
+        self._structure_changed()
+
+    def update(self, message: TFMessage, *, static: bool, now_ns: int) -> None:
+        """Take in a message.
+
+        Transforms with an empty frame name, of a frame in itself, with NaN, or with a quaternion that is not of unit
+        length are left out, as in tf2; so is a slash at the beginning of a name.
+
+        Args:
+            message: the transforms.
+            static: whether they came on ``/tf_static``.
+            now_ns: the present, nanoseconds since the epoch; ages count from it.
+        """
+        batch = message.batch
+        plan = self._plan_for(batch)
+        poses = batch.poses
+        taken, rows, parents = plan.taken, plan.rows, plan.parents
+        usable = _usable(poses)
+        if not usable.all():
+            self._report_unusable(batch, np.flatnonzero(~usable))
+            keep = usable[taken]
+            taken, rows, parents = taken[keep], rows[keep], parents[keep]
+        if not rows.size:
+            return
+        if plan.revision != self._revision:
+            if not np.array_equal(self._parents[rows], parents):
+                self._parents[rows] = parents
+                self._structure_changed()
+            if usable.all():
+                plan.revision = self._revision
+        self._local[rows] = poses.take(taken, axis=0)
+        self._received_ns[rows] = now_ns
+        self._static[rows] = static
+        self._in_roots = None
+
+    def snapshot(self, fixed_frame: str, now_ns: int) -> FrameSnapshot:
+        """The poses of all frames in a fixed frame.
+
+        Args:
+            fixed_frame: its name; when there is no such frame, all poses are NaN.
+            now_ns: the present, nanoseconds since the epoch.
+        """
+        ages = np.where(self._static | (self._parents < 0), 0.0, (now_ns - self._received_ns) / 1e9)
+        np.maximum(ages, 0.0, out=ages)
+        return FrameSnapshot(self._revision, self._names, self._parent_tuple, self._poses_in(fixed_frame), ages)
+
+    def lookup(self, target: str, source: str) -> Poses:
+        """The pose of the source frame in the target frame: array, shape (7,), of x y z and qx qy qz qw.
+
+        It takes points given in the source frame to the target frame, as tf2's ``lookupTransform`` does.
+
+        Raises:
+            LookupException: one of the frames is not known, or its parents go round in a loop.
+            ConnectivityException: no transforms lead from one to the other.
+            InvalidArgumentException: a name is empty or begins with a slash.
+        """
+        target_row, source_row = self._row("target_frame", target), self._row("source_frame", source)
+        roots = self._tree.roots
+        for frame, row in ((target, target_row), (source, source_row)):
+            if roots[row] < 0:
+                raise loop(f" Frame '{frame}' is on it or below it.")
+        if roots[target_row] != roots[source_row]:
+            raise not_connected(target, source)
+        poses = self._poses_in_roots()
+        return compose(invert(poses[target_row]), poses[source_row])
+
+    def frames(self) -> tuple[str, ...]:
+        """The names of all frames, in the order in which they came up."""
+        return self._names
+
+    def remove(self, names: Iterable[str]) -> None:
+        """Forget the transforms of some frames, such as those of a robot that was replaced.
+
+        A frame that others are attached to stays, without a parent; the others among them vanish.
+        """
+        for row in (self._rows[name] for name in names if name in self._rows):
+            self._parents[row] = -1
+        in_use = self._parents >= 0
+        in_use[self._parents[in_use]] = True
+        kept = np.flatnonzero(in_use)
+        moved = np.full(len(in_use) + 1, -1, dtype=np.intp)  # one more, so that parent -1 stays -1
+        moved[kept] = np.arange(kept.size)
+        self._rows = {name: int(moved[row]) for name, row in self._rows.items() if in_use[row]}
+        self._parents = moved[self._parents[kept]]
+        self._local = self._local[kept]
+        self._received_ns, self._static = self._received_ns[kept], self._static[kept]
+        self._plans.clear()
+        self._structure_changed()
+
+    def _structure_changed(self) -> None:
+        self._revision += 1
+        self._names = tuple(self._rows)
+        self._parent_tuple = tuple(self._parents.tolist())
+        self._tree = FrameTree(self._parents)
+        self._in_roots = None
+
+    def _row(self, argument: str, frame: str) -> int:
+        argument = f"lookupTransform argument {argument}"
+        problem = bad_frame_name(argument, frame)
+        if problem is not None:
+            raise problem
+        row = self._rows.get(frame)
+        if row is None:
+            raise unknown_frame(argument, frame, self._names)
+        return row
+
+    def _poses_in_roots(self) -> Poses:
+        if self._in_roots is None:
+            self._in_roots = self._tree.poses_in_roots(self._local)
+        return self._in_roots
+
+    def _poses_in(self, fixed_frame: str) -> Poses:
+        row = self._rows.get(fixed_frame)
+        roots = self._tree.roots
+        if row is None or roots[row] < 0:
+            return np.full((len(self._names), 7), np.nan)
+        in_roots = self._poses_in_roots()
+        poses = in_roots.copy() if roots[row] == row else compose(invert(in_roots[row]), in_roots)
+        poses[roots != roots[row]] = np.nan
+        return poses
+
+    def _plan_for(self, batch: TransformBatch) -> _Plan:
+        key = (batch.parents, batch.children)
+        plan = self._plans.get(key)
+        if plan is None:
+            if len(self._plans) >= _PLANS_KEPT:
+                self._plans.clear()
+            plan = self._plans[key] = self._make_plan(batch)
+        return plan
+
+    def _make_plan(self, batch: TransformBatch) -> _Plan:
+        taken, rows, parents = [], [], []
+        for number, (parent, child) in enumerate(zip(batch.parents, batch.children, strict=True)):
+            parent, child = parent.removeprefix("/"), child.removeprefix("/")
+            if self._names_are_usable(parent, child):
+                taken.append(number)
+                parents.append(self._rows.setdefault(parent, len(self._rows)))
+                rows.append(self._rows.setdefault(child, len(self._rows)))
+        new = len(self._rows) - len(self._parents)
+        if new:
+            self._parents = np.append(self._parents, np.full(new, -1, dtype=np.intp))
+            self._local = np.vstack([self._local, np.tile(IDENTITY, (new, 1))])
+            self._received_ns = np.append(self._received_ns, np.zeros(new, dtype=np.int64))
+            self._static = np.append(self._static, np.zeros(new, dtype=np.bool_))
+            self._structure_changed()
+        return _Plan(_as_rows(taken), _as_rows(rows), _as_rows(parents))
+
+    def _names_are_usable(self, parent: str, child: str) -> bool:
+        if not child:
+            self._report("TF_NO_CHILD_FRAME_ID: Ignoring transform because child_frame_id not set")
+        elif not parent:
+            self._report(f'TF_NO_FRAME_ID: Ignoring transform with child_frame_id "{child}" because frame_id not set')
+        elif parent == child:
+            self._report(
+                "TF_SELF_TRANSFORM: Ignoring transform with frame_id and child_frame_id "
+                f'"{child}" because they are the same'
+            )
+        else:
+            return True
+        return False
+
+    def _report_unusable(self, batch: TransformBatch, numbers: Rows) -> None:
+        for number in numbers.tolist():
+            child = batch.children[number]
+            if np.isnan(batch.poses[number]).any():
+                self._report(
+                    f'TF_NAN_INPUT: Ignoring transform for child_frame_id "{child}" '
+                    "because of a nan value in the transform"
+                )
+            else:
+                self._report(
+                    f'TF_DENORMALIZED_QUATERNION: Ignoring transform for child_frame_id "{child}" '
+                    "because of an invalid quaternion in the transform"
+                )
+
+    def _report(self, problem: str) -> None:
+        if self._on_problem is not None and problem not in self._problems:
+            self._problems.add(problem)
+            self._on_problem(problem)
+
+
+def _as_rows(numbers: list[int]) -> Rows:
+    return np.array(numbers, dtype=np.intp)
+
+
+def _usable(poses: Poses) -> NDArray[np.bool_]:
+    rotations = poses[:, 3:]
+    squared_lengths = np.einsum("ni,ni->n", rotations, rotations)
+    usable: NDArray[np.bool_] = np.abs(squared_lengths - 1.0) < _QUATERNION_TOLERANCE
+    return usable & ~np.isnan(poses[:, :3]).any(axis=1)

@@ -1,0 +1,227 @@
+"""What the tf buffer remembers of one frame: its transforms over the last seconds, or the one that always holds."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from bisect import bisect_right
+from typing import TYPE_CHECKING, NamedTuple, cast
+
+from linkwright.graph.transforms.pose import Pose, interpolate
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+_NANOSECONDS_PER_SECOND = 1_000_000_000
+_COMPACT_FROM = 256
+"""How many forgotten transforms stay in the list before it is cut: cutting costs as much as what stays is long."""
+
+
+class Sample(NamedTuple):
+    """A transform of a frame: its number of the parent, and the row of an array of poses, or a pose itself."""
+
+    parent: int
+    poses: NDArray | Pose  # type: ignore[type-arg]  # rows of floats
+    row: int = -1
+
+    def pose(self) -> Pose:
+        """The pose in the parent."""
+        if self.row < 0:
+            return cast("Pose", self.poses)
+        return cast("Pose", tuple(cast("NDArray", self.poses)[self.row].tolist()))  # type: ignore[type-arg]
+
+
+class NoDataError(Exception):
+    """There is no transform for a time; the text says which there are, in tf2's words. Empty when there are none."""
+
+
+def shown_time(stamp_ns: int) -> str:
+    """A time as tf2 writes it: seconds with six digits."""
+    return f"{stamp_ns / _NANOSECONDS_PER_SECOND:.6f}"
+
+
+class FrameCache(ABC):
+    """The transforms of one frame."""
+
+    @abstractmethod
+    def add(self, stamp_ns: int, sample: Sample) -> bool:
+        """Take in a transform; False when it is too old."""
+
+    @abstractmethod
+    def at(self, time_ns: int) -> tuple[int, Pose]:
+        """Number of the parent and pose at a time; 0 for the latest.
+
+        Raises:
+            NoDataError: there is none for that time.
+        """
+
+    @abstractmethod
+    def parent_at(self, time_ns: int) -> int:
+        """Number of the parent at a time; 0 for the latest.
+
+        Raises:
+            NoDataError: there is none for that time.
+        """
+
+    @abstractmethod
+    def latest(self) -> tuple[int, int] | None:
+        """Stamp of the latest transform (0 when it always holds) and number of its parent; None without any."""
+
+    @abstractmethod
+    def oldest_ns(self) -> int:
+        """Stamp of the oldest transform; 0 without any, or when it always holds."""
+
+    @abstractmethod
+    def __len__(self) -> int: ...
+
+    @abstractmethod
+    def clear(self) -> None:
+        """Forget them."""
+
+
+class StaticCache(FrameCache):
+    """The one transform of a frame that does not move."""
+
+    __slots__ = ("_sample",)
+
+    def __init__(self) -> None:
+        self._sample: Sample | None = None
+
+    def add(self, stamp_ns: int, sample: Sample) -> bool:  # noqa: ARG002  # it holds at all times
+        """Take in a transform, instead of the one so far."""
+        self._sample = sample
+        return True
+
+    def at(self, time_ns: int) -> tuple[int, Pose]:
+        """Number of the parent and pose, the same at all times."""
+        return self.parent_at(time_ns), cast("Sample", self._sample).pose()
+
+    def parent_at(self, time_ns: int) -> int:  # noqa: ARG002  # it holds at all times
+        """Number of the parent, the same at all times."""
+        if self._sample is None:
+            raise NoDataError
+        return self._sample.parent
+
+    def latest(self) -> tuple[int, int] | None:
+        """Stamp 0, and number of the parent."""
+        return None if self._sample is None else (0, self._sample.parent)
+
+    def oldest_ns(self) -> int:
+        """Always 0."""
+        return 0
+
+    def __len__(self) -> int:
+        return 1
+
+    def clear(self) -> None:
+        """Nothing: what does not move holds on, as in tf2."""
+
+
+class MovingCache(FrameCache):
+    """The transforms of a frame over time.
+
+    Args:
+        span_ns: how far back they go from the latest, nanoseconds.
+    """
+
+    __slots__ = ("_first", "_samples", "_span_ns", "_stamps")
+
+    def __init__(self, span_ns: int) -> None:
+        self._span_ns = span_ns
+        self._stamps: list[int] = []
+        self._samples: list[Sample] = []
+        self._first = 0
+
+    def add(self, stamp_ns: int, sample: Sample) -> bool:
+        """Take in a transform, at its place in time; one that is there already is not kept twice."""
+        stamps = self._stamps
+        if len(stamps) == self._first:
+            stamps.append(stamp_ns)
+            self._samples.append(sample)
+            return True
+        latest = stamps[-1]
+        self._prune(latest)
+        if stamp_ns > latest:
+            stamps.append(stamp_ns)
+            self._samples.append(sample)
+            return True
+        if stamp_ns < latest - self._span_ns:
+            return False
+        place = bisect_right(stamps, stamp_ns, self._first)
+        before = place - 1
+        while before >= self._first and stamps[before] == stamp_ns:
+            same = self._samples[before]
+            if same.parent == sample.parent and same.pose() == sample.pose():
+                return True
+            before -= 1
+        stamps.insert(place, stamp_ns)
+        self._samples.insert(place, sample)
+        return True
+
+    def at(self, time_ns: int) -> tuple[int, Pose]:
+        """Number of the parent and pose at a time, between two transforms in proportion."""
+        place = self._place(time_ns)
+        sample = self._samples[place]
+        if time_ns in (0, self._stamps[place]):
+            return sample.parent, sample.pose()
+        later = self._samples[place + 1]
+        if later.parent != sample.parent:
+            return sample.parent, sample.pose()
+        start, end = self._stamps[place], self._stamps[place + 1]
+        return sample.parent, interpolate(sample.pose(), later.pose(), (time_ns - start) / (end - start))
+
+    def parent_at(self, time_ns: int) -> int:
+        """Number of the parent at a time."""
+        return self._samples[self._place(time_ns)].parent
+
+    def latest(self) -> tuple[int, int] | None:
+        """Stamp and number of the parent of the latest transform."""
+        if len(self._stamps) == self._first:
+            return None
+        return self._stamps[-1], self._samples[-1].parent
+
+    def oldest_ns(self) -> int:
+        """Stamp of the oldest transform."""
+        return self._stamps[self._first] if len(self) else 0
+
+    def __len__(self) -> int:
+        return len(self._stamps) - self._first
+
+    def clear(self) -> None:
+        """Forget them all."""
+        self._stamps, self._samples, self._first = [], [], 0
+
+    def _place(self, time_ns: int) -> int:
+        """Where the transform stands that is the last one at a time."""
+        stamps: Sequence[int] = self._stamps
+        if len(stamps) == self._first:
+            raise NoDataError
+        latest, oldest = stamps[-1], stamps[self._first]
+        if time_ns in (0, latest):
+            return len(stamps) - 1
+        if len(self) == 1:
+            raise NoDataError(
+                f"Lookup would require extrapolation at time {shown_time(time_ns)}, but only time "
+                f"{shown_time(latest)} is in the buffer"
+            )
+        if time_ns > latest:
+            raise NoDataError(
+                f"Lookup would require extrapolation into the future.  Requested time {shown_time(time_ns)} but the "
+                f"latest data is at time {shown_time(latest)}"
+            )
+        if time_ns < oldest:
+            raise NoDataError(
+                f"Lookup would require extrapolation into the past.  Requested time {shown_time(time_ns)} but the "
+                f"earliest data is at time {shown_time(oldest)}"
+            )
+        return bisect_right(stamps, time_ns, self._first) - 1
+
+    def _prune(self, latest: int) -> None:
+        stamps, first = self._stamps, self._first
+        while stamps[first] + self._span_ns < latest:
+            first += 1
+        if first > _COMPACT_FROM and first * 2 > len(stamps):
+            del stamps[:first], self._samples[:first]
+            first = 0
+        self._first = first

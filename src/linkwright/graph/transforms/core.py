@@ -1,0 +1,461 @@
+"""The tf buffer with a memory: transforms of the last seconds, and lookups at any time among them.
+
+The methods are those of ``tf2_py.BufferCore``, the behaviour and the texts those of tf2. `TransformBuffer` is for
+displays, which want all frames as they are now.
+"""
+
+from __future__ import annotations
+
+import threading
+import time as system_time
+from math import isnan
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.graph.log.logger import Logger, print_to_console
+from linkwright.graph.time import Duration, Time
+from linkwright.graph.transforms.cache import FrameCache, MovingCache, Sample, StaticCache, shown_time
+from linkwright.graph.transforms.errors import (
+    ConnectivityException,
+    ExtrapolationException,
+    LookupException,
+    bad_frame_name,
+    bad_frame_reason,
+    unknown_frame,
+)
+from linkwright.graph.transforms.pose import IDENTITY, Pose, Vector, compose
+from linkwright.graph.transforms.report import FrameFacts, frames_as_dot, frames_as_text, frames_as_yaml
+from linkwright.graph.transforms.velocity import velocity
+from linkwright.graph.transforms.walk import Walker
+
+DEFAULT_CACHE_TIME = Duration(seconds=10)
+_QUATERNION_TOLERANCE = 10e-3
+_NANOSECONDS_PER_SECOND = 1_000_000_000
+_PLANS_KEPT = 64
+"""Publishers send the same frames again and again; more different lists than this means that they do not."""
+
+_Plan = list[tuple["FrameCache | None", int]]
+"""For each transform of a message the cache of its frame, and the number of its parent."""
+
+_NOT_DEFINED = "Source or target frame is not yet defined"
+
+
+class BufferCore:
+    """Keeps transforms for a while. It may be used from several threads.
+
+    Times are ``Time`` objects, or messages of builtin_interfaces; zero stands for the latest.
+
+    Args:
+        cache_time: how far back transforms are kept, from the latest one of each frame.
+        logger: says which transforms are not taken; one called ``tf2`` when left out.
+    """
+
+    def __init__(self, cache_time: Any = None, *, logger: Logger | None = None) -> None:
+        self._span_ns: int = (DEFAULT_CACHE_TIME if cache_time is None else cache_time).nanoseconds
+        self._logger = logger or Logger("tf2", print_to_console, system_time.time_ns)
+        self._lock = threading.RLock()
+        self._numbers: dict[str, int] = {}
+        self._names = ["NO_PARENT"]
+        self._caches: list[FrameCache | None] = [None]
+        self._authorities: dict[int, str] = {}
+        self._plans: dict[tuple[tuple[str, ...], tuple[str, ...], str, bool], _Plan] = {}
+        self._walker = Walker(self._caches, self._names, self.all_frames_as_string)
+
+    def set_transform(self, transform: Any, authority: str) -> None:
+        """Take in a geometry_msgs/msg/TransformStamped. One that is not taken is told of in the log.
+
+        Args:
+            transform: the message.
+            authority: who says so, for reports.
+        """
+        self._set_message(transform, authority, static=False)
+
+    def set_transform_static(self, transform: Any, authority: str) -> None:
+        """Take in a transform that always holds; see `set_transform`."""
+        self._set_message(transform, authority, static=True)
+
+    def update(self, message: Any, *, static: bool, now_ns: int = 0, authority: str = "default_authority") -> None:  # noqa: ARG002
+        """Take in a tf2_msgs/msg/TFMessage.
+
+        Args:
+            message: the transforms.
+            static: whether they came on ``/tf_static``.
+            now_ns: the present; it does not matter here, and does for a `TransformBuffer`.
+            authority: who says so, for reports.
+        """
+        columns = message.columns()
+        if columns is None:
+            for transform in message.transforms:
+                self._set_message(transform, authority, static=static)
+            return
+        parents, children, stamps, poses = columns
+        if not _all_usable(poses):
+            for parent, child, stamp_ns, pose in zip(parents, children, stamps, poses.tolist(), strict=True):
+                self._set(parent, child, stamp_ns, tuple(pose), authority, static=static)
+            return
+        with self._lock:
+            plan = self._plan(parents, children, authority, static)
+            for row, ((cache, parent_number), stamp_ns) in enumerate(zip(plan, stamps, strict=True)):
+                if cache is None or not cache.add(stamp_ns, Sample(parent_number, poses, row)):
+                    pose = tuple(poses[row].tolist())
+                    self._set(parents[row], children[row], stamp_ns, pose, authority, static=static)
+
+    def lookup_transform_core(self, target_frame: str, source_frame: str, time: Any) -> Any:
+        """The pose of the source frame in the target frame, as a geometry_msgs/msg/TransformStamped.
+
+        It takes points given in the source frame to the target frame.
+
+        Args:
+            target_frame: the frame to transform to.
+            source_frame: the frame to transform from.
+            time: when; zero for the latest time that all frames between the two have.
+
+        Raises:
+            LookupException: a frame is not known.
+            ConnectivityException: no transforms lead from one to the other.
+            ExtrapolationException: there are none for that time.
+            InvalidArgumentException: a name is empty or begins with a slash.
+        """
+        pose, time_ns = self.lookup(target_frame, source_frame, nanoseconds_of(time))
+        return _message(target_frame, source_frame, time_ns, pose)
+
+    def lookup_transform_full_core(
+        self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
+    ) -> Any:
+        """The pose of the source frame at one time in the target frame at another, the fixed frame not moving.
+
+        Raises:
+            TransformException: as `lookup_transform_core`.
+        """
+        with self._lock:
+            for argument, frame in (("target", target_frame), ("source", source_frame), ("fixed", fixed_frame)):
+                self._number(f"lookupTransform argument {argument}_frame", frame)
+            source_in_fixed, _ = self.lookup(fixed_frame, source_frame, nanoseconds_of(source_time))
+            fixed_in_target, time_ns = self.lookup(target_frame, fixed_frame, nanoseconds_of(target_time))
+        return _message(target_frame, source_frame, time_ns, compose(fixed_in_target, source_in_fixed))
+
+    def lookup(self, target: str, source: str, time_ns: int) -> tuple[Pose, int]:
+        """The pose of the source frame in the target frame, and the time that it holds at, in nanoseconds.
+
+        Raises:
+            TransformException: as `lookup_transform_core`.
+        """
+        with self._lock:
+            if target == source:
+                cache = self._caches[self._numbers.get(target, 0)]
+                latest = None if cache is None or time_ns else cache.latest()
+                return IDENTITY, latest[0] if latest else time_ns
+            target_number = self._number("lookupTransform argument target_frame", target)
+            source_number = self._number("lookupTransform argument source_frame", source)
+            way = self._walker.way(target_number, source_number, time_ns)
+            return way.pose(), way.time_ns
+
+    def can_transform_core(self, target_frame: str, source_frame: str, time: Any) -> tuple[bool, str]:
+        """Whether a lookup would give a transform; and why not, in tf2's words."""
+        if target_frame == source_frame:
+            return True, ""
+        with self._lock:
+            for argument, frame in (("target", target_frame), ("source", source_frame)):
+                objection = self._objection(f"canTransform argument {argument}_frame", frame)
+                if objection:
+                    return False, objection
+            return self._can(target_frame, source_frame, nanoseconds_of(time))
+
+    def can_transform_full_core(
+        self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
+    ) -> tuple[bool, str]:
+        """Whether a lookup with a fixed frame would give a transform; and why not."""
+        frames = (("target", target_frame), ("source", source_frame), ("fixed", fixed_frame))
+        with self._lock:
+            for argument, frame in frames:
+                objection = self._objection(f"canTransform argument {argument}_frame", frame)
+                if objection:
+                    return False, objection
+            verdict = self._can(target_frame, fixed_frame, nanoseconds_of(target_time))
+            return self._can(fixed_frame, source_frame, nanoseconds_of(source_time)) if verdict[0] else verdict
+
+    def get_latest_common_time(self, target_frame: str, source_frame: str) -> Time:
+        """The latest time that all moving frames between two have; zero when none of them moves.
+
+        Raises:
+            LookupException: a frame is not known.
+            ConnectivityException: no transforms lead from one to the other.
+        """
+        with self._lock:
+            target = self._number("getLatestCommonTime argument target_frame", target_frame)
+            source = self._number("getLatestCommonTime argument source_frame", source_frame)
+            if target == source:
+                cache = self._caches[target]
+                latest = None if cache is None else cache.latest()
+                time_ns = latest[0] if latest else 0
+            else:
+                time_ns = self._walker.latest_common_time(target, source)
+        return Time(nanoseconds=time_ns)
+
+    def lookup_velocity(
+        self,
+        tracking_frame: str,
+        observation_frame: str,
+        reference_frame: str,
+        reference_point: Vector,
+        reference_point_frame: str,
+        time: Any,
+        averaging_interval: Any,
+    ) -> tuple[Vector, Vector]:
+        """Linear and angular velocity of a frame; see `velocity`.
+
+        Raises:
+            TransformException: as `lookup_transform_core`.
+        """
+        with self._lock:
+            latest_ns = self.get_latest_common_time(observation_frame, tracking_frame).nanoseconds
+            return velocity(
+                self,
+                tracking_frame,
+                observation_frame,
+                (reference_frame, reference_point, reference_point_frame),
+                (nanoseconds_of(time), latest_ns, nanoseconds_of(averaging_interval)),
+            )
+
+    def clear(self) -> None:
+        """Forget all transforms that do not always hold."""
+        with self._lock:
+            for cache in self._caches:
+                if cache is not None:
+                    cache.clear()
+
+    def all_frames_as_yaml(self, time: Any = None) -> str:
+        """All frames with their parents, rates and times, as YAML; with delays where a time is given."""
+        with self._lock:
+            return frames_as_yaml(self._facts(), nanoseconds_of(time) if time is not None else 0)
+
+    def all_frames_as_string(self) -> str:
+        """All frames with their parents, a line each."""
+        with self._lock:
+            return frames_as_text(self._facts(with_empty=True))
+
+    def frame_names(self) -> list[str]:
+        """The names of all frames, in the order in which they came up."""
+        with self._lock:
+            return self._names[1:]
+
+    def chain(
+        self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
+    ) -> list[str]:
+        """The frames between two, from the source over the fixed frame to the target.
+
+        Raises:
+            TransformException: as `lookup_transform_core`.
+        """
+        with self._lock:
+            names = [
+                *self._chain_names(fixed_frame, source_frame, nanoseconds_of(source_time)),
+                *self._chain_names(target_frame, fixed_frame, nanoseconds_of(target_time)),
+            ]
+        kept: list[str] = []
+        for name in names:
+            if not kept or kept[-1] != name:
+                kept.append(name)
+        return kept
+
+    def all_frames_as_dot(self, time: Any = None) -> str:
+        """All frames as a graph for Graphviz; with ages where a time is given."""
+        with self._lock:
+            return frames_as_dot(self._facts(), nanoseconds_of(time) if time is not None else 0)
+
+    # The names that tf2_py has for them.
+    _chain = chain
+    _getFrameStrings = frame_names  # noqa: N815
+    _frameYAML = all_frames_as_yaml  # noqa: N815
+    _allFramesAsDot = all_frames_as_dot  # noqa: N815
+
+    lookupVelocityFullCore = lookup_velocity  # noqa: N815
+
+    def lookupVelocityCore(  # noqa: N802
+        self, tracking_frame: str, observation_frame: str, time: Any, averaging_interval: Any
+    ) -> tuple[Vector, Vector]:
+        """Velocity of the origin of a frame, given in the frame in which it is seen."""
+        reference = (observation_frame, (0.0, 0.0, 0.0), tracking_frame)
+        return self.lookup_velocity(tracking_frame, observation_frame, *reference, time, averaging_interval)
+
+    def _frameExists(self, frame_id: str) -> bool:  # noqa: N802
+        return frame_id in self._numbers
+
+    def _set_message(self, message: Any, authority: str, *, static: bool) -> None:
+        header, transform = message.header, message.transform
+        translation, rotation = transform.translation, transform.rotation
+        pose = (
+            translation.x, translation.y, translation.z, rotation.x, rotation.y, rotation.z, rotation.w,
+        )  # fmt: skip
+        self._set(header.frame_id, message.child_frame_id, nanoseconds_of(header.stamp), pose, authority, static=static)
+
+    def _set(self, parent: str, child: str, stamp_ns: int, pose: Pose, authority: str, *, static: bool) -> None:
+        parent, child = parent.removeprefix("/"), child.removeprefix("/")
+        problem = _problem(parent, child, pose, authority)
+        if problem is not None:
+            self._logger.error(problem)
+            return
+        with self._lock:
+            number = self._insert(child)
+            cache = self._cache(number, static)
+            if cache.add(stamp_ns, Sample(self._insert(parent), pose)):
+                self._authorities[number] = authority
+                return
+        self._logger.warning(
+            f"TF_OLD_DATA ignoring data from the past for frame {child} at time {shown_time(stamp_ns)} according to "
+            f"authority {authority}\nPossible reasons are listed at http://wiki.ros.org/tf/Errors%20explained"
+        )
+
+    def _plan(self, parents: tuple[str, ...], children: tuple[str, ...], authority: str, static: bool) -> _Plan:
+        """Where the transforms of a message with these frames go, worked out once for all such messages.
+
+        The cache is None for transforms that are to be told of in the log.
+        """
+        key = (parents, children, authority, static)
+        plan = self._plans.get(key)
+        if plan is None:
+            entries: _Plan = []
+            for parent, child in zip(parents, children, strict=True):
+                parent, child = parent.removeprefix("/"), child.removeprefix("/")
+                if not parent or not child or parent == child:
+                    entries.append((None, 0))
+                    continue
+                number = self._insert(child)
+                entries.append((self._cache(number, static), self._insert(parent)))
+                self._authorities[number] = authority
+            if len(self._plans) >= _PLANS_KEPT:
+                self._plans.clear()
+            plan = self._plans[key] = entries
+        return plan
+
+    def _cache(self, number: int, static: bool) -> FrameCache:
+        """What is remembered of a frame; anew when it begins to move or to stand still."""
+        cache = self._caches[number]
+        if cache is None or isinstance(cache, StaticCache) is not static:
+            cache = self._caches[number] = StaticCache() if static else MovingCache(self._span_ns)
+            self._plans.clear()
+        return cache
+
+    def _insert(self, frame: str) -> int:
+        number = self._numbers.get(frame)
+        if number is None:
+            number = self._numbers[frame] = len(self._names)
+            self._names.append(frame)
+            self._caches.append(None)
+        return number
+
+    def _number(self, argument: str, frame: str) -> int:
+        problem = bad_frame_name(argument, frame)
+        if problem is not None:
+            raise problem
+        number = self._numbers.get(frame)
+        if number is None:
+            raise unknown_frame(argument, frame, self._numbers)
+        return number
+
+    def _objection(self, argument: str, frame: str) -> str | None:
+        reason = bad_frame_reason(frame)
+        if reason is None and frame not in self._numbers:
+            reason = "frame does not exist"
+        return None if reason is None else f'Invalid frame ID "{frame}" passed to {argument} - {reason}'
+
+    def _can(self, target: str, source: str, time_ns: int) -> tuple[bool, str]:
+        target_number, source_number = self._numbers.get(target, 0), self._numbers.get(source, 0)
+        if not target_number or not source_number:
+            return False, _NOT_DEFINED
+        if target_number == source_number:
+            return True, ""
+        try:
+            self._walker.way(target_number, source_number, time_ns, poses=False)
+        except (ConnectivityException, ExtrapolationException, LookupException) as error:
+            return False, str(error)
+        return True, ""
+
+    def _chain_names(self, target: str, source: str, time_ns: int) -> list[str]:
+        target_number = self._number("_chainAsVector argument target_frame", target)
+        source_number = self._number("_chainAsVector argument source_frame", source)
+        if target_number == source_number:
+            return [target]
+        way = self._walker.way(target_number, source_number, time_ns, poses=False)
+        return [self._names[number] for number in way.chain()]
+
+    def _facts(self, *, with_empty: bool = False) -> list[FrameFacts]:
+        facts = []
+        for number, cache in enumerate(self._caches):
+            if cache is None:
+                continue
+            latest = cache.latest()
+            if latest is None and not with_empty:
+                continue
+            stamp_ns, parent = latest or (0, 0)
+            facts.append(
+                FrameFacts(
+                    self._names[number],
+                    self._names[parent],
+                    self._authorities.get(number, "no recorded authority"),
+                    len(cache),
+                    stamp_ns,
+                    cache.oldest_ns(),
+                )
+            )
+        return facts
+
+
+def _all_usable(poses: NDArray[np.float64]) -> bool:
+    """Whether tf2 takes all of these poses: no NaN, and quaternions of unit length."""
+    rotations = poses[:, 3:]
+    squared_lengths = np.einsum("ni,ni->n", rotations, rotations)
+    return bool((np.abs(squared_lengths - 1.0) < _QUATERNION_TOLERANCE).all() and not np.isnan(poses[:, :3]).any())
+
+
+def nanoseconds_of(time: Any) -> int:
+    """The nanoseconds of a ``Time`` or ``Duration``, or of a message of builtin_interfaces."""
+    if hasattr(time, "nanosec"):
+        return int(time.sec) * _NANOSECONDS_PER_SECOND + int(time.nanosec)
+    return int(time.nanoseconds)
+
+
+def _problem(parent: str, child: str, pose: Pose, authority: str) -> str | None:
+    """Why a transform is not taken, in tf2's words."""
+    x, y, z, w = pose[3:]
+    # A NaN fails the comparison, and infinite numbers do; so one test tells the usual case.
+    unit = abs(x * x + y * y + z * z + w * w - 1.0) < _QUATERNION_TOLERANCE
+    if unit and parent and child and parent != child and not any(map(isnan, pose[:3])):
+        return None
+    if child == parent:
+        return (
+            f'TF_SELF_TRANSFORM: Ignoring transform from authority "{authority}" with frame_id and  '
+            f'child_frame_id "{child}" because they are the same'
+        )
+    if not child:
+        return f'TF_NO_CHILD_FRAME_ID: Ignoring transform from authority "{authority}" because child_frame_id not set '
+    if not parent:
+        return (
+            f'TF_NO_FRAME_ID: Ignoring transform with child_frame_id "{child}"  from authority "{authority}" '
+            "because frame_id not set"
+        )
+    position = " ".join(f"{value:f}" for value in pose[:3])
+    rotation = " ".join(f"{value:f}" for value in pose[3:])
+    if any(map(isnan, pose)):
+        return (
+            f'TF_NAN_INPUT: Ignoring transform for child_frame_id "{child}" from authority "{authority}" because of a '
+            f"nan value in the transform ({position}) ({rotation})"
+        )
+    return (
+        f'TF_DENORMALIZED_QUATERNION: Ignoring transform for child_frame_id "{child}" from authority "{authority}" '
+        f"because of an invalid quaternion in the transform ({rotation})"
+    )
+
+
+def _message(target: str, source: str, time_ns: int, pose: Pose) -> Any:
+    from linkwright.messages import TransformStamped
+
+    message = TransformStamped()
+    message.header.stamp.sec, message.header.stamp.nanosec = divmod(time_ns, _NANOSECONDS_PER_SECOND)
+    message.header.frame_id = target
+    message.child_frame_id = source
+    translation, rotation = message.transform.translation, message.transform.rotation
+    translation.x, translation.y, translation.z, rotation.x, rotation.y, rotation.z, rotation.w = pose
+    return message

@@ -1,0 +1,141 @@
+"""Messages of geometry_msgs taken from one frame to another: the mathematics of ``tf2_geometry_msgs``.
+
+Each function takes a message and a geometry_msgs/msg/TransformStamped, as a lookup gives it, and gives a new message
+with that transform's header. None of the arguments is changed.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.graph.transforms.pose import Pose, Quaternion, Vector, compose, rotate
+from linkwright.kinematics import rotation_matrix
+
+
+def transform_pose_of(transform: Any) -> Pose:
+    """The pose in a geometry_msgs/msg/TransformStamped."""
+    t, r = transform.transform.translation, transform.transform.rotation
+    return (t.x, t.y, t.z, *_unit((r.x, r.y, r.z, r.w)))
+
+
+def do_transform_point(point: Any, transform: Any) -> Any:
+    """A PointStamped in the target frame."""
+    result = _new("PointStamped", transform)
+    _set_vector(result.point, _applied(transform, (point.point.x, point.point.y, point.point.z)))
+    return result
+
+
+def do_transform_vector3(vector3: Any, transform: Any) -> Any:
+    """A Vector3Stamped in the target frame: it is turned, not shifted."""
+    result = _new("Vector3Stamped", transform)
+    _set_vector(result.vector, _turned(transform, vector3.vector))
+    return result
+
+
+def do_transform_pose(pose: Any, transform: Any) -> Any:
+    """A Pose in the target frame. A PoseStamped gives a PoseStamped, as in older releases."""
+    if hasattr(pose, "header"):
+        return do_transform_pose_stamped(pose, transform)
+    from linkwright.messages import get_message
+
+    result = get_message("geometry_msgs/msg/Pose")()
+    position, orientation = pose.position, pose.orientation
+    own: Pose = (
+        position.x, position.y, position.z, *_unit((orientation.x, orientation.y, orientation.z, orientation.w)),
+    )  # fmt: skip
+    x, y, z, qx, qy, qz, qw = compose(transform_pose_of(transform), own)
+    _set_vector(result.position, (x, y, z))
+    turned = result.orientation
+    turned.x, turned.y, turned.z, turned.w = qx, qy, qz, qw
+    return result
+
+
+def do_transform_pose_stamped(pose: Any, transform: Any) -> Any:
+    """A PoseStamped in the target frame."""
+    result = _new("PoseStamped", transform)
+    result.pose = do_transform_pose(pose.pose, transform)
+    return result
+
+
+def do_transform_pose_with_covariance_stamped(pose: Any, transform: Any) -> Any:
+    """A PoseWithCovarianceStamped in the target frame; the covariance is turned with it."""
+    result = _new("PoseWithCovarianceStamped", transform)
+    result.pose.pose = do_transform_pose(pose.pose.pose, transform)
+    result.pose.covariance = transform_covariance(pose.pose.covariance, transform)
+    return result
+
+
+def do_transform_wrench(wrench: Any, transform: Any) -> Any:
+    """A WrenchStamped in the target frame: force and torque are turned."""
+    result = _new("WrenchStamped", transform)
+    _set_vector(result.wrench.force, _turned(transform, wrench.wrench.force))
+    _set_vector(result.wrench.torque, _turned(transform, wrench.wrench.torque))
+    return result
+
+
+def do_transform_polygon_stamped(polygon: Any, transform: Any) -> Any:
+    """A PolygonStamped in the target frame."""
+    from linkwright.messages import get_message
+
+    point_class = get_message("geometry_msgs/msg/Point32")
+    result = _new("PolygonStamped", transform)
+    points = []
+    for each in polygon.polygon.points:
+        point = point_class()
+        _set_vector(point, _applied(transform, (each.x, each.y, each.z)))
+        points.append(point)
+    result.polygon.points = points
+    return result
+
+
+def transform_covariance(cov_in: Any, transform: Any) -> NDArray[np.float64]:
+    """A covariance of a pose in the target frame.
+
+    Args:
+        cov_in: 36 numbers, the rows of a matrix of x y z and turns about these axes.
+        transform: the transform; only its rotation counts.
+
+    Returns:
+        Array, shape (36,).
+    """
+    turn = rotation_matrix(transform_pose_of(transform)[3:])
+    both = np.zeros((6, 6))
+    both[:3, :3] = both[3:, 3:] = turn
+    covariance = np.asarray(cov_in, dtype=np.float64).reshape(6, 6)
+    turned: NDArray[np.float64] = (both @ covariance @ both.T).reshape(36)
+    return turned
+
+
+def _new(name: str, transform: Any) -> Any:
+    from linkwright.messages import get_message
+
+    result = get_message(f"geometry_msgs/msg/{name}")()
+    result.header = transform.header
+    return result
+
+
+def _applied(transform: Any, vector: Vector) -> Vector:
+    pose = transform_pose_of(transform)
+    x, y, z = rotate(pose[3:], vector)
+    return pose[0] + x, pose[1] + y, pose[2] + z
+
+
+def _turned(transform: Any, vector: Any) -> Vector:
+    return rotate(transform_pose_of(transform)[3:], (vector.x, vector.y, vector.z))
+
+
+def _set_vector(target: Any, vector: Vector) -> None:
+    target.x, target.y, target.z = vector
+
+
+def _unit(quaternion: Quaternion) -> Quaternion:
+    """The quaternion with length 1; one without length stands for no turn, as in tf2_geometry_msgs."""
+    squared = sum(each * each for each in quaternion)
+    if squared < np.finfo(np.float64).eps:
+        return 0.0, 0.0, 0.0, 1.0
+    length = squared**0.5
+    x, y, z, w = (each / length for each in quaternion)
+    return x, y, z, w

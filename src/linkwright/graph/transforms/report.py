@@ -1,0 +1,94 @@
+"""What the tf buffer says of its frames: as lines, as YAML and as a drawing for Graphviz, in tf2's formats."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from linkwright.graph.transforms.cache import shown_time
+
+_NANOSECONDS_PER_SECOND = 1_000_000_000
+_SHORTEST_SPAN_NS = 100_000
+"""What counts as the time between transforms that came at one moment (tf2: 100 microseconds)."""
+
+
+@dataclass(frozen=True, slots=True)
+class FrameFacts:
+    """One frame in the reports.
+
+    Attributes:
+        name: the frame.
+        parent: its parent.
+        authority: who said so.
+        count: how many transforms are kept of it.
+        latest_ns: stamp of the latest; 0 for one that always holds.
+        oldest_ns: stamp of the oldest.
+    """
+
+    name: str
+    parent: str
+    authority: str
+    count: int
+    latest_ns: int
+    oldest_ns: int
+
+    @property
+    def rate(self) -> float:
+        """Transforms a second."""
+        span_ns = max(self.latest_ns - self.oldest_ns, _SHORTEST_SPAN_NS)
+        return self.count * 1e9 / span_ns
+
+    @property
+    def length_s(self) -> float:
+        """Seconds between the oldest and the latest."""
+        return (self.latest_ns - self.oldest_ns) / _NANOSECONDS_PER_SECOND
+
+
+def frames_as_text(frames: Sequence[FrameFacts]) -> str:
+    """A line for each frame."""
+    return "".join(f"Frame {frame.name} exists with parent {frame.parent}.\n" for frame in frames)
+
+
+def frames_as_yaml(frames: Sequence[FrameFacts], now_ns: int) -> str:
+    """The frames as a YAML mapping; with delays unless `now_ns` is 0."""
+    if not frames:
+        return "[]"
+    lines = []
+    for frame in frames:
+        lines += [
+            f"{frame.name}: ",
+            f"  parent: '{frame.parent}'",
+            f"  broadcaster: '{frame.authority}'",
+            f"  rate: {frame.rate:.3f}",
+            f"  most_recent_transform: {shown_time(frame.latest_ns)}",
+            f"  oldest_transform: {shown_time(frame.oldest_ns)}",
+        ]
+        if now_ns:
+            lines.append(f"  transform_delay: {(now_ns - frame.latest_ns) / _NANOSECONDS_PER_SECOND:.3f}")
+        lines.append(f"  buffer_length: {frame.length_s:.3f}")
+    return "\n".join(lines) + "\n"
+
+
+def frames_as_dot(frames: Sequence[FrameFacts], now_ns: int) -> str:
+    """The frames as a graph for Graphviz."""
+    lines = ["digraph G {"]
+    if not frames:
+        lines.append('"no tf data recieved"')  # tf2's spelling
+    for frame in frames:
+        age = f"( {(now_ns - frame.latest_ns) / _NANOSECONDS_PER_SECOND:.3f} sec old)" if now_ns else ""
+        lines.append(
+            f'"{frame.parent}" -> "{frame.name}"[label="Broadcaster: {frame.authority}\\n'
+            f"Average rate: {frame.rate:.3f} Hz\\nMost recent transform: {shown_time(frame.latest_ns)} {age}\\n"
+            f'Buffer length: {frame.length_s:.3f} sec\\n"];'
+        )
+    lines.append("edge [style=invis];")
+    if now_ns:
+        lines += [
+            ' subgraph cluster_legend { style=bold; color=black; label ="view_frames Result";',
+            f'"Recorded at time: {shown_time(now_ns)}"[ shape=plaintext ] ;',
+            " }",
+        ]
+        names = {frame.name for frame in frames}
+        roots = dict.fromkeys(frame.parent for frame in frames if frame.parent not in names)
+        lines += [f'"Recorded at time: {shown_time(now_ns)}"->"{root}";' for root in roots]
+    return "\n".join(lines) + "\n}\n"

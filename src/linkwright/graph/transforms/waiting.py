@@ -1,0 +1,190 @@
+"""The tf buffer as nodes use it: lookups that wait, by blocking or as futures. The methods are ``tf2_ros.Buffer``'s."""
+
+from __future__ import annotations
+
+import threading
+import time as steady
+from collections.abc import Callable
+from typing import Any
+
+from linkwright.graph.clock import JumpThreshold
+from linkwright.graph.future import Future
+from linkwright.graph.time import Duration
+from linkwright.graph.transforms.core import BufferCore
+
+_LOOK_EVERY_SECONDS = 0.1
+"""How long a wait goes on without news before it looks again, should a clock that steps have made the difference."""
+
+NO_TIME = Duration()
+
+
+class Buffer(BufferCore):
+    """Keeps transforms, and waits for them.
+
+    Args:
+        cache_time: how far back transforms are kept; 10 seconds when left out.
+        node: where given, it offers the service ``tf2_frames`` that tells of all frames, its clock empties the buffer
+            when it jumps back, and its logger says which transforms are not taken.
+    """
+
+    def __init__(self, cache_time: Any = None, node: Any = None) -> None:
+        super().__init__(cache_time, logger=None if node is None else node.get_logger().get_child("tf2"))
+        self._news = threading.Condition(self._lock)
+        self._new_data_callbacks: list[Callable[[], None]] = []
+        self._node = node
+        if node is not None:
+            from linkwright.messages import get_service
+
+            self.srv = node.create_service(get_service("tf2_msgs/srv/FrameGraph"), "tf2_frames", self._on_frames)
+            self.jump_handle = node.get_clock().create_jump_callback(
+                JumpThreshold(min_forward=None, min_backward=Duration(seconds=-1)), post_callback=self._on_time_jump
+            )
+
+    def set_transform(self, transform: Any, authority: str) -> None:
+        """Take in a transform; see `BufferCore`. Who waits is woken."""
+        super().set_transform(transform, authority)
+        self._call_new_data_callbacks()
+
+    def set_transform_static(self, transform: Any, authority: str) -> None:
+        """Take in a transform that always holds; see `BufferCore`. Who waits is woken."""
+        super().set_transform_static(transform, authority)
+        self._call_new_data_callbacks()
+
+    def update(self, message: Any, *, static: bool, now_ns: int = 0, authority: str = "default_authority") -> None:
+        """Take in a message; see `BufferCore`. Who waits is woken."""
+        super().update(message, static=static, now_ns=now_ns, authority=authority)
+        self._call_new_data_callbacks()
+
+    def lookup_transform(self, target_frame: str, source_frame: str, time: Any, timeout: Any = NO_TIME) -> Any:
+        """The pose of the source frame in the target frame; see `BufferCore.lookup_transform_core`.
+
+        Args:
+            target_frame: the frame to transform to.
+            source_frame: the frame to transform from.
+            time: when; zero for the latest.
+            timeout: how long to wait for it. Another thread must spin the node meanwhile.
+
+        Raises:
+            TransformException: it does not come in time; which one tells why.
+        """
+        self.can_transform(target_frame, source_frame, time, timeout)
+        return self.lookup_transform_core(target_frame, source_frame, time)
+
+    async def lookup_transform_async(self, target_frame: str, source_frame: str, time: Any) -> Any:
+        """The same, for a coroutine, as soon as it is there."""
+        await self.wait_for_transform_async(target_frame, source_frame, time)
+        return self.lookup_transform_core(target_frame, source_frame, time)
+
+    def lookup_transform_full(
+        self,
+        target_frame: str,
+        target_time: Any,
+        source_frame: str,
+        source_time: Any,
+        fixed_frame: str,
+        timeout: Any = NO_TIME,
+    ) -> Any:
+        """The pose of the source at one time in the target at another; see `BufferCore.lookup_transform_full_core`."""
+        self.can_transform_full(target_frame, target_time, source_frame, source_time, fixed_frame, timeout)
+        return self.lookup_transform_full_core(target_frame, target_time, source_frame, source_time, fixed_frame)
+
+    async def lookup_transform_full_async(
+        self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
+    ) -> Any:
+        """The same, for a coroutine, as soon as it is there."""
+        await self.wait_for_transform_full_async(target_frame, target_time, source_frame, source_time, fixed_frame)
+        return self.lookup_transform_full_core(target_frame, target_time, source_frame, source_time, fixed_frame)
+
+    def can_transform(
+        self,
+        target_frame: str,
+        source_frame: str,
+        time: Any,
+        timeout: Any = NO_TIME,
+        return_debug_tuple: bool = False,
+    ) -> Any:
+        """Whether a lookup gives a transform, within the timeout; with a reason if a tuple is asked for."""
+        verdict = self._wait(lambda: self.can_transform_core(target_frame, source_frame, time), timeout)
+        return verdict if return_debug_tuple else verdict[0]
+
+    def can_transform_full(
+        self,
+        target_frame: str,
+        target_time: Any,
+        source_frame: str,
+        source_time: Any,
+        fixed_frame: str,
+        timeout: Any = NO_TIME,
+        return_debug_tuple: bool = False,
+    ) -> Any:
+        """Whether a lookup with a fixed frame gives a transform, within the timeout."""
+        verdict = self._wait(
+            lambda: self.can_transform_full_core(target_frame, target_time, source_frame, source_time, fixed_frame),
+            timeout,
+        )
+        return verdict if return_debug_tuple else verdict[0]
+
+    def wait_for_transform_async(self, target_frame: str, source_frame: str, time: Any) -> Future[Any]:
+        """A future that has the transform as its result as soon as it is there."""
+        return self._future(
+            lambda: self.can_transform_core(target_frame, source_frame, time)[0],
+            lambda: self.lookup_transform_core(target_frame, source_frame, time),
+        )
+
+    def wait_for_transform_full_async(
+        self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
+    ) -> Future[Any]:
+        """A future that has the transform by way of a fixed frame as its result as soon as it is there."""
+        question = (target_frame, target_time, source_frame, source_time, fixed_frame)
+        return self._future(
+            lambda: self.can_transform_full_core(*question)[0], lambda: self.lookup_transform_full_core(*question)
+        )
+
+    def _wait(self, ask: Callable[[], tuple[bool, str]], timeout: Any) -> tuple[bool, str]:
+        end = steady.monotonic() + timeout.nanoseconds / 1e9
+        with self._news:
+            while True:
+                verdict = ask()
+                left = end - steady.monotonic()
+                if verdict[0] or left <= 0.0:
+                    return verdict
+                self._news.wait(min(left, _LOOK_EVERY_SECONDS))
+
+    def _future(self, can: Callable[[], bool], look_up: Callable[[], Any]) -> Future[Any]:
+        future: Future[Any] = Future()
+
+        def on_new_data() -> None:
+            if future.done():
+                return
+            try:
+                if can():
+                    future.set_result(look_up())
+            except Exception as error:  # noqa: BLE001  # it belongs to who waits
+                future.set_exception(error)
+
+        with self._lock:
+            on_new_data()
+            if not future.done():
+                self._new_data_callbacks.append(on_new_data)
+                future.add_waiter(lambda: self._remove_callback(on_new_data))
+        return future
+
+    def _remove_callback(self, callback: Callable[[], None]) -> None:
+        with self._lock:
+            if callback in self._new_data_callbacks:
+                self._new_data_callbacks.remove(callback)
+
+    def _call_new_data_callbacks(self) -> None:
+        with self._news:
+            self._news.notify_all()
+            waiting = list(self._new_data_callbacks)
+        for callback in waiting:
+            callback()
+
+    def _on_time_jump(self, _jump: Any) -> None:
+        self._logger.warning("Detected jump back in time. Clearing tf buffer.")
+        self.clear()
+
+    def _on_frames(self, _request: Any, response: Any) -> Any:
+        response.frame_yaml = self.all_frames_as_yaml()
+        return response
