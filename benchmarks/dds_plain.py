@@ -3,6 +3,7 @@
 Its annotations are not postponed: `cyclonedds` reads them as types.
 """
 
+import itertools
 import os
 import time
 from dataclasses import dataclass
@@ -16,7 +17,7 @@ from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 
-from benchmarks.dds_sides import HEIGHT, JOINTS, TRANSFORMS, WIDTH, Result, paced
+from benchmarks.dds_sides import HEIGHT, JOINTS, TRANSFORMS, WIDTH, Result, paced, renew
 from linkwright.graph.dds.settings import read_settings
 
 QOS = Qos(Policy.Reliability.Reliable(duration(milliseconds=100)), Policy.History.KeepAll)
@@ -111,7 +112,7 @@ def message(kind: str) -> Any:
     if kind == "joints":
         names = [f"joint_{number}" for number in range(JOINTS)]
         return JointState(header, names, [0.1] * JOINTS, [0.2] * JOINTS, [0.3] * JOINTS)
-    if kind == "transforms":
+    if kind in ("transforms", "objects"):
         transform = Transform(Vector3(0.0, 0.0, 0.0), Quaternion(0.0, 0.0, 0.0, 1.0))
         return TFMessage([TransformStamped(header, f"link_{number}", transform) for number in range(TRANSFORMS)])
     return Image(header, HEIGHT, WIDTH, "rgb8", 0, 3 * WIDTH, bytes(3 * WIDTH * HEIGHT))
@@ -134,7 +135,13 @@ def send(kind: str, seconds: float, rate: float) -> Result:
     while not writer.get_matched_subscriptions():
         time.sleep(0.01)
     sample = message(kind)
-    result = paced(lambda: writer.write(sample), seconds, rate)
+    numbers = itertools.count()
+
+    def write() -> None:
+        renew(sample, next(numbers))
+        writer.write(sample)
+
+    result = paced(write, seconds, rate)
     time.sleep(1.0)
     return result
 

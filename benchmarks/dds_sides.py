@@ -1,12 +1,16 @@
 """The two processes of a measurement over DDS: one sends, one receives; each prints what it found as JSON.
 
-``python -m benchmarks.dds_sides send|receive ours|plain joints|transforms|images SECONDS RATE``; a rate of 0 is as fast
-as it goes. `plain` stands for `cyclonedds` alone with its own IdlStructs.
+``python -m benchmarks.dds_sides send|receive ours|plain|zenoh KIND SECONDS RATE``; a rate of 0 is as fast as it goes.
+Kinds are `joints`, `transforms` (received as arrays, as a tf buffer reads them), `objects` (the same received as Python
+objects) and `images`. `plain` stands for `cyclonedds` alone with its own IdlStructs, `zenoh` for zenoh-ros2-sdk. Each
+message is another one than the last: its stamp and a position change.
 """
 
 from __future__ import annotations
 
 import asyncio
+import importlib
+import itertools
 import json
 import os
 import sys
@@ -50,7 +54,7 @@ def ours(kind: str) -> Any:
         message.position = [0.1] * JOINTS
         message.velocity = [0.2] * JOINTS
         message.effort = [0.3] * JOINTS
-    elif kind == "transforms":
+    elif kind in ("transforms", "objects"):
         message = get_message("tf2_msgs/msg/TFMessage")()
         for number in range(TRANSFORMS):
             transform = get_message("geometry_msgs/msg/TransformStamped")()
@@ -62,6 +66,14 @@ def ours(kind: str) -> Any:
         message.width, message.height, message.step, message.encoding = WIDTH, HEIGHT, 3 * WIDTH, "rgb8"
         message.data = bytes(3 * WIDTH * HEIGHT)
     return message
+
+
+def renew(message: Any, count: int) -> None:
+    """Change a message a little, of whatever library it is."""
+    header = message.transforms[0].header if hasattr(message, "transforms") else message.header
+    header.stamp.nanosec = count
+    if hasattr(message, "position"):
+        message.position[0] = float(count)
 
 
 def paced(send: Callable[[], object], seconds: float, rate: float) -> Result:
@@ -85,7 +97,13 @@ def send_ours(kind: str, seconds: float, rate: float) -> Result:
     assert transport is not None
     while not publisher.get_subscription_count():
         time.sleep(0.01)
-    result = paced(lambda: publisher.publish(message), seconds, rate)
+    numbers = itertools.count()
+
+    def send() -> None:
+        renew(message, next(numbers))
+        publisher.publish(message)
+
+    result = paced(send, seconds, rate)
     graph.close_now()
     return result
 
@@ -96,8 +114,10 @@ async def receive_ours(kind: str, seconds: float) -> Result:
     message_class = type(ours(kind))
     count, first, last, cpu = 0, 0.0, 0.0, 0.0
 
-    def received(_message: Any) -> None:
+    def received(message: Any) -> None:
         nonlocal count, first, last, cpu
+        if kind == "objects":
+            assert message.transforms[0].header
         last = time.perf_counter()
         if not count:
             first, cpu = last, time.process_time()
@@ -124,11 +144,9 @@ async def _until_quiet(count: Callable[[], int], seconds: float) -> None:
 def main() -> None:
     """Run one side."""
     side, library, kind, seconds, rate = sys.argv[1:6]
-    if library == "plain":
-        from benchmarks import dds_plain
-
-        run = dds_plain.send if side == "send" else dds_plain.receive
-        result = run(kind, float(seconds), float(rate))
+    if library != "ours":
+        peer = importlib.import_module(f"benchmarks.dds_{library}")
+        result = getattr(peer, side)(kind, float(seconds), float(rate))
     elif side == "send":
         result = send_ours(kind, float(seconds), float(rate))
     else:

@@ -1,57 +1,87 @@
-"""Joint states through `zenoh-ros2-sdk`, which needs a router: three processes, started by `bench_dds`.
+"""The peer of `dds_sides`: zenoh-ros2-sdk, which writes CDR with rosbags and sends it with Zenoh.
 
-It runs in the Python of the peers: ``python dds_zenoh.py router|send|receive PORT DESCRIPTION SECONDS``, where the
-description is a JSON file with the type's definition and hash.
+No router is needed here: the receiver listens at a port of its own and the sender connects to it. Message definitions and type hashes are given,
+because the SDK would fetch them from the network.
 """
 
 from __future__ import annotations
 
-import json
+import dataclasses
+import itertools
 import os
-import sys
 import time
-from pathlib import Path
 from typing import Any
 
-TYPE = "sensor_msgs/msg/JointState"
-JOINTS = 12
+from benchmarks import peers
+from benchmarks.dds_sides import HEIGHT, JOINTS, TOPIC, TRANSFORMS, WIDTH, Result, paced
+from linkwright.bag.schema import schema_of
+from linkwright.messages import type_hash
+
+TYPES = {
+    "joints": "sensor_msgs/msg/JointState",
+    "transforms": "tf2_msgs/msg/TFMessage",
+    "objects": "tf2_msgs/msg/TFMessage",
+    "images": "sensor_msgs/msg/Image",
+}
+PORT = 17447
 
 
-def route(port: int) -> None:
-    """Pass messages on until standard input is closed."""
-    import zenoh
+def _sdk(kind: str, *, listens: bool) -> tuple[Any, dict[str, Any]]:
+    """The SDK, and what a publisher or a subscriber of a kind is made with."""
+    ours, none = f'["tcp/127.0.0.1:{PORT}"]', "[]"
+    listen, connect = (ours, none) if listens else (none, ours)
+    os.environ["ZENOH_CONFIG_OVERRIDE"] = f"listen/endpoints={listen};connect/endpoints={connect}"
+    sdk = peers.load("zenoh_ros2_sdk")
+    if sdk is None:
+        raise SystemExit("zenoh-ros2-sdk is not installed")
+    name = TYPES[kind]
+    given = {"topic": TOPIC, "msg_type": name, "msg_definition": schema_of(name), "type_hash": type_hash(name)}
+    return sdk, given
 
-    settings = zenoh.Config()
-    settings.insert_json5("mode", '"router"')
-    settings.insert_json5("listen/endpoints", f'["tcp/127.0.0.1:{port}"]')
-    with zenoh.open(settings):
-        print("ready", flush=True)
-        sys.stdin.read()
 
-
-def send(port: int, definition: str, hashed: str, seconds: float) -> dict[str, float]:
-    """Publish as fast as it goes."""
+def fields(kind: str, types: Any) -> dict[str, Any]:
+    """The fields of a message, of the same content as `dds_sides.ours`."""
     import numpy as np
-    from rosbags.typesys import Stores, get_typestore
-    from zenoh_ros2_sdk import ROS2Publisher
 
-    types = get_typestore(Stores.ROS2_HUMBLE).types
-    header = types["std_msgs/msg/Header"](types["builtin_interfaces/msg/Time"](0, 0), "base_link")
-    publisher = ROS2Publisher("/measured", TYPE, router_port=port, msg_definition=definition, type_hash=hashed)
+    stamp = types["builtin_interfaces/msg/Time"](sec=0, nanosec=0)
+    header = types["std_msgs/msg/Header"](stamp=stamp, frame_id="base_link")
+    if kind == "joints":
+        names = [f"joint_{number}" for number in range(JOINTS)]
+        values = [np.full(JOINTS, value) for value in (0.1, 0.2, 0.3)]
+        return dict(zip(("header", "name", "position", "velocity", "effort"), (header, names, *values), strict=True))
+    if kind == "images":
+        sizes = {"height": HEIGHT, "width": WIDTH, "encoding": "rgb8", "is_bigendian": 0, "step": 3 * WIDTH}
+        return {"header": header, **sizes, "data": np.zeros(3 * WIDTH * HEIGHT, dtype=np.uint8)}
+    translation = types["geometry_msgs/msg/Vector3"](x=0.0, y=0.0, z=0.0)
+    rotation = types["geometry_msgs/msg/Quaternion"](x=0.0, y=0.0, z=0.0, w=1.0)
+    transform = types["geometry_msgs/msg/Transform"](translation=translation, rotation=rotation)
+    stamped = types["geometry_msgs/msg/TransformStamped"](header=header, child_frame_id="", transform=transform)
+    links = [dataclasses.replace(stamped, child_frame_id=f"link_{number}") for number in range(TRANSFORMS)]
+    return {"transforms": links}
+
+
+def send(kind: str, seconds: float, rate: float) -> Result:
+    """Publish for a time."""
+    sdk, given = _sdk(kind, listens=False)
+    publisher = sdk.ROS2Publisher(**given)
+    message = fields(kind, publisher.session_mgr.store.types)
+    limit = time.monotonic() + 10.0
+    while not publisher.pub.matching_status.matching and time.monotonic() < limit:
+        time.sleep(0.01)
+    numbers = itertools.count()
+
+    def publish() -> None:
+        header = message["header"] if "header" in message else message["transforms"][0].header
+        header.stamp.nanosec = next(numbers)
+        publisher.publish(**message)
+
+    result = paced(publish, seconds, rate)
     time.sleep(1.0)
-    names, values = [f"joint_{number}" for number in range(JOINTS)], np.full(JOINTS, 0.1)
-    count, begin, cpu = 0, time.perf_counter(), time.process_time()
-    while time.perf_counter() - begin < seconds:
-        publisher.publish(header=header, name=names, position=values, velocity=values, effort=values)
-        count += 1
-    passed = time.perf_counter() - begin
-    return {"count": count, "seconds": passed, "cores": (time.process_time() - cpu) / passed}
+    return result
 
 
-def receive(port: int, definition: str, hashed: str, seconds: float) -> dict[str, float]:
-    """Take until no more comes."""
-    from zenoh_ros2_sdk import ROS2Subscriber
-
+def receive(kind: str, seconds: float, _rate: float) -> Result:
+    """Receive until no more comes."""
     count, first, last, cpu = 0, 0.0, 0.0, 0.0
 
     def received(_message: Any) -> None:
@@ -61,24 +91,10 @@ def receive(port: int, definition: str, hashed: str, seconds: float) -> dict[str
             first, cpu = last, time.process_time()
         count += 1
 
-    subscriber = ROS2Subscriber(
-        "/measured", TYPE, received, router_port=port, msg_definition=definition, type_hash=hashed
-    )
-    print("ready", flush=True)
+    sdk, given = _sdk(kind, listens=True)
+    subscriber = sdk.ROS2Subscriber(callback=received, **given)
     limit = time.monotonic() + seconds + 20
     while time.monotonic() < limit and not (count and time.perf_counter() - last > 1.0):
-        time.sleep(0.2)
-    del subscriber
-    passed = max(last - first, 1e-9)
-    return {"count": count, "seconds": passed, "cores": (time.process_time() - cpu) / passed}
-
-
-if __name__ == "__main__":
-    side, chosen_port = sys.argv[1], int(sys.argv[2])
-    if side == "router":
-        route(chosen_port)
-    else:
-        text, type_hash = json.loads(Path(sys.argv[3]).read_text(encoding="utf-8"))
-        result = (send if side == "send" else receive)(chosen_port, text, type_hash, float(sys.argv[4]))
-        print(json.dumps(result), flush=True)
-        os._exit(0)  # the session's threads would go on
+        time.sleep(0.1)
+    assert subscriber is not None
+    return Result(count, last - first, (time.process_time() - cpu) / max(last - first, 1e-9))

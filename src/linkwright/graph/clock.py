@@ -11,6 +11,7 @@ from itertools import count
 from typing import TYPE_CHECKING, Any, Protocol
 
 from linkwright.graph.dispatch import Alarm, Dispatcher
+from linkwright.graph.faults import NotInitializedException
 from linkwright.graph.time import ClockType, Duration, Time
 from linkwright.graph.timebase import SystemClock, Timebase
 
@@ -127,6 +128,9 @@ class Clock:
         wanted: Any = ROSClock if cls is Clock and clock_type is ClockType.ROS_TIME else cls
         return object.__new__(wanted)  # type: ignore[no-any-return]  # a ROSClock is a Clock
 
+    context: Any = None
+    """What ends a sleep that is given no context of its own; None for nothing."""
+
     def __init__(self, *, clock_type: ClockType = ClockType.SYSTEM_TIME, timebase: Timebase | None = None) -> None:
         self.clock_type = clock_type
         self.timebase: Timebase = timebase or _SYSTEM
@@ -190,7 +194,8 @@ class Clock:
 
         Args:
             until: when, by a clock of this type.
-            context: something with ``ok()``; the sleep ends early when that is no longer true.
+            context: something with ``ok()``; the sleep ends early when that is no longer true. The clock's own when
+                None.
 
         Returns:
             Whether the time has come; False when the sleep ended early, because of the context or because the clock
@@ -198,7 +203,11 @@ class Clock:
 
         Raises:
             ValueError: the point belongs to another type of clock.
+            NotInitializedException: the context is not ok to begin with.
         """
+        context = self.context if context is None else context
+        if context is not None and not context.ok():
+            raise NotInitializedException
         if until.clock_type != self.clock_type:
             raise ValueError("until's clock type does not match this clock's type")
         with self._changed:
@@ -324,6 +333,9 @@ class ROSClock(Clock):
             change = ClockChange.ROS_TIME_ACTIVATED if enabled else ClockChange.ROS_TIME_DEACTIVATED
             self._tell_after(handles, TimeJump(change, Duration(nanoseconds=self.now_ns() - before_ns)))
             self._changed.notify_all()
+
+    _set_ros_time_is_active = set_ros_time_is_active
+    """As rclpy names it."""
 
     def set_ros_time_override(self, time: Time) -> None:
         """Set simulated time; it counts once simulated time is active.

@@ -24,3 +24,11 @@ class NodeNotFoundError(RuntimeError):
         super().__init__(f"Cannot get the names and types of node '{name}' in namespace '{namespace}': there is none")
         self.name = name
         self.namespace = namespace
+
+
+class NotInitializedException(Exception):
+    """Something needs a context, which is not initialised, or was shut down; name and text are rclpy's."""
+
+    def __init__(self, message: str | None = None) -> None:
+        text = "rclpy.init() has not been called."
+        super().__init__(f"{text[:-1]}. msg:{message}" if message else text)

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass, field
 from enum import IntEnum
-from typing import NamedTuple
 
-from linkwright.graph.qos import QoSProfile
+from linkwright.graph.qos import UNKNOWN_QOS, HistoryPolicy, QoSProfile
 from linkwright.graph.transport import EndpointInfo, EndpointKind, NodeIdentity
 
 NamesAndTypes = list[tuple[str, list[str]]]
@@ -27,7 +27,8 @@ class TopicEndpointTypeEnum(IntEnum):
     SUBSCRIPTION = 2
 
 
-class TopicEndpointInfo(NamedTuple):
+@dataclass
+class TopicEndpointInfo:
     """A publisher or subscription of a topic (rclpy ``TopicEndpointInfo``).
 
     Attributes:
@@ -40,13 +41,35 @@ class TopicEndpointInfo(NamedTuple):
         qos_profile: what it offers or asks for.
     """
 
-    node_name: str
-    node_namespace: str
-    topic_type: str
-    topic_type_hash: str
-    endpoint_type: TopicEndpointTypeEnum
-    endpoint_gid: list[int]
-    qos_profile: QoSProfile
+    node_name: str = ""
+    node_namespace: str = ""
+    topic_type: str = ""
+    topic_type_hash: str = ""
+    endpoint_type: TopicEndpointTypeEnum = TopicEndpointTypeEnum.INVALID
+    endpoint_gid: list[int] = field(default_factory=list)
+    qos_profile: QoSProfile = UNKNOWN_QOS
+
+    def __str__(self) -> str:
+        qos = self.qos_profile
+        depth = f" ({qos.depth})" if qos.history is HistoryPolicy.KEEP_LAST else ""
+        return "\n".join(
+            (
+                f"Node name: {self.node_name}",
+                f"Node namespace: {self.node_namespace}",
+                f"Topic type: {self.topic_type}",
+                *([f"Topic type hash: {self.topic_type_hash}"] if self.topic_type_hash else []),
+                f"Endpoint type: {self.endpoint_type.name}",
+                f"GID: {'.'.join(f'{each:02x}' for each in self.endpoint_gid)}",
+                "QoS profile:",
+                f"  Reliability: {qos.reliability.name}",
+                f"  History (Depth): {qos.history.name}{depth}",
+                f"  Durability: {qos.durability.name}",
+                f"  Lifespan: {qos.lifespan}",
+                f"  Deadline: {qos.deadline}",
+                f"  Liveliness: {qos.liveliness.name}",
+                f"  Liveliness lease duration: {qos.liveliness_lease_duration}",
+            )
+        )
 
     @classmethod
     def of(cls, info: EndpointInfo) -> TopicEndpointInfo:

@@ -18,14 +18,14 @@ Problem = tuple[str, int]
 """What is wrong with a name, and the index of the character where it is."""
 
 
-class InvalidNameError(LinkwrightError):
+class InvalidNameError(LinkwrightError, ValueError):
     """A node name, namespace, topic or service name that ROS does not allow (rclpy ``NameValidationException``).
 
     Args:
         kind: ``node name``, ``namespace``, ``topic name`` or ``service name``.
         name: the name as it was given.
-        reason: what is wrong with it.
-        index: at which character.
+        error_msg: what is wrong with it.
+        invalid_index: at which character.
 
     Attributes:
         name: the name as it was given.
@@ -33,40 +33,40 @@ class InvalidNameError(LinkwrightError):
         invalid_index: at which character.
     """
 
-    def __init__(self, kind: str, name: str, reason: str, index: int = 0) -> None:
-        super().__init__(Diagnostic("GRAPH101", f"'{name}' is not a valid {kind}: {reason}"))
+    def __init__(self, kind: str, name: str, error_msg: str, invalid_index: int = 0) -> None:
+        super().__init__(Diagnostic("GRAPH101", f"'{name}' is not a valid {kind}: {error_msg}"))
         self.kind = kind
         self.name = name
-        self.error_msg = reason
-        self.invalid_index = index
+        self.error_msg = error_msg
+        self.invalid_index = invalid_index
 
 
 class InvalidNodeNameError(InvalidNameError):
     """The name of a node is not valid."""
 
-    def __init__(self, name: str, reason: str, index: int = 0) -> None:
-        super().__init__("node name", name, reason, index)
+    def __init__(self, name: str, error_msg: str, invalid_index: int = 0) -> None:
+        super().__init__("node name", name, error_msg, invalid_index)
 
 
 class InvalidNamespaceError(InvalidNameError):
     """A namespace is not valid."""
 
-    def __init__(self, name: str, reason: str, index: int = 0) -> None:
-        super().__init__("namespace", name, reason, index)
+    def __init__(self, name: str, error_msg: str, invalid_index: int = 0) -> None:
+        super().__init__("namespace", name, error_msg, invalid_index)
 
 
 class InvalidTopicNameError(InvalidNameError):
     """The name of a topic is not valid."""
 
-    def __init__(self, name: str, reason: str, index: int = 0) -> None:
-        super().__init__("topic name", name, reason, index)
+    def __init__(self, name: str, error_msg: str, invalid_index: int = 0) -> None:
+        super().__init__("topic name", name, error_msg, invalid_index)
 
 
 class InvalidServiceNameError(InvalidNameError):
     """The name of a service or an action is not valid."""
 
-    def __init__(self, name: str, reason: str, index: int = 0) -> None:
-        super().__init__("service name", name, reason, index)
+    def __init__(self, name: str, error_msg: str, invalid_index: int = 0) -> None:
+        super().__init__("service name", name, error_msg, invalid_index)
 
 
 def node_name_problem(name: str) -> Problem | None:

@@ -11,18 +11,39 @@ from linkwright.graph.clock import Clock
 from linkwright.graph.dispatch import Alarm, CallbackGroup, Dispatcher
 from linkwright.graph.entity import Entity
 from linkwright.graph.signatures import accepts
-from linkwright.graph.time import Time
+from linkwright.graph.time import ClockType, Time
 
 if TYPE_CHECKING:
+    from typing_extensions import Self
+
     from linkwright.graph.node import Node
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, init=False)
 class TimerInfo:
-    """When a timer's call was due and when it came (rclpy ``TimerInfo``)."""
+    """When a timer's call was due and when it came (rclpy ``TimerInfo``).
+
+    Args:
+        expected_call_time: nanoseconds, or a point in time.
+        actual_call_time: nanoseconds, or a point in time.
+        clock_type: of the clock that nanoseconds are counted on.
+    """
 
     expected_call_time: Time
     actual_call_time: Time
+
+    def __init__(
+        self,
+        *,
+        expected_call_time: Time | int = 0,
+        actual_call_time: Time | int = 0,
+        clock_type: ClockType = ClockType.SYSTEM_TIME,
+    ) -> None:
+        def point(when: Time | int) -> Time:
+            return when if isinstance(when, Time) else Time(nanoseconds=when, clock_type=clock_type)
+
+        object.__setattr__(self, "expected_call_time", point(expected_call_time))
+        object.__setattr__(self, "actual_call_time", point(actual_call_time))
 
 
 class Timer(Entity):
@@ -131,6 +152,12 @@ class Timer(Entity):
         """Stop for good, and leave the node."""
         self.node.destroy_timer(self)
 
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.destroy()
+
     def retire(self) -> None:
         """Never call back again."""
         super().retire()
@@ -169,7 +196,7 @@ class Timer(Entity):
         kind = self.clock.clock_type
         return partial(
             callback,
-            TimerInfo(Time(nanoseconds=expected_ns, clock_type=kind), Time(nanoseconds=now_ns, clock_type=kind)),
+            TimerInfo(expected_call_time=expected_ns, actual_call_time=now_ns, clock_type=kind),
         )
 
     def before_switch(self) -> None:

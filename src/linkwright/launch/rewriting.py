@@ -144,7 +144,8 @@ def _with_values(content: Any, values: Mapping[str, Any], path: tuple[str, ...])
         made = {}
         for key, value in content.items():
             name = str(key)
-            made[key] = values[name] if name in values else _with_values(value, values, (*path, name))
+            is_group = isinstance(value, dict)
+            made[key] = values[name] if name in values and not is_group else _with_values(value, values, (*path, name))
         return made
     return values.get(".".join(path), content)
 

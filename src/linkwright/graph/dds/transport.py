@@ -28,6 +28,9 @@ if TYPE_CHECKING:
 SETTLED_AFTER = 0.3
 """Seconds without news after which discovery counts as complete."""
 
+_CLOSED_WITHIN = 0.05
+"""Seconds after which who waits sees that the domain was left."""
+
 
 class DdsTransport:
     """The graph of this process on the wire (`linkwright.graph.transport.Transport`).
@@ -74,14 +77,17 @@ class DdsTransport:
             timeout: seconds at most; None for any time.
 
         Returns:
-            Whether it is so; False at once when the domain cannot be joined.
+            Whether it is so; False at once when the domain cannot be joined, or was left.
         """
         deadline = None if timeout is None else time.monotonic() + timeout
         if not self._decided.wait(timeout) or self._engine is None:
             return False
         done = threading.Event()
         self._do(lambda _: done.set())
-        return done.wait(None if deadline is None else max(0.0, deadline - time.monotonic()))
+        while not self._closed and (deadline is None or time.monotonic() < deadline):
+            if done.wait(_CLOSED_WITHIN if deadline is None else min(_CLOSED_WITHIN, deadline - time.monotonic())):
+                break
+        return done.is_set()
 
     def wait_for_discovery(self, timeout: float = 5.0) -> bool:
         """Block until it is known who is there: all heard of have told their nodes, and for a moment came no news.
@@ -95,7 +101,7 @@ class DdsTransport:
         deadline = time.monotonic() + timeout
         if not self.wait_until_ready(timeout):
             return False
-        while time.monotonic() < deadline:
+        while time.monotonic() < deadline and not self._closed:
             quiet = time.monotonic() - max(self._remote.changed_at, self._joined_at)
             if quiet >= SETTLED_AFTER and self._remote.is_complete():
                 return True

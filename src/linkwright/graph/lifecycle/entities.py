@@ -87,4 +87,4 @@ class LifecyclePublisher(SimpleManagedEntity, Publisher[Any]):
     def publish(self, msg: Any) -> None:
         """Publish a message, or drop it while the node is not active."""
         if self._enabled:
-            super().publish(msg)
+            Publisher.publish(self, msg)

@@ -6,7 +6,7 @@ Its design is that of "Managed nodes" (design.ros2.org), its tables those of rcl
 from __future__ import annotations
 
 from enum import IntEnum
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 
 class TransitionCallbackReturn(IntEnum):
@@ -103,10 +103,21 @@ TRANSITIONS = (
 
 
 class StateMachine:
-    """Where a managed node stands."""
+    """Where a managed node stands, and the services by which others drive it, which are None where they cannot."""
+
+    service_change_state: Any = None
+    service_get_state: Any = None
+    service_get_available_states: Any = None
+    service_get_available_transitions: Any = None
+    service_get_transition_graph: Any = None
 
     def __init__(self) -> None:
         self.state = UNCONFIGURED
+
+    @property
+    def current_state(self) -> tuple[int, str]:
+        """Number and label of the state (rclpy)."""
+        return self.state.state_id, self.state.label
 
     def available(self) -> list[Transition]:
         """The transitions that begin where the node stands."""

@@ -6,9 +6,11 @@ import threading
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import chain
-from typing import Any
+from typing import Any, TypeVar
 
 from linkwright.graph.qos import PARAMETER_EVENTS_QOS, QoSProfile
+
+H = TypeVar("H")
 
 
 @dataclass(eq=False)
@@ -27,6 +29,67 @@ class ParameterEventCallbackHandle:
     callback: Callable[[Any], object]
 
 
+class _Callbacks:
+    """The callbacks of a `ParameterEventHandler`; those that were added last come first.
+
+    Attributes:
+        parameter_callbacks: those for one parameter, by its name and its node's.
+        event_callbacks: those for all events.
+    """
+
+    def __init__(self) -> None:
+        self._lock = threading.RLock()
+        self.parameter_callbacks: dict[tuple[str, str], list[ParameterCallbackHandle]] = {}
+        self.event_callbacks: list[ParameterEventCallbackHandle] = []
+
+    def add_parameter_callback(
+        self, parameter_name: str, node_name: str, callback: Callable[[Any], object]
+    ) -> ParameterCallbackHandle:
+        """Add one for a parameter of the node of a full name."""
+        handle = ParameterCallbackHandle(parameter_name, node_name, callback)
+        with self._lock:
+            self.parameter_callbacks.setdefault((parameter_name, node_name), []).insert(0, handle)
+        return handle
+
+    def remove_parameter_callback(self, handle: ParameterCallbackHandle) -> None:
+        """Take one away; raises RuntimeError when it is not there."""
+        key = (handle.parameter_name, handle.node_name)
+        with self._lock:
+            _remove(handle, self.parameter_callbacks.get(key, []))
+            if not self.parameter_callbacks[key]:
+                del self.parameter_callbacks[key]
+
+    def add_parameter_event_callback(self, callback: Callable[[Any], object]) -> ParameterEventCallbackHandle:
+        """Add one for all events."""
+        handle = ParameterEventCallbackHandle(callback)
+        with self._lock:
+            self.event_callbacks.insert(0, handle)
+        return handle
+
+    def remove_parameter_event_callback(self, handle: ParameterEventCallbackHandle) -> None:
+        """Take one away; raises RuntimeError when it is not there."""
+        with self._lock:
+            _remove(handle, self.event_callbacks)
+
+    def event_callback(self, event: Any) -> None:
+        """Tell of an event."""
+        with self._lock:
+            of_parameters = [handle for handles in self.parameter_callbacks.values() for handle in handles]
+            of_events = list(self.event_callbacks)
+        for handle in of_parameters:
+            parameter = ParameterEventHandler.get_parameter_from_event(event, handle.parameter_name, handle.node_name)
+            if parameter is not None:
+                handle.callback(parameter)
+        for each in of_events:
+            each.callback(event)
+
+
+def _remove(handle: H, handles: list[H]) -> None:
+    if handle not in handles:
+        raise RuntimeError("Callback doesn't exist")
+    handles.remove(handle)
+
+
 class ParameterEventHandler:
     """Subscribes to ``/parameter_events`` and tells of single parameters, or of whole events.
 
@@ -38,17 +101,17 @@ class ParameterEventHandler:
         options: what else ``create_subscription`` of the node takes.
     """
 
+    Callbacks = _Callbacks
+
     def __init__(self, node: Any, qos_profile: QoSProfile = PARAMETER_EVENTS_QOS, **options: Any) -> None:
         from linkwright.messages import get_message
 
         self.node = node
         self.qos_profile = qos_profile
-        self._lock = threading.Lock()
-        self._of_parameters: list[ParameterCallbackHandle] = []
-        self._of_events: list[ParameterEventCallbackHandle] = []
+        self._callbacks = self.Callbacks()
         event_type = get_message("rcl_interfaces/msg/ParameterEvent")
         self.parameter_event_subscription = node.create_subscription(
-            event_type, "/parameter_events", self._on_event, qos_profile, **options
+            event_type, "/parameter_events", self._callbacks.event_callback, qos_profile, **options
         )
 
     def destroy(self) -> None:
@@ -65,10 +128,7 @@ class ParameterEventHandler:
             node_name: the node whose it is: absolute, relative to the namespace of our node, or empty for our node.
             callback: what is called.
         """
-        handle = ParameterCallbackHandle(parameter_name, self._resolved(node_name), callback)
-        with self._lock:
-            self._of_parameters.insert(0, handle)
-        return handle
+        return self._callbacks.add_parameter_callback(parameter_name, self._resolve_path(node_name), callback)
 
     def remove_parameter_callback(self, handle: ParameterCallbackHandle) -> None:
         """Take a callback away.
@@ -76,17 +136,11 @@ class ParameterEventHandler:
         Raises:
             RuntimeError: it is not there.
         """
-        with self._lock:
-            if handle not in self._of_parameters:
-                raise RuntimeError("Callback doesn't exist")
-            self._of_parameters.remove(handle)
+        self._callbacks.remove_parameter_callback(handle)
 
     def add_parameter_event_callback(self, callback: Callable[[Any], object]) -> ParameterEventCallbackHandle:
         """Have a callback called with every rcl_interfaces/msg/ParameterEvent."""
-        handle = ParameterEventCallbackHandle(callback)
-        with self._lock:
-            self._of_events.insert(0, handle)
-        return handle
+        return self._callbacks.add_parameter_event_callback(callback)
 
     def remove_parameter_event_callback(self, handle: ParameterEventCallbackHandle) -> None:
         """Take a callback away.
@@ -94,10 +148,7 @@ class ParameterEventHandler:
         Raises:
             RuntimeError: it is not there.
         """
-        with self._lock:
-            if handle not in self._of_events:
-                raise RuntimeError("Callback doesn't exist")
-            self._of_events.remove(handle)
+        self._callbacks.remove_parameter_event_callback(handle)
 
     @staticmethod
     def get_parameter_from_event(event: Any, parameter_name: str, node_name: str) -> Any:
@@ -113,20 +164,11 @@ class ParameterEventHandler:
         """All parameters that got a value in an event."""
         yield from chain(event.new_parameters, event.changed_parameters)
 
-    def _on_event(self, event: Any) -> None:
-        with self._lock:
-            of_parameters, of_events = list(self._of_parameters), list(self._of_events)
-        for handle in of_parameters:
-            parameter = self.get_parameter_from_event(event, handle.parameter_name, handle.node_name)
-            if parameter is not None:
-                handle.callback(parameter)
-        for each in of_events:
-            each.callback(event)
-
-    def _resolved(self, node_name: str) -> str:
-        if not node_name:
+    def _resolve_path(self, node_path: str = "") -> str:
+        """The full name of a node: absolute, relative to the namespace of our node, or empty for our node."""
+        if not node_path:
             return str(self.node.get_fully_qualified_name())
-        if node_name.startswith("/"):
-            return node_name
+        if node_path.startswith("/"):
+            return node_path
         namespace = str(self.node.get_namespace()).strip("/")
-        return f"/{namespace}/{node_name}" if namespace else f"/{node_name}"
+        return f"/{namespace}/{node_path}" if namespace else f"/{node_path}"

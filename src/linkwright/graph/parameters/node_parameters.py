@@ -47,18 +47,16 @@ class NodeParameters:
             ignore_override: whether the value from outside is left aside.
 
         Raises:
+            TypeError: the name is no text, or the descriptor is none.
             ParameterAlreadyDeclaredException: it is declared already.
             InvalidParameterException: the name is empty.
             InvalidParameterTypeException: the value from outside has another type than the default.
             InvalidParameterValueException: a callback or the descriptor refuses the value.
         """
-        only_name = value is None and descriptor is None
+        declaration = (name,) if value is None and descriptor is None else (name, value, descriptor)
+        name, value, descriptor, only_name = _checked(0, declaration)
         return self._parameters.declare(
-            name,
-            _plain(value),
-            ParameterDescriptor() if descriptor is None else descriptor,
-            only_name=only_name,
-            ignore_override=ignore_override,
+            name, _plain(value), descriptor, only_name=only_name, ignore_override=ignore_override
         )
 
     def declare_parameters(
@@ -92,6 +90,21 @@ class NodeParameters:
         for name, value in self._parameters.overrides.items():
             if name not in self._parameters:
                 self._parameters.declare(name, value, ParameterDescriptor(), ignore_override=True)
+
+    @property
+    def pre_set_parameters_callbacks(self) -> list[PreSetParameters]:
+        """What `add_pre_set_parameters_callback` added and may still be taken away, the last first."""
+        return self._parameters.pre_set
+
+    @property
+    def on_set_parameters_callbacks(self) -> list[OnSetParameters]:
+        """What `add_on_set_parameters_callback` added, the last first."""
+        return self._parameters.on_set
+
+    @property
+    def post_set_parameters_callbacks(self) -> list[PostSetParameters]:
+        """What `add_post_set_parameters_callback` added, the last first."""
+        return self._parameters.post_set
 
     def undeclare_parameter(self, name: str) -> None:
         """Forget a parameter. No callback is asked, and no event published.
@@ -327,7 +340,7 @@ def _checked(index: int, declaration: Any) -> tuple[str, Any, Any, bool]:
     name, value, descriptor = words[:3]
     if not isinstance(name, str):
         raise TypeError(f"First element {name} at index {index} in parameters list is not a str.")
-    if len(declaration) < 3:
+    if descriptor is None:
         descriptor = ParameterDescriptor()
     elif not hasattr(descriptor, "dynamic_typing"):
         raise TypeError(f"Third element {descriptor} at index {index} in parameters list is not a ParameterDescriptor.")

@@ -39,7 +39,7 @@ class QoSOverridingOptions:
 
     Args:
         policy_kinds: the policies.
-        callback: says whether the profile that results is valid.
+        callback: says whether the profile that results is valid: a result as of a callback for parameters, or a bool.
         entity_id: told apart by it are several publishers or subscriptions of a node on one topic.
     """
 
@@ -47,7 +47,7 @@ class QoSOverridingOptions:
         self,
         policy_kinds: Iterable[QoSPolicyKind],
         *,
-        callback: Callable[[QoSProfile], bool] | None = None,
+        callback: Callable[[QoSProfile], Any] | None = None,
         entity_id: str | None = None,
     ) -> None:
         self.policy_kinds = tuple(policy_kinds)
@@ -56,7 +56,7 @@ class QoSOverridingOptions:
 
     @classmethod
     def with_default_policies(
-        cls, *, callback: Callable[[QoSProfile], bool] | None = None, entity_id: str | None = None
+        cls, *, callback: Callable[[QoSProfile], Any] | None = None, entity_id: str | None = None
     ) -> QoSOverridingOptions:
         """History, depth and reliability."""
         kinds = (QoSPolicyKind.HISTORY, QoSPolicyKind.DEPTH, QoSPolicyKind.RELIABILITY)
@@ -96,9 +96,12 @@ def override_qos(
             descriptor = ParameterDescriptor(description=said, read_only=True)
             value = node.declare_parameter(name, _to_parameter(profile, kind), descriptor).value
         setattr(profile, policy, _from_parameter(kind, value, name))
-    if options.callback is not None and not options.callback(profile):
+    verdict = True if options.callback is None else options.callback(profile)
+    if not getattr(verdict, "successful", verdict):
+        reason = getattr(verdict, "reason", "")
         raise InvalidQosOverridesError(
             f"Provided QoS overrides for {entity} `{topic}` with id `{options.entity_id}`, are not valid"
+            + (f": {reason}" if reason else "")
         )
     return profile
 

@@ -45,11 +45,11 @@ class GroupAction(Action):
         **kwargs: Any,
     ) -> None:
         super().__init__(**kwargs)
-        self._actions = as_entities(actions)
+        self.__actions = as_entities(actions)
         self._scoped = scoped
         self._forwarding = forwarding
         self._configurations = dict(launch_configurations or {})
-        self._following: list[LaunchDescriptionEntity] | None = None
+        self.__following: tuple[Any, list[LaunchDescriptionEntity]] | None = None
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
@@ -67,20 +67,21 @@ class GroupAction(Action):
 
     def get_sub_entities(self) -> list[LaunchDescriptionEntity]:
         """The actions of the group, with what opens and closes its scope."""
-        if self._following is None:
-            self._following = self._with_scope()
-        return self._following
+        # Classes of users set '_GroupAction__actions' in their 'execute', by which name ROS has it.
+        if self.__following is None or self.__following[0] is not self.__actions:
+            self.__following = self.__actions, self._with_scope()
+        return self.__following[1]
 
     def _with_scope(self) -> list[LaunchDescriptionEntity]:
         setting: list[LaunchDescriptionEntity] = [
             SetLaunchConfiguration(name, value) for name, value in self._configurations.items()
         ]
         if not self._scoped:
-            return [*setting, *self._actions]
+            return [*setting, *self.__actions]
         opening: list[LaunchDescriptionEntity] = [PushLaunchConfigurations(), PushEnvironment()]
         if not self._forwarding:
             setting = [ResetEnvironment(), ResetLaunchConfigurations(self._configurations)]
-        return [*opening, *setting, *self._actions, PopEnvironment(), PopLaunchConfigurations()]
+        return [*opening, *setting, *self.__actions, PopEnvironment(), PopLaunchConfigurations()]
 
     def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:  # noqa: ARG002
         """The actions, to be visited next."""

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from linkwright.diagnostics import LinkwrightError
 from linkwright.launch.context import LaunchContext
 from linkwright.launch.places import Place, error_at, located
+from linkwright.launch.ros.former_names import with_former_names
 from linkwright.launch.ros.names import make_namespace_absolute, prefix_namespace
 from linkwright.launch.ros.parameter_lists import normalize_parameters
 from linkwright.launch.ros.parameters import FileSource, own_parameters, scope_parameters
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from linkwright.launch.frontend.parser import Parser
 
 
+@with_former_names(node_plugin="plugin", node_name="name", node_namespace="namespace")
 class ComposableNode:
     """A node that can be loaded into a container.
 

@@ -16,6 +16,7 @@ from linkwright.launch.ros.components import (
     get_composable_node_load_request,
 )
 from linkwright.launch.ros.executables import Executable, installed_executable
+from linkwright.launch.ros.former_names import with_former_names
 from linkwright.launch.ros.lifecycle import LifecycleEventManager, answered, autostarts
 from linkwright.launch.ros.lifecycle_events import ChangeState
 from linkwright.launch.ros.names import make_namespace_absolute, repeated_name
@@ -126,6 +127,7 @@ class LoadComposableNodes(Action):
 
 
 @expose_action("node_container")
+@with_former_names(node_executable="executable", node_name="name", node_namespace="namespace")
 class ComposableNodeContainer(Node):
     """Starts a container, and loads nodes into it.
 

@@ -10,6 +10,7 @@ from linkwright.launch.actions import EmitEvent, OpaqueFunction, RegisterEventHa
 from linkwright.launch.event_handlers import EventHandler, OnProcessStart
 from linkwright.launch.frontend.expose import expose_action
 from linkwright.launch.places import error_at
+from linkwright.launch.ros.former_names import with_former_names
 from linkwright.launch.ros.lifecycle_events import (
     STATES,
     TRANSITIONS,
@@ -117,6 +118,7 @@ async def _done_or_time(future: Any) -> None:
 
 
 @expose_action("lifecycle_node")
+@with_former_names(node_executable="executable", node_name="name", node_namespace="namespace")
 class LifecycleNode(Node):
     """Starts a lifecycle node, and follows its state.
 

@@ -17,6 +17,7 @@ from linkwright.launch.entity import Action
 from linkwright.launch.frontend.expose import expose_action
 from linkwright.launch.places import located
 from linkwright.launch.ros.executables import Executable, find_executable
+from linkwright.launch.ros.former_names import with_former_names
 from linkwright.launch.ros.names import make_namespace_absolute, prefix_namespace, repeated_name
 from linkwright.launch.ros.node_words import Assigned, check_name, check_namespace, listed
 from linkwright.launch.ros.parameter_lists import normalize_parameters
@@ -43,6 +44,7 @@ _OF_A_PROCESS = re.compile(r"(ROS|RCUTILS|RMW|CYCLONEDDS|LINKWRIGHT)_")
 
 
 @expose_action("node")
+@with_former_names(node_executable="executable", node_name="name", node_namespace="namespace")
 class Node(ExecuteProcess):
     """Starts a node: one of ours in the launcher's process, any other as a process of its own.
 

@@ -3,14 +3,6 @@
 from __future__ import annotations
 
 
-class NotInitializedException(Exception):
-    """Something needs ``rclpy.init()`` first."""
-
-    def __init__(self, message: str | None = None) -> None:
-        text = "rclpy.init() has not been called."
-        super().__init__(f"{text[:-1]}. msg:{message}" if message else text)
-
-
 class NoTypeSupportImportedException(Exception):
     """An interface class cannot be used."""
 

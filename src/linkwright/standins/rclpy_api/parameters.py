@@ -26,6 +26,8 @@ def get_parameter_value(string_value: str) -> Any:
 
     It is read as YAML; what that cannot be a parameter's value stays a text.
     """
+    if not string_value.strip():
+        return Parameter("", value=string_value).get_parameter_value()
     try:
         return Parameter("", value=parse_value(string_value, "")).get_parameter_value()
     except (TypeError, ValueError):

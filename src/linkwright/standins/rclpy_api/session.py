@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
+from linkwright.graph.faults import NotInitializedException
 from linkwright.graph.future import Future
 from linkwright.standins.rclpy_api.context import Context
-from linkwright.standins.rclpy_api.errors import NotInitializedException
 from linkwright.standins.rclpy_api.signals import (
     SignalHandlerOptions,
     install_signal_handlers,

@@ -11,6 +11,7 @@ from launch_ros import (
     substitutions,
     utilities,
 )
+from linkwright.standins.launch_names import submodules_of
 
 __all__ = [
     "actions",
@@ -23,3 +24,5 @@ __all__ = [
     "substitutions",
     "utilities",
 ]
+
+__getattr__ = submodules_of(__name__)

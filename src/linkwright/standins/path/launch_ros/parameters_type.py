@@ -10,6 +10,7 @@ from launch.substitution import Substitution
 from linkwright.launch.ros import Parameter as ParameterDescription
 from linkwright.launch.ros import ParameterFile
 from linkwright.launch.ros import ParameterValue as ParameterValueDescription
+from linkwright.standins.launch_names import imported_there as __getattr__
 
 SingleValueType = str | int | float | bool
 MultiValueType = Sequence[str] | Sequence[int] | Sequence[float] | Sequence[bool] | bytes

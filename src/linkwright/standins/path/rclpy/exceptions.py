@@ -2,6 +2,7 @@
 
 from linkwright.graph.faults import InterruptedWaitError as ROSInterruptException
 from linkwright.graph.faults import InvalidHandleError as InvalidHandle
+from linkwright.graph.faults import NotInitializedException
 from linkwright.graph.names import InvalidNameError as NameValidationException
 from linkwright.graph.names import InvalidNamespaceError as InvalidNamespaceException
 from linkwright.graph.names import InvalidNodeNameError as InvalidNodeNameException
@@ -17,7 +18,7 @@ from linkwright.graph.parameters.errors import (
     ParameterNotDeclaredException,
     ParameterUninitializedException,
 )
-from linkwright.standins.rclpy_api.errors import NotInitializedException, NoTypeSupportImportedException
+from linkwright.standins.rclpy_api.errors import NoTypeSupportImportedException
 
 __all__ = [
     "InvalidHandle",

@@ -35,6 +35,7 @@ from linkwright.launch.actions import (
     UnsetEnvironmentVariable,
     UnsetLaunchConfiguration,
 )
+from linkwright.standins.launch_names import submodules_of
 
 __all__ = [
     "AppendEnvironmentVariable",
@@ -71,3 +72,5 @@ __all__ = [
     "UnsetEnvironmentVariable",
     "UnsetLaunchConfiguration",
 ]
+
+__getattr__ = submodules_of(__name__)

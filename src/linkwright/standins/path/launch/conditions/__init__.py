@@ -8,6 +8,7 @@ from linkwright.launch.conditions import (
     UnlessCondition,
     evaluate_condition_expression,
 )
+from linkwright.standins.launch_names import submodules_of
 
 __all__ = [
     "IfCondition",
@@ -17,3 +18,5 @@ __all__ = [
     "UnlessCondition",
     "evaluate_condition_expression",
 ]
+
+__getattr__ = submodules_of(__name__)

@@ -1,5 +1,8 @@
 """Stands in for ``launch.descriptions``."""
 
 from linkwright.launch.executable import Executable
+from linkwright.standins.launch_names import submodules_of
 
 __all__ = ["Executable"]
+
+__getattr__ = submodules_of(__name__)

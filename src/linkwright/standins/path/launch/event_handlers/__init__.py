@@ -9,6 +9,7 @@ from linkwright.launch.event_handlers import (
     OnProcessStart,
     OnShutdown,
 )
+from linkwright.standins.launch_names import submodules_of
 
 __all__ = [
     "OnActionEventBase",
@@ -19,3 +20,5 @@ __all__ = [
     "OnProcessStart",
     "OnShutdown",
 ]
+
+__getattr__ = submodules_of(__name__)

@@ -6,6 +6,7 @@ from linkwright.launch.frontend.expose import expose_action, expose_substitution
 from linkwright.launch.frontend.grammar import parse_if_substitutions, parse_substitution
 from linkwright.launch.frontend.parser import Parser
 from linkwright.launch.invalid_file import InvalidFrontendLaunchFileError
+from linkwright.standins.launch_names import submodules_of
 
 __all__ = [
     "Entity",
@@ -17,3 +18,5 @@ __all__ = [
     "parse_substitution",
     "type_utils",
 ]
+
+__getattr__ = submodules_of(__name__)

@@ -11,6 +11,7 @@ from linkwright.launch.frontend.expose import (
 from linkwright.launch.frontend.expose import (
     expose_impl as __expose_impl,
 )
+from linkwright.standins.launch_names import imported_there as __getattr__
 
 __all__ = [
     "__expose_impl",

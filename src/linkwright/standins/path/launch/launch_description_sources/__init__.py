@@ -14,6 +14,7 @@ from linkwright.launch.sources import (
     FrontendLaunchDescriptionSource,
     PythonLaunchDescriptionSource,
 )
+from linkwright.standins.launch_names import submodules_of
 
 __all__ = [
     "AnyLaunchDescriptionSource",
@@ -26,3 +27,5 @@ __all__ = [
     "get_launch_description_from_python_launch_file",
     "load_python_launch_file_as_module",
 ]
+
+__getattr__ = submodules_of(__name__)

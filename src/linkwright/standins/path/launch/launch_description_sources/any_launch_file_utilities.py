@@ -6,6 +6,7 @@ from linkwright.launch.file_utilities import (
     get_launch_description_from_python_launch_file,
 )
 from linkwright.launch.invalid_file import InvalidLaunchFileError
+from linkwright.standins.launch_names import imported_there as __getattr__
 
 __all__ = [
     "InvalidLaunchFileError",

@@ -5,6 +5,7 @@ from linkwright.launch.file_utilities import (
     load_python_launch_file_as_module,
 )
 from linkwright.launch.invalid_file import InvalidPythonLaunchFileError
+from linkwright.standins.launch_names import imported_there as __getattr__
 
 __all__ = [
     "InvalidPythonLaunchFileError",

@@ -13,6 +13,7 @@ from linkwright.launch.engine.user_logging import (
     log_launch_config,
     reset,
 )
+from linkwright.standins.launch_names import submodules_of
 
 __all__ = [
     "LaunchConfig",
@@ -27,3 +28,5 @@ __all__ = [
     "log_launch_config",
     "reset",
 ]
+
+__getattr__ = submodules_of(__name__)

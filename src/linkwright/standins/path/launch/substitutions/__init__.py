@@ -31,6 +31,7 @@ from linkwright.launch.substitutions import (
     ThisLaunchFile,
     ThisLaunchFileDir,
 )
+from linkwright.standins.launch_names import submodules_of
 
 __all__ = [
     "AllSubstitution",
@@ -64,3 +65,5 @@ __all__ = [
     "ThisLaunchFile",
     "ThisLaunchFileDir",
 ]
+
+__getattr__ = submodules_of(__name__)

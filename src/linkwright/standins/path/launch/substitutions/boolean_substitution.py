@@ -7,5 +7,6 @@ from linkwright.launch.substitutions import (
     NotSubstitution,
     OrSubstitution,
 )
+from linkwright.standins.launch_names import imported_there as __getattr__
 
 __all__ = ["AllSubstitution", "AndSubstitution", "AnySubstitution", "NotSubstitution", "OrSubstitution"]

@@ -11,6 +11,7 @@ from linkwright.launch.class_checks import (
 )
 from linkwright.launch.entity import as_entities as normalize_to_list_of_entities
 from linkwright.launch.substitution import normalize_to_list_of_substitutions, perform_substitutions
+from linkwright.standins.launch_names import submodules_of
 
 __all__ = [
     "create_future",
@@ -24,3 +25,5 @@ __all__ = [
     "type_utils",
     "visit_all_entities_and_collect_futures",
 ]
+
+__getattr__ = submodules_of(__name__)

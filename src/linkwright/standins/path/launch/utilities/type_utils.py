@@ -33,6 +33,7 @@ from linkwright.launch.frontend.values import (
     normalize_typed_substitution,
     perform_typed_substitution,
 )
+from linkwright.standins.launch_names import imported_there as __getattr__
 
 __all__ = [
     "AllowedTypesTuple",

@@ -17,6 +17,7 @@ from linkwright.launch.ros import (
 from linkwright.launch.ros import PushRosNamespace as PushROSNamespace
 from linkwright.launch.ros import RosTimer as ROSTimer
 from linkwright.launch.ros import SetROSLogDir as SetRosLogDir
+from linkwright.standins.launch_names import submodules_of
 
 __all__ = [
     "ComposableNodeContainer",
@@ -35,3 +36,5 @@ __all__ = [
     "SetRosLogDir",
     "SetUseSimTime",
 ]
+
+__getattr__ = submodules_of(__name__)

@@ -2,5 +2,6 @@
 
 from linkwright.launch.ros import PushRosNamespace
 from linkwright.launch.ros import PushRosNamespace as PushROSNamespace
+from linkwright.standins.launch_names import imported_there as __getattr__
 
 __all__ = ["PushROSNamespace", "PushRosNamespace"]

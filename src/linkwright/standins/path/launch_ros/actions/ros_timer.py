@@ -2,5 +2,6 @@
 
 from linkwright.launch.ros import RosTimer
 from linkwright.launch.ros import RosTimer as ROSTimer
+from linkwright.standins.launch_names import imported_there as __getattr__
 
 __all__ = ["ROSTimer", "RosTimer"]

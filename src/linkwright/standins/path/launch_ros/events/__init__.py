@@ -2,5 +2,8 @@
 
 from launch_ros.events import lifecycle
 from launch_ros.events.matchers import matches_node_name
+from linkwright.standins.launch_names import submodules_of
 
 __all__ = ["lifecycle", "matches_node_name"]
+
+__getattr__ = submodules_of(__name__)

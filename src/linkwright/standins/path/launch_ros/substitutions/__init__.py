@@ -2,5 +2,8 @@
 
 from linkwright.launch.ros import ExecutableInPackage, FindPackage, FindPackagePrefix, FindPackageShare
 from linkwright.launch.ros import ParameterSubstitution as Parameter
+from linkwright.standins.launch_names import submodules_of
 
 __all__ = ["ExecutableInPackage", "FindPackage", "FindPackagePrefix", "FindPackageShare", "Parameter"]
+
+__getattr__ = submodules_of(__name__)

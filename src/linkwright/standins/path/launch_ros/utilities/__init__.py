@@ -16,6 +16,7 @@ from linkwright.launch.ros import (
     prefix_namespace,
     to_parameters_list,
 )
+from linkwright.standins.launch_names import submodules_of
 
 __all__ = [
     "LifecycleEventManager",
@@ -33,3 +34,5 @@ __all__ = [
     "prefix_namespace",
     "to_parameters_list",
 ]
+
+__getattr__ = submodules_of(__name__)

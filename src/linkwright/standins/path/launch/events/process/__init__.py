@@ -15,6 +15,7 @@ from linkwright.launch.events import (
     matches_name,
     matches_pid,
 )
+from linkwright.standins.launch_names import submodules_of
 
 __all__ = [
     "ProcessExited",
@@ -31,3 +32,5 @@ __all__ = [
     "matches_name",
     "matches_pid",
 ]
+
+__getattr__ = submodules_of(__name__)
