@@ -1,6 +1,7 @@
 """How fast the executors deliver: messages from publish to callback in one process, and how soon a callback begins.
 
-Run with ``python benchmarks/bench_executors.py``.
+Run it with ``python -m benchmarks executors``. "Copied" is what the nodes of rclpy's stand-in pay for being able to fill
+the same message again after it was published.
 """
 
 from __future__ import annotations
@@ -8,7 +9,9 @@ from __future__ import annotations
 import statistics
 import threading
 import time
+from collections.abc import Callable
 
+from benchmarks.measure import Row
 from linkwright.graph import Graph
 from linkwright.graph.executors import MultiThreadedExecutor, ReentrantCallbackGroup, SingleThreadedExecutor
 from linkwright.messages import String
@@ -16,6 +19,7 @@ from linkwright.messages import String
 MESSAGES = 200_000
 LATENCIES = 2_000
 QUEUE = 1_000
+ROUNDS = 3
 
 
 def messages_per_second(executor: SingleThreadedExecutor | MultiThreadedExecutor, *, reentrant: bool = False) -> float:
@@ -111,18 +115,44 @@ def latencies_us() -> list[float]:
     return found
 
 
-def main() -> None:
-    """Print the figures."""
-    print(f"single thread, spin         {spinning_messages_per_second():>10,.0f} messages a second")
-    copied = spinning_messages_per_second(copies=True)
-    print(f"single thread, copies       {copied:>10,.0f} messages a second")
-    print(f"single thread, spin_once    {messages_per_second(SingleThreadedExecutor()):>10,.0f} messages a second")
-    print(f"four threads, exclusive     {messages_per_second(MultiThreadedExecutor(4)):>10,.0f} messages a second")
-    reentrant = messages_per_second(MultiThreadedExecutor(4), reentrant=True)
-    print(f"four threads, reentrant     {reentrant:>10,.0f} messages a second")
-    found = latencies_us()
-    print(f"to another thread           {statistics.median(found):>10.0f} us, {max(found):.0f} at most")
+def in_same_thread_us() -> float:
+    """From publish to the callback that one ``spin_once`` runs; what a program that spins by itself meets."""
+    graph = Graph(threads=True)
+    node = graph.create_node("bench", start_parameter_services=False, enable_rosout=False)
+    executor = SingleThreadedExecutor()
+    begun: list[int] = []
+    node.create_subscription(String, "chatter", lambda _message: begun.append(time.perf_counter_ns()), 10)
+    publisher = node.create_publisher(String, "chatter", 10)
+    executor.add_node(node)
+    found = []
+    message = String(data="hello")
+    for number in range(LATENCIES):
+        start = time.perf_counter_ns()
+        publisher.publish(message)
+        executor.spin_once(0)
+        found.append((begun[number] - start) / 1_000)
+    executor.shutdown()
+    graph.close_now()
+    return statistics.median(found)
 
 
-if __name__ == "__main__":
-    main()
+def rows() -> list[Row]:
+    """The table."""
+
+    def rate(what: str, messages: Callable[[], float], target: str = "") -> Row:
+        return Row(what, statistics.median(messages() for _ in range(ROUNDS)) / 1000, "1000/s", target)
+
+    return [
+        rate("small messages, one thread, spin", spinning_messages_per_second, "200"),
+        rate(
+            "small messages, one thread, copied as for rclpy", lambda: spinning_messages_per_second(copies=True), "200"
+        ),
+        rate("small messages, one thread, spin_once", lambda: messages_per_second(SingleThreadedExecutor())),
+        rate("small messages, four threads, exclusive", lambda: messages_per_second(MultiThreadedExecutor(4))),
+        rate(
+            "small messages, four threads, reentrant",
+            lambda: messages_per_second(MultiThreadedExecutor(4), reentrant=True),
+        ),
+        Row("one message, publish to callback, same thread", in_same_thread_us(), "us", "20"),
+        Row("one message, publish to callback, a thread that waits", statistics.median(latencies_us()), "us"),
+    ]

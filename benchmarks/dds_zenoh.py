@@ -1,7 +1,7 @@
 """The peer of `dds_sides`: zenoh-ros2-sdk, which writes CDR with rosbags and sends it with Zenoh.
 
-No router is needed here: the receiver listens at a port of its own and the sender connects to it. Message definitions and type hashes are given,
-because the SDK would fetch them from the network.
+No router is needed here: the receiver listens at a port of its own and the sender connects to it. Message definitions
+and type hashes are given, because the SDK would fetch them from the network.
 """
 
 from __future__ import annotations

@@ -37,10 +37,14 @@ class Row:
     def cells(self) -> tuple[str, str, str, str]:
         """What, ours, promised, and peers with how many times as much they take."""
         others = [
-            f"{name} not measured" if value is None else f"{name} {value:.4g} {self.unit} ({value / self.ours:.1f}x)"
+            f"{name} not measured" if value is None else f"{name} {value:.4g} {self.unit}{self._compared(value)}"
             for name, value in self.peers.items()
         ]
-        return self.what, f"{self.ours:.3g} {self.unit}", self.target, ", ".join(others)
+        shown = f"{self.ours:.3g}" if abs(self.ours) < 1000 else f"{self.ours:.0f}"
+        return self.what, f"{shown} {self.unit}", self.target, ", ".join(others)
+
+    def _compared(self, value: float) -> str:
+        return f" ({value / self.ours:.1f}x)" if self.ours else ""
 
 
 def show(rows: Sequence[Row]) -> None:

@@ -9,6 +9,7 @@ import json
 import os
 import platform
 from datetime import datetime, timezone
+from importlib import metadata
 from pathlib import Path
 
 from benchmarks import peers
@@ -28,8 +29,8 @@ TITLES = {
 _ENGLISH = """# Benchmarks
 
 What `make bench` measures, side by side with programs from PyPI on the same machine in the same run
-({machine}). Figures are medians. In brackets stands how many times as much the other program
-takes. The inputs are {inputs}. The other readers of URDF check less than
+({machine}). Figures are medians. In brackets stands how many times ours the other program's figure
+is. The inputs are {inputs}. The other readers of URDF check less than
 urdfdom does, and name no places; pinocchio reads with urdfdom, in C++.
 
 `python -m benchmarks.peers` installs the other programs into `.build/peers`; `python -m benchmarks --write` measures
@@ -38,7 +39,7 @@ and writes this page.
 _CHINESE = """# 性能测试
 
 `make bench` 的测量结果，与 PyPI 上的程序在同一台机器、同一次运行中对比（{machine}）。
-数值为中位数，括号内是对方用时（或内存）为我们的多少倍。输入为 {inputs}。其他 URDF 读取程序的检查少于 urdfdom，
+数值为中位数，括号内是对方的数值为我们的多少倍。输入为 {inputs}。其他 URDF 读取程序的检查少于 urdfdom，
 也不指出位置；pinocchio 通过 C++ 的 urdfdom 读取。
 
 `python -m benchmarks.peers` 把对比程序安装到 `.build/peers`；`python -m benchmarks --write` 测量并写出本页。
@@ -100,5 +101,6 @@ def _machine() -> str:
 
 def _versions() -> str:
     listed = [f"- Linkwright {__version__}"]
+    listed += [f"- {name} {metadata.version(name)}" for name in ("cyclonedds", "rosbags")]
     listed += [f"- {name} {peers.version(name) or '-'}" for name in peers.PEERS]
     return "\n".join(listed) + "\n"

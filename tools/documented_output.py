@@ -4,7 +4,7 @@ Usage: python tools/documented_output.py [--check]
 
 A section of these pages that can be tried has fenced blocks with titles (the files), one ``bash`` block (the command)
 and one ``text`` block, which this program fills with what the command writes to standard error in a folder of these
-files, in the language of the page.
+files, in the language of the page. What the launcher logs about itself is left out: it differs with each run.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ PAGES = (DOCS / "troubleshooting.md", DOCS / "zh" / "troubleshooting.md")
 _SECTION = re.compile(r"(?=^## )", re.MULTILINE)
 _FILE = re.compile(r'^```\w+ title="([^"]+)"\n(.*?)^```$', re.MULTILINE | re.DOTALL)
 _COMMAND = re.compile(r"^```bash\nlinkwright (.*?)\n```$", re.MULTILINE)
+_LOGGED = re.compile(r"^\[INFO\] \[launch\]: .*\n", re.MULTILINE)
 _OUTPUT = re.compile(r"(?<=^```text\n).*?(?=^```$)", re.MULTILINE | re.DOTALL)
 _READERS_FOLDER = "/home/you/robots"
 # A folder's look must not depend on where the program is run, nor on a workspace that happens to be sourced.
@@ -43,7 +44,7 @@ def language_of(page: Path) -> str:
 def output_of(words: Sequence[str], files: Sequence[tuple[str, str]], language: str = "en") -> str:
     """What ``linkwright`` with these words writes to standard error in a folder of these files (path, text)."""
     environment = {name: value for name, value in os.environ.items() if name not in _LEFT_OUT}
-    environment["LINKWRIGHT_LANG"] = language
+    environment |= {"LINKWRIGHT_LANG": language, "LINKWRIGHT_DDS": "0"}
     with tempfile.TemporaryDirectory() as folder:
         for name, text in files:
             path = Path(folder) / name
@@ -60,7 +61,7 @@ def output_of(words: Sequence[str], files: Sequence[tuple[str, str]], language: 
         )
     if result.returncode != 1:
         raise RuntimeError(f"linkwright {shlex.join(words)} exited with {result.returncode}, not 1:\n{result.stderr}")
-    return result.stderr.replace(folder, _READERS_FOLDER)
+    return _LOGGED.sub("", result.stderr).replace(folder, _READERS_FOLDER)
 
 
 def _refreshed_section(section: str, language: str) -> str:

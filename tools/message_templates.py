@@ -1,4 +1,4 @@
-"""What the program may say: the templates of all messages, notes and hints, found in its source.
+"""What the program may say: the templates of all messages, notes, hints and status lines, found in its source.
 
 A template is a text with ``{}`` for what is filled in. The source is read, not run: a call that makes a diagnostic is
 followed from its parameters to the calls of the function around it, until code and texts are known together.
@@ -30,6 +30,7 @@ _SINKS = {
     "report": {"message": (0, "message"), "hint": (4, "hint")},
     "Note": {"note": (0, "message")},
     "replace": {"hint": (9, "hint"), "message": (9, "message")},
+    "localized": {"status_line": (0, "line")},
 }
 
 
@@ -38,7 +39,7 @@ class Said:
     """One text of the program.
 
     Attributes:
-        kind: ``message``, ``note`` or ``hint``.
+        kind: ``message``, ``note``, ``hint`` or ``status_line``.
         code: of the diagnostic; empty where it is not known, as for notes.
         template: the text with ``{}`` for what is filled in.
         place: ``file:line`` of the source that makes it.
@@ -84,7 +85,7 @@ class Templates:
             else:
                 codes = {""}
             for code in codes:
-                for kind in ("message", "note", "hint"):
+                for kind in ("message", "note", "hint", "status_line"):
                     if given.get(kind) is None:
                         continue
                     for text in self._texts.of(given[kind], scope):

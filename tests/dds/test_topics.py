@@ -201,6 +201,6 @@ def test_every_type_can_be_described():
 
     types = WireTypes()
     for name in interface_names("msg"):
-        described = types.message(get_message(name)._definition)
+        described = types.message(get_message(name))
         package, _, short = name.split("/")
         assert described.__idl_typename__ == f"{package}.msg.dds_.{short}_"

@@ -30,5 +30,8 @@ def test_the_examples_run_in_order(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     assert "base_link revolute (0.0, 0.0, 0.2)" in printed
     assert "root Link: base_link has 1 child(ren)" in printed
     assert re.search(r"^5\.0+$|^5\.0000\d*$|^4\.99999\d*$", printed, re.MULTILINE), "0.5 x 0.1 x 0.1 m of water"
+    assert "position:\n- 0.3\n" in printed
+    assert "RIHS01_\nhello\n" in printed
+    assert "7200 3600.0 s" in printed
     assert "error[URDF" in printed
     assert len(names["many"]) == 1000  # type: ignore[arg-type]

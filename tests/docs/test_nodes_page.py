@@ -56,3 +56,10 @@ def test_the_interfaces_need_no_build(sources: Path, monkeypatch: pytest.MonkeyP
     assert capsys.readouterr().out == listed
     assert main(["pkg", "executables", "my_nodes"]) == 0
     assert capsys.readouterr().out == "my_nodes robot\n"
+
+
+@pytest.mark.parametrize("page", [DOCS / "graph.md", DOCS / "zh" / "graph.md"], ids=["en", "zh"])
+def test_the_page_about_the_graph_shows_the_same_interface(sources: Path, page: Path, monkeypatch, capsys) -> None:
+    monkeypatch.chdir(sources)
+    assert main(["interface", "show", "my_interfaces/msg/Battery"]) == 0
+    assert capsys.readouterr().out in page.read_text(encoding="utf-8")

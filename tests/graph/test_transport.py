@@ -225,7 +225,7 @@ async def test_requests_that_come_in_are_answered(graph):
     node = graph.create_node("node")
     service = node.create_service(Trigger, "trigger", lambda _request, _response: Trigger.Response(message="yes"))
     answers = []
-    service.receive(Trigger.Request(), answers.append, MessageInfo(0, 0))
+    service.receive(Trigger.Request(), answers.append)
     await graph.settle()
     assert [answer.message for answer in answers] == ["yes"]
 

@@ -38,7 +38,7 @@ from launch.substitutions import (
     ThisLaunchFileDir,
 )
 
-from launch import Action, LaunchContext, LaunchDescription
+from launch import Action, LaunchContext, LaunchDescription, LaunchDescriptionSource
 
 Launch = Callable[..., object]
 Write = Callable[[str, str], Path]
@@ -280,9 +280,40 @@ class TestIncludeLaunchDescription:
     async def test_a_missing_argument_is_told_before_anything_runs(self, launch, write: Write) -> None:
         inner = write("inner.launch.py", INNER.replace("{default}", ""))
         done = await launch(IncludeLaunchDescription(str(inner), launch_arguments=[("sped", "1")]))
-        assert "error[LAUNCH114]: the included launch file requires argument 'speed', which is not given" in done.err
+        told = f"the included launch file '{inner}' requires argument 'speed', which is not given"
+        assert f"error[LAUNCH114]: {told}" in done.err
         assert "it is given 'sped': is that the one?" in done.err
         assert done.messages == []
+
+    @pytest.mark.parametrize(
+        ("name", "text", "hint"),
+        [
+            (
+                "outer.launch.xml",
+                '<launch><include file="$(dirname)/inner.launch.py"/></launch>',
+                'write <arg name="speed" value="VALUE"/> inside <include>',
+            ),
+            (
+                "outer.launch.yaml",
+                "launch:\n- include:\n    file: $(dirname)/inner.launch.py\n",
+                "write 'arg: [{name: speed, value: VALUE}]' below 'include'",
+            ),
+        ],
+    )
+    async def test_how_a_missing_argument_is_given_is_told_in_the_language_of_the_file(
+        self, launch, write: Write, name: str, text: str, hint: str
+    ) -> None:
+        write("inner.launch.py", INNER.replace("{default}", ""))
+        done = await launch(IncludeLaunchDescription(str(write(name, text))))
+        assert "inner.launch.py' requires argument 'speed'" in done.err
+        assert f"hint: {hint}" in done.err
+        assert f"--> {write(name, text)}" in done.err
+
+    async def test_a_missing_argument_of_a_description_that_is_in_no_file(self, launch) -> None:
+        inner = LaunchDescriptionSource(LaunchDescription([DeclareLaunchArgument("speed")]))
+        done = await launch(IncludeLaunchDescription(inner))
+        assert "the included launch description requires argument 'speed', which is not given" in done.err
+        assert "add ('speed', VALUE) to launch_arguments" in done.err
 
     async def test_an_error_inside_names_the_inner_file(self, launch, write: Write) -> None:
         inner = write("inner.launch.py", "def generate_launch_description():\n    return nothing\n")

@@ -124,6 +124,16 @@ class TestChecks:
         assert warning.message == "argument 'modl' is not declared by the launch file"
         assert warning.hint == "did you mean 'model'?"
 
+    def test_a_required_argument_that_was_given_by_nearly_its_name(self) -> None:
+        with pytest.raises(LinkwrightError) as caught:
+            check_arguments(self.description(), {"modl": "m", "launch-prefix": "gdb"})
+        (error,) = caught.value.diagnostics
+        assert error.code == "LAUNCH114"
+        assert error.hint == "'modl' is given: did you mean 'model'?"
+        with pytest.raises(LinkwrightError) as caught:
+            check_arguments(self.description(), {"unlike": "m"})
+        assert caught.value.diagnostics[0].hint == "add model:=VALUE"
+
     def test_listing(self) -> None:
         assert argument_listing(self.description()) == (
             "Arguments (pass arguments as '<name>:=<value>'):\n"

@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from linkwright.urdf import Robot
     from linkwright.workspace import PackageFinder
 
-NAME = "check"
 HELP = "check URDF and xacro files and the packages around them; of one file, print the link tree"
 
 _USAGE = 2
@@ -202,11 +201,11 @@ def _summarise(found: Sequence[Diagnostic], mended: Sequence[Mended], *, several
     if mended:
         count = sum(sum(each.counts.values()) for each in mended)
         files = len({file for each in mended for file in each.texts})
-        print(f"mended {_count(count, 'finding')} in {_count(files, 'file')}", file=sys.stderr)
+        print(localized(f"mended {_count(count, 'finding')} in {_count(files, 'file')}"), file=sys.stderr)
     if several:
         errors = sum(each.severity is Severity.ERROR for each in found)
         warnings = sum(each.severity is Severity.WARNING for each in found)
-        print(f"{_count(errors, 'error')}, {_count(warnings, 'warning')}", file=sys.stderr)
+        print(localized(f"{_count(errors, 'error')}, {_count(warnings, 'warning')}"), file=sys.stderr)
 
 
 def _print_statistics(found: Iterable[Diagnostic]) -> None:

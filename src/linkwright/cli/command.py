@@ -9,7 +9,7 @@ import argparse
 import gc
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from importlib import import_module
 from typing import Protocol, cast
 
@@ -39,24 +39,9 @@ GROUPS = {
 
 VERBS = tuple(name for names in GROUPS.values() for name in names)
 
-_NESTED = frozenset(
-    {
-        "pkg",
-        "run",
-        "topic",
-        "node",
-        "param",
-        "service",
-        "action",
-        "interface",
-        "lifecycle",
-        "component",
-        "bag",
-        "shell",
-    }
-)
-"""Verbs with verbs of their own, and `run`, whose words are another program's; elsewhere options may stand between
-words (`launch PACKAGE --no-open FILE`)."""
+_IN_ORDER = frozenset({"pkg", "run", "shell"})
+"""Verbs whose words are taken in order, beside those with verbs of their own: what follows is another command's.
+Elsewhere options may stand between words (`launch PACKAGE --no-open FILE`)."""
 
 FINE, FINDINGS, USAGE, BUG, INTERRUPTED = 0, 1, 2, 3, 130
 
@@ -69,7 +54,6 @@ _COLLECT_AFTER = 50_000
 class Verb(Protocol):
     """What a verb's module offers."""
 
-    NAME: str
     HELP: str
 
     def configure(self, parser: argparse.ArgumentParser) -> None:
@@ -151,18 +135,17 @@ def _dispatch(words: list[str], program: str) -> int:
         return _unknown(name, VERBS, program or PROGRAM)
     parser = parser_for(name, program=program)
     module = verb(name)
-    if name in _NESTED:
-        below = getattr(module, "VERBS", ())
+    below: Mapping[str, str] = getattr(module, "VERBS", {})
+    if below:
         asked = next((word for word in words[1:] if not word.startswith("-")), None)
-        if below and asked is not None and asked not in below:
+        if asked is not None and asked not in below:
             return _unknown(asked, below, parser.prog)
-        return module.run(parser.parse_args(words[1:]))
-    mixed = any(word.startswith("-") for word in words)
+    mixed = not below and name not in _IN_ORDER and any(word.startswith("-") for word in words)
     parse = parser.parse_intermixed_args if mixed else parser.parse_args
     return module.run(parse(words[1:]))
 
 
-def _unknown(name: str, known: Sequence[str], prog: str) -> int:
+def _unknown(name: str, known: Iterable[str], prog: str) -> int:
     """Say that a word is no command."""
     hint = did_you_mean(name, known) or f"`{prog} --help` lists the commands"
     what = "option" if name.startswith("-") else "command"

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 
-NAME = "daemon"
 HELP = "accepted for ros2's sake: there is no daemon, and none is needed"
 
 _SAYS = {

@@ -10,7 +10,6 @@ from linkwright.cli.assignments import parse_assignments
 from linkwright.cli.output import write_output
 from linkwright.diagnostics import print_diagnostics
 
-NAME = "diagram"
 HELP = "draw the links and joints of a model as urdf_to_graphviz does (.gv and PDF or SVG)"
 
 _PICTURES = (".pdf", ".svg", ".png")

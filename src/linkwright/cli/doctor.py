@@ -10,12 +10,12 @@ from linkwright.cli.numbers import positive_float
 from linkwright.cli.session import run_in_graph
 from linkwright.diagnostics import Severity, display_path, print_diagnostics
 from linkwright.diagnostics.formats import FORMATS, format_diagnostics
+from linkwright.diagnostics.translation import localized
 
 if TYPE_CHECKING:
     from linkwright.cli.session import Session
     from linkwright.graph.doctor import FixedFrame, Observation
 
-NAME = "doctor"
 HELP = "explain what is wrong with the running nodes, topics and frames"
 
 _SECONDS = 3.0
@@ -55,7 +55,7 @@ def run(arguments: argparse.Namespace) -> int:
 
     async def job(session: Session) -> int:
         if arguments.format == "text":
-            print(f"looking at the running graph for {arguments.seconds:g} s ...", file=sys.stderr)
+            print(localized(f"looking at the running graph for {arguments.seconds:g} s ..."), file=sys.stderr)
         seen = await observe(session.graph, session.node, arguments.seconds, fixed_frames=frames)
         found = examine(seen)
         failed = any(each.severity is not Severity.INFO for each in found)
@@ -93,5 +93,5 @@ def _summary(seen: Observation, findings: int) -> str:
         for count, name in ((len(seen.nodes), "node"), (len(topics), "topic"), (len(frames), "frame"))
     )
     if not findings:
-        return f"All is well: {counted}"
-    return f"{findings} finding{'' if findings == 1 else 's'}; {counted}"
+        return localized(f"All is well: {counted}")
+    return localized(f"{findings} finding{'' if findings == 1 else 's'}; {counted}")

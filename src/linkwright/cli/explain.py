@@ -6,7 +6,6 @@ import argparse
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError
 
-NAME = "explain"
 HELP = "say what a rule or diagnostic code means, why it matters and what to do"
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import os
 
-NAME = "launch"
 HELP = "run a ROS 2 launch file, with its rviz2 as a page in the browser"
 
 

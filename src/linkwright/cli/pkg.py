@@ -16,7 +16,6 @@ from linkwright.diagnostics import print_diagnostics
 if TYPE_CHECKING:
     from linkwright.workspace.create import Maintainer
 
-NAME = "pkg"
 HELP = "create ROS packages, and tell where they are and what is in them"
 
 

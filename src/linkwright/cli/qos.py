@@ -34,15 +34,17 @@ _SINGLE = ("qos_reliability", "qos_durability", "qos_depth", "qos_history", "qos
 _LEASE = "qos_liveliness_lease_duration_seconds"
 
 
-def add_qos_arguments(parser: argparse.ArgumentParser, action: str, default: str, extra: str = "") -> None:
-    """Declare the options.
+def add_publisher_qos_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options for what a verb publishes with; see `profile`."""
+    _add_arguments(parser, "publish", "default")
 
-    Args:
-        parser: of the verb.
-        action: ``publish`` or ``subscribe``, for the help.
-        default: the profile without ``--qos-profile``.
-        extra: what the help says of reliability and durability beside.
-    """
+
+def add_subscription_qos_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options for what a verb subscribes with; see `fitting_profile`."""
+    _add_arguments(parser, "subscribe", "sensor_data", "; as the publishers have it, if they agree")
+
+
+def _add_arguments(parser: argparse.ArgumentParser, action: str, default: str, extra: str = "") -> None:
     group = parser.add_argument_group("quality of service")
     group.add_argument(
         "--qos-profile",

@@ -10,7 +10,6 @@ import sys
 
 from linkwright.cli.launch import add_viewer_options
 
-NAME = "run"
 HELP = "run an executable of a package: ours, a built one, or an entry point of its sources"
 
 

@@ -211,10 +211,13 @@ async def join_others(graph: Graph, spin_time: float | None) -> None:
     """Connect the graph with what runs in other processes and wait until that is discovered.
 
     Raises:
-        LinkwrightError: CLI401, there is no DDS.
+        LinkwrightError: CLI401, there is no DDS; DDS101, ROS_DOMAIN_ID is no domain.
     """
     from linkwright.graph import dds
+    from linkwright.graph.dds.settings import read_settings
 
+    if dds.available():
+        read_settings()  # raises what joining would only log
     transport = dds.join(graph) if dds.available() else None
     if transport is None:
         raise LinkwrightError(

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 
-NAME = "shell"
 HELP = "open a shell in which ros2, xacro, check_urdf, urdf_to_graphviz, rviz2 and colcon exist"
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
@@ -20,7 +21,24 @@ _FAULTS = (AssertionError, TypeError, ValueError, AttributeError, OverflowError)
 _AUTOMATIC = ("auto", "now")
 
 
-def read_values(arguments: Any) -> str:
+def add_values_arguments(parser: argparse.ArgumentParser, help_text: str, metavar: str = "VALUES") -> Any:
+    """Declare the values, which may come from standard input instead.
+
+    Args:
+        parser: of the verb.
+        help_text: what they are, with an example.
+        metavar: what the help calls them.
+
+    Returns:
+        The group in which another place that they come from may be declared.
+    """
+    group = parser.add_mutually_exclusive_group()
+    group.add_argument("values", metavar=metavar, nargs="?", default="{}", help=help_text)
+    group.add_argument("--stdin", action="store_true", help="read the values from standard input")
+    return group
+
+
+def read_values(arguments: argparse.Namespace) -> str:
     """The text of the values: from the command line, from a file, or from standard input."""
     if getattr(arguments, "stdin", False):
         return sys.stdin.read()

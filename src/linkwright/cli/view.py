@@ -7,7 +7,6 @@ import argparse
 from linkwright.cli.assignments import parse_assignments
 from linkwright.cli.launch import add_viewer_options
 
-NAME = "view"
 HELP = "show a URDF or xacro file in the browser, with sliders for its joints"
 
 

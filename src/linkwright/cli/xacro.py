@@ -13,7 +13,6 @@ from linkwright.diagnostics import Diagnostic, Severity, print_diagnostics
 if TYPE_CHECKING:
     from linkwright.xacro.engine import Inputs
 
-NAME = "xacro"
 HELP = "expand a xacro file to URDF, list its arguments, or explain its parts"
 
 _QUIET, _PROPERTIES, _ALL_PROPERTIES = 0, 3, 4

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from linkwright.graph.copies import copy_of
 from linkwright.graph.dispatch import CallbackGroup
-from linkwright.graph.endpoint import Endpoint
+from linkwright.graph.endpoint import ServiceEndpoint
 from linkwright.graph.entity import Entity
 from linkwright.graph.future import Future
 from linkwright.graph.qos import QoSProfile
@@ -24,7 +24,7 @@ Request = TypeVar("Request")
 Response = TypeVar("Response")
 
 
-class Client(Endpoint, Entity, Generic[Request, Response]):
+class Client(ServiceEndpoint, Entity, Generic[Request, Response]):
     """Asks a service; made by ``Node.create_client``.
 
     A request that is made while no server is there waits for one, up to the depth of the quality of service. Where
@@ -56,21 +56,6 @@ class Client(Endpoint, Entity, Generic[Request, Response]):
     def what(self) -> str:
         """What it is, for messages."""
         return f"client of service '{self.name}'"
-
-    @property
-    def srv_name(self) -> str:
-        """The service's absolute name."""
-        return self.name
-
-    @property
-    def service_name(self) -> str:
-        """The service's absolute name."""
-        return self.name
-
-    @property
-    def srv_type(self) -> Any:
-        """The class of the service."""
-        return self.interface
 
     def service_is_ready(self) -> bool:
         """Whether a server is there.
@@ -151,12 +136,6 @@ class Client(Endpoint, Entity, Generic[Request, Response]):
         """Leave the graph and the node; pending futures stay as they are."""
         self.node.destroy_client(self)
 
-    def __enter__(self) -> Client[Request, Response]:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.destroy()
-
     # --- for dispatchers ---------------------------------------------------------------------------------------------
 
     def has_work(self) -> bool:
@@ -165,14 +144,8 @@ class Client(Endpoint, Entity, Generic[Request, Response]):
 
     def take(self) -> Callable[[], object] | None:
         """The handing over of the response that waits longest."""
-        self._announced = False
-        try:
-            future, response = self._answers.popleft()
-        except IndexError:
-            return None
-        if self._answers:
-            self.announce()
-        return partial(self._hand_over, future, response)
+        answer = self._next_of(self._answers)
+        return None if answer is None else partial(self._hand_over, *answer)
 
     def retire(self) -> None:
         """Ask no more, and take no more answers."""
@@ -228,10 +201,7 @@ class Client(Endpoint, Entity, Generic[Request, Response]):
             self.announce()
 
     def _hand_over(self, future: Future[Response], response: Response) -> None:
-        if not future.ended():
-            if hasattr(self.dispatcher, "create_task"):
-                future.set_executor(self.dispatcher)
-            future.set_result(response)
+        future.hand_over(response, self.dispatcher)
 
 
 def _nothing() -> None:

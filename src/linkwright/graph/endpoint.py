@@ -4,14 +4,21 @@ from __future__ import annotations
 
 import itertools
 import os
-from typing import TYPE_CHECKING, Any
+from abc import abstractmethod
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
+from linkwright.graph.handle import Handled
 from linkwright.graph.qos_compatibility import resolved
 from linkwright.graph.transport import EndpointInfo, EndpointKind
 
 if TYPE_CHECKING:
+    from typing_extensions import Self
+
+    from linkwright.graph.endpoint_events import EndpointEvents
     from linkwright.graph.node import Node
     from linkwright.graph.qos import QoSProfile
+
+M = TypeVar("M")
 
 _GID_START = os.urandom(10)
 _gid_numbers = itertools.count(1)
@@ -31,8 +38,8 @@ def type_name_of(interface: type | str) -> str:
     return name
 
 
-class Endpoint:
-    """One side of a topic or a service.
+class Endpoint(Handled):
+    """One side of a topic or a service; at the end of a ``with`` block it is destroyed.
 
     Attributes:
         node: whose it is.
@@ -86,3 +93,64 @@ class Endpoint:
         return EndpointInfo(
             self.kind, self.node.identity, self.name, self.type_name, resolved(self.qos_profile), self.gid, local=True
         )
+
+    @abstractmethod
+    def destroy(self) -> None:
+        """Leave the graph and the node."""
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.destroy()
+
+
+class TopicEndpoint(Endpoint, Generic[M]):
+    """A publisher or a subscription.
+
+    Attributes:
+        events: what is told of quality of service; None when its user wants to hear nothing.
+    """
+
+    events: EndpointEvents | None
+    _outside_count = 0
+
+    @property
+    def topic_name(self) -> str:
+        """The topic's absolute name."""
+        return self.name
+
+    @property
+    def topic(self) -> str:
+        """The topic's absolute name."""
+        return self.name
+
+    @property
+    def msg_type(self) -> type[M]:
+        """The message class."""
+        return self.interface  # type: ignore[no-any-return]  # made from the name of a type
+
+    def set_outside_count(self, count: int) -> None:
+        """For the transport: how many endpoints of the other side match outside of the process."""
+        before, self._outside_count = self._outside_count, count
+        if self.events is not None and count != before:
+            self.events.matched(count - before)
+
+
+class ServiceEndpoint(Endpoint):
+    """A client or a service."""
+
+    @property
+    def srv_name(self) -> str:
+        """The service's absolute name."""
+        return self.name
+
+    @property
+    def service_name(self) -> str:
+        """The service's absolute name."""
+        return self.name
+
+    @property
+    def srv_type(self) -> Any:
+        """The class of the service."""
+        return self.interface

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import traceback
 from abc import ABC, abstractmethod
+from collections import deque
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph.faults import InvalidHandleError
@@ -14,6 +15,8 @@ from linkwright.graph.handle import Handled
 if TYPE_CHECKING:
     from linkwright.graph.dispatch import CallbackGroup, Dispatcher
     from linkwright.graph.node import Node
+
+T = TypeVar("T")
 
 
 class Entity(Handled, ABC):
@@ -68,6 +71,20 @@ class Entity(Handled, ABC):
             if dispatcher is not None:
                 self._announced = True
                 dispatcher.ready(self)
+
+    def _next_of(self, queue: deque[T]) -> T | None:
+        """What waits longest, taken out of the queue that the entity's calls come from; None when there is nothing.
+
+        What waits behind it is announced.
+        """
+        self._announced = False
+        try:
+            item = queue.popleft()
+        except IndexError:
+            return None
+        if queue:
+            self.announce()
+        return item
 
     def report(self, error: BaseException) -> None:
         """Say in the node's log that a call failed.

@@ -128,6 +128,18 @@ class Future(Generic[T]):
         """Have an executor run the done callbacks."""
         self._executor = executor
 
+    def hand_over(self, result: T, dispatcher: Any) -> None:
+        """End with a result, unless it has ended.
+
+        Args:
+            result: the result.
+            dispatcher: of the node that waits for it; has the done callbacks run, where it is an executor.
+        """
+        if not self.ended():
+            if hasattr(dispatcher, "create_task"):
+                self.set_executor(dispatcher)
+            self.set_result(result)
+
     def add_waiter(self, callback: Callable[[], object]) -> None:
         """For what runs coroutines: call something at once, in whatever thread, when the future is done or cancelled.
 

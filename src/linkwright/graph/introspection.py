@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from copy import copy
 from dataclasses import dataclass, field
 from enum import IntEnum
 
@@ -47,7 +48,7 @@ class TopicEndpointInfo:
     topic_type_hash: str = ""
     endpoint_type: TopicEndpointTypeEnum = TopicEndpointTypeEnum.INVALID
     endpoint_gid: list[int] = field(default_factory=list)
-    qos_profile: QoSProfile = UNKNOWN_QOS
+    qos_profile: QoSProfile = field(default_factory=lambda: copy(UNKNOWN_QOS))
 
     def __str__(self) -> str:
         qos = self.qos_profile

@@ -9,13 +9,9 @@ from linkwright.graph.client import Client
 from linkwright.graph.clock import Clock, ROSClock
 from linkwright.graph.dispatch import FREE_GROUP, CallbackGroup, Dispatcher, ExclusiveGroup
 from linkwright.graph.endpoint import Endpoint
+from linkwright.graph.endpoint_events import PublisherEvents, SubscriptionEvents
 from linkwright.graph.entity import Entity
-from linkwright.graph.events import (
-    PublisherEventCallbacks,
-    PublisherEvents,
-    SubscriptionEventCallbacks,
-    SubscriptionEvents,
-)
+from linkwright.graph.events import PublisherEventCallbacks, SubscriptionEventCallbacks
 from linkwright.graph.log.logger import Logger
 from linkwright.graph.names import expand_service_name, expand_topic_name, join
 from linkwright.graph.node_queries import NodeQueries

@@ -5,11 +5,10 @@ from __future__ import annotations
 import threading
 from collections import deque
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
-from linkwright.graph.endpoint import Endpoint
+from linkwright.graph.endpoint import TopicEndpoint
 from linkwright.graph.faults import InvalidHandleError
-from linkwright.graph.handle import Handled
 from linkwright.graph.qos import DurabilityPolicy, LivelinessPolicy, QoSProfile
 from linkwright.graph.qos_compatibility import limit_ns
 from linkwright.graph.subscription import Subscription
@@ -19,13 +18,14 @@ from linkwright.messages import serialize
 
 if TYPE_CHECKING:
     from linkwright.graph.dispatch import CallbackGroup
-    from linkwright.graph.events import PublisherEventCallbacks, PublisherEvents
+    from linkwright.graph.endpoint_events import PublisherEvents
+    from linkwright.graph.events import PublisherEventCallbacks
     from linkwright.graph.node import Node
 
 M = TypeVar("M")
 
 
-class Publisher(Endpoint, Handled, Generic[M]):
+class Publisher(TopicEndpoint[M]):
     """Sends messages to a topic; made by ``Node.create_publisher``. It may publish from any thread.
 
     In the process a message is handed over as it is: who publishes one does not change it afterwards, nor does who
@@ -55,30 +55,14 @@ class Publisher(Endpoint, Handled, Generic[M]):
         """For the transport: shows outside of the process that the publisher lives."""
         self.lifespan_ns = limit_ns(qos_profile.lifespan)
         self._acknowledged: Callable[[float | None], bool] | None = None
-        self._outside_count = 0
         self._accepted: Any = None
         self._matched: dict[Subscription[Any], Callable[[Any], None]] = {}
         self._receivers: tuple[Callable[[Any], None], ...] = ()
         self._lock = threading.RLock()
         keeps = qos_profile.durability is DurabilityPolicy.TRANSIENT_LOCAL
-        self._kept: deque[Any] | None = deque(maxlen=qos_profile.queue_length) if keeps else None
+        self._kept: deque[tuple[int, Any]] | None = deque(maxlen=qos_profile.queue_length) if keeps else None
         self._copies = node.copies_messages
         self._is_plain = not keeps and not self._copies
-
-    @property
-    def topic_name(self) -> str:
-        """The topic's absolute name."""
-        return self.name
-
-    @property
-    def topic(self) -> str:
-        """The topic's absolute name."""
-        return self.name
-
-    @property
-    def msg_type(self) -> type[M]:
-        """The message class."""
-        return self.interface  # type: ignore[no-any-return]  # made from the name of a type
 
     def publish(self, msg: M | bytes) -> None:
         """Send a message to every matching subscription, in their order of creation; callbacks run later.
@@ -135,12 +119,6 @@ class Publisher(Endpoint, Handled, Generic[M]):
         """Leave the topic and the node; what was sent is still delivered."""
         self.node.destroy_publisher(self)
 
-    def __enter__(self) -> Publisher[M]:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.destroy()
-
     # --- for the bus and the transport ----------------------------------------------------------------------------
 
     def connect(self, subscription: Subscription[Any]) -> None:
@@ -148,7 +126,7 @@ class Publisher(Endpoint, Handled, Generic[M]):
         receive = subscription.receiver(self)
         with self._lock:
             if self._kept and subscription.qos_profile.durability is DurabilityPolicy.TRANSIENT_LOCAL:
-                for message in self._kept:
+                for message in self._still_valid():
                     receive(message)
             self._matched[subscription] = receive
             self._receivers = tuple(self._matched.values())
@@ -201,16 +179,10 @@ class Publisher(Endpoint, Handled, Generic[M]):
         """
         with self._lock:
             if send is not None and self.outside is None:
-                for message in self._kept or ():
+                for message in self._still_valid():
                     send(message)
             self.outside = send
             self._acknowledged = acknowledged if send is not None else None
-
-    def set_outside_count(self, count: int) -> None:
-        """For the transport: how many subscriptions outside match."""
-        before, self._outside_count = self._outside_count, count
-        if self.events is not None and count != before:
-            self.events.matched(count - before)
 
     def incompatible_outside(self, policy: str, remote_name: str) -> None:
         """For the transport: a subscription outside asks for more than this offers."""
@@ -230,13 +202,23 @@ class Publisher(Endpoint, Handled, Generic[M]):
             message = bytes(message) if isinstance(message, bytearray) else serialize(message)
         with self._lock:
             if self._kept is not None:
-                self._kept.append(message)
+                self._kept.append((self.node.timebase.steady_ns(), message))
             if self.events is not None:
                 self.events.published()
             for receive in self._receivers:
                 receive(message)
             if self.outside is not None:
                 self.outside(message)
+
+    def _still_valid(self) -> list[Any]:
+        """What is kept for late comers, without what has outlived its lifespan."""
+        if not self._kept:
+            return []
+        if self.lifespan_ns is not None:
+            oldest_ns = self.node.timebase.steady_ns() - self.lifespan_ns
+            while self._kept and self._kept[0][0] < oldest_ns:
+                self._kept.popleft()
+        return [message for _, message in self._kept]
 
     def _check_alive(self) -> None:
         if self.destroyed:

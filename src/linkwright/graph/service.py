@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from linkwright.graph.copies import copy_of
 from linkwright.graph.dispatch import CallbackGroup
-from linkwright.graph.endpoint import Endpoint
+from linkwright.graph.endpoint import ServiceEndpoint
 from linkwright.graph.entity import Entity
 from linkwright.graph.qos import QoSProfile
-from linkwright.graph.transport import EndpointKind, MessageInfo
+from linkwright.graph.transport import EndpointKind
 
 if TYPE_CHECKING:
     from linkwright.graph.node import Node
@@ -25,7 +25,7 @@ Reply = Callable[[Any], None]
 """Sends a response to whoever asked; from any thread, once."""
 
 
-class Service(Endpoint, Entity, Generic[Request, Response]):
+class Service(ServiceEndpoint, Entity, Generic[Request, Response]):
     """Answers the requests to a service; made by ``Node.create_service``.
 
     Args:
@@ -51,37 +51,21 @@ class Service(Endpoint, Entity, Generic[Request, Response]):
         self._describe(node, srv_type, srv_name, qos_profile)
         self.callback: Callable[[Any, Any], Any] = callback
         self._replying = replying
-        self._waiting: deque[tuple[Request, Reply, MessageInfo | None]] = deque(maxlen=qos_profile.queue_length)
+        self._waiting: deque[tuple[Request, Reply]] = deque(maxlen=qos_profile.queue_length)
 
     @property
     def what(self) -> str:
         """What it is, for messages."""
         return f"callback of service '{self.name}'"
 
-    @property
-    def srv_name(self) -> str:
-        """The service's absolute name."""
-        return self.name
-
-    @property
-    def service_name(self) -> str:
-        """The service's absolute name."""
-        return self.name
-
-    @property
-    def srv_type(self) -> Any:
-        """The class of the service."""
-        return self.interface
-
-    def receive(self, request: Request, reply: Reply, info: MessageInfo | None = None) -> None:
+    def receive(self, request: Request, reply: Reply) -> None:
         """Have a request answered, from any thread.
 
         Args:
             request: the request.
             reply: called with the response, from any thread, or never.
-            info: where it comes from; needed where that is another process.
         """
-        self._waiting.append((request, reply, info))
+        self._waiting.append((request, reply))
         self.announce()
 
     def has_work(self) -> bool:
@@ -90,14 +74,8 @@ class Service(Endpoint, Entity, Generic[Request, Response]):
 
     def take(self) -> Callable[[], object] | None:
         """The answering of the request that waits longest."""
-        self._announced = False
-        try:
-            request, reply, _ = self._waiting.popleft()
-        except IndexError:
-            return None
-        if self._waiting:
-            self.announce()
-        return partial(self._answer, request, reply)
+        waiting = self._next_of(self._waiting)
+        return None if waiting is None else partial(self._answer, *waiting)
 
     def send_response(self, response: Response, header: Reply) -> None:
         """Send a response.
@@ -121,12 +99,6 @@ class Service(Endpoint, Entity, Generic[Request, Response]):
         """Answer no more."""
         super().retire()
         self._waiting.clear()
-
-    def __enter__(self) -> Service[Request, Response]:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.destroy()
 
     def _answer(self, request: Request, reply: Reply) -> object:
         if self._replying:

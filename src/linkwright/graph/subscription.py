@@ -8,11 +8,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
 from functools import partial
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph.dispatch import CallbackGroup, Dispatcher
-from linkwright.graph.endpoint import Endpoint
+from linkwright.graph.endpoint import TopicEndpoint
 from linkwright.graph.entity import Entity
 from linkwright.graph.qos import QoSProfile
 from linkwright.graph.signatures import accepts
@@ -20,7 +20,8 @@ from linkwright.graph.transport import EndpointKind, MessageInfo
 from linkwright.messages import deserialize, serialize
 
 if TYPE_CHECKING:
-    from linkwright.graph.events import SubscriptionEventCallbacks, SubscriptionEvents
+    from linkwright.graph.endpoint_events import SubscriptionEvents
+    from linkwright.graph.events import SubscriptionEventCallbacks
     from linkwright.graph.node import Node
     from linkwright.graph.publisher import Publisher
 
@@ -49,7 +50,7 @@ class CallbackType(Enum):
     WithMessageInfo = 1
 
 
-class Subscription(Endpoint, Entity, Generic[M]):
+class Subscription(TopicEndpoint[M], Entity):
     """Receives the messages of a topic; made by ``Node.create_subscription``.
 
     Messages wait in a queue as long as the quality of service says; when one comes that is too many, the oldest is
@@ -82,28 +83,12 @@ class Subscription(Endpoint, Entity, Generic[M]):
         self.callback = callback
         self.event_callbacks = event_callbacks
         self.events: SubscriptionEvents | None = None
-        self._outside_count = 0
         self._publishers: dict[Publisher[Any], None] = {}
 
     @property
     def what(self) -> str:
         """What it is, for messages."""
         return f"callback of topic '{self.name}'"
-
-    @property
-    def topic_name(self) -> str:
-        """The topic's absolute name."""
-        return self.name
-
-    @property
-    def topic(self) -> str:
-        """The topic's absolute name."""
-        return self.name
-
-    @property
-    def msg_type(self) -> type[M]:
-        """The message class."""
-        return self.interface  # type: ignore[no-any-return]  # made from the name of a type
 
     @property
     def callback(self) -> Callable[..., object]:
@@ -140,12 +125,6 @@ class Subscription(Endpoint, Entity, Generic[M]):
     def get_publisher_count(self) -> int:
         """How many publishers it receives from."""
         return len(self._publishers) + self._outside_count
-
-    def set_outside_count(self, count: int) -> None:
-        """For the transport: how many publishers outside match."""
-        before, self._outside_count = self._outside_count, count
-        if self.events is not None and count != before:
-            self.events.matched(count - before)
 
     def incompatible_outside(self, policy: str, remote_name: str) -> None:
         """For the transport: a publisher outside offers less than this asks for."""
@@ -239,12 +218,6 @@ class Subscription(Endpoint, Entity, Generic[M]):
         self.discard()
         if self.events is not None:
             self.events.retire()
-
-    def __enter__(self) -> Subscription[M]:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.destroy()
 
     def _prepared(self, item: Any) -> Callable[[], object] | None:
         """The call for something that is not simply a message of the type."""

@@ -120,7 +120,7 @@ class Transport(Protocol):
     """Mirrors the endpoints of one graph outside of the process.
 
     ``open_*`` is called for each endpoint when it is made, ``close_*`` when it is destroyed; neither may block. What
-    comes in is given to ``Subscription.receive(message, info)`` and ``Service.receive(request, reply, info)``, from any
+    comes in is given to ``Subscription.receive(message, info)`` and ``Service.receive(request, reply)``, from any
     thread. What goes out is asked for with ``Publisher.set_outside`` and ``Client.set_outside`` while somebody outside
     matches, and no longer when nobody does; a transient local publisher's is set from the start, so that who comes late
     is served. How many match is told with ``set_outside_count``.

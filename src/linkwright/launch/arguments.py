@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, did_you_mean
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, did_you_mean, nearest
 from linkwright.launch.actions import DeclareLaunchArgument
 from linkwright.launch.declared import declared_arguments
 from linkwright.launch.description import LaunchDescription
@@ -48,16 +49,18 @@ def check_arguments(description: LaunchDescription, given: Mapping[str, str]) ->
         LinkwrightError: LAUNCH112 and LAUNCH114, all wrong values and missing arguments together.
     """
     declared = declared_arguments(description)
+    names = [argument.name for argument in declared]
+    undeclared = [name for name in given if name not in names and name not in UNDECLARED]
     errors: list[Diagnostic] = []
     for argument in declared:
         value = given.get(argument.name)
-        missing = value is None and argument.default_value is None and not argument.conditionally_included
-        if missing or (value is not None and argument.choices is not None):
+        if value is not None and argument.choices is not None:
             errors += _error_of(argument, given)
+        elif value is None and argument.default_value is None and not argument.conditionally_included:
+            errors += [_misspelt(argument.name, undeclared, error) for error in _error_of(argument, given)]
     if errors:
         raise LinkwrightError(*errors)
-    names = [argument.name for argument in declared]
-    return [_undeclared(name, names) for name in given if name not in names and name not in UNDECLARED]
+    return [_undeclared(name, names) for name in undeclared]
 
 
 def _error_of(argument: DeclareLaunchArgument, given: Mapping[str, str]) -> Sequence[Diagnostic]:
@@ -70,6 +73,12 @@ def _error_of(argument: DeclareLaunchArgument, given: Mapping[str, str]) -> Sequ
     except LinkwrightError as error:
         return error.diagnostics
     return ()
+
+
+def _misspelt(name: str, undeclared: Sequence[str], error: Diagnostic) -> Diagnostic:
+    """The error about a missing argument; its hint names the one that was given with nearly the same name."""
+    near = nearest(name, undeclared, limit=1)
+    return replace(error, hint=f"'{near[0]}' is given: did you mean '{name}'?") if near else error
 
 
 def _undeclared(name: str, declared: Sequence[str]) -> Diagnostic:

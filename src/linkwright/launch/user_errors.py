@@ -105,7 +105,11 @@ def _import_hint(error: ImportError) -> str | None:
         siblings = [each.name for each in pkgutil.iter_modules(getattr(sys.modules[parent], "__path__", ()))]
         return did_you_mean(name, siblings)
     known = did_you_mean(missing, ("launch", "launch_ros", "ament_index_python"))
-    return known or f"install the Python package that provides '{missing}'" if missing else None
+    if known or not missing:
+        return known
+    from linkwright.launch.providers import provider_hint
+
+    return provider_hint(missing)
 
 
 def _keyword_hint(error: TypeError) -> str | None:

@@ -73,19 +73,11 @@ class CMakeFile:
 def read_cmake(source: SourceText) -> CMakeFile:
     """What a ``CMakeLists.txt`` says."""
     file = CMakeFile(source)
-    variables = {"CMAKE_CURRENT_SOURCE_DIR": ".", "CMAKE_SOURCE_DIR": ".", "PROJECT_SOURCE_DIR": "."}
-    for command, arguments in _commands(source.text):
-        given = [Argument(_filled(each.text, variables), each.start, each.end) for each in arguments]
+    for command, given in commands_of(source):
         if command in _UNREADABLE:
             file.is_complete = False
         elif command == "project" and given:
             file.project = given[0]
-            variables["PROJECT_NAME"] = given[0].text
-        elif command == "set" and given:
-            if len(given) == 2 and given[0].text not in variables:
-                variables[given[0].text] = given[1].text
-            else:
-                variables[given[0].text] = "${}"  # not known
         elif command == "add_executable" and given:
             file.executables.add(given[0].text)
         elif command in ("install", "catkin_install_python"):
@@ -94,6 +86,21 @@ def read_cmake(source: SourceText) -> CMakeFile:
             file.is_ament = True
             _install_to_share(file, given)
     return file
+
+
+def commands_of(source: SourceText) -> Iterator[tuple[str, list[Argument]]]:
+    """The commands of a file in lower case, each with its arguments, in which known variables are put in."""
+    variables = {"CMAKE_CURRENT_SOURCE_DIR": ".", "CMAKE_SOURCE_DIR": ".", "PROJECT_SOURCE_DIR": "."}
+    for command, arguments in _commands(source.text):
+        given = [Argument(_filled(each.text, variables), each.start, each.end) for each in arguments]
+        if command == "project" and given:
+            variables["PROJECT_NAME"] = given[0].text
+        elif command == "set" and given:
+            if len(given) == 2 and given[0].text not in variables:
+                variables[given[0].text] = given[1].text
+            else:
+                variables[given[0].text] = "${}"  # not known
+        yield command, given
 
 
 def _install(file: CMakeFile, command: str, given: list[Argument]) -> None:

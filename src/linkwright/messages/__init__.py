@@ -8,7 +8,7 @@ from linkwright.messages.errors import DefinitionError, FieldValueError, Interfa
 from linkwright.messages.field_values import from_dict, set_fields
 from linkwright.messages.hashing import type_hash
 from linkwright.messages.library import find_interfaces_with
-from linkwright.messages.message import ActionType, Message, ServiceType
+from linkwright.messages.message import ActionType, Message, ServiceType, definition_of
 from linkwright.messages.presentation import definition_text, interface_names, prototype
 from linkwright.messages.transforms import TFMessage, TransformBatch
 from linkwright.messages.wellknown import (
@@ -49,6 +49,7 @@ __all__ = [
     "TransformBatch",
     "TransformStamped",
     "Vector3",
+    "definition_of",
     "definition_text",
     "deserialize",
     "find_interfaces_with",

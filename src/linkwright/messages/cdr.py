@@ -9,7 +9,7 @@ from linkwright.messages.cdr_reader import READ_FAULTS, compile_reader
 from linkwright.messages.cdr_values import DataFaultError
 from linkwright.messages.classes import class_of
 from linkwright.messages.errors import MessageDataError, data_error
-from linkwright.messages.message import Message
+from linkwright.messages.message import Message, definition_of
 
 MessageT = TypeVar("MessageT")
 
@@ -72,7 +72,7 @@ def _reader_for(data: bytes, message_class: type[Any]) -> Any:
     name = message_class.TYPE_NAME
     reader = _big_readers.get(name)
     if reader is None:
-        reader = _big_readers[name] = compile_reader(message_class._definition, class_of, ">")
+        reader = _big_readers[name] = compile_reader(definition_of(message_class), class_of, ">")
     return reader
 
 
@@ -94,7 +94,7 @@ def _unwritable(message: object, fault: Exception) -> MessageDataError:
 
 def _bad_field(message: Message, path: str) -> str | None:
     """Which field has a value that it could not be given now, and why, in the words of the checks on assignment."""
-    for field in message._definition.fields:
+    for field in definition_of(type(message)).fields:
         here = f"{path}.{field.name}" if path else field.name
         try:
             value = getattr(message, field.name)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from linkwright.messages.definition import Container, FieldType
-from linkwright.messages.message import Message
+from linkwright.messages.message import Message, definition_of
 from linkwright.messages.primitives import PRIMITIVES
 
 _CUT = "..."
@@ -29,7 +29,7 @@ def to_dict(
     Bytes are texts of the characters of the same numbers (rosidl_runtime_py).
     """
     plain: OrderedDict[str, Any] = OrderedDict()
-    for field in message._definition.fields:
+    for field in definition_of(type(message)).fields:
         kind = field.type
         value = getattr(message, field.name)
         if kind.container is Container.ONE:
@@ -51,7 +51,7 @@ def to_csv(message: Message, *, truncate_length: int | None = None, no_arr: bool
         no_str: as in `to_dict`.
     """
     words: list[str] = []
-    for field in message._definition.fields:
+    for field in definition_of(type(message)).fields:
         value = getattr(message, field.name)
         if no_arr and field.type.container is not Container.ONE:
             words.append(abbreviated(field.type, value))

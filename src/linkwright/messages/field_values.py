@@ -13,7 +13,7 @@ from linkwright.diagnostics import Diagnostic, did_you_mean
 from linkwright.messages.classes import get_message
 from linkwright.messages.definition import Container, FieldType
 from linkwright.messages.errors import UnknownFieldError, WrongValueError
-from linkwright.messages.message import Message
+from linkwright.messages.message import Message, definition_of
 from linkwright.messages.primitives import Primitive
 
 _HEADER = "std_msgs/msg/Header"
@@ -75,12 +75,12 @@ class _Setter:
     def fields(self, message: Message, values: Any, path: str) -> None:
         if not isinstance(values, Mapping):
             what = f"'{path}'" if path else f"a {message.TYPE_NAME}"
-            names = ", ".join(field.name for field in message._definition.fields)
+            names = ", ".join(field.name for field in definition_of(type(message)).fields)
             self._wrong(
                 f"{what} is given as {_shown(values)}, not as fields and values", f"its fields: {names or 'none'}"
             )
             return
-        kinds = {field.name: field.type for field in message._definition.fields}
+        kinds = {field.name: field.type for field in definition_of(type(message)).fields}
         for name, value in values.items():
             kind = kinds.get(name)
             if kind is None:
@@ -138,7 +138,7 @@ class _Setter:
     # --- what is wrong --------------------------------------------------------------------------------------
 
     def _unknown(self, message: Message, name: str, path: str) -> None:
-        names = [field.name for field in message._definition.fields]
+        names = [field.name for field in definition_of(type(message)).fields]
         hint = did_you_mean(name, names) or f"its fields: {', '.join(names) or 'none'}"
         where = f" ('{path}')" if path else ""
         self.found.append(Diagnostic("MSG301", f"{message.TYPE_NAME}{where} has no field '{name}'", hint=hint))

@@ -9,13 +9,19 @@ from numpy import ndarray
 from linkwright.messages.definition import Structure
 
 
+def definition_of(message_class: type[Any]) -> Structure:
+    """The definition that a class of messages was made from: its fields, their types, its constants."""
+    found: Structure = message_class._definition
+    return found
+
+
 class _SlotTypes:
     """``SLOT_TYPES`` of a class, made when somebody looks."""
 
     def __get__(self, instance: object, owner: type[Message]) -> tuple[Any, ...]:
         from linkwright.messages.slot_types import slot_types
 
-        types = slot_types(owner._definition)
+        types = slot_types(definition_of(owner))
         owner.SLOT_TYPES = types
         return types
 

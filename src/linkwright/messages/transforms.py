@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.messages.library import LIBRARY
-from linkwright.messages.message import Message
+from linkwright.messages.message import Message, definition_of
 from linkwright.messages.transform_layout import ReceivedTransforms, layout_for, matching_layout
 from linkwright.messages.wellknown import Header, Quaternion, Time, Transform, TransformStamped, Vector3
 
@@ -216,7 +216,7 @@ def _ordinary_writer() -> Callable[[Message], bytes]:
     """What writes the transforms one by one, compiled from the definition on first use."""
     from linkwright.messages.cdr_writer import compile_writer
 
-    return compile_writer(TFMessage._definition)
+    return compile_writer(definition_of(TFMessage))
 
 
 @cache
@@ -225,4 +225,4 @@ def _ordinary_reader() -> Callable[[bytes], TFMessage]:
     from linkwright.messages.cdr_reader import compile_reader
     from linkwright.messages.classes import class_of
 
-    return compile_reader(TFMessage._definition, class_of)
+    return compile_reader(definition_of(TFMessage), class_of)

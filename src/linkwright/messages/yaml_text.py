@@ -18,7 +18,7 @@ import numpy as np
 
 from linkwright.messages.conversion import abbreviated, abbreviated_text, to_dict
 from linkwright.messages.definition import Container, Field, FieldType
-from linkwright.messages.message import Message
+from linkwright.messages.message import Message, definition_of
 
 _LONGEST_REMEMBERED = 200
 
@@ -139,7 +139,7 @@ def _plan(cls: type[Message]) -> list[_Step]:
     """How the fields of a class are written."""
     plan = _plans.get(cls.TYPE_NAME)
     if plan is None:
-        plan = _plans[cls.TYPE_NAME] = [_step(field) for field in cls._definition.fields]
+        plan = _plans[cls.TYPE_NAME] = [_step(field) for field in definition_of(cls).fields]
     return plan
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
+from linkwright.cli.names_listing import add_count_argument, add_types_argument, print_names_and_types
 from linkwright.cli.session import add_session_arguments, run_in_graph
 
 if TYPE_CHECKING:
@@ -16,20 +17,15 @@ HELP = "list the actions"
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     add_session_arguments(parser)
-    parser.add_argument("-t", "--show-types", action="store_true", help="show the type of each action beside it")
-    parser.add_argument("-c", "--count-actions", "--count", action="store_true", help="print only how many there are")
+    add_types_argument(parser, "action")
+    add_count_argument(parser, "action")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Print the actions' names, as ros2 does."""
 
     async def job(session: Session) -> int:
-        found = session.node.get_action_names_and_types()
-        if arguments.count_actions:
-            print(len(found))
-            return 0
-        for name, types in found:
-            print(f"{name} [{', '.join(types)}]" if arguments.show_types else name)
+        print_names_and_types(session.node.get_action_names_and_types(), arguments)
         return 0
 
     return run_in_graph(arguments, job)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from linkwright.cli.lookup import absolute
 from linkwright.cli.numbers import positive_float
 from linkwright.cli.session import add_session_arguments, run_in_graph
-from linkwright.cli.values import fill, parse_values, read_values
+from linkwright.cli.values import add_values_arguments, fill, parse_values, read_values
 from linkwright.diagnostics import Diagnostic, LinkwrightError
 
 if TYPE_CHECKING:
@@ -27,15 +27,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add_session_arguments(parser)
     parser.add_argument("action_name", metavar="ACTION", help="such as /fibonacci")
     parser.add_argument("action_type", metavar="TYPE", help="such as example_interfaces/action/Fibonacci")
-    group = parser.add_mutually_exclusive_group()
-    group.add_argument(
-        "values",
-        metavar="GOAL",
-        nargs="?",
-        default="{}",
-        help="the goal in YAML, such as '{order: 10}'; fields left out have their defaults",
-    )
-    group.add_argument("--stdin", action="store_true", help="read the goal from standard input")
+    goal_help = "the goal in YAML, such as '{order: 10}'; fields left out have their defaults"
+    add_values_arguments(parser, goal_help, "GOAL")
     parser.add_argument("-f", "--feedback", action="store_true", help="print the feedback")
     parser.add_argument("--timeout", metavar="SECONDS", type=positive_float, help="give up waiting for a server then")
 

@@ -2,22 +2,12 @@
 
 from __future__ import annotations
 
-import argparse
+from functools import partial
 
 from linkwright.cli.nested import configure_nested, run_nested
 
-NAME = "action"
 HELP = "list actions and send goals"
+VERBS = {"info": "info", "list": "listing", "send_goal": "send_goal", "type": "type_of"}
 
-_MODULES = {"info": "info", "list": "listing", "send_goal": "send_goal", "type": "type_of"}
-VERBS = tuple(_MODULES)
-
-
-def configure(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
-    configure_nested(parser, __package__, _MODULES)
-
-
-def run(arguments: argparse.Namespace) -> int:
-    """Run the verb that was named."""
-    return run_nested(arguments)
+configure = partial(configure_nested, package=__package__, modules=VERBS)
+run = run_nested

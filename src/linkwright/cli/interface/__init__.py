@@ -1,5 +1,5 @@
 """``linkwright interface``: the types of messages, services and actions."""
 
-from linkwright.cli.interface.verb import HELP, NAME, VERBS, configure, run
+from linkwright.cli.interface.verb import HELP, VERBS, configure, run
 
-__all__ = ["HELP", "NAME", "VERBS", "configure", "run"]
+__all__ = ["HELP", "VERBS", "configure", "run"]

@@ -2,28 +2,18 @@
 
 from __future__ import annotations
 
-import argparse
+from functools import partial
 
 from linkwright.cli.nested import configure_nested, run_nested
 
-NAME = "interface"
 HELP = "list and show types of messages, services and actions"
-
-_MODULES = {
+VERBS = {
     "list": "listing",
     "package": "package",
     "packages": "packages",
     "proto": "proto",
     "show": "show",
 }
-VERBS = tuple(_MODULES)
 
-
-def configure(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
-    configure_nested(parser, __package__, _MODULES)
-
-
-def run(arguments: argparse.Namespace) -> int:
-    """Run the verb that was named."""
-    return run_nested(arguments)
+configure = partial(configure_nested, package=__package__, modules=VERBS)
+run = run_nested

@@ -7,6 +7,7 @@ import sys
 from typing import TYPE_CHECKING
 
 from linkwright.cli.calls import node_names
+from linkwright.cli.names_listing import add_count_argument, print_names
 from linkwright.cli.session import add_session_arguments, run_in_graph
 
 if TYPE_CHECKING:
@@ -19,7 +20,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     add_session_arguments(parser)
     parser.add_argument("-a", "--all", action="store_true", help="list hidden nodes as well")
-    parser.add_argument("-c", "--count-nodes", "--count", action="store_true", help="print only how many there are")
+    add_count_argument(parser, "node")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -27,17 +28,13 @@ def run(arguments: argparse.Namespace) -> int:
 
     async def job(session: Session) -> int:
         names = node_names(session, hidden=arguments.all)
-        if arguments.count_nodes:
-            print(len(names))
-            return 0
-        if len(set(names)) < len(names):
+        if len(set(names)) < len(names) and not arguments.count:
             print(
                 "WARNING: Be aware that there are nodes in the graph that share an exact name, which can have"
                 " unintended side effects.",
                 file=sys.stderr,
             )
-        for name in names:
-            print(name)
+        print_names(names, arguments)
         return 0
 
     return run_in_graph(arguments, job)

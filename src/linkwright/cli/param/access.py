@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -137,7 +138,7 @@ def plain_value(value: Any) -> Any:
     return found if found is None or isinstance(found, (bool, int, float, str)) else list(found)
 
 
-def result_text(result: Any, good: str, bad: str) -> str:
-    """What is said of a result: one of two texts, and the reason where there is one."""
+def print_result(result: Any, good: str, bad: str) -> None:
+    """Say whether something was set: one of two texts, and the reason where there is one."""
     text = good if result.successful else bad
-    return f"{text}: {result.reason}" if result.reason else text
+    print(f"{text}: {result.reason}" if result.reason else text, file=sys.stdout if result.successful else sys.stderr)

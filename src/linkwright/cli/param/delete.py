@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from typing import TYPE_CHECKING
 
-from linkwright.cli.param.access import RemoteParameters, result_text
+from linkwright.cli.param.access import RemoteParameters, print_result
 from linkwright.cli.param.arguments import add_node_arguments
 from linkwright.cli.session import run_in_graph
 
@@ -31,8 +30,7 @@ def run(arguments: argparse.Namespace) -> int:
         await parameters.must_have([arguments.parameter_name])
         nothing = Parameter(arguments.parameter_name, ParameterType.NOT_SET).to_parameter_msg()
         (result,) = await parameters.set([nothing])
-        text = result_text(result, "Deleted parameter successfully", "Deleting parameter failed")
-        print(text, file=sys.stdout if result.successful else sys.stderr)
+        print_result(result, "Deleted parameter successfully", "Deleting parameter failed")
         return 0 if result.successful else 1
 
     return run_in_graph(arguments, job)

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from typing import TYPE_CHECKING
 
-from linkwright.cli.param.access import RemoteParameters, result_text
+from linkwright.cli.param.access import RemoteParameters, print_result
 from linkwright.cli.param.arguments import add_node_arguments
 from linkwright.cli.session import run_in_graph
 from linkwright.diagnostics import Diagnostic, LinkwrightError
@@ -48,8 +47,7 @@ def run(arguments: argparse.Namespace) -> int:
         results = await parameters.set(wanted)
         for parameter, result in zip(wanted, results, strict=True):
             name = parameter.name
-            text = result_text(result, f"Set parameter {name} successful", f"Set parameter {name} failed")
-            print(text, file=sys.stdout if result.successful else sys.stderr)
+            print_result(result, f"Set parameter {name} successful", f"Set parameter {name} failed")
         return 0 if all(result.successful for result in results) else 1
 
     return run_in_graph(arguments, job)

@@ -6,7 +6,7 @@ import argparse
 import sys
 from typing import TYPE_CHECKING
 
-from linkwright.cli.param.access import RemoteParameters, parameter_of, result_text
+from linkwright.cli.param.access import RemoteParameters, parameter_of, print_result
 from linkwright.cli.param.arguments import add_node_arguments
 from linkwright.cli.session import run_in_graph
 
@@ -40,14 +40,12 @@ def run(arguments: argparse.Namespace) -> int:
         parameters = await RemoteParameters.of(session, arguments)
         if arguments.atomic:
             result = await parameters.set_together(wanted)
-            text = result_text(result, "Set parameters atomically successful", "Setting parameters atomically failed")
-            print(text, file=sys.stdout if result.successful else sys.stderr)
+            print_result(result, "Set parameters atomically successful", "Setting parameters atomically failed")
             return 0 if result.successful else 1
         results = await parameters.set(wanted)
         for parameter, result in zip(wanted, results, strict=True):
-            text = result_text(result, "Set parameter successful", "Setting parameter failed")
             before = f"{parameter.name}: " if len(wanted) > 1 else ""
-            print(f"{before}{text}", file=sys.stdout if result.successful else sys.stderr)
+            print_result(result, f"{before}Set parameter successful", f"{before}Setting parameter failed")
         return 0 if all(result.successful for result in results) else 1
 
     return run_in_graph(arguments, job)

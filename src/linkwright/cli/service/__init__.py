@@ -1,5 +1,5 @@
 """``linkwright service``: the services of the running graph."""
 
-from linkwright.cli.service.verb import HELP, NAME, VERBS, configure, run
+from linkwright.cli.service.verb import HELP, VERBS, configure, run
 
-__all__ = ["HELP", "NAME", "VERBS", "configure", "run"]
+__all__ = ["HELP", "VERBS", "configure", "run"]

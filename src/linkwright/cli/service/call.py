@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from linkwright.cli.lookup import absolute
 from linkwright.cli.numbers import positive_float
 from linkwright.cli.session import add_session_arguments, run_in_graph
-from linkwright.cli.values import fill, parse_values, read_values
+from linkwright.cli.values import add_values_arguments, fill, parse_values, read_values
 from linkwright.diagnostics import Diagnostic, LinkwrightError
 
 if TYPE_CHECKING:
@@ -26,15 +26,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add_session_arguments(parser)
     parser.add_argument("service_name", metavar="SERVICE", help="such as /add_two_ints")
     parser.add_argument("service_type", metavar="TYPE", help="such as example_interfaces/srv/AddTwoInts")
-    group = parser.add_mutually_exclusive_group()
-    group.add_argument(
-        "values",
-        metavar="VALUES",
-        nargs="?",
-        default="{}",
-        help="the request in YAML, such as '{a: 1, b: 2}'; fields left out have their defaults",
-    )
-    group.add_argument("--stdin", action="store_true", help="read the values from standard input")
+    add_values_arguments(parser, "the request in YAML, such as '{a: 1, b: 2}'; fields left out have their defaults")
     parser.add_argument("-r", "--rate", metavar="N", type=positive_float, help="call again and again, at N hertz")
     parser.add_argument("--timeout", metavar="SECONDS", type=positive_float, help="give up waiting after so long")
 

@@ -6,7 +6,7 @@ import argparse
 from typing import TYPE_CHECKING
 
 from linkwright.cli.lookup import visible
-from linkwright.cli.service.arguments import add_hidden_argument
+from linkwright.cli.names_listing import add_count_argument, add_hidden_argument, print_names
 from linkwright.cli.session import add_session_arguments, run_in_graph
 
 if TYPE_CHECKING:
@@ -19,8 +19,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     add_session_arguments(parser)
     parser.add_argument("service_type", metavar="TYPE", help="such as std_srvs/srv/SetBool")
-    parser.add_argument("-c", "--count-services", "--count", action="store_true", help="print only how many there are")
-    add_hidden_argument(parser)
+    add_count_argument(parser, "service")
+    add_hidden_argument(parser, "service")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -28,9 +28,7 @@ def run(arguments: argparse.Namespace) -> int:
 
     async def job(session: Session) -> int:
         services = visible(session.node.get_service_names_and_types(), hidden=arguments.include_hidden_services)
-        names = [name for name, types in services if arguments.service_type in types]
-        for line in [len(names)] if arguments.count_services else names:
-            print(line)
+        print_names([name for name, types in services if arguments.service_type in types], arguments)
         return 0
 
     return run_in_graph(arguments, job)

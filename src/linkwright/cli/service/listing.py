@@ -6,7 +6,12 @@ import argparse
 from typing import TYPE_CHECKING
 
 from linkwright.cli.lookup import visible
-from linkwright.cli.service.arguments import add_hidden_argument
+from linkwright.cli.names_listing import (
+    add_count_argument,
+    add_hidden_argument,
+    add_types_argument,
+    print_names_and_types,
+)
 from linkwright.cli.session import add_session_arguments, run_in_graph
 
 if TYPE_CHECKING:
@@ -18,9 +23,9 @@ HELP = "list the services"
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     add_session_arguments(parser)
-    parser.add_argument("-t", "--show-types", action="store_true", help="show the type of each service beside it")
-    parser.add_argument("-c", "--count-services", "--count", action="store_true", help="print only how many there are")
-    add_hidden_argument(parser)
+    add_types_argument(parser, "service")
+    add_count_argument(parser, "service")
+    add_hidden_argument(parser, "service")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -28,11 +33,7 @@ def run(arguments: argparse.Namespace) -> int:
 
     async def job(session: Session) -> int:
         services = visible(session.node.get_service_names_and_types(), hidden=arguments.include_hidden_services)
-        if arguments.count_services:
-            print(len(services))
-            return 0
-        for name, types in services:
-            print(f"{name} [{', '.join(types)}]" if arguments.show_types else name)
+        print_names_and_types(services, arguments)
         return 0
 
     return run_in_graph(arguments, job)

@@ -6,25 +6,18 @@ import argparse
 
 from linkwright.cli.nested import configure_nested, run_nested
 
-NAME = "service"
 HELP = "list and call services"
-
-_MODULES = {
+VERBS = {
     "call": "call",
     "find": "find",
     "info": "info",
     "list": "listing",
     "type": "type_of",
 }
-VERBS = tuple(_MODULES)
+run = run_nested
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     parser.add_argument("--include-hidden-services", action="store_true", help="consider hidden services as well")
-    configure_nested(parser, __package__, _MODULES)
-
-
-def run(arguments: argparse.Namespace) -> int:
-    """Run the verb that was named."""
-    return run_nested(arguments)
+    configure_nested(parser, __package__, VERBS)

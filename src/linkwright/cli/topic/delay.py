@@ -7,9 +7,9 @@ import struct
 from typing import TYPE_CHECKING, Any
 
 from linkwright.cli.lookup import absolute, topic_type
-from linkwright.cli.numbers import positive_int
-from linkwright.cli.qos import add_qos_arguments, fitting_profile
+from linkwright.cli.qos import add_subscription_qos_arguments
 from linkwright.cli.session import add_session_arguments, run_in_graph
+from linkwright.cli.topic.measuring import add_window_argument, report_until_finished, subscribe
 from linkwright.cli.topic.rates import DelayWindow
 from linkwright.diagnostics import Diagnostic, LinkwrightError
 
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 HELP = "measure how old messages are when they come, by the stamp in their header"
 
 _WINDOW = 10_000
-_PERIOD = 1.0
 _STAMP = {0: struct.Struct(">iI"), 1: struct.Struct("<iI")}
 """Seconds and nanoseconds, by the second byte of the CDR header, which tells the order of bytes."""
 _CDR_HEADER = 4
@@ -30,15 +29,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     add_session_arguments(parser)
     parser.add_argument("topic_name", metavar="TOPIC", help="a topic whose messages have a header")
-    parser.add_argument(
-        "-w",
-        "--window",
-        metavar="N",
-        type=positive_int,
-        default=_WINDOW,
-        help="over how many messages it is taken (default: %(default)s)",
-    )
-    add_qos_arguments(parser, "subscribe", "sensor_data", "; as the publishers have it, if they agree")
+    add_window_argument(parser, _WINDOW)
+    add_subscription_qos_arguments(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -64,16 +56,7 @@ def run(arguments: argparse.Namespace) -> int:
                 seconds, nanoseconds = message.header.stamp.sec, message.header.stamp.nanosec
             window.add(clock.now_ns(), seconds * _SECOND + nanoseconds)
 
-        session.node.create_subscription(
-            kind, name, session.receiver(count), fitting_profile(session.node, name, arguments), raw=raw
-        )
-
-        def report() -> None:
-            text = window.text()
-            if text is not None:
-                print(text)
-
-        session.every(_PERIOD, report)
-        return await session.finished() or 0
+        subscribe(session, arguments, kind, name, count, raw=raw)
+        return await report_until_finished(session, window.text)
 
     return run_in_graph(arguments, job)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from linkwright.cli.lookup import absolute, topic_type
 from linkwright.cli.numbers import positive_float, unsigned_int
-from linkwright.cli.qos import add_qos_arguments, fitting_profile
+from linkwright.cli.qos import add_subscription_qos_arguments, fitting_profile
 from linkwright.cli.session import add_session_arguments, run_in_graph
 from linkwright.cli.topic.echo_output import EchoFormat, field_path, lost_text, select
 from linkwright.cli.topic.filters import compile_filter
@@ -50,7 +50,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--timeout", metavar="SECONDS", type=positive_float, help="end after so long")
     parser.add_argument("-i", "--include-message-info", action="store_true", help="print when each was sent")
     parser.add_argument("--clear", action="store_true", help="clear the terminal before each message")
-    add_qos_arguments(parser, "subscribe", "sensor_data", "; as the publishers have it, if they agree")
+    add_subscription_qos_arguments(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -6,6 +6,7 @@ import argparse
 from typing import TYPE_CHECKING
 
 from linkwright.cli.lookup import visible
+from linkwright.cli.names_listing import add_count_argument, add_hidden_argument, print_names
 from linkwright.cli.session import add_session_arguments, run_in_graph
 
 if TYPE_CHECKING:
@@ -18,15 +19,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     add_session_arguments(parser)
     parser.add_argument("topic_type", metavar="TYPE", help="such as std_msgs/msg/String")
-    parser.add_argument("-c", "--count-topics", "--count", action="store_true", help="print only how many there are")
-    parser.add_argument(
-        "--include-hidden-topics",
-        "-a",
-        "--all",
-        action="store_true",
-        default=argparse.SUPPRESS,
-        help="list hidden topics as well",
-    )
+    add_count_argument(parser, "topic")
+    add_hidden_argument(parser, "topic")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -34,9 +28,7 @@ def run(arguments: argparse.Namespace) -> int:
 
     async def job(session: Session) -> int:
         topics = visible(session.node.get_topic_names_and_types(), hidden=arguments.include_hidden_topics)
-        names = [name for name, types in topics if arguments.topic_type in types]
-        for line in [len(names)] if arguments.count_topics else names:
-            print(line)
+        print_names([name for name, types in topics if arguments.topic_type in types], arguments)
         return 0
 
     return run_in_graph(arguments, job)

@@ -9,10 +9,10 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from linkwright.cli.lookup import absolute, topic_type
-from linkwright.cli.numbers import positive_int
-from linkwright.cli.qos import add_qos_arguments, fitting_profile
+from linkwright.cli.qos import add_subscription_qos_arguments
 from linkwright.cli.session import add_session_arguments, run_in_graph
 from linkwright.cli.topic.filters import compile_filter
+from linkwright.cli.topic.measuring import add_window_argument, report_until_finished, subscribe
 from linkwright.cli.topic.rates import RateWindow, rate_table, rate_text
 
 if TYPE_CHECKING:
@@ -21,25 +21,16 @@ if TYPE_CHECKING:
 HELP = "measure how often messages are received"
 
 _WINDOW = 10_000
-_PERIOD = 1.0
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     add_session_arguments(parser)
     parser.add_argument("topic_name", metavar="TOPIC", nargs="+", help="such as /chatter; several give a table")
-    parser.add_argument(
-        "-w",
-        "--window",
-        metavar="N",
-        dest="window",
-        type=positive_int,
-        default=_WINDOW,
-        help="over how many messages the rate is taken (default: %(default)s)",
-    )
+    add_window_argument(parser, _WINDOW)
     parser.add_argument("--filter", metavar="EXPR", help="count only messages 'm' for which this holds: 'm.data > 3'")
     parser.add_argument("--wall-time", action="store_true", help="go by the computer's clock, not by /clock")
-    add_qos_arguments(parser, "subscribe", "sensor_data", "; as the publishers have it, if they agree")
+    add_subscription_qos_arguments(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -61,25 +52,17 @@ def run(arguments: argparse.Namespace) -> int:
 
         for name, window in windows.items():
             kind = await topic_type(session, name, wait=True)
-            session.node.create_subscription(
-                kind,
-                name,
-                session.receiver(partial(count, window)),
-                fitting_profile(session.node, name, arguments),
-                raw=fits is None,
-            )
+            subscribe(session, arguments, kind, name, partial(count, window), raw=fits is None)
             if len(names) > 1:
                 print(f"Subscribed to [{name}]")
 
-        def report() -> None:
+        def text() -> str | None:
             spreads = {name: window.spread() for name, window in windows.items()}
             known = {name: spread for name, spread in spreads.items() if spread is not None}
             if len(names) > 1:
-                print(rate_table(known) if known else "no new messages")
-            elif known:
-                print(rate_text(known[names[0]]))
+                return rate_table(known) if known else "no new messages"
+            return rate_text(known[names[0]]) if known else None
 
-        session.every(_PERIOD, report)
-        return await session.finished() or 0
+        return await report_until_finished(session, text)
 
     return run_in_graph(arguments, job)

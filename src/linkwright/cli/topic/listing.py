@@ -7,6 +7,12 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from linkwright.cli.lookup import visible
+from linkwright.cli.names_listing import (
+    add_count_argument,
+    add_hidden_argument,
+    add_types_argument,
+    print_names_and_types,
+)
 from linkwright.cli.session import add_session_arguments, run_in_graph
 
 if TYPE_CHECKING:
@@ -18,16 +24,9 @@ HELP = "list the topics"
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     add_session_arguments(parser)
-    parser.add_argument("-t", "--show-types", action="store_true", help="show the type of each topic beside it")
-    parser.add_argument("-c", "--count-topics", "--count", action="store_true", help="print only how many there are")
-    parser.add_argument(
-        "--include-hidden-topics",
-        "-a",
-        "--all",
-        action="store_true",
-        default=argparse.SUPPRESS,
-        help="list hidden topics as well",
-    )
+    add_types_argument(parser, "topic")
+    add_count_argument(parser, "topic")
+    add_hidden_argument(parser, "topic")
     parser.add_argument("-v", "--verbose", action="store_true", help="say how many publish and subscribe to each")
 
 
@@ -37,16 +36,13 @@ def run(arguments: argparse.Namespace) -> int:
     async def job(session: Session) -> int:
         node = session.node
         topics = visible(node.get_topic_names_and_types(), hidden=arguments.include_hidden_topics)
-        if arguments.count_topics:
-            print(len(topics))
-        elif arguments.verbose and topics:
+        if arguments.verbose and topics and not arguments.count:
             publishers = [(name, types, node.count_publishers(name)) for name, types in topics]
             subscribers = [(name, types, node.count_subscribers(name)) for name, types in topics]
             print(_counted("Published", "publisher", publishers))
             print(_counted("Subscribed", "subscriber", subscribers))
         else:
-            for name, types in topics:
-                print(f"{name} [{', '.join(types)}]" if arguments.show_types else name)
+            print_names_and_types(topics, arguments)
         return 0
 
     return run_in_graph(arguments, job)

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 from linkwright.cli.lookup import absolute
 from linkwright.cli.numbers import positive_float, unsigned_int
-from linkwright.cli.qos import add_qos_arguments, profile
+from linkwright.cli.qos import add_publisher_qos_arguments, profile
 from linkwright.cli.session import add_session_arguments, run_in_graph
-from linkwright.cli.values import fill, parse_values, read_values
+from linkwright.cli.values import add_values_arguments, fill, parse_values, read_values
 
 if TYPE_CHECKING:
     from linkwright.cli.session import Session
@@ -32,17 +32,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add_session_arguments(parser)
     parser.add_argument("topic_name", metavar="TOPIC", help="such as /chatter")
     parser.add_argument("message_type", metavar="TYPE", help="such as std_msgs/msg/String")
-    group = parser.add_mutually_exclusive_group()
-    group.add_argument(
-        "values",
-        metavar="VALUES",
-        nargs="?",
-        default="{}",
-        help="the message in YAML, such as 'data: hello'; fields left out have their defaults, 'header: auto' and"
+    values = add_values_arguments(
+        parser,
+        "the message in YAML, such as 'data: hello'; fields left out have their defaults, 'header: auto' and"
         " 'stamp: now' stand for the time of publishing",
     )
-    group.add_argument("--stdin", action="store_true", help="read the values from standard input")
-    group.add_argument("--yaml-file", metavar="FILE", help="publish the messages of a file, as topic echo prints them")
+    values.add_argument("--yaml-file", metavar="FILE", help="publish the messages of a file, as topic echo prints them")
     parser.add_argument("-r", "--rate", metavar="N", type=positive_float, default=1.0, help="hertz, default 1")
     parser.add_argument(
         "-p", "--print", metavar="N", type=unsigned_int, default=1, help="print only each N-th message (default: 1)"
@@ -68,7 +63,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="stay so long after the last message (default: %(default)s)",
     )
     parser.add_argument("-n", "--node-name", metavar="NODE", help="the name of the publishing node")
-    add_qos_arguments(parser, "publish", "default")
+    add_publisher_qos_arguments(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -6,10 +6,8 @@ import argparse
 
 from linkwright.cli.nested import configure_nested, run_nested
 
-NAME = "topic"
 HELP = "list, print, publish and measure topics"
-
-_MODULES = {
+VERBS = {
     "bw": "bw",
     "delay": "delay",
     "echo": "echo",
@@ -20,15 +18,10 @@ _MODULES = {
     "pub": "pub",
     "type": "type_of",
 }
-VERBS = tuple(_MODULES)
+run = run_nested
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     parser.add_argument("--include-hidden-topics", action="store_true", help="consider hidden topics as well")
-    configure_nested(parser, __package__, _MODULES)
-
-
-def run(arguments: argparse.Namespace) -> int:
-    """Run the verb that was named."""
-    return run_nested(arguments)
+    configure_nested(parser, __package__, VERBS)

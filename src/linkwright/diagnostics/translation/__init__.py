@@ -5,7 +5,7 @@ language; what it does not know stays English. Codes, places and the user's own 
 """
 
 from linkwright.diagnostics.translation.language import LANGUAGES, asked_language, language, language_of, set_language
-from linkwright.diagnostics.translation.translate import labels, translate, translated
+from linkwright.diagnostics.translation.translate import labels, localized, translate, translated
 
 __all__ = [
     "LANGUAGES",
@@ -13,6 +13,7 @@ __all__ = [
     "labels",
     "language",
     "language_of",
+    "localized",
     "set_language",
     "translate",
     "translated",

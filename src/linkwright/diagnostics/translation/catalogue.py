@@ -28,6 +28,7 @@ _DEEPEST = 10
 """How far phrases nest; a text that was made up to nest further stays as it is from there on."""
 _BETWEEN = re.compile("(?<=')(, | or | and )(?=')")
 _QUOTED = re.compile("^'(.*)'", re.DOTALL)
+_REST = re.compile("(?<=') and ([0-9]+) more$")
 
 
 class Catalogue:
@@ -106,9 +107,12 @@ class Catalogue:
 
 
 def _listed(text: str) -> str:
-    """A list such as ``'a', 'b' or 'c'``, or ``a, b, c``, with this language's quotes and commas."""
+    """A list such as ``'a', 'b' or 'c'``, ``'a', 'b' and 3 more``, or ``a, b, c``, with this language's signs."""
     if not text.startswith("'"):
         return text.replace(", ", "、")
+    rest = _REST.search(text)
+    if rest is not None:
+        return f"{_listed(text[: rest.start()])}和另外 {rest[1]} 个"
     pieces = _BETWEEN.split(text)
     pieces[::2] = [_QUOTED.sub("“\\1”", piece) for piece in pieces[::2]]
     pieces[1::2] = ["或" if between == " or " else "、" for between in pieces[1::2]]

@@ -43,6 +43,16 @@ def translate(diagnostic: Diagnostic, lang: str) -> Diagnostic:
     return translate_with(catalogue(lang), diagnostic)
 
 
+def localized(line: str) -> str:
+    """A line about what a command does or has done, in the reader's language; one that is not known stays English."""
+    lang = language()
+    if lang == "en":
+        return line
+    from linkwright.diagnostics.translation.catalogue import catalogue
+
+    return catalogue(lang).text(line, "status_lines")
+
+
 def translate_with(texts: Catalogue, diagnostic: Diagnostic) -> Diagnostic:
     """The diagnostic in the language of a catalogue."""
     code, hint = diagnostic.code, diagnostic.hint

@@ -10,14 +10,13 @@ from inspect import iscoroutinefunction
 from types import GenericAlias
 from typing import TYPE_CHECKING, Any
 
+from linkwright.graph.actions.endpoint import ActionEndpoint
 from linkwright.graph.actions.goal import ACTIVE, GoalStatus
 from linkwright.graph.dispatch import CallbackGroup
 from linkwright.graph.future import Future
 from linkwright.graph.qos import ACTION_STATUS_QOS, DEFAULT_QOS, SERVICES_QOS, QoSProfile
 
 if TYPE_CHECKING:
-    from typing_extensions import Self
-
     from linkwright.graph.client import Client
     from linkwright.graph.node import Node
 
@@ -67,7 +66,7 @@ class ClientGoalHandle:
         return self._action_client.request_result(self)
 
 
-class ActionClient:
+class ActionClient(ActionEndpoint):
     """Sends goals to an action (rclpy ``ActionClient``).
 
     Args:
@@ -86,8 +85,6 @@ class ActionClient:
         InvalidServiceNameError: the name is not valid.
     """
 
-    __class_getitem__: Any = classmethod(GenericAlias)  # annotations name the type of the action, as in rclpy
-
     def __init__(
         self,
         node: Node,
@@ -101,49 +98,35 @@ class ActionClient:
         feedback_sub_qos_profile: QoSProfile = DEFAULT_QOS,
         status_sub_qos_profile: QoSProfile = ACTION_STATUS_QOS,
     ) -> None:
-        from linkwright.messages import get_action, get_message
+        from linkwright.messages import get_message
 
-        self._node = node
-        self._action_type = get_action(action_type) if isinstance(action_type, str) else action_type
-        self._action_name = node.resolve_service_name(action_name)
+        super().__init__(node, action_type, action_name)
         self._uuid = get_message("unique_identifier_msgs/msg/UUID")
         impl = self._action_type.Impl
-        base = f"{self._action_name}/_action"
 
         def client(kind: Any, name: str, qos: QoSProfile) -> Client[Any, Any]:
-            return node.create_client(kind, f"{base}/{name}", qos_profile=qos, callback_group=callback_group)
+            return node.create_client(kind, self._below(name), qos_profile=qos, callback_group=callback_group)
 
         self._goal_client = client(impl.SendGoalService, "send_goal", goal_service_qos_profile)
         self._cancel_client = client(impl.CancelGoalService, "cancel_goal", cancel_service_qos_profile)
         self._result_client = client(impl.GetResultService, "get_result", result_service_qos_profile)
         self._feedback = node.create_subscription(
             impl.FeedbackMessage,
-            f"{base}/feedback",
+            self._below("feedback"),
             self._on_feedback,
             feedback_sub_qos_profile,
             callback_group=callback_group,
         )
         self._status = node.create_subscription(
             impl.GoalStatusMessage,
-            f"{base}/status",
+            self._below("status"),
             self._on_status,
             status_sub_qos_profile,
             callback_group=callback_group,
         )
         self._goal_handles: dict[bytes, weakref.ref[ClientGoalHandle]] = {}
         self._feedback_callbacks: dict[bytes, Callable[[Any], Any]] = {}
-        self._destroyed = False
         node.add_cleanup(self.destroy)
-
-    @property
-    def action_type(self) -> Any:
-        """The class of the action."""
-        return self._action_type
-
-    @property
-    def action_name(self) -> str:
-        """The action's absolute name."""
-        return self._action_name
 
     def server_is_ready(self) -> bool:
         """Whether a server of the action is there, with all its services and topics."""
@@ -240,12 +223,6 @@ class ActionClient:
             node.destroy_subscription(subscription)
         node.remove_cleanup(self.destroy)
 
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.destroy()
-
     def _goal_answered(self, answer: Future[Any], goal_id: Any, handed: Future[ClientGoalHandle]) -> None:
         if answer.cancelled():
             handed.cancel()
@@ -256,7 +233,7 @@ class ActionClient:
             self._goal_handles[key] = weakref.ref(handle)
         else:
             self._feedback_callbacks.pop(key, None)
-        self._give(handed, handle)
+        handed.hand_over(handle, self._node.dispatcher)
 
     def _result_came(self, answer: Future[Any], key: bytes, handed: Future[Any]) -> None:
         if answer.cancelled():
@@ -268,13 +245,7 @@ class ActionClient:
             while (call := self._feedback.take()) is not None:
                 call()
         self._feedback_callbacks.pop(key, None)
-        self._give(handed, answer.result())
-
-    def _give(self, future: Future[Any], result: Any) -> None:
-        if not future.ended():
-            if hasattr(self._node.dispatcher, "create_task"):
-                future.set_executor(self._node.dispatcher)
-            future.set_result(result)
+        handed.hand_over(answer.result(), self._node.dispatcher)
 
     def _on_feedback(self, message: Any) -> Any:
         callback = self._feedback_callbacks.get(bytes(message.goal_id.uuid))

@@ -7,9 +7,9 @@ from collections import deque
 from collections.abc import Callable
 from functools import partial
 from inspect import isawaitable
-from types import GenericAlias
 from typing import TYPE_CHECKING, Any
 
+from linkwright.graph.actions.endpoint import ActionEndpoint
 from linkwright.graph.actions.goal import (
     ACTIVE,
     CANCELABLE,
@@ -52,7 +52,7 @@ async def outcome_of(value: Any) -> Any:
     return await value if isawaitable(value) else value
 
 
-class ActionServer:
+class ActionServer(ActionEndpoint):
     """Serves an action (rclpy ``ActionServer``).
 
     It is made of three services and two topics below ``NAME/_action/``. Callbacks may be coroutine functions; an
@@ -79,8 +79,6 @@ class ActionServer:
         InvalidServiceNameError: the name is not valid.
     """
 
-    __class_getitem__: Any = classmethod(GenericAlias)  # annotations name the type of the action, as in rclpy
-
     def __init__(
         self,
         node: Node,
@@ -99,46 +97,32 @@ class ActionServer:
         status_pub_qos_profile: QoSProfile = ACTION_STATUS_QOS,
         result_timeout: float = 900,
     ) -> None:
-        from linkwright.messages import get_action, get_message
+        from linkwright.messages import get_message
 
+        super().__init__(node, action_type, action_name)
         self.register_execute_callback(execute_callback)
         self.register_goal_callback(goal_callback)
         self.register_handle_accepted_callback(handle_accepted_callback)
         self.register_cancel_callback(cancel_callback)
-        self._node = node
-        self._action_type = get_action(action_type) if isinstance(action_type, str) else action_type
-        self._action_name = node.resolve_service_name(action_name)
         self._result_timeout_ns = round(result_timeout * NANOSECONDS_PER_SECOND)
         self._lock = threading.RLock()
         self._goal_handles: dict[bytes, ServerGoalHandle] = {}
         self._goal_info = get_message("action_msgs/msg/GoalInfo")
         self._goal_status = get_message("action_msgs/msg/GoalStatus")
         self._expiry: Timer | None = None
-        self._destroyed = False
         self._executions = node.add_entity(_Executions(node))
         impl = self._action_type.Impl
-        base = f"{self._action_name}/_action"
         self._services = [
-            node.create_service(kind, f"{base}/{name}", answer, qos_profile=qos, callback_group=group, replying=True)
+            node.create_service(kind, self._below(name), answer, qos_profile=qos, callback_group=group, replying=True)
             for kind, name, answer, qos, group in (
                 (impl.SendGoalService, "send_goal", self._on_goal, goal_service_qos_profile, callback_group),
                 (impl.CancelGoalService, "cancel_goal", self._on_cancel, cancel_service_qos_profile, callback_group),
                 (impl.GetResultService, "get_result", self._on_result, result_service_qos_profile, FREE_GROUP),
             )
         ]
-        self._feedback = node.create_publisher(impl.FeedbackMessage, f"{base}/feedback", feedback_pub_qos_profile)
-        self._status = node.create_publisher(impl.GoalStatusMessage, f"{base}/status", status_pub_qos_profile)
+        self._feedback = node.create_publisher(impl.FeedbackMessage, self._below("feedback"), feedback_pub_qos_profile)
+        self._status = node.create_publisher(impl.GoalStatusMessage, self._below("status"), status_pub_qos_profile)
         node.add_cleanup(self.destroy)
-
-    @property
-    def action_type(self) -> Any:
-        """The class of the action."""
-        return self._action_type
-
-    @property
-    def action_name(self) -> str:
-        """The action's absolute name."""
-        return self._action_name
 
     def register_execute_callback(self, execute_callback: Callable[[ServerGoalHandle], Any]) -> None:
         """Have goals worked on by another callback.
@@ -389,11 +373,4 @@ class _Executions(Entity):
 
     def take(self) -> Callable[[], object] | None:
         """What waits longest."""
-        self._announced = False
-        try:
-            call = self._waiting.popleft()
-        except IndexError:
-            return None
-        if self._waiting:
-            self.announce()
-        return call
+        return self._next_of(self._waiting)

@@ -15,6 +15,7 @@ from typing import Any
 from linkwright.graph.dds.cyclone import CycloneError
 from linkwright.graph.dds.discovery import Discovery
 from linkwright.graph.dds.discovery_info import NodeEntities
+from linkwright.graph.dds.domain import Domain
 from linkwright.graph.dds.participant import Participant
 from linkwright.graph.dds.remote import RemoteGraph
 from linkwright.graph.dds.services import IncomingService, OutsideServer
@@ -58,12 +59,13 @@ class Engine:
         self._remote = remote
         self._work = work
         self._logger = logger
-        self._types = WireTypes()
+        types = WireTypes()
         self._participant = Participant(settings)
+        self._domain = Domain(self._participant, remote, types)
         owner = self._participant.entity
         self._control = WaitingThread("linkwright-dds", owner, self._report, self._idle)
         self._reception = WaitingThread("linkwright-dds-receive", owner, self._report)
-        self._discovery = Discovery(self._participant, self._control, remote, self._types, settings.gid_size)
+        self._discovery = Discovery(self._participant, self._control, remote, types, settings.gid_size)
         self._nodes: dict[NodeIdentity, int] = {}
         self._outgoing: dict[Any, OutgoingTopic] = {}
         self._incoming: dict[Any, IncomingTopic] = {}
@@ -120,7 +122,7 @@ class Engine:
 
     def open_publisher(self, publisher: Any) -> None:
         """Mirror a publisher."""
-        topic = OutgoingTopic(publisher, self._participant, self._remote, self._types, self._on_mismatch)
+        topic = OutgoingTopic(publisher, self._domain, self._on_mismatch)
         self._outgoing[publisher] = topic
         self._control.attach(topic.entity, topic.on_status)
         self._is_told = False
@@ -136,21 +138,21 @@ class Engine:
 
     def open_subscription(self, subscription: Any) -> None:
         """Mirror a subscription."""
-        topic = IncomingTopic(subscription, self._participant, self._remote, self._types, self._on_mismatch)
+        topic = IncomingTopic(subscription, self._domain, self._on_mismatch)
         self._incoming[subscription] = topic
         self._reception.attach(topic.entity, topic.on_status)
         self._is_told = False
 
     def open_service(self, service: Any) -> None:
         """Mirror a service."""
-        incoming = IncomingService(service, self._participant, self._remote, self._types, self._control.wake)
+        incoming = IncomingService(service, self._domain, self._control.wake)
         self._services[service] = incoming
         self._reception.attach(incoming.pair.reader, incoming.on_data)
         self._is_told = False
 
     def open_client(self, client: Any) -> None:
         """Mirror a client."""
-        outside = OutsideServer(client, self._participant, self._remote, self._types, self._on_match)
+        outside = OutsideServer(client, self._domain, self._on_match)
         self._clients[client] = outside
         self._reception.attach(outside.pair.reader, outside.on_data)
         self._control.attach(outside.pair.writer, outside.on_writer_status)

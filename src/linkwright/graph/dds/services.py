@@ -20,13 +20,11 @@ from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph.dds.cyclone import ANY_STATE, DATA_AVAILABLE, PUBLICATION_MATCHED, SUBSCRIPTION_MATCHED, load
-from linkwright.graph.dds.participant import Participant
-from linkwright.graph.dds.remote import RemoteEndpoint, RemoteGraph
+from linkwright.graph.dds.domain import Domain
+from linkwright.graph.dds.remote import RemoteEndpoint
 from linkwright.graph.dds.wire_names import Role, dds_topic, endpoint_id
 from linkwright.graph.dds.wire_qos import endpoint_qos
-from linkwright.graph.dds.wire_types import WireTypes
 from linkwright.graph.dds.writing import write
-from linkwright.graph.transport import MessageInfo
 from linkwright.messages import deserialize, serialize, type_hash
 
 if TYPE_CHECKING:
@@ -50,21 +48,20 @@ class _Pair:
 
     Args:
         endpoint: the client or service.
+        domain: where the others are.
         is_server: which of the two.
-        participant: ours.
-        types: descriptions of types.
     """
 
-    def __init__(self, endpoint: Endpoint, *, is_server: bool, participant: Participant, types: WireTypes) -> None:
+    def __init__(self, endpoint: Endpoint, domain: Domain, *, is_server: bool) -> None:
         self._dds = load()
-        self._participant = participant
+        self._participant = participant = domain.participant
         self.name = endpoint.name
         self.request_topic = dds_topic(Role.REQUEST, endpoint.name)
         self.reply_topic = dds_topic(Role.REPLY, endpoint.name)
         service = endpoint.interface
         facts = _facts(os.urandom(16), service, is_server=is_server)
-        request = participant.create_topic(self.request_topic, types.with_header(service.Request._definition))
-        reply = participant.create_topic(self.reply_topic, types.with_header(service.Response._definition))
+        request = participant.create_topic(self.request_topic, domain.types.with_header(service.Request))
+        reply = participant.create_topic(self.reply_topic, domain.types.with_header(service.Response))
         self._topics = (request, reply)
         with endpoint_qos(endpoint.qos_profile, facts) as qos:
             self.reader = participant.create_reader(request if is_server else reply, qos)
@@ -104,25 +101,16 @@ class OutsideServer:
 
     Args:
         client: the client.
-        participant: ours.
-        remote: who is outside.
-        types: descriptions of types.
+        domain: where the others are.
         matched: called when something connected or left, in the thread that receives.
     """
 
-    def __init__(
-        self,
-        client: Client[Any, Any],
-        participant: Participant,
-        remote: RemoteGraph,
-        types: WireTypes,
-        matched: Callable[[], None],
-    ) -> None:
+    def __init__(self, client: Client[Any, Any], domain: Domain, matched: Callable[[], None]) -> None:
         self._client = client
         self._matched = matched
-        self._remote = remote
+        self._remote = domain.remote
         self._dds = load()
-        self.pair = _Pair(client, is_server=False, participant=participant, types=types)
+        self.pair = _Pair(client, domain, is_server=False)
         self._asker = int.from_bytes(os.urandom(8), "little")
         self._numbers = itertools.count(1)
         self._answers: dict[int, Callable[[Any], None]] = {}
@@ -190,25 +178,16 @@ class IncomingService:
 
     Args:
         service: the service.
-        participant: ours.
-        remote: who is outside.
-        types: descriptions of types.
+        domain: where the others are.
         waits: called when a reply has to wait for its asker.
     """
 
-    def __init__(
-        self,
-        service: Service[Any, Any],
-        participant: Participant,
-        remote: RemoteGraph,
-        types: WireTypes,
-        waits: Callable[[], None],
-    ) -> None:
+    def __init__(self, service: Service[Any, Any], domain: Domain, waits: Callable[[], None]) -> None:
         self._service = service
         self._waits = waits
-        self._remote = remote
+        self._remote = domain.remote
         self._dds = load()
-        self.pair = _Pair(service, is_server=True, participant=participant, types=types)
+        self.pair = _Pair(service, domain, is_server=True)
         self._late: deque[tuple[float, RemoteEndpoint | None, int, int, Any]] = deque()
         self._lock = Lock()
 
@@ -222,9 +201,7 @@ class IncomingService:
             if request is None:
                 continue
             sender = self._remote.endpoint(info.publication_handle)
-            gid = sender.guid if sender is not None else bytes(16)
-            told = MessageInfo(info.source_timestamp, time.time_ns(), gid, True, publication_sequence_number=number)
-            self._service.receive(request, partial(self._reply, sender, asker, number), told)
+            self._service.receive(request, partial(self._reply, sender, asker, number))
         return count == _AT_ONCE
 
     def review(self) -> None:

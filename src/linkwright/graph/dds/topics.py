@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes as c
 import time
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
@@ -24,12 +25,10 @@ from linkwright.graph.dds.cyclone import (
     describe,
     load,
 )
-from linkwright.graph.dds.participant import Participant
-from linkwright.graph.dds.remote import RemoteGraph
+from linkwright.graph.dds.domain import Domain
 from linkwright.graph.dds.settings import LEASE
 from linkwright.graph.dds.wire_names import Role, dds_topic
 from linkwright.graph.dds.wire_qos import endpoint_qos
-from linkwright.graph.dds.wire_types import WireTypes
 from linkwright.graph.matching import tell_publisher, tell_subscription, what_sides_say
 from linkwright.graph.qos import DurabilityPolicy, HistoryPolicy
 from linkwright.graph.qos_compatibility import incompatible_policies
@@ -37,6 +36,7 @@ from linkwright.graph.transport import MessageInfo
 from linkwright.messages import serialize, type_hash
 
 if TYPE_CHECKING:
+    from linkwright.graph.endpoint import TopicEndpoint
     from linkwright.graph.publisher import Publisher
     from linkwright.graph.subscription import Subscription
 
@@ -48,57 +48,61 @@ _NAMELESS = "a node that is not known by name"
 AT_ONCE = 256
 """How many samples are taken before other readers have their turn."""
 
-_WRITER_STATUS = PUBLICATION_MATCHED | OFFERED_INCOMPATIBLE_QOS
-_READER_STATUS = DATA_AVAILABLE | SUBSCRIPTION_MATCHED | REQUESTED_INCOMPATIBLE_QOS | SAMPLE_LOST | LIVELINESS_CHANGED
-
 
 def type_facts(message_class: Any) -> bytes:
     """The type's hash as ROS 2 from Iron on tells it in USER_DATA; older ones do not look."""
     return f"typehash={type_hash(message_class)};".encode()
 
 
-class OutgoingTopic:
-    """A publisher's writer.
+class _MirroredTopic(ABC):
+    """A reader or a writer that stands for an endpoint of the process.
 
     Args:
-        publisher: the publisher.
-        participant: ours.
-        remote: who is outside.
-        types: descriptions of types.
-        mismatch: called when somebody outside asks for more than is offered.
+        endpoint: the subscription or publisher.
+        domain: where the others are.
+        mismatch: called when somebody outside asks for more than is offered, or offers less than is asked for.
     """
 
-    def __init__(
-        self,
-        publisher: Publisher[Any],
-        participant: Participant,
-        remote: RemoteGraph,
-        types: WireTypes,
-        mismatch: Callable[[Any], None],
-    ) -> None:
+    _STATUS: int
+    """What is told of changes."""
+
+    def __init__(self, endpoint: TopicEndpoint[Any], domain: Domain, mismatch: Callable[[Any], None]) -> None:
         self._dds = load()
         self._mismatch = mismatch
-        self._publisher = publisher
-        self._participant = participant
-        self._remote = remote
-        profile = publisher.qos_profile
-        self.topic_name = dds_topic(Role.TOPIC, publisher.name, plain=profile.avoid_ros_namespace_conventions)
-        self._topic = participant.create_topic(self.topic_name, types.message(publisher.interface._definition))
-        with endpoint_qos(profile, type_facts(publisher.interface)) as qos:
-            self.entity = participant.create_writer(self._topic, qos)
+        self._participant = domain.participant
+        self._remote = domain.remote
+        profile = endpoint.qos_profile
+        self.topic_name = dds_topic(Role.TOPIC, endpoint.name, plain=profile.avoid_ros_namespace_conventions)
+        self._topic = self._participant.create_topic(self.topic_name, domain.types.message(endpoint.interface))
+        with endpoint_qos(profile, type_facts(endpoint.interface)) as qos:
+            self.entity = self._create(qos)
         self.guid = self._dds.guid(self.entity)
-        publisher.gid = self.guid
-        publisher.assert_outside = self._assert_liveliness
-        self._dds.dds_set_status_mask(self.entity, _WRITER_STATUS)
-        self._always = profile.durability is DurabilityPolicy.TRANSIENT_LOCAL
+        endpoint.gid = self.guid
+        self._dds.dds_set_status_mask(self.entity, self._STATUS)
         self._told = _Told()
+
+    @abstractmethod
+    def _create(self, qos: Any) -> int:
+        """Make the reader or the writer."""
+
+
+class OutgoingTopic(_MirroredTopic):
+    """A publisher's writer; see `_MirroredTopic` for the arguments."""
+
+    _STATUS = PUBLICATION_MATCHED | OFFERED_INCOMPATIBLE_QOS
+
+    def __init__(self, publisher: Publisher[Any], domain: Domain, mismatch: Callable[[Any], None]) -> None:
+        super().__init__(publisher, domain, mismatch)
+        self._publisher = publisher
+        publisher.assert_outside = self._assert_liveliness
+        self._always = publisher.qos_profile.durability is DurabilityPolicy.TRANSIENT_LOCAL
         self._send = self._sender()
         self.on_status()
 
     def on_status(self) -> bool:
         """See who matches, and what else has happened."""
         status = c.c_uint32()
-        self._dds.dds_take_status(self.entity, c.byref(status), _WRITER_STATUS)
+        self._dds.dds_take_status(self.entity, c.byref(status), self._STATUS)
         matched = MatchedStatus()
         if self._dds.dds_get_publication_matched_status(self.entity, c.byref(matched)) >= 0:
             listened_to = self._always or matched.current_count > 0
@@ -122,6 +126,9 @@ class OutgoingTopic:
         """Send nothing any more, without a word to Cyclone."""
         self._publisher.outside = None
         self._publisher.assert_outside = None
+
+    def _create(self, qos: Any) -> int:
+        return self._participant.create_writer(self._topic, qos)
 
     def _assert_liveliness(self) -> None:
         self._dds.dds_assert_liveliness(self.entity)
@@ -176,36 +183,19 @@ class OutgoingTopic:
                 tell_publisher(self._publisher, policies[-1].name, sides)
 
 
-class IncomingTopic:
-    """A subscription's reader; see `OutgoingTopic` for the arguments."""
+class IncomingTopic(_MirroredTopic):
+    """A subscription's reader; see `_MirroredTopic` for the arguments."""
 
-    def __init__(
-        self,
-        subscription: Subscription[Any],
-        participant: Participant,
-        remote: RemoteGraph,
-        types: WireTypes,
-        mismatch: Callable[[Any], None],
-    ) -> None:
-        self._dds = load()
-        self._mismatch = mismatch
+    _STATUS = DATA_AVAILABLE | SUBSCRIPTION_MATCHED | REQUESTED_INCOMPATIBLE_QOS | SAMPLE_LOST | LIVELINESS_CHANGED
+
+    def __init__(self, subscription: Subscription[Any], domain: Domain, mismatch: Callable[[Any], None]) -> None:
+        super().__init__(subscription, domain, mismatch)
         self._subscription = subscription
-        self._participant = participant
-        self._remote = remote
-        profile = subscription.qos_profile
-        self.topic_name = dds_topic(Role.TOPIC, subscription.name, plain=profile.avoid_ros_namespace_conventions)
-        self._topic = participant.create_topic(self.topic_name, types.message(subscription.interface._definition))
-        with endpoint_qos(profile, type_facts(subscription.interface)) as qos:
-            self.entity = participant.create_reader(self._topic, qos)
-        self.guid = self._dds.guid(self.entity)
-        subscription.gid = self.guid
-        self._dds.dds_set_status_mask(self.entity, _READER_STATUS)
-        self._told = _Told()
 
     def on_status(self) -> bool:
         """Hand on what has come, and tell what else has happened; whether there is more."""
         status = c.c_uint32()
-        self._dds.dds_take_status(self.entity, c.byref(status), _READER_STATUS & ~DATA_AVAILABLE)
+        self._dds.dds_take_status(self.entity, c.byref(status), self._STATUS & ~DATA_AVAILABLE)
         if status.value:
             self._on_change(status.value)
         return self._take()
@@ -213,6 +203,9 @@ class IncomingTopic:
     def close(self) -> None:
         """Take the reader back."""
         self._participant.delete(self.entity, self._topic)
+
+    def _create(self, qos: Any) -> int:
+        return self._participant.create_reader(self._topic, qos)
 
     def _take(self) -> bool:
         samples = self._dds.take_bytes(self.entity, ANY_STATE, AT_ONCE)

@@ -13,7 +13,7 @@ from threading import RLock
 from typing import Any
 
 from linkwright.graph.dds.wire_names import dds_type
-from linkwright.messages import get_message
+from linkwright.messages import definition_of, get_message
 from linkwright.messages.definition import Container, FieldType, Structure
 
 HEADER_MEMBERS = ("client_guid", "sequence_number")
@@ -33,13 +33,13 @@ class WireTypes:
         self._made: dict[tuple[str, str], Any] = {}
         self._lock = RLock()
 
-    def message(self, structure: Structure) -> Any:
+    def message(self, message_class: type[Any]) -> Any:
         """The description of a message type."""
-        return self._described("", structure)
+        return self._described("", definition_of(message_class))
 
-    def with_header(self, structure: Structure) -> Any:
+    def with_header(self, message_class: type[Any]) -> Any:
         """The description of a request or reply with the header that goes before it."""
-        return self._described("header", structure)
+        return self._described("header", definition_of(message_class))
 
     def discovery(self, gid_size: int) -> Any:
         """The description of ``rmw_dds_common/msg/ParticipantEntitiesInfo`` with gids of a size in bytes."""
@@ -86,7 +86,7 @@ class WireTypes:
         if field.base == "bool":
             return bool
         if "/" in field.base:
-            return self._described("", get_message(field.base)._definition)
+            return self.message(get_message(field.base))
         return getattr(types, "uint8" if field.base in _OCTETS else field.base)
 
 

@@ -237,11 +237,19 @@ def _fixed_frames(seen: Observation, robots: Sequence[RobotSeen]) -> Iterator[Di
         if frame.name in known:
             continue
         there = f"frames there are: {listed(sorted(known))}" if known else "there are no frames at all"
-        root = f"; the robot's root is '{roots[0]}'" if roots else ""
         near = did_you_mean(frame.name, known)
         yield Diagnostic(
             "DOC309",
             f"the fixed frame '{frame.name}' of {frame.source} does not exist, so nothing is shown",
             notes=(Note(there),),
-            hint=near or f"choose another Fixed Frame{root}",
+            hint=near or _another(roots),
         )
+
+
+def _another(roots: Sequence[str]) -> str:
+    """What to do about a fixed frame that is none of the frames."""
+    if not roots:
+        return "choose another Fixed Frame"
+    if len(roots) == 1:
+        return f"choose another Fixed Frame; the root of all frames is {listed(roots)}"
+    return f"choose another Fixed Frame; the roots of the trees of frames are {listed(roots)}"

@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from linkwright.diagnostics import Diagnostic, Note, Severity
 from linkwright.graph.doctor.record import Observation, listed
 
-_HIGHEST_DOMAIN = 232
 _HIGHEST_SAFE_DOMAIN = 101
 """On Linux the ports of higher domains overlap with those that the system gives away."""
 
@@ -48,15 +47,7 @@ def examine_surroundings(seen: Observation) -> Iterator[Diagnostic]:
 
 
 def _domain(text: str) -> Iterator[Diagnostic]:
-    if not text:
-        return
-    if not text.isdigit() or int(text) > _HIGHEST_DOMAIN:
-        yield Diagnostic(
-            "DOC802",
-            f"ROS_DOMAIN_ID is '{text}', which is no domain",
-            hint=f"domains are whole numbers from 0 to {_HIGHEST_SAFE_DOMAIN}",
-        )
-    elif int(text) > _HIGHEST_SAFE_DOMAIN:
+    if text.strip().isdecimal() and int(text) > _HIGHEST_SAFE_DOMAIN:
         yield Diagnostic(
             "DOC803",
             f"ROS_DOMAIN_ID is {text}; above {_HIGHEST_SAFE_DOMAIN} the ports may be those that the system gives away",

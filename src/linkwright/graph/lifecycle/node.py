@@ -77,7 +77,9 @@ class LifecycleNodeMixin(ManagedEntity):
             ("get_available_transitions", "GetAvailableTransitions", self._on_get_available_transitions),
             ("get_transition_graph", "GetAvailableTransitions", self._on_get_transition_graph),
         ):
-            made = node.create_service(_service(type_name), f"{name}/{service}", callback, callback_group=callback_group)
+            made = node.create_service(
+                _service(type_name), f"{name}/{service}", callback, callback_group=callback_group
+            )
             setattr(self._state_machine, f"service_{service}", made)
 
     @property

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from linkwright.diagnostics import LinkwrightError, Note, did_you_mean
+from linkwright.diagnostics import LinkwrightError, Note, did_you_mean, display_path
 from linkwright.launch.actions.configurations import (
     PopLaunchConfigurations,
     PushLaunchConfigurations,
@@ -21,7 +21,7 @@ from linkwright.launch.declared import declared_arguments
 from linkwright.launch.entity import Action, LaunchDescriptionEntity
 from linkwright.launch.frontend.entity import Entity
 from linkwright.launch.frontend.expose import expose_action
-from linkwright.launch.places import error_at
+from linkwright.launch.places import MarkupPlace, error_at
 from linkwright.launch.sources import AnyLaunchDescriptionSource, LaunchDescriptionSource
 from linkwright.launch.substitution import SomeSubstitutionsType, perform_substitutions
 
@@ -140,14 +140,27 @@ class IncludeLaunchDescription(Action):
             hint = (
                 f"it is given {near[len('did you mean ') : -1]}: is that the one?"
                 if near
-                else (f"add ('{argument.name}', VALUE) to launch_arguments")
+                else self._how_to_give(argument.name)
             )
-            message = f"the included launch file requires argument '{argument.name}', which is not given"
+            path = self._source.location_path
+            if path is None:
+                message = f"the included launch description requires argument '{argument.name}', which is not given"
+            else:
+                file = display_path(path)
+                message = f"the included launch file '{file}' requires argument '{argument.name}', which is not given"
             text = (
                 f"Included launch description missing required argument '{argument.name}' "
                 f"(description: '{argument.description}'), given: [{', '.join(given)}]"
             )
             raise error_at(self.place, "LAUNCH114", message, hint, promises=RuntimeError(text))
+
+    def _how_to_give(self, name: str) -> str:
+        """How an argument is given, in the language of the including file."""
+        if not isinstance(self.place, MarkupPlace):
+            return f"add ('{name}', VALUE) to launch_arguments"
+        if self.place.text.text.lstrip().startswith("<"):
+            return f'write <arg name="{name}" value="VALUE"/> inside <include>'
+        return f"write 'arg: [{{name: {name}, value: VALUE}}]' below 'include'"
 
 
 class IncludeScopedLaunchDescription(IncludeLaunchDescription):

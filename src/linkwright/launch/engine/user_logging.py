@@ -31,7 +31,7 @@ _OUTPUTS: Mapping[str, Mapping[str, set[str]]] = {
 }
 
 
-class _ForEachLogger:
+class ForEachLogger:
     """A handler that formats the lines of some loggers in ways of their own."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
@@ -55,19 +55,19 @@ class _ForEachLogger:
         return str(super().format(record))  # type: ignore[misc]
 
 
-class Handler(_ForEachLogger, logging.Handler):
+class Handler(ForEachLogger, logging.Handler):
     """A handler that users derive from."""
 
 
-class StreamHandler(_ForEachLogger, logging.StreamHandler):  # type: ignore[type-arg]
+class StreamHandler(ForEachLogger, logging.StreamHandler):  # type: ignore[type-arg]
     """Writes lines to a stream."""
 
 
-class FileHandler(_ForEachLogger, logging.FileHandler):
+class FileHandler(ForEachLogger, logging.FileHandler):
     """Writes lines to a file."""
 
 
-class WatchedFileHandler(_ForEachLogger, logging.handlers.WatchedFileHandler):
+class WatchedFileHandler(ForEachLogger, logging.handlers.WatchedFileHandler):
     """Writes lines to a file that others may move away."""
 
 
@@ -316,7 +316,7 @@ def reset() -> None:
     """Take the handlers and levels away from all loggers that were made here, and go back to the beginning."""
     for logger in list(logging.root.manager.loggerDict.values()):
         handlers = getattr(logger, "handlers", ())
-        kept = [each for each in handlers if not isinstance(each, _ForEachLogger)]
+        kept = [each for each in handlers if not isinstance(each, ForEachLogger)]
         if len(kept) < len(handlers) and isinstance(logger, logging.Logger):
             logger.handlers = kept
             logger.setLevel(logging.NOTSET)

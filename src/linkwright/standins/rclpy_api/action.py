@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from linkwright.graph.actions import client as action_client
 from linkwright.graph.actions import server as action_server
 from linkwright.graph.introspection import NamesAndTypes
+from linkwright.standins.rclpy_api.waitable import NumberOfEntities
 
 if TYPE_CHECKING:
     from linkwright.standins.rclpy_api.node import Node
@@ -34,6 +35,10 @@ class ActionServer(action_server.ActionServer):
     ) -> None:
         super().__init__(node.graph_node, action_type, action_name, execute_callback, **options)
 
+    def get_num_entities(self) -> NumberOfEntities:
+        """What it is made of: a timer for results that are no longer kept, and three services."""
+        return NumberOfEntities(num_timers=1, num_services=3)
+
 
 class ActionClient(action_client.ActionClient):
     """Sends goals to an action.
@@ -47,6 +52,10 @@ class ActionClient(action_client.ActionClient):
 
     def __init__(self, node: Node, action_type: Any, action_name: str, **options: Any) -> None:
         super().__init__(node.graph_node, action_type, action_name, **options)
+
+    def get_num_entities(self) -> NumberOfEntities:
+        """What it is made of: subscriptions to feedback and status, and three clients."""
+        return NumberOfEntities(num_subscriptions=2, num_clients=3)
 
 
 def get_action_names_and_types(node: Node) -> NamesAndTypes:

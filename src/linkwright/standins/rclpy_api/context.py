@@ -24,6 +24,9 @@ from linkwright.standins.rclpy_api.signals import shut_down_on_signal
 if TYPE_CHECKING:
     from typing_extensions import Self
 
+    from linkwright.graph import dds
+
+_LONGEST_JOINING_S = 3.0
 _open: weakref.WeakSet[Context] = weakref.WeakSet()
 
 
@@ -43,6 +46,7 @@ class Context:
         self._domain_id: int | None = None
         self._graph = graph
         self._logging: Logging | None = None
+        self._joining: dds.DdsTransport | None = None
         self.ros_arguments = RosArguments()
 
     @property
@@ -62,6 +66,12 @@ class Context:
             if self._graph is None:
                 self._graph = self._new_graph()
             return self._graph
+
+    def wait_for_network(self) -> None:
+        """Wait for the graph to have joined, the first time: loading DDS would make the first timers of a node late."""
+        joining, self._joining = self._joining, None
+        if joining is not None:
+            joining.wait_until_ready(_LONGEST_JOINING_S)
 
     def init(
         self, args: Sequence[str] | None = None, *, initialize_logging: bool = True, domain_id: int | None = None
@@ -187,7 +197,7 @@ class Context:
         from linkwright.graph import dds
 
         graph = Graph(threads=True, on_log=logging.write, levels=logging.LEVELS)
-        dds.join(graph, domain_id=self._domain_id)
+        self._joining = dds.join(graph, domain_id=self._domain_id)
         return graph
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from linkwright.graph import names
+from linkwright.graph.parameters.errors import InvalidParameterException
 
 TOPIC_SEPARATOR_STRING = "/"
 HIDDEN_TOPIC_PREFIX = "_"
@@ -75,6 +76,17 @@ def topic_or_service_is_hidden(name: str) -> bool:
     """
     validate_topic_name(name)
     return names.is_hidden(name)
+
+
+def validate_parameter_name(name: str) -> bool:
+    """True for a name that a parameter may have: any but the empty one.
+
+    Raises:
+        InvalidParameterException: for that.
+    """
+    if not name:
+        raise InvalidParameterException(name)
+    return True
 
 
 def _raise(name: str, problem: names.Problem | None, *, is_service: bool) -> None:

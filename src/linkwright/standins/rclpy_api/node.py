@@ -29,7 +29,7 @@ from linkwright.graph.subscription import Subscription
 from linkwright.graph.timer import GuardCondition, Timer
 from linkwright.standins.rclpy_api.content_filter import ContentFilterOptions
 from linkwright.standins.rclpy_api.context import Context, read_ros_arguments
-from linkwright.standins.rclpy_api.forwarding import to_graph_node
+from linkwright.standins.rclpy_api.forwarding import to_graph_node, to_graph_node_by_name
 from linkwright.standins.rclpy_api.session import check_initialized, get_default_context
 from linkwright.standins.rclpy_api.type_support import check_is_valid_msg_type, check_is_valid_srv_type
 
@@ -119,8 +119,10 @@ class Node:
         )
         self.__core.default_callback_group = self.__default_callback_group
         self.__core.copies_messages = True
+        self.__core.get_clock().context = self.__context
         if enable_logger_service:
             LoggerServices(self.__core, graph.levels)
+        self.__context.wait_for_network()
 
     # --- what it is and has ---------------------------------------------------------------------------------------
 
@@ -441,12 +443,26 @@ class Node:
     remove_on_set_parameters_callback = to_graph_node(GraphNode.remove_on_set_parameters_callback)
     remove_post_set_parameters_callback = to_graph_node(GraphNode.remove_post_set_parameters_callback)
 
+    @property
+    def _parameters_callbacks(self) -> Sequence[Callable[[list[Parameter]], Any]]:
+        return self.__core.on_set_parameters_callbacks
+
+    _on_set_parameters_callbacks = _parameters_callbacks
+
+    @property
+    def _pre_set_parameters_callbacks(self) -> Sequence[Callable[[list[Parameter]], Any]]:
+        return self.__core.pre_set_parameters_callbacks
+
+    @property
+    def _post_set_parameters_callbacks(self) -> Sequence[Callable[[list[Parameter]], Any]]:
+        return self.__core.post_set_parameters_callbacks
+
     # --- the graph ------------------------------------------------------------------------------------------------
 
-    count_publishers = to_graph_node(GraphNode.count_publishers)
-    count_subscribers = to_graph_node(GraphNode.count_subscribers)
-    count_clients = to_graph_node(GraphNode.count_clients)
-    count_services = to_graph_node(GraphNode.count_services)
+    count_publishers = to_graph_node_by_name(GraphNode.count_publishers)
+    count_subscribers = to_graph_node_by_name(GraphNode.count_subscribers)
+    count_clients = to_graph_node_by_name(GraphNode.count_clients)
+    count_services = to_graph_node_by_name(GraphNode.count_services)
     get_topic_names_and_types = to_graph_node(GraphNode.get_topic_names_and_types)
     get_service_names_and_types = to_graph_node(GraphNode.get_service_names_and_types)
     get_node_names = to_graph_node(GraphNode.get_node_names)
@@ -456,8 +472,8 @@ class Node:
     get_subscriber_names_and_types_by_node = to_graph_node(GraphNode.get_subscriber_names_and_types_by_node)
     get_service_names_and_types_by_node = to_graph_node(GraphNode.get_service_names_and_types_by_node)
     get_client_names_and_types_by_node = to_graph_node(GraphNode.get_client_names_and_types_by_node)
-    get_publishers_info_by_topic = to_graph_node(GraphNode.get_publishers_info_by_topic)
-    get_subscriptions_info_by_topic = to_graph_node(GraphNode.get_subscriptions_info_by_topic)
+    get_publishers_info_by_topic = to_graph_node_by_name(GraphNode.get_publishers_info_by_topic)
+    get_subscriptions_info_by_topic = to_graph_node_by_name(GraphNode.get_subscriptions_info_by_topic)
     wait_for_node = to_graph_node(GraphNode.wait_for_node)
 
     def get_fully_qualified_node_names(self) -> list[str]:

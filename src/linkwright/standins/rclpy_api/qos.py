@@ -1,15 +1,18 @@
-"""Older names of policies, which many programs still use (rclpy ``qos``)."""
+"""Older names of policies, which many programs still use, and overrides from parameters (rclpy ``qos``)."""
 
 from __future__ import annotations
 
 import warnings
-from typing import Any
+from typing import Any, Literal
 
+from linkwright.graph.parameters.qos_overrides import QoSOverridingOptions, override_qos
+from linkwright.graph.publisher import Publisher
 from linkwright.graph.qos import (
     DurabilityPolicy,
     HistoryPolicy,
     LivelinessPolicy,
     QoSPolicyEnum,
+    QoSProfile,
     ReliabilityPolicy,
 )
 
@@ -36,3 +39,31 @@ def add_old_names() -> None:
             if value.name != "BEST_AVAILABLE":
                 old = f"RMW_QOS_POLICY_{word}_{value.name}"
                 setattr(policy, old, _OldName(policy, old, value.name))
+
+
+def declare_qos_parameters(
+    entity_type: type, node: Any, topic_name: str, qos: QoSProfile, options: QoSOverridingOptions
+) -> QoSProfile:
+    """Declare the parameters that override the profile of a publisher or subscription, and apply them to it.
+
+    Args:
+        entity_type: ``Publisher`` or ``Subscription``.
+        node: declares them.
+        topic_name: the absolute name of the topic.
+        qos: the profile; it is changed.
+        options: what may be overridden.
+
+    Returns:
+        The same profile.
+
+    Raises:
+        InvalidQosOverridesError: the profile is refused, or a value is none that its policy has.
+    """
+    entity: Literal["publisher", "subscription"] = (
+        "publisher" if issubclass(entity_type, Publisher) else "subscription"
+    )
+    overridden = override_qos(node, entity, topic_name, qos, options)
+    for kind in options.policy_kinds:
+        policy = kind.name.lower()
+        setattr(qos, policy, getattr(overridden, policy))
+    return qos

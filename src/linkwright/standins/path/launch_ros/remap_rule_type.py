@@ -4,6 +4,7 @@ from collections.abc import Iterable, Sequence
 
 from launch.some_substitutions_type import SomeSubstitutionsType
 from launch.substitution import Substitution
+
 from linkwright.standins.launch_names import imported_there as __getattr__
 
 SomeRemapRule = tuple[SomeSubstitutionsType, SomeSubstitutionsType]

@@ -1,5 +1,6 @@
 """Stands in for ``rclpy.client``."""
 
 from linkwright.graph.client import Client
+from linkwright.standins.rclpy_api.type_support import SrvType, SrvTypeRequest, SrvTypeResponse
 
-__all__ = ["Client"]
+__all__ = ["Client", "SrvType", "SrvTypeRequest", "SrvTypeResponse"]

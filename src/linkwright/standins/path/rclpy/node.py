@@ -9,12 +9,24 @@ from linkwright.graph.rate import Rate
 from linkwright.graph.service import Service
 from linkwright.graph.subscription import Subscription
 from linkwright.graph.timer import Timer
+from linkwright.standins.rclpy_api.errors import NodeNameNonExistentError
 from linkwright.standins.rclpy_api.node import Node
-from linkwright.standins.rclpy_api.type_support import check_for_type_support
+from linkwright.standins.rclpy_api.type_support import (
+    MsgType,
+    SrvType,
+    SrvTypeRequest,
+    SrvTypeResponse,
+    check_for_type_support,
+)
+
+HIDDEN_NODE_PREFIX = "_"
 
 __all__ = [
+    "HIDDEN_NODE_PREFIX",
     "Client",
+    "MsgType",
     "Node",
+    "NodeNameNonExistentError",
     "Parameter",
     "ParameterAlreadyDeclaredException",
     "ParameterNotDeclaredException",
@@ -22,6 +34,9 @@ __all__ = [
     "QoSProfile",
     "Rate",
     "Service",
+    "SrvType",
+    "SrvTypeRequest",
+    "SrvTypeResponse",
     "Subscription",
     "Timer",
     "check_for_type_support",

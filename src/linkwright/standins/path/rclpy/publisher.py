@@ -1,5 +1,6 @@
 """Stands in for ``rclpy.publisher``."""
 
 from linkwright.graph.publisher import Publisher
+from linkwright.standins.rclpy_api.type_support import MsgType
 
-__all__ = ["Publisher"]
+__all__ = ["MsgType", "Publisher"]

@@ -7,7 +7,7 @@ from linkwright.graph.qos import (
     BEST_AVAILABLE_QOS as qos_profile_best_available,
 )
 from linkwright.graph.qos import (
-    DEFAULT_QOS as _qos_profile_default,
+    DEFAULT_QOS as qos_profile_default,
 )
 from linkwright.graph.qos import (
     PARAMETER_EVENTS_QOS as qos_profile_parameter_events,
@@ -49,6 +49,8 @@ from linkwright.standins.rclpy_api.qos import add_old_names
 
 add_old_names()
 
+_qos_profile_default = qos_profile_default
+
 QoSDurabilityPolicy = DurabilityPolicy
 QoSHistoryPolicy = HistoryPolicy
 QoSLivelinessPolicy = LivelinessPolicy
@@ -73,6 +75,7 @@ __all__ = [
     "qos_policy_name_from_kind",
     "qos_profile_action_status_default",
     "qos_profile_best_available",
+    "qos_profile_default",
     "qos_profile_parameter_events",
     "qos_profile_parameters",
     "qos_profile_rosout_default",

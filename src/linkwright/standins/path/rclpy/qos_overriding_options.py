@@ -1,5 +1,10 @@
 """Stands in for ``rclpy.qos_overriding_options``."""
 
-from linkwright.graph.parameters.qos_overrides import InvalidQosOverridesError, QoSOverridingOptions
+from rcl_interfaces.msg import SetParametersResult as QosCallbackResult
 
-__all__ = ["InvalidQosOverridesError", "QoSOverridingOptions"]
+from linkwright.graph.parameters.qos_overrides import InvalidQosOverridesError, QoSOverridingOptions
+from linkwright.standins.rclpy_api.qos import declare_qos_parameters as _declare_qos_parameters
+
+_declare_qos_parameteres = _declare_qos_parameters
+
+__all__ = ["InvalidQosOverridesError", "QoSOverridingOptions", "QosCallbackResult"]

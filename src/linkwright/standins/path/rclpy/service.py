@@ -1,5 +1,6 @@
 """Stands in for ``rclpy.service``."""
 
 from linkwright.graph.service import Service
+from linkwright.standins.rclpy_api.type_support import SrvType, SrvTypeRequest, SrvTypeResponse
 
-__all__ = ["Service"]
+__all__ = ["Service", "SrvType", "SrvTypeRequest", "SrvTypeResponse"]

@@ -2,5 +2,6 @@
 
 from linkwright.graph.subscription import Subscription
 from linkwright.graph.transport import MessageInfo
+from linkwright.standins.rclpy_api.type_support import MsgType
 
-__all__ = ["MessageInfo", "Subscription"]
+__all__ = ["MessageInfo", "MsgType", "Subscription"]

@@ -1,6 +1,5 @@
 """Stands in for ``rclpy.time_source``."""
 
-CLOCK_TOPIC = "/clock"
-USE_SIM_TIME_NAME = "use_sim_time"
+from linkwright.standins.rclpy_api.time_source import CLOCK_TOPIC, USE_SIM_TIME_NAME, TimeSource
 
-__all__ = ["CLOCK_TOPIC", "USE_SIM_TIME_NAME"]
+__all__ = ["CLOCK_TOPIC", "USE_SIM_TIME_NAME", "TimeSource"]

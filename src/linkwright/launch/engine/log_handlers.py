@@ -1,0 +1,27 @@
+"""The handlers of Python's `logging.handlers`, with formats for some loggers (``launch.logging.handlers``)."""
+
+from __future__ import annotations
+
+import logging
+import logging.handlers
+from functools import cache
+from typing import Any
+
+from linkwright.launch.engine.user_logging import ForEachLogger
+
+
+def handler_class(name: str) -> type[Any]:
+    """The class of a name in `logging.handlers`, extended; for use as the ``__getattr__`` of a module.
+
+    Raises:
+        AttributeError: there is no such handler.
+    """
+    found = getattr(logging.handlers, name, None)
+    if isinstance(found, type) and issubclass(found, logging.Handler):
+        return _extended(found)
+    raise AttributeError(f"module 'launch.logging.handlers' has no attribute '{name}'")
+
+
+@cache
+def _extended(kind: type[Any]) -> type[Any]:
+    return type(kind.__name__, (ForEachLogger, kind), {"__doc__": kind.__doc__})

@@ -1,0 +1,52 @@
+"""What launch files of MoveIt configuration packages import: ``launch_param_builder`` and ``moveit_configs_utils``.
+
+Both collect parameters from the files of a package. With them such packages load here as well, and their
+``robot_state_publisher`` and viewer run; the programs of MoveIt themselves are compiled ones.
+"""
+
+from linkwright.launch.moveit.builder import MoveItConfigsBuilder
+from linkwright.launch.moveit.configs import MoveItConfigs
+from linkwright.launch.moveit.files import (
+    ParameterBuilderFileNotFoundError,
+    ParameterValueType,
+    get_path,
+    load_file,
+    load_xacro,
+    load_yaml,
+)
+from linkwright.launch.moveit.launches import (
+    generate_demo_launch,
+    generate_move_group_launch,
+    generate_moveit_rviz_launch,
+    generate_rsp_launch,
+    generate_setup_assistant_launch,
+    generate_spawn_controllers_launch,
+    generate_static_virtual_joint_tfs_launch,
+    generate_warehouse_db_launch,
+)
+from linkwright.launch.moveit.nodes import DeclareBooleanLaunchArg, add_debuggable_node
+from linkwright.launch.moveit.parameters import ParameterBuilder
+from linkwright.launch.moveit.xacro import Xacro
+
+__all__ = [
+    "DeclareBooleanLaunchArg",
+    "MoveItConfigs",
+    "MoveItConfigsBuilder",
+    "ParameterBuilder",
+    "ParameterBuilderFileNotFoundError",
+    "ParameterValueType",
+    "Xacro",
+    "add_debuggable_node",
+    "generate_demo_launch",
+    "generate_move_group_launch",
+    "generate_moveit_rviz_launch",
+    "generate_rsp_launch",
+    "generate_setup_assistant_launch",
+    "generate_spawn_controllers_launch",
+    "generate_static_virtual_joint_tfs_launch",
+    "generate_warehouse_db_launch",
+    "get_path",
+    "load_file",
+    "load_xacro",
+    "load_yaml",
+]

@@ -1,0 +1,243 @@
+"""Finding and reading the parameters of a MoveIt configuration package (``moveit_configs_utils``)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from linkwright.diagnostics import display_path
+from linkwright.launch.moveit.configs import MoveItConfigs, Parameters
+from linkwright.launch.moveit.files import load_xacro, load_yaml
+from linkwright.launch.moveit.parameters import ParameterBuilder
+from linkwright.launch.moveit.xacro import Xacro
+from linkwright.launch.places import Place, error_at
+from linkwright.workspace import current_finder
+
+_FOLDER = Path("config")
+_CONTROLLERS = "_controllers.yaml"
+_PLANNING = "_planning.yaml"
+_USUAL_PIPELINE = "ompl"
+
+_Mappings = Mapping[Any, Any] | None
+_Path = str | Path | None
+
+
+class MoveItConfigsBuilder(ParameterBuilder):
+    """Reads the files of a configuration package, each where its usual place is or where it is said to be.
+
+    Args:
+        robot_name: the robot.
+        robot_description: the parameter that the URDF is given in; the names of some others begin with it.
+        package_name: the package, by default the robot's name and ``_moveit_config``.
+
+    Raises:
+        PackageNotFoundError: PKG101, there is no such package.
+    """
+
+    def __init__(
+        self, robot_name: str, robot_description: str = "robot_description", package_name: str | None = None
+    ) -> None:
+        super().__init__(package_name or f"{robot_name}_moveit_config")
+        self.__name = robot_name
+        self.__parameter = robot_description
+        self.__moveit_configs = MoveItConfigs(package_path=self._package_path)
+        self.__urdf, self.__srdf = self.__models()
+
+    def robot_description(self, file_path: _Path = None, mappings: _Mappings = None) -> MoveItConfigsBuilder:
+        """Read the URDF."""
+        path = self.__urdf if file_path is None else self._package_path / file_path
+        self.__moveit_configs.robot_description = {self.__parameter: _model(path, mappings)}
+        return self
+
+    def robot_description_semantic(self, file_path: _Path = None, mappings: _Mappings = None) -> MoveItConfigsBuilder:
+        """Read the SRDF."""
+        path = self.__srdf if file_path is None else self._package_path / file_path
+        self.__moveit_configs.robot_description_semantic = {f"{self.__parameter}_semantic": _model(path, mappings)}
+        return self
+
+    def robot_description_kinematics(self, file_path: _Path = None) -> MoveItConfigsBuilder:
+        """Read the solvers of inverse kinematics."""
+        self.__moveit_configs.robot_description_kinematics = self.__below("_kinematics", file_path, "kinematics.yaml")
+        return self
+
+    def joint_limits(self, file_path: _Path = None) -> MoveItConfigsBuilder:
+        """Read limits that replace those of the URDF."""
+        self.__moveit_configs.joint_limits = self.__below("_planning", file_path, "joint_limits.yaml")
+        return self
+
+    def moveit_cpp(self, file_path: _Path = None) -> MoveItConfigsBuilder:
+        """Read the parameters of MoveItCpp."""
+        self.__moveit_configs.moveit_cpp = load_yaml(self.__file(file_path, "moveit_cpp.yaml"))
+        return self
+
+    def pilz_cartesian_limits(self, file_path: _Path = None) -> MoveItConfigsBuilder:
+        """Read limits for the Pilz planner."""
+        self.__moveit_configs.pilz_cartesian_limits = self.__below("_planning", file_path, "pilz_cartesian_limits.yaml")
+        return self
+
+    def cartesian_limits(self, file_path: _Path = None) -> MoveItConfigsBuilder:
+        """`pilz_cartesian_limits` by its former name."""
+        return self.pilz_cartesian_limits(file_path or _FOLDER / "cartesian_limits.yaml")
+
+    def trajectory_execution(
+        self, file_path: _Path = None, moveit_manage_controllers: bool = True
+    ) -> MoveItConfigsBuilder:
+        """Read the controllers.
+
+        Raises:
+            RuntimeError: LAUNCH154, there are several files of them, and none is named as usual.
+        """
+        made: Parameters = {"moveit_manage_controllers": moveit_manage_controllers}
+        path = self._package_path / file_path if file_path is not None else self.__controllers()
+        if path is not None:
+            made.update(load_yaml(path) or {})
+        self.__moveit_configs.trajectory_execution = made
+        return self
+
+    def planning_scene_monitor(
+        self,
+        publish_planning_scene: bool = True,
+        publish_geometry_updates: bool = True,
+        publish_state_updates: bool = True,
+        publish_transforms_updates: bool = True,
+        publish_robot_description: bool = False,
+        publish_robot_description_semantic: bool = False,
+    ) -> MoveItConfigsBuilder:
+        """Say what is published of the planning scene."""
+        self.__moveit_configs.planning_scene_monitor = {
+            "publish_planning_scene": publish_planning_scene,
+            "publish_geometry_updates": publish_geometry_updates,
+            "publish_state_updates": publish_state_updates,
+            "publish_transforms_updates": publish_transforms_updates,
+            "publish_robot_description": publish_robot_description,
+            "publish_robot_description_semantic": publish_robot_description_semantic,
+        }
+        return self
+
+    def sensors_3d(self, file_path: _Path = None) -> MoveItConfigsBuilder:
+        """Read the sensors that see obstacles, if there are any."""
+        path = self.__file(file_path, "sensors_3d.yaml")
+        content = load_yaml(path) if path.exists() else None
+        if content and any(content.get("sensors") or ()):
+            self.__moveit_configs.sensors_3d = content
+        return self
+
+    def planning_pipelines(
+        self,
+        default_planning_pipeline: str | None = None,
+        pipelines: Sequence[str] | None = None,
+        load_all: bool = True,
+    ) -> MoveItConfigsBuilder:
+        """Read the planners.
+
+        Args:
+            default_planning_pipeline: the one to use where none is named.
+            pipelines: their names; by default all that the package has a file for.
+            load_all: whether by default also those count that MoveIt has files for, if it is in the workspace.
+
+        Raises:
+            RuntimeError: LAUNCH154, the default is none of them.
+        """
+        folders = [self._package_path / _FOLDER, *_default_folder()]
+        names = list(pipelines) if pipelines is not None else _stems(folders if load_all else folders[:1], _PLANNING)
+        names = names or [default_planning_pipeline or _USUAL_PIPELINE]
+        default = default_planning_pipeline or (_USUAL_PIPELINE if _USUAL_PIPELINE in names else names[0])
+        if default not in names:
+            listed = ",".join(names)
+            text = f"default_planning_pipeline: `{default}` doesn't name any of the input pipelines `{listed}`"
+            message = f"the default planning pipeline '{default}' is none of the pipelines: {', '.join(names)}"
+            raise error_at(Place.of_caller(), "LAUNCH154", message, promises=RuntimeError(text))
+        made: Parameters = {"planning_pipelines": names, "default_planning_pipeline": default}
+        for name in names:
+            file = next((path for folder in folders if (path := folder / f"{name}{_PLANNING}").exists()), None)
+            made[name] = (load_yaml(file) if file else None) or {}
+        defaults = next((path for folder in folders[1:] if (path := folder / "ompl_defaults.yaml").exists()), None)
+        if defaults is not None and _USUAL_PIPELINE in made and "planner_configs" not in made[_USUAL_PIPELINE]:
+            made[_USUAL_PIPELINE].update(load_yaml(defaults))
+        self.__moveit_configs.planning_pipelines = made
+        return self
+
+    def to_moveit_configs(self) -> MoveItConfigs:
+        """All parameters; what was not read yet is read from its usual place, if it is there."""
+        configs = self.__moveit_configs
+        if not configs.robot_description:
+            self.robot_description()
+        if not configs.robot_description_semantic:
+            self.robot_description_semantic()
+        if not configs.planning_pipelines:
+            self.planning_pipelines()
+        if not configs.trajectory_execution:
+            self.trajectory_execution()
+        if not configs.planning_scene_monitor:
+            self.planning_scene_monitor()
+        if not configs.sensors_3d:
+            self.sensors_3d()
+        for present, file, read in (
+            (configs.robot_description_kinematics, "kinematics.yaml", self.robot_description_kinematics),
+            (configs.joint_limits, "joint_limits.yaml", self.joint_limits),
+            (configs.pilz_cartesian_limits, "pilz_cartesian_limits.yaml", self.pilz_cartesian_limits),
+        ):
+            if not present and self.__file(None, file).exists():
+                read()
+        return configs
+
+    def to_dict(self, include_moveit_configs: bool = True) -> Parameters:
+        """The parameters that were added one by one, and by default all others as well."""
+        if include_moveit_configs:
+            self._parameters.update(self.to_moveit_configs().to_dict())
+        return self._parameters
+
+    # --- where files are --------------------------------------------------------------------------------------
+
+    def __file(self, given: _Path, usual: str) -> Path:
+        return self._package_path / (_FOLDER / usual if given is None else given)
+
+    def __below(self, ending: str, given: _Path, usual: str) -> Parameters:
+        return {self.__parameter + ending: load_yaml(self.__file(given, usual))}
+
+    def __models(self) -> tuple[Path, Path]:
+        """The files of URDF and SRDF: where the Setup Assistant noted them, else named after the robot."""
+        settings = self._package_path / ".setup_assistant"
+        noted = (load_yaml(settings) or {}).get("moveit_setup_assistant_config", {}) if settings.exists() else {}
+        urdf_noted, srdf_noted = (noted.get(kind) or noted.get(kind.upper()) or {} for kind in ("urdf", "srdf"))
+        urdf = self._package_path / _FOLDER / f"{self.__name}.urdf.xacro"
+        if not urdf.exists():
+            urdf = self._package_path / _FOLDER / f"{self.__name}.urdf"
+            if urdf_noted.get("package") and urdf_noted.get("relative_path"):
+                urdf = current_finder().share(urdf_noted["package"]) / urdf_noted["relative_path"]
+        srdf = self._package_path / srdf_noted.get("relative_path", _FOLDER / f"{self.__name}.srdf")
+        return urdf, srdf
+
+    def __controllers(self) -> Path | None:
+        folder = self._package_path / _FOLDER
+        names = _stems([folder], _CONTROLLERS)
+        if len(names) > 1:
+            names = [name for name in ("moveit", "moveit2", self.__name) if name in names] or names
+            if names[0] not in ("moveit", "moveit2", self.__name):
+                listed = "\n - ".join(name + _CONTROLLERS for name in names)
+                text = f"trajectory_execution: Unable to guess which parameter file to load. Options:\n - {listed}"
+                message = f"several files of controllers are in '{display_path(folder)}': {', '.join(names)}"
+                hint = "say which: .trajectory_execution(file_path='config/NAME_controllers.yaml')"
+                raise error_at(Place.of_caller(), "LAUNCH154", message, hint, promises=RuntimeError(text))
+        return folder / (names[0] + _CONTROLLERS) if names else None
+
+
+def _model(path: Path, mappings: _Mappings) -> Any:
+    """The text of a model; what gives it when the launch runs, where arguments are substitutions."""
+    if all(isinstance(word, str) for pair in (mappings or {}).items() for word in pair):
+        return load_xacro(path, mappings)
+    from linkwright.launch.ros import ParameterValue
+
+    return ParameterValue(Xacro(str(path), mappings=mappings), value_type=str)
+
+
+def _stems(folders: Sequence[Path], ending: str) -> list[str]:
+    """The names of files in folders, without their ending, each once."""
+    found = (path.name.removesuffix(ending) for folder in folders for path in sorted(folder.glob(f"*{ending}")))
+    return list(dict.fromkeys(found))
+
+
+def _default_folder() -> list[Path]:
+    share = current_finder().find("moveit_configs_utils")
+    return [] if share is None else [share / "default_configs"]

@@ -1,0 +1,69 @@
+"""The parameters of a robot in MoveIt (``moveit_configs_utils.MoveItConfigs``)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+Parameters = dict[str, Any]
+
+
+@dataclass
+class MoveItConfigs:
+    """Parameters by what they are about; each is a dictionary for ``parameters`` of a node.
+
+    Attributes:
+        package_path: share folder of the configuration package.
+        robot_description: the URDF.
+        robot_description_semantic: the SRDF.
+        robot_description_kinematics: solvers of inverse kinematics.
+        planning_pipelines: planners.
+        trajectory_execution: controllers, and how trajectories are given to them.
+        planning_scene_monitor: what is published of the planning scene.
+        sensors_3d: sensors that see obstacles.
+        move_group_capabilities: what move_group can do besides its usual capabilities.
+        joint_limits: limits that replace those of the URDF.
+        moveit_cpp: parameters of MoveItCpp.
+        pilz_cartesian_limits: limits for the Pilz planner.
+    """
+
+    package_path: Path | None = None
+    robot_description: Parameters = field(default_factory=dict)
+    robot_description_semantic: Parameters = field(default_factory=dict)
+    robot_description_kinematics: Parameters = field(default_factory=dict)
+    planning_pipelines: Parameters = field(default_factory=dict)
+    trajectory_execution: Parameters = field(default_factory=dict)
+    planning_scene_monitor: Parameters = field(default_factory=dict)
+    sensors_3d: Parameters = field(default_factory=dict)
+    move_group_capabilities: Parameters = field(
+        default_factory=lambda: {"capabilities": "", "disable_capabilities": ""}
+    )
+    joint_limits: Parameters = field(default_factory=dict)
+    moveit_cpp: Parameters = field(default_factory=dict)
+    pilz_cartesian_limits: Parameters = field(default_factory=dict)
+
+    @property
+    def cartesian_limits(self) -> Parameters:
+        """`pilz_cartesian_limits` by its former name."""
+        return self.pilz_cartesian_limits
+
+    def to_dict(self) -> Parameters:
+        """All parameters together."""
+        made: Parameters = {}
+        for group in (
+            self.robot_description,
+            self.robot_description_semantic,
+            self.robot_description_kinematics,
+            self.planning_pipelines,
+            self.trajectory_execution,
+            self.planning_scene_monitor,
+            self.sensors_3d,
+            self.joint_limits,
+            self.moveit_cpp,
+        ):
+            made.update(group)
+        for name, limits in self.pilz_cartesian_limits.items():
+            # It shares its name with the joint limits.
+            made[name] = {**(made.get(name) or {}), **(limits or {})}
+        return made

@@ -1,0 +1,107 @@
+"""Files that parameters are read from: text, YAML, xacro (``launch_param_builder.utils``)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from linkwright.diagnostics import display_path, missing_file_hint
+from linkwright.launch.engine.descriptions import Descriptions, XacroCall, current_descriptions
+from linkwright.launch.places import Place, error_at
+from linkwright.workspace import current_finder
+
+ParameterValueType = str | int | float | bool | list[str] | list[int] | list[float] | list[bool] | bytes
+
+_TEMPLATE_MARKS = ("{{", "{%", "{#")
+
+
+class ParameterBuilderFileNotFoundError(KeyError):
+    """A file that parameters are to be read from does not exist."""
+
+
+def load_file(file_path: str | Path, mappings: Mapping[str, Any] | None = None) -> str:
+    """The text of a file; as a jinja2 template, if mappings for it are given.
+
+    Raises:
+        ParameterBuilderFileNotFoundError: LAUNCH153, it does not exist.
+        LinkwrightError: LAUNCH153, it cannot be read.
+    """
+    text = _text(Path(file_path))
+    return text if mappings is None else _rendered(text, Path(file_path), mappings)
+
+
+def load_yaml(file_path: str | Path, mappings: Mapping[str, Any] | None = None) -> Any:
+    """The content of a YAML file, which may be a jinja2 template.
+
+    Raises:
+        ParameterBuilderFileNotFoundError: LAUNCH153, it does not exist.
+        LinkwrightError: LAUNCH153, it cannot be read or is no YAML.
+    """
+    import yaml
+
+    path = Path(file_path)
+    text = _text(path)
+    if mappings or any(mark in text for mark in _TEMPLATE_MARKS):
+        text = _rendered(text, path, mappings or {})
+    try:
+        return yaml.safe_load(text)
+    except yaml.YAMLError as error:
+        message = f"parameter file '{display_path(path)}' is no YAML: {error}"
+        raise error_at(Place.of_caller(), "LAUNCH153", message, promises=error) from error
+
+
+def load_xacro(file_path: str | Path, mappings: Mapping[str, Any] | None = None) -> str:
+    """The text of a model file, expanded.
+
+    Raises:
+        ParameterBuilderFileNotFoundError: LAUNCH153, it does not exist.
+        DescriptionError: what is wrong with it.
+    """
+    path = Path(file_path)
+    _check_exists(path)
+    words = tuple((str(name), str(value)) for name, value in (mappings or {}).items())
+    descriptions = current_descriptions() or Descriptions(current_finder())
+    return descriptions.expand(XacroCall(Path.cwd() / path, words))
+
+
+def get_path(package_name: str, file_path: str | Path) -> str:
+    """The path of a file in the share folder of a package.
+
+    Raises:
+        PackageNotFoundError: PKG101, there is no such package.
+    """
+    return str(current_finder().share(package_name) / file_path)
+
+
+def _text(path: Path) -> str:
+    _check_exists(path)
+    try:
+        return path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        reason = error.strerror if isinstance(error, OSError) else error.reason
+        message = f"parameter file '{display_path(path)}' cannot be read: {reason}"
+        raise error_at(Place.of_caller(), "LAUNCH153", message, promises=error) from error
+
+
+def _check_exists(path: Path) -> None:
+    if not path.exists():
+        message = f"parameter file '{display_path(path)}' does not exist"
+        promised = ParameterBuilderFileNotFoundError(f"File {path} doesn't exist")
+        raise error_at(Place.of_caller(), "LAUNCH153", message, missing_file_hint(path), promises=promised)
+
+
+def _rendered(text: str, path: Path, mappings: Mapping[str, Any]) -> str:
+    try:
+        import jinja2
+    except ImportError as error:
+        message = f"parameter file '{display_path(path)}' is a template, and there is no jinja2 to fill it in"
+        raise error_at(Place.of_caller(), "LAUNCH153", message, "install it: pip install jinja2") from error
+    template = jinja2.Template(text)
+    template.globals.update(radians=math.radians, degrees=math.degrees)
+    try:
+        return str(template.render(mappings))
+    except jinja2.TemplateError as error:
+        message = f"template '{display_path(path)}' cannot be filled in: {error}"
+        raise error_at(Place.of_caller(), "LAUNCH153", message, promises=error) from error

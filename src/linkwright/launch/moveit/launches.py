@@ -1,0 +1,217 @@
+"""The launch files of a MoveIt configuration package (``moveit_configs_utils.launches``).
+
+The Setup Assistant writes packages whose launch files do nothing but call these functions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree as ET
+
+from linkwright.launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
+from linkwright.launch.conditions import IfCondition
+from linkwright.launch.description import LaunchDescription
+from linkwright.launch.moveit.configs import MoveItConfigs
+from linkwright.launch.moveit.nodes import DeclareBooleanLaunchArg, add_debuggable_node
+from linkwright.launch.ros import Node, ParameterValue
+from linkwright.launch.sources import PythonLaunchDescriptionSource
+from linkwright.launch.substitutions import LaunchConfiguration
+
+
+def generate_rsp_launch(moveit_config: MoveItConfigs) -> LaunchDescription:
+    """The robot state publisher."""
+    frequency = "publish_frequency"
+    node = Node(
+        package="robot_state_publisher",
+        executable="robot_state_publisher",
+        respawn=True,
+        output="screen",
+        parameters=[moveit_config.robot_description, {frequency: LaunchConfiguration(frequency)}],
+    )
+    return LaunchDescription([DeclareLaunchArgument(frequency, default_value="15.0"), node])
+
+
+def generate_moveit_rviz_launch(moveit_config: MoveItConfigs) -> LaunchDescription:
+    """The viewer."""
+    made = LaunchDescription()
+    made.add_action(DeclareBooleanLaunchArg("debug", default_value=False))
+    made.add_action(DeclareLaunchArgument("rviz_config", default_value=_path(moveit_config, "config/moveit.rviz")))
+    add_debuggable_node(
+        made,
+        package="rviz2",
+        executable="rviz2",
+        output="log",
+        respawn=False,
+        arguments=["-d", LaunchConfiguration("rviz_config")],
+        parameters=[
+            moveit_config.planning_pipelines,
+            moveit_config.robot_description_kinematics,
+            moveit_config.joint_limits,
+        ],
+    )
+    return made
+
+
+def generate_setup_assistant_launch(moveit_config: MoveItConfigs) -> LaunchDescription:
+    """The Setup Assistant, for the package."""
+    made = LaunchDescription()
+    made.add_action(DeclareBooleanLaunchArg("debug", default_value=False))
+    name = "moveit_setup_assistant"
+    arguments = [["--config_pkg=", str(moveit_config.package_path)]]
+    add_debuggable_node(made, package=name, executable=name, arguments=arguments)
+    return made
+
+
+def generate_static_virtual_joint_tfs_launch(moveit_config: MoveItConfigs) -> LaunchDescription:
+    """A static transform for each virtual joint of the SRDF."""
+    frames = [pair for text in moveit_config.robot_description_semantic.values() for pair in _virtual_joints(text)]
+    return LaunchDescription(
+        [
+            Node(
+                package="tf2_ros",
+                executable="static_transform_publisher",
+                name=f"static_transform_publisher{number}",
+                output="log",
+                arguments=["--frame-id", parent, "--child-frame-id", child],
+            )
+            for number, (parent, child) in enumerate(frames)
+        ]
+    )
+
+
+def generate_spawn_controllers_launch(moveit_config: MoveItConfigs) -> LaunchDescription:
+    """A spawner for each controller, and for the joint states."""
+    manager = moveit_config.trajectory_execution.get("moveit_simple_controller_manager") or {}
+    controllers = [*(manager.get("controller_names") or ()), "joint_state_broadcaster"]
+    return LaunchDescription(
+        [
+            Node(package="controller_manager", executable="spawner", arguments=[name], output="screen")
+            for name in controllers
+        ]
+    )
+
+
+def generate_warehouse_db_launch(moveit_config: MoveItConfigs) -> LaunchDescription:
+    """The database of the warehouse."""
+    defaults = {
+        "moveit_warehouse_database_path": _path(moveit_config, "default_warehouse_mongo_db"),
+        "moveit_warehouse_port": "33829",
+        "moveit_warehouse_host": "localhost",
+    }
+    parameters = {
+        "overwrite": False,
+        "database_path": LaunchConfiguration("moveit_warehouse_database_path"),
+        "warehouse_port": LaunchConfiguration("moveit_warehouse_port"),
+        "warehouse_host": LaunchConfiguration("moveit_warehouse_host"),
+        "warehouse_exec": "mongod",
+        "warehouse_plugin": "warehouse_ros_mongo::MongoDatabaseConnection",
+    }
+    return LaunchDescription(
+        [
+            *(DeclareLaunchArgument(name, default_value=value) for name, value in defaults.items()),
+            DeclareBooleanLaunchArg("reset", default_value=False),
+            Node(package="warehouse_ros_mongo", executable="mongo_wrapper_ros.py", parameters=[parameters]),
+            Node(
+                package="moveit_ros_warehouse",
+                executable="moveit_init_demo_warehouse",
+                output="screen",
+                condition=IfCondition(LaunchConfiguration("reset")),
+            ),
+        ]
+    )
+
+
+def generate_move_group_launch(moveit_config: MoveItConfigs) -> LaunchDescription:
+    """move_group."""
+    made = LaunchDescription()
+    for name, value in (
+        ("debug", False),
+        ("allow_trajectory_execution", True),
+        ("publish_monitored_planning_scene", True),
+        ("monitor_dynamics", False),
+    ):
+        made.add_action(DeclareBooleanLaunchArg(name, default_value=value))
+    for name in ("capabilities", "disable_capabilities"):
+        value = moveit_config.move_group_capabilities.get(name, "")
+        made.add_action(DeclareLaunchArgument(name, default_value=value))
+    published = LaunchConfiguration("publish_monitored_planning_scene")
+    settings = {
+        "publish_robot_description_semantic": True,
+        "allow_trajectory_execution": LaunchConfiguration("allow_trajectory_execution"),
+        "capabilities": ParameterValue(LaunchConfiguration("capabilities"), value_type=str),
+        "disable_capabilities": ParameterValue(LaunchConfiguration("disable_capabilities"), value_type=str),
+        "publish_planning_scene": published,
+        "publish_geometry_updates": published,
+        "publish_state_updates": published,
+        "publish_transforms_updates": published,
+        "monitor_dynamics": False,
+    }
+    add_debuggable_node(
+        made,
+        package="moveit_ros_move_group",
+        executable="move_group",
+        commands_file=_path(moveit_config, "launch/gdb_settings.gdb"),
+        output="screen",
+        parameters=[moveit_config.to_dict(), settings],
+        extra_debug_args=["--debug"],
+        additional_env={"DISPLAY": ":0"},
+    )
+    return made
+
+
+def generate_demo_launch(moveit_config: MoveItConfigs, launch_package_path: Path | None = None) -> LaunchDescription:
+    """All of it, with simulated joints.
+
+    Args:
+        moveit_config: the parameters.
+        launch_package_path: share folder of the package whose launch files are included, by default that of the
+            parameters.
+    """
+    folder = Path(launch_package_path or _folder(moveit_config)) / "launch"
+
+    def include(file: str, **kwargs: Any) -> IncludeLaunchDescription:
+        return IncludeLaunchDescription(PythonLaunchDescriptionSource(str(folder / file)), **kwargs)
+
+    made = LaunchDescription()
+    about = "By default, no database is started: it can be large."
+    made.add_action(DeclareBooleanLaunchArg("db", default_value=False, description=about))
+    about = "Whether nodes run inside of a debugger."
+    made.add_action(DeclareBooleanLaunchArg("debug", default_value=False, description=about))
+    made.add_action(DeclareBooleanLaunchArg("use_rviz", default_value=True))
+    virtual_joints = "static_virtual_joint_tfs.launch.py"
+    if (folder / virtual_joints).exists():
+        made.add_action(include(virtual_joints))
+    made.add_action(include("rsp.launch.py"))
+    made.add_action(include("move_group.launch.py"))
+    made.add_action(include("moveit_rviz.launch.py", condition=IfCondition(LaunchConfiguration("use_rviz"))))
+    made.add_action(include("warehouse_db.launch.py", condition=IfCondition(LaunchConfiguration("db"))))
+    controllers = _path(moveit_config, "config/ros2_controllers.yaml")
+    remappings = [("/controller_manager/robot_description", "/robot_description")]
+    made.add_action(
+        Node(
+            package="controller_manager",
+            executable="ros2_control_node",
+            parameters=[moveit_config.robot_description, controllers],
+            remappings=remappings,
+        )
+    )
+    made.add_action(include("spawn_controllers.launch.py"))
+    return made
+
+
+def _folder(configs: MoveItConfigs) -> Path:
+    return Path(configs.package_path or "")
+
+
+def _path(configs: MoveItConfigs, file: str) -> str:
+    return str(_folder(configs) / file)
+
+
+def _virtual_joints(text: Any) -> Iterator[tuple[str, str]]:
+    """Parent frame and child link of the virtual joints in an SRDF that is known already."""
+    if not isinstance(text, str):
+        return
+    for joint in ET.fromstring(text).iter("virtual_joint"):  # noqa: S314 - expanded by us
+        yield joint.get("parent_frame", "world"), joint.get("child_link", "")

@@ -1,0 +1,59 @@
+"""Where the Python modules come from that launch files of public robots import, for the message that one is missing."""
+
+from __future__ import annotations
+
+_ROS_PACKAGES = {
+    "as2_core": "Aerostack2",
+    "clearpath_config": "Clearpath's clearpath_config",
+    "clearpath_generator_common": "Clearpath's clearpath_common",
+    "crazyflie_py": "Crazyswarm2",
+    "interbotix_xs_modules": "Interbotix's interbotix_ros_toolboxes",
+    "irobot_create_common_bringup": "iRobot's create3_sim",
+    "isaac_ros_launch_utils": "Isaac ROS's isaac_ros_common",
+    "launch_pal": "PAL Robotics' launch_pal",
+    "launch_pytest": "the launch repository of ROS 2",
+    "launch_testing_ros": "the launch_ros repository of ROS 2",
+    "lbr_bringup": "lbr_fri_ros2_stack",
+    "ros2_benchmark": "Isaac ROS's ros2_benchmark",
+    "ros_gz_bridge": "Gazebo's ros_gz",
+    "ros_gz_sim": "Gazebo's ros_gz",
+    "scripts": "gazebo_ros_pkgs (its package gazebo_ros)",
+    "simple_launch": "simple_launch",
+    "spot_wrapper": "spot_ros2",
+    "tracetools_launch": "ros2_tracing",
+    "uf_ros_lib": "UFACTORY's xarm_ros2",
+    "webots_ros2_core": "Cyberbotics' webots_ros2",
+    "webots_ros2_driver": "Cyberbotics' webots_ros2",
+}
+"""Module -> the project that has the ROS package with it."""
+
+_DISTRIBUTIONS = {
+    "bosdyn": "bosdyn-client",
+    "cv2": "opencv-python",
+    "dotenv": "python-dotenv",
+    "em": "empy",
+    "git": "GitPython",
+    "pyrealsense2": "pyrealsense2",
+    "ruamel": "ruamel.yaml",
+    "serial": "pyserial",
+    "skimage": "scikit-image",
+    "usb": "pyusb",
+}
+"""Module -> what pip calls the package that has it, where that is another name."""
+
+_FROM_PYPI = frozenset({"flatten_dict", "jinja2", "numpy", "pandas", "psutil", "pydantic", "requests", "scipy", "toml"})
+
+_ENDINGS = ("_bringup", "_common", "_config", "_description", "_driver", "_launch", "_msgs", "_ros", "_utils")
+
+
+def provider_hint(module: str) -> str:
+    """What to do so that a module can be imported."""
+    top = module.partition(".")[0]
+    project = _ROS_PACKAGES.get(top)
+    if project is not None:
+        return f"it comes with {project}: put the sources into the workspace's src folder, no build is needed"
+    if top in _DISTRIBUTIONS or top in _FROM_PYPI:
+        return f"install it: pip install {_DISTRIBUTIONS.get(top, top)}"
+    if top.endswith(_ENDINGS) or top.startswith(("ros_", "ros2_")):
+        return f"put the ROS package '{top}' into the workspace's src folder, no build is needed"
+    return f"install the Python package that provides '{module}', or put the ROS package with it into the workspace"

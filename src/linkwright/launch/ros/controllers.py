@@ -1,0 +1,71 @@
+"""Launch descriptions that spawn controllers (``controller_manager.launch_utils``)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from linkwright.launch.actions import DeclareLaunchArgument
+from linkwright.launch.description import LaunchDescription
+from linkwright.launch.ros.node import Node
+from linkwright.launch.substitutions import LaunchConfiguration, PythonExpression
+
+_MANAGER = "controller_manager"
+_UNLOAD = "unload_on_kill"
+
+
+def generate_controllers_spawner_launch_description(
+    controller_names: Iterable[Any],
+    controller_params_files: Sequence[Any] | None = None,
+    extra_spawner_args: Sequence[Any] = (),
+) -> LaunchDescription:
+    """A spawner of controllers, with arguments for the name of the manager and for what happens at the end.
+
+    Args:
+        controller_names: the controllers.
+        controller_params_files: their parameter files; what is empty is left out.
+        extra_spawner_args: further arguments of the spawner.
+    """
+    files = [word for file in controller_params_files or () if file for word in ("--param-file", file)]
+    unload = PythonExpression(['"--unload-on-kill" if "true" == "', LaunchConfiguration(_UNLOAD), '" else ""'])
+    manager = f"{_MANAGER}_name"
+    words = [*controller_names, "--controller-manager", LaunchConfiguration(manager), *files, unload]
+    return LaunchDescription(
+        [
+            DeclareLaunchArgument(manager, default_value=_MANAGER, description="Name of the controller manager's node"),
+            DeclareLaunchArgument(_UNLOAD, default_value="false", description="Unload the controllers at the end"),
+            Node(
+                package=_MANAGER,
+                executable="spawner",
+                arguments=[*words, *extra_spawner_args],
+                shell=True,
+                output="screen",
+            ),
+        ]
+    )
+
+
+def generate_controllers_spawner_launch_description_from_dict(
+    controller_info_dict: Mapping[str, Any], extra_spawner_args: Sequence[Any] = ()
+) -> LaunchDescription:
+    """The same for a mapping: controller -> its parameter file, a list of them, or None.
+
+    Raises:
+        ValueError: it is none, or a file is something else.
+    """
+    if not isinstance(controller_info_dict, Mapping):
+        raise ValueError(f"Invalid controller_info_dict type parsed {controller_info_dict}")  # noqa: TRY004 - as there
+    files: list[Any] = []
+    for given in controller_info_dict.values():
+        if given and not isinstance(given, (str, list)):
+            raise ValueError(f"Invalid controller_params_file type parsed in the dict {given}")
+        files += given if isinstance(given, list) else [given]
+    return generate_controllers_spawner_launch_description(list(controller_info_dict), files, extra_spawner_args)
+
+
+def generate_load_controller_launch_description(
+    controller_name: Any, controller_params_file: Any = None, extra_spawner_args: Sequence[Any] = ()
+) -> LaunchDescription:
+    """The same for one controller."""
+    files = [controller_params_file] if controller_params_file else None
+    return generate_controllers_spawner_launch_description([controller_name], files, extra_spawner_args)

@@ -1,0 +1,103 @@
+"""A plugin of colcon for ``ament_cmake`` packages where there is no ament: copies what the package installs.
+
+colcon finds the classes through the entry points of this distribution. Such a package gets a type of its own, for which
+the task is registered; where an ament_cmake is on the path, colcon goes on as if there were no plugin.
+"""
+
+from __future__ import annotations
+
+import os
+import sysconfig
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from colcon_core.environment import create_environment_scripts  # type: ignore[import-untyped]  # it ships no types
+from colcon_core.logging import colcon_logger  # type: ignore[import-untyped]
+from colcon_core.shell import create_environment_hook  # type: ignore[import-untyped]
+from colcon_core.task import TaskExtensionPoint, create_file, install  # type: ignore[import-untyped]
+from colcon_ros.package_identification.ros import RosPackageIdentification  # type: ignore[import-untyped]
+
+from linkwright.diagnostics import SourceText
+from linkwright.shell.install_rules import InstallRules, read_install_rules
+from linkwright.workspace import MANIFEST
+
+COPIED = "ros.ament_cmake_copied"
+"""The type that colcon knows such packages by."""
+
+_LOGGER = colcon_logger.getChild(__name__)
+_INDEX = "share/ament_index/resource_index"
+
+
+class CopiedPackageIdentification(RosPackageIdentification):  # type: ignore[misc]  # its base has no types
+    """Tells ``ament_cmake`` packages that can only be copied here from those that can be built."""
+
+    PRIORITY = RosPackageIdentification.PRIORITY + 10
+
+    def identify(self, desc: Any) -> None:
+        """Identify a ROS package as colcon-ros does, and give it our type where there is no ament_cmake."""
+        super().identify(desc)
+        if desc.type == "ros.ament_cmake" and not _has_ament_cmake(os.environ):
+            desc.type = COPIED
+
+
+class CopyingAmentCmakeTask(TaskExtensionPoint):  # type: ignore[misc]  # its base has no types
+    """Installs an ``ament_cmake`` package that compiles nothing."""
+
+    async def build(self) -> int:
+        """Copy its files; the exit status.
+
+        An ``ament_cmake`` package is found through the same files as any other: its marker in the resource index, and
+        the scripts that put its prefix into the environment.
+        """
+        args, package = self.context.args, self.context.pkg
+        folder = Path(args.path)
+        try:
+            text = (folder / "CMakeLists.txt").read_text(encoding="utf-8", errors="replace")
+            rules = read_install_rules(SourceText("CMakeLists.txt", text), package.name)
+            if rules.obstacle is not None:
+                _LOGGER.error(
+                    f"'{package.name}' cannot be built without ROS 2: {rules.obstacle}. "
+                    "Pass over it with --packages-ignore, or build where ament_cmake is installed."
+                )
+                return 1
+            _install_all(args, package.name, folder, rules)
+        except FileNotFoundError as error:
+            missing = error.filename or error
+            _LOGGER.error(f"'{package.name}' installs '{missing}', which is not there")  # noqa: TRY400  # no traceback
+            return 1
+        hooks = create_environment_hook(
+            "ament_prefix_path", Path(args.install_base), package.name, "AMENT_PREFIX_PATH", "", mode="prepend"
+        )
+        if rules.modules:
+            hooks += create_environment_hook(
+                "pythonpath", Path(args.install_base), package.name, "PYTHONPATH", _site(), mode="prepend"
+            )
+        create_environment_scripts(package, args, additional_hooks=hooks)
+        return 0
+
+
+def _install_all(args: Any, name: str, folder: Path, rules: InstallRules) -> None:
+    create_file(args, f"{_INDEX}/packages/{name}")
+    install(args, MANIFEST, f"share/{name}/{MANIFEST}")
+    for source, destination in rules.files(folder):
+        install(args, source, destination)
+    for interface in rules.interfaces:
+        install(args, interface, f"share/{name}/{interface}")
+    if rules.interfaces:
+        create_file(args, f"{_INDEX}/rosidl_interfaces/{name}", content="\n".join(sorted(rules.interfaces)) + "\n")
+    for module in rules.modules:
+        for file in sorted((folder / module).rglob("*.py")):
+            inside = Path(module).name / file.relative_to(folder / module)
+            install(args, file.relative_to(folder).as_posix(), f"{_site()}/{inside.as_posix()}")
+
+
+def _site() -> str:
+    """Where a prefix has its Python packages, relative to it."""
+    paths = sysconfig.get_paths("posix_prefix" if os.name != "nt" else "nt", vars={"base": "", "platbase": ""})
+    return paths["purelib"].strip("/\\").replace("\\", "/")
+
+
+def _has_ament_cmake(environment: Mapping[str, str]) -> bool:
+    prefixes = environment.get("AMENT_PREFIX_PATH", "").split(os.pathsep)
+    return any(prefix and (Path(prefix) / "share" / "ament_cmake").is_dir() for prefix in prefixes)

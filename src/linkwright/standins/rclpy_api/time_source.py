@@ -1,0 +1,103 @@
+"""What lets clocks follow ``/clock`` (rclpy ``time_source``); a node's own clock does so without it."""
+
+from __future__ import annotations
+
+import weakref
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from linkwright.graph.clock import Clock, ROSClock
+from linkwright.graph.parameters.parameter import Parameter
+from linkwright.graph.qos import CLOCK_QOS
+from linkwright.graph.time import ClockType, Time
+from linkwright.messages import get_message
+
+if TYPE_CHECKING:
+    from linkwright.graph.subscription import Subscription
+    from linkwright.standins.rclpy_api.node import Node
+
+CLOCK_TOPIC = "/clock"
+USE_SIM_TIME_NAME = "use_sim_time"
+
+
+class TimeSource:
+    """Moves clocks by ``/clock`` while the parameter ``use_sim_time`` of a node is true.
+
+    Args:
+        node: whose parameter counts, and who subscribes; may be attached later.
+    """
+
+    def __init__(self, *, node: Node | None = None) -> None:
+        self._clock_sub: Subscription[Any] | None = None
+        self._node: weakref.ref[Node] | None = None
+        self._clocks: weakref.WeakSet[ROSClock] = weakref.WeakSet()
+        self._last = Time(clock_type=ClockType.ROS_TIME)
+        self._active = False
+        if node is not None:
+            self.attach_node(node)
+
+    @property
+    def ros_time_is_active(self) -> bool:
+        """Whether the clocks are simulated."""
+        return self._active
+
+    @ros_time_is_active.setter
+    def ros_time_is_active(self, enabled: bool) -> None:
+        self._active = enabled
+        for clock in self._clocks:
+            clock.set_ros_time_is_active(enabled)
+        node = self._get_node()
+        if enabled and self._clock_sub is None and node is not None:
+            clock_type = get_message("rosgraph_msgs/msg/Clock")
+            self._clock_sub = node.create_subscription(clock_type, CLOCK_TOPIC, self.clock_callback, CLOCK_QOS)
+        elif not enabled:
+            self._unsubscribe()
+
+    def attach_node(self, node: Node) -> None:
+        """Go by the parameter of a node, and no longer by that of another."""
+        self.detach_node()
+        self._node = weakref.ref(node)
+        if not node.has_parameter(USE_SIM_TIME_NAME):
+            node.declare_parameter(USE_SIM_TIME_NAME, False)
+        self.ros_time_is_active = node.get_parameter(USE_SIM_TIME_NAME).value is True
+        node.add_post_set_parameters_callback(self._on_set_parameters)
+
+    def detach_node(self) -> None:
+        """Go by no node's parameter; the clocks stay as they are."""
+        node = self._get_node()
+        if node is not None:
+            self._unsubscribe()
+            node.remove_post_set_parameters_callback(self._on_set_parameters)
+        self._node = None
+
+    def attach_clock(self, clock: Clock) -> None:
+        """Move a clock, too.
+
+        Raises:
+            ValueError: it is none of ROS time.
+        """
+        if not isinstance(clock, ROSClock):
+            raise ValueError("Only clocks with type ROS_TIME can be attached.")
+        clock.set_ros_time_override(self._last)
+        clock.set_ros_time_is_active(self._active)
+        self._clocks.add(clock)
+
+    def clock_callback(self, msg: Any) -> None:
+        """Set the clocks by a message of ``/clock``."""
+        self._last = Time.from_msg(msg.clock)
+        for clock in self._clocks:
+            clock.set_ros_time_override(self._last)
+
+    def _on_set_parameters(self, parameters: Sequence[Parameter]) -> None:
+        for parameter in parameters:
+            if parameter.name == USE_SIM_TIME_NAME:
+                self.ros_time_is_active = parameter.value is True
+
+    def _unsubscribe(self) -> None:
+        subscription, self._clock_sub = self._clock_sub, None
+        node = self._get_node()
+        if subscription is not None and node is not None:
+            node.destroy_subscription(subscription)
+
+    def _get_node(self) -> Node | None:
+        return None if self._node is None else self._node()

@@ -1,0 +1,20 @@
+"""How much of each kind something is made of (rclpy ``waitable``)."""
+
+from __future__ import annotations
+
+from dataclasses import astuple, dataclass
+
+
+@dataclass
+class NumberOfEntities:
+    """Numbers of entities, which can be added up."""
+
+    num_subscriptions: int = 0
+    num_guard_conditions: int = 0
+    num_timers: int = 0
+    num_clients: int = 0
+    num_services: int = 0
+    num_events: int = 0
+
+    def __add__(self, other: NumberOfEntities) -> NumberOfEntities:
+        return NumberOfEntities(*(one + another for one, another in zip(astuple(self), astuple(other), strict=True)))

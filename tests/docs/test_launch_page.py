@@ -1,0 +1,54 @@
+"""What the page about launch files shows is so."""
+
+from __future__ import annotations
+
+import shlex
+from pathlib import Path
+
+import pytest
+
+from linkwright.cli import main
+from tests.docs.pages import DOCS, Block, blocks, commands
+from tests.repository_tools import load_tool
+
+TOOL = load_tool("documented_output")
+PAGES = {"en": DOCS / "launch.md", "zh": DOCS / "zh" / "launch.md"}
+
+
+def files(page: Path) -> list[Block]:
+    return [block for block in blocks(page) if block.title]
+
+
+def written(page: Path, folder: Path) -> None:
+    for block in files(page):
+        path = folder / block.title
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(block.text, encoding="utf-8")
+
+
+@pytest.mark.parametrize("language", PAGES)
+def test_the_three_launch_files_say_the_same(language: str, tmp_path: Path, capsys) -> None:
+    written(PAGES[language], tmp_path)
+    said = []
+    for ending in ("py", "xml", "yaml"):
+        words = ["launch", str(tmp_path / "launch" / f"robot.launch.{ending}")]
+        assert main([*words, "--show-args"]) == 0
+        assert main([*words, "--print"]) == 0
+        said.append(capsys.readouterr().out)
+    assert said[0] == said[1] == said[2]
+    assert "'period'" in said[0]
+    assert "ExecInPkg(pkg='my_nodes', exec='robot')" in said[0]
+
+
+def test_the_composed_launch_file_loads(tmp_path: Path, capsys) -> None:
+    written(PAGES["en"], tmp_path)
+    assert main(["launch", str(tmp_path / "composed.launch.py"), "--print"]) == 0
+    assert "ComposableNodeContainer" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("language", PAGES)
+def test_the_error_shown_is_the_one_printed(language: str) -> None:
+    page = PAGES[language]
+    words = next(shlex.split(line) for line in commands(page) if "bringup" in line)
+    printed = TOOL.output_of(words[1:], [(each.title, each.text) for each in files(page)], language)
+    assert printed in [block.text for block in blocks(page) if block.language == "text"]

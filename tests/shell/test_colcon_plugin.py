@@ -1,0 +1,102 @@
+"""``colcon build`` of ``ament_cmake`` packages without ament."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+pytestmark = [pytest.mark.slow, pytest.mark.skipif(sys.platform == "win32", reason="the commands used are bash's")]
+
+MANIFEST = """\
+<?xml version="1.0"?>
+<package format="3">
+  <name>{name}</name><version>0.0.1</version><description>Test.</description>
+  <maintainer email="ada@example.org">Ada</maintainer><license>MIT</license>
+  <buildtool_depend>ament_cmake</buildtool_depend>
+  <export><build_type>ament_cmake</build_type></export>
+</package>
+"""
+
+
+def package(workspace: Path, name: str, cmake: str) -> Path:
+    folder = workspace / "src" / name
+    folder.mkdir(parents=True)
+    (folder / "package.xml").write_text(MANIFEST.format(name=name))
+    (folder / "CMakeLists.txt").write_text(f"project({name})\nfind_package(ament_cmake REQUIRED)\n{cmake}\n")
+    return folder
+
+
+def in_shell(workspace: Path, text: str, **variables: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "linkwright", "shell", "--", "bash", "-c", text],
+        cwd=workspace,
+        env={"PATH": "/usr/bin:/bin", "HOME": str(workspace), "LC_ALL": "C.UTF-8", **variables},
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+
+
+def test_descriptions_scripts_and_interfaces_are_built(tmp_path: Path) -> None:
+    arm = package(
+        tmp_path,
+        "arm",
+        "install(DIRECTORY urdf DESTINATION share/arm)\ninstall(PROGRAMS hello.py DESTINATION lib/arm)\n"
+        "ament_python_install_package(arm)",
+    )
+    (arm / "urdf").mkdir()
+    (arm / "urdf" / "arm.urdf").write_text('<robot name="arm"><link name="base"/></robot>')
+    (arm / "hello.py").write_text("#!/usr/bin/env python3\nimport arm\nprint('hello', arm.VALUE)\n")
+    (arm / "hello.py").chmod(0o755)
+    (arm / "arm").mkdir()
+    (arm / "arm" / "__init__.py").write_text("VALUE = 7\n")
+    speeds = package(tmp_path, "speeds", 'rosidl_generate_interfaces(${PROJECT_NAME} "msg/Speed.msg")')
+    (speeds / "msg").mkdir()
+    (speeds / "msg" / "Speed.msg").write_text("float64 value\n")
+
+    built = in_shell(tmp_path, "colcon build")
+    assert built.returncode == 0, built.stdout + built.stderr
+    assert "2 packages finished" in built.stdout
+    used = in_shell(
+        tmp_path,
+        "source install/setup.bash && cd / && ros2 pkg prefix arm && ros2 interface show speeds/msg/Speed "
+        "&& python3 -c 'import arm; print(arm.VALUE)' && ros2 run arm hello.py",
+    )
+    assert used.stdout.splitlines() == [str(tmp_path / "install" / "arm"), "float64 value", "7", "hello 7"], used.stderr
+    assert (tmp_path / "install/arm/share/arm/urdf/arm.urdf").is_file()
+
+
+def test_links_instead_of_copies(tmp_path: Path) -> None:
+    arm = package(tmp_path, "arm", "install(DIRECTORY urdf DESTINATION share/arm)")
+    (arm / "urdf").mkdir()
+    (arm / "urdf" / "arm.urdf").write_text("<robot/>")
+    assert in_shell(tmp_path, "colcon build --symlink-install").returncode == 0
+    assert (tmp_path / "install/arm/share/arm/urdf/arm.urdf").is_symlink()
+
+
+@pytest.mark.parametrize(
+    ("cmake", "said"),
+    [
+        ("add_executable(move src/move.cpp)", "'arm' cannot be built without ROS 2: it compiles 'move'"),
+        ("install(DIRECTORY meshes DESTINATION share/arm)", "'arm' installs 'meshes', which is not there"),
+    ],
+)
+def test_what_cannot_be_built_is_told(tmp_path: Path, cmake: str, said: str) -> None:
+    package(tmp_path, "arm", cmake)
+    result = in_shell(tmp_path, "colcon build")
+    assert result.returncode == 1
+    assert said in result.stderr
+    assert "Traceback" not in result.stderr
+
+
+def test_with_an_ament_cmake_colcon_goes_its_own_way(tmp_path: Path) -> None:
+    package(tmp_path, "arm", "")
+    real = tmp_path / "opt"
+    (real / "share" / "ament_cmake").mkdir(parents=True)
+    listed = in_shell(tmp_path, "colcon list", AMENT_PREFIX_PATH=str(real))
+    assert "(ros.ament_cmake)" in listed.stdout
+    assert "(ros.ament_cmake_copied)" in in_shell(tmp_path, "colcon list").stdout
