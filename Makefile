@@ -4,6 +4,7 @@
 #   make test    all tests, those of the page in a real Chromium (fetched below .build/ where there is none)
 #   make check   ruff, mypy, import-linter, the page's type check, generated files current
 #   make bench   the figures the project promises, measured on this machine
+#   make soak    an hour of processes over DDS: does anything grow, get lost or hang?
 #   make docs    the documentation site in site/
 #   make fuzz    a million hostile inputs for everything that reads files; see fuzz/README.md
 
@@ -17,7 +18,7 @@ export UV
 LOCKED := .build/constraints.txt
 PAGE_SOURCES := $(shell find frontend -path frontend/node_modules -prune -o -type f -print)
 
-.PHONY: demo test test-quick test-browser check bench fuzz docs page lock format clean
+.PHONY: demo test test-quick test-browser check bench soak fuzz docs page lock format clean
 
 demo: $(VENV)/.ready
 	$(BIN)/linkwright launch my_robot_description display_xacro.launch.py $(ARGS)
@@ -48,6 +49,9 @@ check: $(VENV)/.dev
 bench: $(VENV)/.dev page
 	$(BIN)/python -m benchmarks.peers
 	LINKWRIGHT_CHROMIUM=$$($(BIN)/python tools/chromium.py) $(BIN)/python -m benchmarks $(ARGS)
+
+soak: $(VENV)/.dev page
+	$(BIN)/python -m benchmarks.soak $(ARGS)
 
 fuzz: .build/fuzz/venv/.ready
 	PYTHONPATH=src:. nice -n 15 .build/fuzz/venv/bin/python -m fuzz $(ARGS)

@@ -1,15 +1,15 @@
-"""``python -m benchmarks [--write] [NAME ...]``: run all measurements, or those named (`xacro`, `urdf`, `graph`, ...).
+"""``python -m benchmarks [--list] [--write] [NAME ...]``: run all measurements, or those named (`xacro`, `dds`, ...).
 
-With ``--write`` the figures go to ``docs/benchmarks.md`` and its Chinese sister too.
+With ``--list`` only their names and what they measure are printed. With ``--write`` the figures go to
+``docs/benchmarks.md`` and its Chinese sister too.
 """
 
 from __future__ import annotations
 
+import ast
 import importlib
-import io
 import platform
 import sys
-from contextlib import redirect_stdout
 from pathlib import Path
 
 from benchmarks import report
@@ -21,11 +21,16 @@ def main() -> int:
     """Run them one after another, each in this process, each printing its table."""
     here = Path(__file__).parent
     known = sorted(path.stem.removeprefix("bench_") for path in here.glob("bench_*.py"))
-    names = [word for word in sys.argv[1:] if word != "--write"] or known
+    names = [word for word in sys.argv[1:] if word not in ("--write", "--list")] or known
     unknown = sorted(set(names) - set(known))
     if unknown:
         print(f"no measurement called {', '.join(unknown)}; there are {', '.join(known)}", file=sys.stderr)
         return 2
+    if "--list" in sys.argv:
+        for name in names:
+            said = ast.get_docstring(ast.parse((here / f"bench_{name}.py").read_text(encoding="utf-8"))) or ""
+            print(f"{name:12} {said.partition(chr(10))[0]}")
+        return 0
     print(f"Python {platform.python_version()}, {platform.system()} {platform.machine()}")
     for name in names:
         print(f"\n== {name}")
@@ -37,19 +42,10 @@ def main() -> int:
 
 
 def _run(name: str, *, keep: bool) -> None:
-    bench = importlib.import_module(f"benchmarks.bench_{name}")
-    if hasattr(bench, "rows"):
-        rows = bench.rows()
-        show(rows)
-        if keep:
-            report.keep(name, rows, corpus=has_corpus())
-        return
-    printed = io.StringIO()
-    with redirect_stdout(printed if keep else sys.stdout):
-        bench.main()
+    rows = importlib.import_module(f"benchmarks.bench_{name}").rows()
+    show(rows)
     if keep:
-        print(printed.getvalue(), end="")
-        report.keep(name, printed.getvalue(), corpus=has_corpus())
+        report.keep(name, rows, corpus=has_corpus())
 
 
 if __name__ == "__main__":

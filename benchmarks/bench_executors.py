@@ -1,15 +1,17 @@
 """How fast the executors deliver: messages from publish to callback in one process, and how soon a callback begins.
 
-Run it with ``python -m benchmarks executors``. "Copied" is what the nodes of rclpy's stand-in pay for being able to fill
-the same message again after it was published.
+Run it with ``python -m benchmarks executors``. "Copied" is what the nodes of rclpy's stand-in pay for being able to
+fill the same message again after it was published.
 """
 
 from __future__ import annotations
 
+import os
 import statistics
 import threading
 import time
 from collections.abc import Callable
+from unittest.mock import patch
 
 from benchmarks.measure import Row
 from linkwright.graph import Graph
@@ -136,13 +138,56 @@ def in_same_thread_us() -> float:
     return statistics.median(found)
 
 
+def as_users_write_it() -> tuple[float, float]:
+    """Messages a second and microseconds from publish to callback, of a program over rclpy (here its stand-in)."""
+    from linkwright.standins import activate
+
+    activate()
+    import rclpy
+    from rclpy.executors import SingleThreadedExecutor as UsersExecutor
+    from std_msgs.msg import String as UsersString
+
+    with patch.dict(os.environ, LINKWRIGHT_DDS="0"):
+        rclpy.init()
+        node = rclpy.create_node("bench")
+    received = 0
+
+    def receive(_message: UsersString) -> None:
+        nonlocal received
+        received += 1
+
+    node.create_subscription(UsersString, "chatter", receive, QUEUE)
+    publisher = node.create_publisher(UsersString, "chatter", QUEUE)
+    executor = UsersExecutor()
+    executor.add_node(node)
+    message = UsersString(data="hello")
+    start = time.perf_counter()
+    for batch in range(0, MESSAGES, QUEUE):
+        for _ in range(QUEUE):
+            publisher.publish(message)
+        while received < batch + QUEUE:
+            executor.spin_once(0)
+    rate = MESSAGES / (time.perf_counter() - start)
+    start = time.perf_counter()
+    for _ in range(LATENCIES):
+        publisher.publish(message)
+        executor.spin_once(0)
+    latency = (time.perf_counter() - start) / LATENCIES * 1e6
+    node.destroy_node()
+    rclpy.shutdown()
+    return rate, latency
+
+
 def rows() -> list[Row]:
     """The table."""
 
     def rate(what: str, messages: Callable[[], float], target: str = "") -> Row:
         return Row(what, statistics.median(messages() for _ in range(ROUNDS)) / 1000, "1000/s", target)
 
+    users_rate, users_latency = as_users_write_it()
     return [
+        Row("small messages, a program over rclpy, spin_once", users_rate / 1000, "1000/s", "200"),
+        Row("one message, a program over rclpy, spin_once", users_latency, "us", "20"),
         rate("small messages, one thread, spin", spinning_messages_per_second, "200"),
         rate(
             "small messages, one thread, copied as for rclpy", lambda: spinning_messages_per_second(copies=True), "200"

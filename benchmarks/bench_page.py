@@ -24,6 +24,7 @@ from pathlib import Path
 import psutil
 from playwright.sync_api import Browser, Page, sync_playwright
 
+from benchmarks.measure import Row
 from benchmarks.robots import write_sweep
 from linkwright.workspace import PackageFinder
 
@@ -37,11 +38,13 @@ FLAGS = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader
 def started(*words: str) -> Iterator[tuple[subprocess.Popen[str], int, float]]:
     """A `linkwright` process on a port of its own: the process, the port, and when it was started."""
     port = free_port()
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
     begin = time.perf_counter()
     process = subprocess.Popen(
         [sys.executable, "-m", "linkwright", *words, "--no-open", "--port", str(port)],
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
+        env=environment,
         text=True,
     )
     try:
@@ -170,14 +173,13 @@ def server_cost(browser: Browser, links: int, rate: int, seconds: float = 10) ->
     return 100 * used / elapsed, frames / elapsed
 
 
-def report(name: str, values: list[float], unit: str, target: str) -> None:
-    """One row: median, lowest, highest, and what was promised."""
-    median, low, high = statistics.median(values), min(values), max(values)
-    print(f"{name:44} {median:8.3g} {unit:3} (min {low:.3g}, max {high:.3g}; target {target})")
+def row(what: str, values: list[float], unit: str, target: str) -> Row:
+    """One row: the median, with the lowest and the highest."""
+    return Row(f"{what} ({min(values):.3g} to {max(values):.3g})", statistics.median(values), unit, target)
 
 
-def main() -> None:
-    """Measure and print everything."""
+def rows() -> list[Row]:
+    """Measure everything."""
     chromium = os.environ.get("LINKWRIGHT_CHROMIUM") or shutil.which("chromium")
     if chromium is None:
         raise SystemExit("no Chromium: set LINKWRIGHT_CHROMIUM or put one on the PATH")
@@ -185,21 +187,20 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=chromium, args=list(FLAGS))
         answers, robots = start_up(browser, str(package / "launch" / "display.launch.py"))
-        report("command to first HTTP answer", answers, "s", "0.7")
-        report("command to robot drawn", robots, "s", "2.5")
+        table = [
+            row("command to first HTTP answer", answers, "s", "0.7 s"),
+            row("command to robot drawn", robots, "s", "2.5 s"),
+        ]
         model = Path(folder) / "model.urdf"
         shutil.copy(package / "urdf" / "mbot_base.urdf", model)
         with started("view", str(model)) as (process, _, _):
             page = browser.new_page(viewport={"width": 1280, "height": 800})
             drawn(page, viewer_url(process))
-            report("slider moved to frames in the page", slider_latency(page), "ms", "50")
-            report("file saved to frames in the page", save_latency(page, model), "ms", "150")
+            table.append(row("slider moved to frames in the page", slider_latency(page), "ms", "50 ms"))
+            table.append(row("file saved to frames in the page", save_latency(page, model), "ms", "150 ms"))
             page.close()
         cost, fps = server_cost(browser, links=500, rate=30)
-        print(f"{'server, 500 links moving at 30 Hz':44} {cost:8.3g} %   of a core (target 5)")
-        print(f"{'page, 500 links moving at 30 Hz':44} {fps:8.3g} frames drawn a second")
+        table.append(Row("server, 500 links moving at 30 Hz", cost, "% of a core", "5"))
+        table.append(Row("page, 500 links moving at 30 Hz, frames drawn", fps, "1/s"))
         browser.close()
-
-
-if __name__ == "__main__":
-    main()
+    return table

@@ -11,7 +11,6 @@ import json
 import multiprocessing
 import statistics
 import struct
-import sys
 import time
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
@@ -20,6 +19,7 @@ from typing import Any
 import aiohttp
 import numpy as np
 
+from benchmarks.measure import Row
 from benchmarks.robots import tree_robot
 from linkwright.graph import DESCRIPTION_QOS, TF_QOS, Graph
 from linkwright.messages import String, TFMessage, TransformBatch
@@ -179,22 +179,20 @@ async def _drained(socket: aiohttp.ClientWebSocketResponse) -> None:
         return
 
 
-def main() -> int:
-    """Print the table."""
+def rows() -> list[Row]:
+    """The table."""
     alone, _ = asyncio.run(cost(None))
-    print(f"{LINKS} links at {RATE} Hz, share of one core")
-    print(f"  {'publisher alone':<28} {alone:7.2%}")
-    for pages, label in ((0, "viewer, nobody watches"), (1, "viewer, one page"), (4, "viewer, four pages")):
+    table = [Row(f"publisher alone, {LINKS} links at {RATE} Hz", alone * 100, "% of a core")]
+    for pages, label in ((0, "nobody watches"), (1, "one page"), (4, "four pages")):
         share, rate = asyncio.run(cost(pages))
-        print(f"  {label:<28} {share - alone:7.2%}   {rate:5.1f} frames/s to each page")
+        table.append(Row(f"viewer, {LINKS} links at {RATE} Hz, {label}", (share - alone) * 100, "% of a core"))
+        if pages:
+            table.append(Row(f"frames to each page, {label}", rate, "1/s"))
     for joints in (5, LINKS):
         delays = asyncio.run(slider_latencies(joints))
-        median, worst = statistics.median(delays), max(delays)
-        print(f"slider to page, {joints:3d} joints      median {median:6.2f} ms, worst {worst:6.2f} ms")
+        table.append(
+            Row(f"slider to page, {joints} joints ({max(delays):.3g} at most)", statistics.median(delays), "ms")
+        )
         took, size = asyncio.run(opening(joints))
-        print(f"page opens, {joints:3d} joints          {took:6.2f} ms, {size / 1024:.0f} KiB")
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+        table.append(Row(f"page opens, {joints} joints, {size / 1024:.0f} KiB", took, "ms"))
+    return table

@@ -57,13 +57,12 @@ _INPUTS = {
 }
 
 
-def keep(name: str, outcome: list[Row] | str, *, corpus: bool) -> None:
-    """Remember what one measurement gave: rows, or the text that it printed."""
+def keep(name: str, rows: list[Row], *, corpus: bool) -> None:
+    """Remember what one measurement gave."""
     known = json.loads(KEPT.read_text(encoding="utf-8")) if KEPT.is_file() else {}
     known[name] = {
         "date": datetime.now(timezone.utc).date().isoformat(),
-        "rows": [row.cells() for row in outcome] if isinstance(outcome, list) else [],
-        "text": outcome if isinstance(outcome, str) else "",
+        "rows": [row.cells() for row in rows],
         "corpus": corpus,
     }
     KEPT.parent.mkdir(exist_ok=True)
@@ -88,8 +87,6 @@ def write() -> list[Path]:
 
 def _section(section: dict[str, object], place: int) -> str:
     date = f"{section['date']}\n\n"
-    if section["text"]:
-        return f"{date}```text\n{str(section['text']).strip()}\n```\n"
     rows = section["rows"]
     assert isinstance(rows, list)
     return date + _HEADS[place] + "".join("| " + " | ".join(cells) + " |\n" for cells in rows)

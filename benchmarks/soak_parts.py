@@ -154,7 +154,8 @@ class Server(Part):
         super().__init__("soak_server")
         self.declare_parameter("speed", 0)
         self.create_service(AddTwoInts, "/soak/add", self._add)
-        self._action = ActionServer(self, Fibonacci, "/soak/fibonacci", self._execute)
+        # Results are kept for a quarter of an hour unless said otherwise; then memory is flat only after that.
+        self._action = ActionServer(self, Fibonacci, "/soak/fibonacci", self._execute, result_timeout=10)
 
     def _add(self, request: Any, response: Any) -> Any:
         response.sum = request.a + request.b
@@ -238,7 +239,7 @@ class Guests(Part):
     def __init__(self) -> None:
         super().__init__("soak_guests")
         self._guests: deque[Node] = deque()
-        self.create_timer(0.5, self._come_and_go)
+        self.create_timer(2.0, self._come_and_go)
 
     def _come_and_go(self) -> None:
         guest = rclpy.create_node(f"soak_guest_{self.seen['guests'] % 20}")

@@ -7,11 +7,13 @@ from collections.abc import AsyncIterator
 from pathlib import Path
 
 import pytest
+from rosbags.rosbag2 import StoragePlugin, Writer
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from linkwright.bag import BagReader, BagWriter, Player, PlayOptions, Recorder, TopicSelection
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import DEFAULT_QOS, DESCRIPTION_QOS, SENSOR_DATA_QOS, Graph, JumpClock, LogRecord, Node
-from linkwright.messages import String, deserialize, get_message, serialize
+from linkwright.messages import String, deserialize, get_message, serialize, type_hash
 
 START = 1_700_000_000_000_000_000
 SECOND = 1_000_000_000
@@ -230,6 +232,71 @@ async def test_the_time_of_the_recording_on_clock(
 async def test_a_topic_that_is_not_there_is_told_before_anything_is_played(player_node: Node, tmp_path: Path) -> None:
     with record(tmp_path, [0]) as bag, pytest.raises(LinkwrightError, match="'/chater'"):
         Player(player_node, bag, PlayOptions(topics=["/chater"]))
+
+
+PROBE = "float64 depth\nsoil_msgs/Sample[] samples\nstd_msgs/Header header\n"
+SAMPLE = "uint8 CLAY=1\nuint8 kind\nstring<=20 label\n"
+
+
+def record_of_a_foreign_type(path: Path, package: str, storage: StoragePlugin, **texts: str) -> None:
+    """A recording of a type that no package here has, as another program writes it."""
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    for name, text in texts.items():
+        store.register(get_types_from_msg(text.replace("soil_msgs", package), f"{package}/msg/{name}"))
+    probe, sample = store.types[f"{package}/msg/Probe"], store.types[f"{package}/msg/Sample"]
+    header, stamp = store.types["std_msgs/msg/Header"], store.types["builtin_interfaces/msg/Time"]
+    with Writer(path, version=9, storage_plugin=storage) as writer:
+        connection = writer.add_connection("/probe", probe.__msgtype__, typestore=store)
+        for number in range(3):
+            samples = [sample(kind=1, label="topsoil")] * number
+            message = probe(depth=number / 2, samples=samples, header=header(stamp(sec=number, nanosec=0), "drill"))
+            data = store.serialize_cdr(message, probe.__msgtype__)
+            writer.write(connection, SECOND * (number + 1), data)
+
+
+@pytest.mark.parametrize("storage", [StoragePlugin.MCAP, StoragePlugin.SQLITE3])
+async def test_a_type_that_no_package_has_is_known_by_what_the_recording_carries(
+    graph: Graph, clock: JumpClock, player_node: Node, tmp_path: Path, storage: StoragePlugin
+) -> None:
+    package = f"soil_{storage.name.lower()}_msgs"
+    record_of_a_foreign_type(tmp_path / "bag", package, storage, Sample=SAMPLE, Probe=PROBE)
+    with pytest.raises(LinkwrightError, match="there is no message"):
+        get_message(f"{package}/msg/Probe")
+    heard: list[tuple[float, list[str], str]] = []
+    with BagReader(tmp_path / "bag") as bag:
+        probe = get_message(f"{package}/msg/Probe")
+        graph.create_node("listener").create_subscription(
+            probe,
+            "/probe",
+            lambda m: heard.append((m.depth, [each.label for each in m.samples], m.header.frame_id)),
+            10,
+        )
+        player = Player(player_node, bag, PlayOptions())
+        player.start()
+        await clock.advance(3)
+    assert heard == [(0.0, [], "drill"), (0.5, ["topsoil"], "drill"), (1.0, ["topsoil", "topsoil"], "drill")]
+    assert get_message(f"{package}/msg/Sample").CLAY == 1
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    for name, text in (("Sample", SAMPLE), ("Probe", PROBE)):
+        store.register(get_types_from_msg(text.replace("soil_msgs", package), f"{package}/msg/{name}"))
+    assert type_hash(probe) == store.hash_rihs01(f"{package}/msg/Probe")
+
+
+async def test_a_malformed_definition_in_a_recording_is_told_and_the_rest_is_played(
+    graph: Graph, clock: JumpClock, player_node: Node, tmp_path: Path, log: list[LogRecord]
+) -> None:
+    record_of_a_foreign_type(tmp_path / "bag", "mud_msgs", StoragePlugin.MCAP, Sample=SAMPLE, Probe=PROBE)
+    file = next((tmp_path / "bag").glob("*.mcap"))
+    file.write_bytes(file.read_bytes().replace(b"float64 depth", b"flaot64 depth"))
+    listener = Listener(graph, clock, "/probe")
+    with BagReader(file) as bag:
+        player = Player(player_node, bag, PlayOptions())
+        player.start()
+        await clock.advance(3)
+    assert listener.heard == []
+    (warning,) = [record.text for record in log if record.node == "player"]
+    assert warning.startswith("Topic '/probe' is not played: ")
+    assert f"{file.name}/mud_msgs/msg/Probe.msg:1:1: there is no type 'flaot64'" in warning
 
 
 async def test_a_topic_may_be_left_out(graph: Graph, clock: JumpClock, player_node: Node, tmp_path: Path) -> None:

@@ -49,6 +49,14 @@ def test_nobody_publishes_joint_states(in_graph, capsys):
     assert "start joint_state_publisher" in said
 
 
+def test_in_chinese(in_graph, capsys):
+    in_graph(lambda graph: RobotStatePublisher(graph, NodeOptions(parameters=DESCRIBED)))
+    said = doctor(capsys, "--lang", "zh", status=1)
+    assert "正在观察运行中的计算图，1 秒……\n" in said
+    assert "没有人发布关节状态，所以坐标系“wheel”没有变换" in said
+    assert "1 个问题；1 个节点、" in said
+
+
 def test_a_joint_is_misspelt(in_graph, capsys):
     def make(graph: Graph) -> None:
         RobotStatePublisher(graph, NodeOptions(parameters=DESCRIBED))

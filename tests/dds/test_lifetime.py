@@ -50,6 +50,25 @@ def test_closing_twice_and_before_being_ready_is_fine(processes):
     assert transport.remote_nodes() == []
 
 
+def test_who_waits_for_others_goes_on_when_the_domain_is_left(processes):
+    us = processes("ours")
+    waited: list[float] = []
+
+    def wait() -> None:
+        begin = time.monotonic()
+        us.transport._joined_at = begin + 60.0  # discovery does not settle
+        us.transport.wait_for_discovery(30.0)
+        us.transport.wait_until_ready(30.0)
+        waited.append(time.monotonic() - begin)
+
+    waiting = threading.Thread(target=wait)
+    waiting.start()
+    time.sleep(0.1)
+    us.close()
+    waiting.join(5.0)
+    assert waited[0] < 2.0
+
+
 def test_what_was_sent_reliably_before_closing_arrives(processes):
     b = processes("b")
     got: list[int] = []

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from linkwright.cli import main
 from linkwright.diagnostics import Diagnostic, Note, Severity, SourceText, print_diagnostics, render
 from linkwright.diagnostics.formats import format_diagnostics
-from linkwright.diagnostics.translation import language, language_of, set_language, translate, translated
+from linkwright.diagnostics.translation import language, language_of, localized, set_language, translate, translated
 from linkwright.diagnostics.translation.catalogue import FOLDERS, Catalogue
 from linkwright.diagnostics.translation.templates import Table, Template
 
@@ -162,6 +162,26 @@ def test_message_notes_and_hint_are_translated_and_nothing_else() -> None:
     assert chinese.notes == (Note("在宏“base”中，该宏在这里被调用", span), Note("从这里 include 进来，共 3 次"))
     assert chinese.hint == "是不是想写“wheel”、“whirl”或“shell”？"
     assert (chinese.code, chinese.span, chinese.severity, chinese.source) == ("XAC401", span, Severity.WARNING, source)
+
+
+def test_a_list_of_many_names_ends_with_how_many_more_there_are() -> None:
+    found = in_chinese(
+        "LAUNCH113", "argument 'x' is not declared by the launch file", hint="it declares 'a', 'b' and 3 more"
+    )
+    assert found.hint == "它声明了“a”、“b”和另外 3 个"
+    found = in_chinese(
+        "LAUNCH113", "argument 'x' is not declared by the launch file", hint="it declares 'a and 3 more'"
+    )
+    assert found.hint == "它声明了“a and 3 more”"
+
+
+def test_a_line_about_what_a_command_does(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert localized("1 error, 12 warnings") == "1 error, 12 warnings"
+    monkeypatch.setenv("LANG", "zh_CN.UTF-8")
+    assert localized("1 error, 12 warnings") == "1 个错误，12 个警告"
+    assert localized("mended 3 findings in 1 file") == "在 1 个文件里改好了 3 个问题"
+    assert localized("2 findings; 1 node, 3 topics, 0 frames") == "2 个问题；1 个节点、3 个话题、0 个坐标系"
+    assert localized("something else") == "something else"
 
 
 def test_parts_are_translated_too() -> None:

@@ -18,6 +18,7 @@ from linkwright.graph import (
     TimeJump,
 )
 from linkwright.graph.executors import SingleThreadedExecutor
+from linkwright.graph.faults import NotInitializedError
 from linkwright.graph.time import INFINITE
 from linkwright.messages import get_message
 
@@ -139,11 +140,27 @@ class TestClocks:
             clock.sleep_until(Time(seconds=1))
 
     def test_sleep_ends_with_its_context(self):
+        class Ending:
+            def __init__(self):
+                self.looks = 0
+
+            def ok(self):
+                self.looks += 1
+                return self.looks < 3
+
+        assert not Clock().sleep_for(Duration(seconds=60), Ending())
+
+    def test_sleep_does_not_begin_without_its_context(self):
         class Over:
             def ok(self):
                 return False
 
-        assert not Clock().sleep_for(Duration(seconds=60), Over())
+        with pytest.raises(NotInitializedError):
+            Clock().sleep_for(Duration(seconds=60), Over())
+        clock = Clock()
+        clock.context = Over()
+        with pytest.raises(NotInitializedError):
+            clock.sleep_for(Duration(seconds=60))
 
     def test_sleep_by_simulated_time(self):
         clock = ROSClock()

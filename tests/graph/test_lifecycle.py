@@ -145,7 +145,7 @@ async def test_entities_are_asked_until_one_objects(managed):
         def work(self):
             return "worked"
 
-        @SimpleManagedEntity.when_enabled(when_not_enabled=lambda self: "rested")
+        @SimpleManagedEntity.when_enabled(when_not_enabled=lambda: "rested")
         def rest(self):
             return "worked"
 

@@ -137,4 +137,3 @@ async def test_a_node_that_cannot_begin_leaves_nothing_behind(graph, monkeypatch
         graph.create_node("node")
     assert graph.node_names() == []
     assert graph.endpoints() == []
-    assert graph.unique_node_name("node") == "node"

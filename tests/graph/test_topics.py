@@ -5,6 +5,7 @@ import pytest
 from linkwright.diagnostics import Diagnostic, LinkwrightError
 from linkwright.graph import (
     DurabilityPolicy,
+    Duration,
     Graph,
     HistoryPolicy,
     InvalidHandleError,
@@ -129,6 +130,21 @@ async def test_late_comers_get_what_a_transient_local_publisher_keeps(graph):
     assert texts(volatile) == ["d"]
 
 
+async def test_late_comers_do_not_get_what_has_outlived_its_lifespan(graph, clock):
+    node = graph.create_node("node")
+    qos = QoSProfile(depth=5, durability=DurabilityPolicy.TRANSIENT_LOCAL, lifespan=Duration(seconds=1))
+    publisher = node.create_publisher(String, "topic", qos)
+    for text in "abc":
+        publisher.publish(String(text))
+        await clock.advance(0.6)
+    received, outside = [], []
+    node.create_subscription(String, "topic", received.append, QoSProfile(5, durability=LATCHED.durability))
+    publisher.set_outside(outside.append)
+    await graph.settle()
+    assert texts(received) == ["c"]
+    assert texts(outside) == ["c"]
+
+
 async def test_a_volatile_publisher_keeps_nothing(graph):
     node = graph.create_node("node")
     received = []
@@ -243,5 +259,3 @@ async def test_equal_node_names_are_told(graph, log):
     assert log == []
     graph.create_node("twin", namespace="/home")
     assert "share the exact name '/home/twin'" in log[0].text
-    assert graph.unique_node_name("twin") == "twin_2"
-    assert graph.unique_node_name("single") == "single"

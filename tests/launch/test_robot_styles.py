@@ -265,7 +265,7 @@ async def test_what_an_include_does_not_get(launch: Any, write: Any) -> None:
         '<launch><include file="$(dirname)/b.launch.xml"><arg name="modle" value="1"/></include></launch>',
     )
     done = await launch(_file(path))
-    assert "the included launch file requires argument 'model', which is not given" in done.err
+    assert "requires argument 'model', which is not given" in done.err
     assert "it is given 'modle': is that the one?" in done.err
 
 

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from linkwright.diagnostics import LinkwrightError, SourceText
 from linkwright.messages import (
     DefinitionError,
+    add_definitions,
     definition_text,
     deserialize,
     get_action,
@@ -373,3 +374,47 @@ class TestIdl:
     def test_any_words_are_understood_or_refused(self, words):
         with contextlib.suppress(DefinitionError):
             self.parsed(" ".join(words))
+
+
+class TestDefinitionsThatDataBringAlong:
+    def test_a_message_and_those_in_it(self):
+        text = (
+            "Inner[] inner\nstd_msgs/Header header\n"
+            f"{'=' * 80}\nMSG: carried_msgs/Inner\nint32 n 5\n"
+            f"{'=' * 80}\nMSG: std_msgs/Header\nint32 another_header\n"
+        )
+        add_definitions("carried_msgs/msg/Outer", text, "some.mcap")
+        outer = get_message("carried_msgs/msg/Outer")
+        inner = get_message("carried_msgs/msg/Inner")
+        assert outer(inner=[inner()]).inner[0].n == 5
+        assert outer.get_fields_and_field_types()["header"] == "std_msgs/Header"
+        assert hasattr(outer().header, "frame_id"), "what comes with Linkwright goes before"
+        assert {"carried_msgs/msg/Inner", "carried_msgs/msg/Outer"} <= set(interface_names("msg"))
+        assert deserialize(serialize(outer()), outer) == outer()
+
+    def test_of_two_texts_the_first_counts(self):
+        add_definitions("carried_msgs/msg/Twice", "int32 first\n", "a.mcap")
+        add_definitions("carried_msgs/msg/Twice", "int32 second\n", "b.mcap")
+        assert list(get_message("carried_msgs/msg/Twice").get_fields_and_field_types()) == ["first"]
+
+    def test_idl(self):
+        separator = "=" * 80
+        text = (
+            f"{separator}\nIDL: carried_msgs/msg/Written\n"
+            "module carried_msgs { module msg { struct Written { long n; carried_msgs::msg::Part part; }; }; };\n"
+            f"{separator}\nIDL: carried_msgs/msg/Part\n"
+            "module carried_msgs { module msg { struct Part { double x; }; }; };\n"
+        )
+        add_definitions("carried_msgs/msg/Written", text, "some.mcap", idl=True)
+        assert get_message("carried_msgs/msg/Written")().part.x == 0.0
+
+    def test_mistakes_are_told_when_the_message_is_asked_for(self):
+        add_definitions("carried_msgs/msg/Wrong", "int32 n\nint33 m\n", "some.mcap")
+        with pytest.raises(
+            DefinitionError, match=r"some\.mcap/carried_msgs/msg/Wrong\.msg:2:1: there is no type 'int33'"
+        ):
+            get_message("carried_msgs/msg/Wrong")
+
+    @given(name=st.text(), text=st.text(), idl=st.booleans())
+    def test_anything_may_come_along(self, name, text, idl):
+        add_definitions(name, text, "some.mcap", idl=idl)

@@ -9,7 +9,7 @@ import pytest
 from linkwright.graph import dds
 from tests.reliability.running import Machine
 
-FIRST_DOMAIN = 155
+FIRST_DOMAIN = 21
 ROS_VARIABLES = (
     "ROS_LOCALHOST_ONLY",
     "ROS_AUTOMATIC_DISCOVERY_RANGE",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import signal
+
 import pytest
 
 from tests.reliability.running import Machine, until
@@ -190,6 +192,7 @@ def test_a_queue_of_ten_keeps_the_last_ten(machine: Machine) -> None:
     assert numbers == list(range(490, 500))
 
 
+@pytest.mark.slow
 def test_a_service_answers_while_its_process_is_flooded(machine: Machine) -> None:
     machine.program(FLOOD)
     server = machine.program(
@@ -213,3 +216,50 @@ def test_a_service_answers_while_its_process_is_flooded(machine: Machine) -> Non
     until(lambda: "/ask" in machine.verb("service", "list"))
     for _ in range(3):
         assert "response" in machine.verb("service", "call", "/ask", "std_srvs/srv/Trigger")
+
+
+def test_a_process_that_stands_still_holds_nobody_up(machine: Machine) -> None:
+    """Stopped as a debugger stops it: the publisher goes on, and once it runs again it hears what comes then."""
+    talker = machine.program(
+        """
+        class Program(Node):
+            def __init__(self):
+                super().__init__("talker")
+                self.publisher = self.create_publisher(String, "words", 10)
+                self.number = 0
+                self.create_timer(0.005, self.tick)
+
+            def tick(self):
+                self.number += 1
+                before = time.monotonic()
+                self.publisher.publish(String(data=f"{self.number} " + "x" * 100_000))
+                if time.monotonic() - before > 0.5:
+                    say("held up")
+                if self.number % 50 == 0:
+                    say("spoke", self.number)
+        """
+    )
+    listener, other = (
+        machine.program(
+            f"""
+            class Program(Node):
+                def __init__(self):
+                    super().__init__("{name}")
+                    self.create_subscription(String, "words", self.hear, 10)
+
+                def hear(self, message):
+                    say("heard", int(message.data.split()[0]))
+            """
+        )
+        for name in ("listener", "other")
+    )
+    listener.wait_for("heard", times=20)
+    other.wait_for("heard", times=20)
+    listener.process.send_signal(signal.SIGSTOP)
+    spoken, heard = talker.last_number("spoke"), other.count("heard")
+    until(lambda: talker.last_number("spoke") >= spoken + 400, 8.0, lambda: talker.text)
+    other.wait_for("heard", times=heard + 300)
+    assert not talker.count("held up")
+    listener.process.send_signal(signal.SIGCONT)
+    now = talker.last_number("spoke")
+    until(lambda: listener.last_number("heard") > now, 10.0)

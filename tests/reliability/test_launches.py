@@ -13,6 +13,7 @@ from tests.reliability.running import Machine, launch_file, until
 ROBOT = Path(__file__).parents[2] / "robots" / "my_robot_description"
 
 
+@pytest.mark.slow
 def test_two_of_one_kind_warn_and_both_work(machine: Machine) -> None:
     actions = (
         "Node(package='demo_nodes_cpp', executable='talker')",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from tests.reliability.running import Machine, until
 
 LISTENER = """
@@ -20,6 +22,7 @@ class Program(Node):
 """
 
 
+@pytest.mark.slow
 def test_they_are_dropped_and_told_once_and_everything_goes_on(machine: Machine) -> None:
     listener = machine.program(LISTENER)
     listener.wait_for("up")

@@ -95,23 +95,38 @@ def test_an_unknown_command_is_told_with_the_nearest_name() -> None:
     assert "colcon" in (diagnostic.hint or "")
 
 
-def test_a_bash_start_file_that_sets_the_path_leaves_our_commands_behind_it(tmp_path: Path) -> None:
-    script(tmp_path / "opt", "ros2", "echo real ros2")
-    (tmp_path / ".bashrc").write_text(f"export PATH={tmp_path / 'opt'}:{BARE}\nunset PYTHONPATH\n")
-    result = subprocess.run(
+def in_bash(home: Path, lines: str) -> subprocess.CompletedProcess[str]:
+    """What is typed in the interactive shell of a user with this home."""
+    return subprocess.run(
         [sys.executable, "-m", "linkwright", "shell"],
-        input='ros2; command -v check_urdf; echo "$PYTHONPATH"; exit 5\n',
+        input=lines,
         capture_output=True,
         text=True,
-        env={"PATH": BARE, "HOME": str(tmp_path), "SHELL": "/bin/bash"},
+        env={"PATH": BARE, "HOME": str(home), "SHELL": "/bin/bash"},
         timeout=60,
         check=False,
     )
+
+
+def test_a_bash_start_file_that_sets_the_path_leaves_our_commands_behind_it(tmp_path: Path) -> None:
+    script(tmp_path / "opt", "ros2", "echo real ros2")
+    (tmp_path / ".bashrc").write_text(f"export PATH={tmp_path / 'opt'}:{BARE}\nunset PYTHONPATH\n")
+    result = in_bash(tmp_path, 'ros2; command -v check_urdf; echo "$PYTHONPATH"; exit 5\n')
     ros2, check_urdf, python_path = result.stdout.splitlines()
     assert ros2 == "real ros2"
     assert check_urdf.endswith("/check_urdf")
     assert "standins" in python_path
     assert result.returncode == 5
+
+
+@pytest.mark.parametrize("start", ["", f"export PATH={BARE}\n", 'export PATH="$PATH:/opt/ros/bin"\n'])
+def test_our_folders_stand_once_on_the_path(tmp_path: Path, start: str) -> None:
+    (tmp_path / ".bashrc").write_text(start)
+    path, mark = in_bash(tmp_path, 'echo "$PATH"; echo "$LINKWRIGHT_SHELL"\n').stdout.splitlines()
+    parts = path.split(os.pathsep)
+    assert parts[0] == str(Path(sys.executable).parent)
+    assert parts[-1] == mark
+    assert len(set(parts)) == len(parts)
 
 
 def test_termination_is_passed_on_and_the_folder_of_programs_goes(tmp_path: Path) -> None:

@@ -115,6 +115,19 @@ def test_a_package_of_the_workspace_is_imported_without_a_build(workspace, below
     assert second.endswith("Wrong.msg:1:7: 'X' is no name for a field")
 
 
+@pytest.mark.parametrize("line", ["from my_msgs.msg import Wrong", "import my_msgs.msg._wrong"])
+def test_a_faulty_file_is_told_in_one_traceback(workspace, line):
+    program = textwrap.dedent(PREAMBLE) + f"{line}\n"
+    done = subprocess.run(
+        [sys.executable, "-c", program], cwd=workspace, capture_output=True, text=True, check=False, timeout=60
+    )
+    assert done.returncode == 1
+    assert done.stderr.count("Traceback") == 1
+    last = done.stderr.splitlines()[-1]
+    assert last.startswith("ImportError: ")
+    assert last.endswith("Wrong.msg:1:7: 'X' is no name for a field")
+
+
 def test_what_is_installed_comes_first(tmp_path):
     package = tmp_path / "std_msgs" / "msg"
     package.mkdir(parents=True)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from linkwright.bag.qos import from_bag
 from linkwright.bag.unfinished import finished_copy, is_unfinished
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, did_you_mean, display_path
+from linkwright.messages import add_definitions
 
 if TYPE_CHECKING:
     from typing_extensions import Self
@@ -44,6 +45,8 @@ class BagTopic:
 class BagReader:
     """An open recording; close it, or use it in a ``with`` statement.
 
+    Types of messages that are not known otherwise are, from then on, by the definitions that it carries.
+
     Args:
         path: a folder with a ``metadata.yaml``, or a single ``.mcap`` or ``.db3`` file. Of a recording that was killed,
             which has neither ``metadata.yaml`` nor an index, everything is read that was written.
@@ -66,6 +69,7 @@ class BagReader:
             self._open.close()
             raise _unreadable(self.path, error) from error
         self.storage = _storage_of(target)
+        self._make_types_known()
         self.topics = [
             BagTopic(
                 name,
@@ -84,6 +88,15 @@ class BagReader:
             return target
         scratch = self._open.enter_context(TemporaryDirectory(prefix="linkwright_bag_"))
         return finished_copy(files[0], Path(scratch))
+
+    def _make_types_known(self) -> None:
+        from rosbags.interfaces import MessageDefinitionFormat
+
+        origin = display_path(self.path)
+        for each in self._reader.connections:
+            form, text = each.msgdef
+            if form is not MessageDefinitionFormat.NONE:
+                add_definitions(each.msgtype, text, origin, idl=form is MessageDefinitionFormat.IDL)
 
     @property
     def files(self) -> list[Path]:

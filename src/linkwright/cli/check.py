@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from linkwright.cli.assignments import parse_assignments
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, has_errors, print_diagnostics
 from linkwright.diagnostics.formats import FORMATS, format_diagnostics
+from linkwright.diagnostics.translation import localized
 
 if TYPE_CHECKING:
     from linkwright.lint.apply import Mended

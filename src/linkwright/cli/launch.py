@@ -67,15 +67,18 @@ def run(arguments: argparse.Namespace) -> int:
     """Run the launch file until it ends."""
     from linkwright import standins
     from linkwright.launch import LaunchOptions, parse_launch_words, print_description, run_launch, show_arguments
+    from linkwright.shell.programs import offer_programs, offer_ros_variables
 
     target, values = parse_launch_words(arguments.words)
     standins.activate()
+    offer_ros_variables(os.environ)
     if arguments.show_args:
         print(show_arguments(target))
         return 0
     if arguments.print:
         print(print_description(target))
         return 0
+    offer_programs(os.environ)
     if arguments.show_all_subprocesses_output:
         os.environ["OVERRIDE_LAUNCH_PROCESS_OUTPUT"] = "both"
     options = LaunchOptions(

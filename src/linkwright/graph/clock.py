@@ -11,7 +11,7 @@ from itertools import count
 from typing import TYPE_CHECKING, Any, Protocol
 
 from linkwright.graph.dispatch import Alarm, Dispatcher
-from linkwright.graph.faults import NotInitializedException
+from linkwright.graph.faults import NotInitializedError
 from linkwright.graph.time import ClockType, Duration, Time
 from linkwright.graph.timebase import SystemClock, Timebase
 
@@ -203,11 +203,11 @@ class Clock:
 
         Raises:
             ValueError: the point belongs to another type of clock.
-            NotInitializedException: the context is not ok to begin with.
+            NotInitializedError: the context is not ok to begin with.
         """
         context = self.context if context is None else context
         if context is not None and not context.ok():
-            raise NotInitializedException
+            raise NotInitializedError
         if until.clock_type != self.clock_type:
             raise ValueError("until's clock type does not match this clock's type")
         with self._changed:

@@ -31,6 +31,9 @@ class Entity(Handled, ABC):
     unblockable = False
     """Whether its calls run none of the user's callbacks, so that no group needs to hold them back."""
 
+    postponed = 0
+    """How often an executor has let others run first; see ``Executor._postpone``."""
+
     def __init__(self, node: Node, callback_group: CallbackGroup | None = None) -> None:
         self.node = node
         self.callback_group = callback_group

@@ -26,7 +26,7 @@ class NodeNotFoundError(RuntimeError):
         self.namespace = namespace
 
 
-class NotInitializedException(Exception):
+class NotInitializedError(Exception):
     """Something needs a context, which is not initialised, or was shut down; name and text are rclpy's."""
 
     def __init__(self, message: str | None = None) -> None:

@@ -163,16 +163,6 @@ class Graph(GraphQueries):
         """The nodes of this process, in order of creation."""
         return tuple(self._nodes)
 
-    def unique_node_name(self, name: str, namespace: str = "/") -> str:
-        """A node name that is free in a namespace: the one given, or it with a number behind."""
-        taken = self._taken_names
-        namespace = absolute_namespace(namespace)
-        candidate, number = name, 1
-        while join(namespace, candidate) in taken:
-            number += 1
-            candidate = f"{name}_{number}"
-        return candidate
-
     # --- the transport -----------------------------------------------------------------------------------------------
 
     def attach(self, transport: Transport) -> None:

@@ -156,11 +156,6 @@ class GraphQueries:
         """Do not have it called any longer."""
         self._watchers.pop(changed, None)
 
-    def wait_for_change(self, timeout_sec: float | None = None) -> bool:
-        """Block the calling thread until nodes or endpoints come or go; False when the time was over first."""
-        with self._changed:
-            return self._changed.wait(timeout_sec)
-
     def wait_until(self, holds: Callable[[], bool], timeout_sec: float | None = None) -> bool:
         """Block the calling thread until something of the graph holds.
 
@@ -187,14 +182,6 @@ class GraphQueries:
         return self.wait_until(
             lambda: any(join(each.namespace, each.name) == full_name for each in self.identities()), timeout_sec
         )
-
-    def wait_for_publishers(self, topic: str, count: int = 1, timeout_sec: float | None = None) -> bool:
-        """Block the calling thread until a topic, by its absolute name, has that many publishers; whether it has."""
-        return self.wait_until(lambda: self.count_publishers(topic) >= count, timeout_sec)
-
-    def wait_for_subscribers(self, topic: str, count: int = 1, timeout_sec: float | None = None) -> bool:
-        """Block the calling thread until a topic, by its absolute name, has that many subscriptions; whether it has."""
-        return self.wait_until(lambda: self.count_subscribers(topic) >= count, timeout_sec)
 
     def _of_node(self, name: str, namespace: str) -> list[EndpointInfo]:
         if not any((each.name, each.namespace) == (name, namespace) for each in self.identities()):

@@ -184,12 +184,6 @@ class Publisher(TopicEndpoint[M]):
             self.outside = send
             self._acknowledged = acknowledged if send is not None else None
 
-    def incompatible_outside(self, policy: str, remote_name: str) -> None:
-        """For the transport: a subscription outside asks for more than this offers."""
-        from linkwright.graph.matching import tell_publisher
-
-        tell_publisher(self, policy, f"'{remote_name}' is outside")
-
     @property
     def is_manually_alive(self) -> bool:
         """Whether it has to show by itself that it lives."""

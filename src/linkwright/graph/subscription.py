@@ -117,20 +117,9 @@ class Subscription(TopicEndpoint[M], Entity):
     def _callback_type(self) -> Enum:
         return CallbackType.WithMessageInfo if self._wants_info else CallbackType.MessageOnly
 
-    @property
-    def wants_info(self) -> bool:
-        """Whether the callback takes a `MessageInfo`."""
-        return self._wants_info
-
     def get_publisher_count(self) -> int:
         """How many publishers it receives from."""
         return len(self._publishers) + self._outside_count
-
-    def incompatible_outside(self, policy: str, remote_name: str) -> None:
-        """For the transport: a publisher outside offers less than this asks for."""
-        from linkwright.graph.matching import tell_subscription
-
-        tell_subscription(self, policy, f"'{remote_name}' is outside")
 
     def lost_outside(self, count: int) -> None:
         """For the transport: messages from outside were lost."""

@@ -7,7 +7,7 @@ import logging
 import os
 import sys
 from collections import deque
-from collections.abc import Callable, Iterable, MutableMapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, MutableMapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -92,7 +92,6 @@ class LaunchContext:
         self._initial_environment = dict(os.environ)
         self._event_queue = EventQueue()
         self._event_handlers: deque[BaseEventHandler] = deque()
-        self._completion_futures: list[asyncio.Future[Any]] = []
         self._is_shutdown = False
         self._loop: asyncio.AbstractEventLoop | None = None
         self._locals: list[dict[str, Any]] = [{}]
@@ -210,9 +209,10 @@ class LaunchContext:
 
     # --- the running launch ---------------------------------------------------------------------------------
 
-    def attach(self, session: LaunchSession) -> None:
-        """Tie the context to the launch that runs in it."""
+    def attach(self, session: LaunchSession) -> EventQueue:
+        """Tie the context to the launch that runs in it, which is to work on the events of the queue returned."""
         self._session = session
+        return self._event_queue
 
     @property
     def is_running(self) -> bool:
@@ -224,11 +224,6 @@ class LaunchContext:
         self._session = None
         self._event_queue.on_put = None
         self._locals = self._locals[:1]
-
-    @property
-    def runs(self) -> bool:
-        """Whether a launch runs in the context."""
-        return self._session is not None
 
     @property
     def session(self) -> LaunchSession:
@@ -308,7 +303,6 @@ class LaunchContext:
 
     def add_completion_future(self, completion_future: asyncio.Future[Any]) -> None:
         """Have the launch not end before something is done."""
-        self._completion_futures.append(completion_future)
         if self._session is not None:
             self._session.hold(completion_future)
 
@@ -329,7 +323,11 @@ class LaunchContext:
 
     def would_handle_event(self, event: Event) -> bool:
         """Whether any handler is for the event."""
-        return any(handler.matches(event) for handler in tuple(self._event_handlers))
+        return any(True for _ in self.handlers_of(event))
+
+    def handlers_of(self, event: Event) -> Iterator[BaseEventHandler]:
+        """The handlers that are for the event, in the order in which they are asked."""
+        return (handler for handler in tuple(self._event_handlers) if handler.matches(event))
 
     def emit_event_sync(self, event: Event) -> None:
         """Put an event into the queue."""

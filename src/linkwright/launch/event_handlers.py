@@ -92,7 +92,42 @@ class EventHandler(BaseEventHandler):
         return self._entities
 
 
-class OnActionEventBase(BaseEventHandler):
+class _ReactingHandler(BaseEventHandler):
+    """Gives entities, or what a function of the event gives, to be visited.
+
+    Args:
+        matcher: called with the event.
+        reaction: the entities, or a function of event and context that returns them.
+        name: what the user knows the reaction by.
+        handle_once: whether it is unregistered after the first event.
+
+    Raises:
+        TypeError: the reaction is neither.
+    """
+
+    def __init__(
+        self, *, matcher: Callable[[Any], bool], reaction: EntitiesOrCallable, name: str, handle_once: bool
+    ) -> None:
+        super().__init__(matcher=matcher, handle_once=handle_once)
+        self._function, self._entities = _reaction(reaction, name)
+
+    @property
+    def entities(self) -> list[LaunchDescriptionEntity]:
+        """The entities to be visited, as far as they are known beforehand."""
+        return self._entities
+
+    @property
+    def handler_description(self) -> str:
+        """The function, or that there are actions."""
+        return "<actions>" if self._function is None else str(self._function)
+
+    def handle(self, event: Any, context: LaunchContext) -> Any:
+        """The entities to be visited for the event."""
+        super().handle(event, context)
+        return self._entities if self._function is None else self._function(event, context)
+
+
+class OnActionEventBase(_ReactingHandler):
     """A handler for events that come from an action.
 
     Args:
@@ -126,20 +161,9 @@ class OnActionEventBase(BaseEventHandler):
             source = event.action  # type: ignore[attr-defined]
             return source is action_matcher if is_action else bool(action_matcher(source))
 
-        super().__init__(matcher=matches, handle_once=handle_once)
+        super().__init__(matcher=matches, reaction=on_event, name="on_event", handle_once=handle_once)
         self._event_name = target_event_cls.__name__
         self._action_name = None if action_matcher is None else target_action_cls.__name__
-        self._function, self._entities = _reaction(on_event, "on_event")
-
-    @property
-    def entities(self) -> list[LaunchDescriptionEntity]:
-        """The entities to be visited, as far as they are known beforehand."""
-        return self._entities
-
-    @property
-    def handler_description(self) -> str:
-        """The function, or that there are actions."""
-        return "<actions>" if self._function is None else str(self._function)
 
     @property
     def matcher_description(self) -> str:
@@ -147,11 +171,6 @@ class OnActionEventBase(BaseEventHandler):
         if self._action_name is None:
             return f"event == {self._event_name}"
         return f"event == {self._event_name} and {self._action_name}(event.action)"
-
-    def handle(self, event: Any, context: LaunchContext) -> Any:
-        """The entities to be visited for the event."""
-        super().handle(event, context)
-        return self._entities if self._function is None else self._function(event, context)
 
 
 def _reaction(given: Any, name: str) -> tuple[Callable[..., Any] | None, list[LaunchDescriptionEntity]]:
@@ -275,29 +294,18 @@ class OnIncludeLaunchDescription(BaseEventHandler):
         return event.launch_description
 
 
-class OnShutdown(BaseEventHandler):
+class OnShutdown(_ReactingHandler):
     """Reacts when the launch is to end."""
 
     def __init__(self, *, on_shutdown: EntitiesOrCallable, handle_once: bool = False, **_: Any) -> None:
-        super().__init__(matcher=lambda event: isinstance(event, events.Shutdown), handle_once=handle_once)
-        self._function, self._entities = _reaction(on_shutdown, "on_shutdown")
-
-    @property
-    def entities(self) -> list[LaunchDescriptionEntity]:
-        """The entities to be visited, as far as they are known beforehand."""
-        return self._entities
-
-    @property
-    def handler_description(self) -> str:
-        """The function, or that there are actions."""
-        return "<actions>" if self._function is None else str(self._function)
+        super().__init__(
+            matcher=lambda event: isinstance(event, events.Shutdown),
+            reaction=on_shutdown,
+            name="on_shutdown",
+            handle_once=handle_once,
+        )
 
     @property
     def matcher_description(self) -> str:
         """Which events it is for."""
         return "event issubclass of launch.events.Shutdown"
-
-    def handle(self, event: Any, context: LaunchContext) -> Any:
-        """The entities to be visited for the event."""
-        super().handle(event, context)
-        return self._entities if self._function is None else self._function(event, context)

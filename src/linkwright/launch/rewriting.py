@@ -303,7 +303,7 @@ def _performed(context: LaunchContext, rewrites: Mapping[str, list[Substitution]
 
 def _written(context: LaunchContext, text: str, suffix: str) -> str:
     """The path of a new file, which goes with the launch where one runs."""
-    folder = context.session.scratch_folder if context.runs else None
+    folder = context.session.scratch_folder if context.is_running else None
     with tempfile.NamedTemporaryFile("w", suffix=suffix, dir=folder, delete=False, encoding="utf-8") as file:
         file.write(text)
     return file.name

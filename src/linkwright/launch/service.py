@@ -122,7 +122,6 @@ class LaunchService:
                 raise RuntimeError("LaunchService cannot be run multiple times concurrently.")
             finder = PackageFinder(start=_starting_folders())
             options = SessionOptions(open_browser=False, shutdown_when_idle=shutdown_when_idle)
-            self.__context._set_is_shutdown(False)
             session = LaunchSession(finder, options, LaunchLog(debug=self._debug), self.__context)
             session.loop = asyncio.get_running_loop()
             self.__session = session

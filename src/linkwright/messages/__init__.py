@@ -1,5 +1,6 @@
 """ROS 2 messages, services and actions: classes made from their definitions, and their bytes, hashes and texts."""
 
+from linkwright.messages.carried import add_definitions
 from linkwright.messages.catalogue import packages as shipped_packages
 from linkwright.messages.cdr import deserialize, serialize
 from linkwright.messages.classes import get_action, get_interface, get_message, get_service
@@ -49,6 +50,7 @@ __all__ = [
     "TransformBatch",
     "TransformStamped",
     "Vector3",
+    "add_definitions",
     "definition_of",
     "definition_text",
     "deserialize",

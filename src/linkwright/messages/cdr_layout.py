@@ -34,11 +34,6 @@ class Place(NamedTuple):
         """Bytes up to the next multiple of a size; None when that cannot be said beforehand."""
         return (-self.rest) % size if self.modulus >= size else None
 
-    def aligned(self, size: int) -> Place:
-        """The place at the next multiple of a size."""
-        padding = self.padding(size)
-        return Place(size, 0) if padding is None else self.after(padding)
-
     def met(self, other: Place) -> Place:
         """What holds at both places."""
         modulus = min(self.modulus, other.modulus)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from enum import Enum
 from typing import NamedTuple
 
@@ -141,6 +141,14 @@ class Action(NamedTuple):
 
 
 Definition = Structure | Service | Action
+
+
+def interface_of(type_name: str, structures: Sequence[Structure]) -> Definition:
+    """The message, service or action of a name that consists of structures, in the order of the file."""
+    kind = type_name.split("/")[1]
+    if kind == "msg":
+        return structures[0]
+    return Service(type_name, *structures) if kind == "srv" else Action(type_name, *structures)
 
 
 def structures_of(definition: Definition) -> tuple[Structure, ...]:

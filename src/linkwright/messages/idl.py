@@ -14,14 +14,13 @@ from typing import NamedTuple, NoReturn
 from linkwright.diagnostics import Diagnostic, SourceText, did_you_mean
 from linkwright.messages.definition import (
     EMPTY_MEMBER,
-    Action,
     Constant,
     Container,
     Definition,
     Field,
     FieldType,
-    Service,
     Structure,
+    interface_of,
 )
 from linkwright.messages.errors import DefinitionError
 from linkwright.messages.literals import LiteralFault, read_constant, read_default
@@ -85,9 +84,7 @@ def _assembled(reader: _Reader, source: SourceText, type_name: str) -> Definitio
             raise DefinitionError(Diagnostic("MSG118", message, source.span(0), hint=hint, source=source))
         fields = tuple(field for field in reader.structures[name] if field.name != EMPTY_MEMBER)
         parts.append(Structure(name, fields, tuple(reader.constants.get(name, ()))))
-    if kind == "msg":
-        return parts[0]
-    return Service(type_name, *parts) if kind == "srv" else Action(type_name, *parts)
+    return interface_of(type_name, parts)
 
 
 class _Reader:

@@ -1,4 +1,7 @@
-"""Finds the definition of an interface by its name: those that come with Linkwright, then those of the workspace."""
+"""Finds the definition of an interface by its name.
+
+Those that come with Linkwright go first, then those of the workspace, then those that data brought along.
+"""
 
 from __future__ import annotations
 
@@ -29,8 +32,9 @@ KIND_NAMES = {"msg": "message", "srv": "service", "action": "action"}
 class Library:
     """All interfaces that are known, read when they are asked for; safe to use from several threads.
 
-    An interface that comes with Linkwright is taken from there, even if the workspace has one of the same name; all
-    others are read from the interface files of the packages that the finder finds, without a build.
+    An interface that comes with Linkwright is taken from there, even if the workspace has one of the same name; others
+    are read from the interface files of the packages that the finder finds, without a build. What neither has may be
+    known by a text that data brought along.
 
     Args:
         finder: where packages are; the finder in force at the time of each question when left out.
@@ -40,6 +44,7 @@ class Library:
         self.finder = finder
         self._definitions: dict[str, Definition] = {}
         self._sources: dict[str, SourceText] = {}
+        self._carried: dict[str, SourceText] = {}
         self._checked: set[str] = set()
         self._own: PackageFinder | None = None
         self._own_folder = ""
@@ -79,6 +84,16 @@ class Library:
         package, kind, part = type_name.split("/")
         return self._sources[f"{package}/{kind}/{part.partition('_')[0]}"]
 
+    def carry(self, type_name: str, source: SourceText) -> None:
+        """Take note of the text of a message that data brought along; the first of a name counts.
+
+        Args:
+            type_name: the message's.
+            source: its text; ``.idl`` at the end of its name tells that it is IDL.
+        """
+        with self._lock:
+            self._carried.setdefault(type_name, source)
+
     def names(self, kind: str, package: str | None = None) -> list[str]:
         """The type names of all interfaces of one kind, those of the workspace included, sorted.
 
@@ -95,6 +110,8 @@ class Library:
         }
         for owner, share in self._workspace_packages(package):
             found.update(f"{owner}/{kind}/{name}" for name in interface_files(share, kind))
+        if kind == "msg":
+            found.update(name for name in tuple(self._carried) if package in (None, name.partition("/")[0]))
         return sorted(found)
 
     # --- looking up -----------------------------------------------------------------------------------------
@@ -117,7 +134,7 @@ class Library:
         base = f"{package}/{kind}/{name.partition('_')[0]}"
         if base in self._sources:
             return self._definitions.get(full)
-        source = self._shipped_source(base) or self._workspace_source(base)
+        source = self._shipped_source(base) or self._workspace_source(base) or self._carried.get(base)
         if source is None:
             return None
         shipped = source.name[:1] == "<"
@@ -149,7 +166,7 @@ class Library:
     def has_message(self, type_name: str) -> bool:
         """Whether there is a message of this full name, be its file right or wrong."""
         package, _, rest = type_name.partition("/")
-        if rest in catalogue.texts(package):
+        if rest in catalogue.texts(package) or type_name in self._carried:
             return True
         share = self._finder().find(package)
         return share is not None and interface_file(share, *rest.split("/")) is not None

@@ -6,16 +6,7 @@ import re
 from typing import Protocol
 
 from linkwright.diagnostics import Diagnostic, SourceText, did_you_mean
-from linkwright.messages.definition import (
-    Action,
-    Constant,
-    Container,
-    Definition,
-    Field,
-    FieldType,
-    Service,
-    Structure,
-)
+from linkwright.messages.definition import Constant, Container, Definition, Field, FieldType, Structure, interface_of
 from linkwright.messages.errors import DefinitionError
 from linkwright.messages.literals import LiteralFault, read_constant, read_default
 from linkwright.messages.names import is_constant_name, is_field_name, is_interface_name, is_package_name
@@ -103,19 +94,11 @@ class _Reader:
             )
         if self._found:
             raise DefinitionError(*self._found)
-        return self._assembled(
-            [
-                Structure(self._type_name + suffix, tuple(section.fields), tuple(section.constants))
-                for suffix, section in zip(suffixes, sections, strict=True)
-            ]
-        )
-
-    def _assembled(self, structures: list[Structure]) -> Definition:
-        if self._kind == "msg":
-            return structures[0]
-        if self._kind == "srv":
-            return Service(self._type_name, *structures)
-        return Action(self._type_name, *structures)
+        structures = [
+            Structure(self._type_name + suffix, tuple(section.fields), tuple(section.constants))
+            for suffix, section in zip(suffixes, sections, strict=True)
+        ]
+        return interface_of(self._type_name, structures)
 
     def _check_sections(self, count: int, start: int) -> None:
         most = len(SECTIONS[self._kind])

@@ -5,29 +5,20 @@ from __future__ import annotations
 import asyncio
 from typing import Any
 
-from linkwright.graph import Graph, Node
+from linkwright.graph import Graph
 from linkwright.messages import get_service
-from linkwright.nodes.options import NodeOptions, create_node
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node
 
 _TYPE = "example_interfaces/srv/AddTwoInts"
 _WAIT_SECONDS = 1.0
 
 
-class AddTwoIntsServer:
+class AddTwoIntsServer(SingleNode):
     """The running server."""
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, _ = create_node(graph, options, "add_two_ints_server")
         self._node.create_service(get_service(_TYPE), "add_two_ints", self._add)
-
-    @property
-    def node(self) -> Node:
-        """Its node in the graph."""
-        return self._node
-
-    def close(self) -> None:
-        """End it."""
-        self._node.destroy_node()
 
     def _add(self, request: Any, response: Any) -> Any:
         self._node.get_logger().info(f"Incoming request\na: {request.a} b: {request.b}")
@@ -35,25 +26,15 @@ class AddTwoIntsServer:
         return response
 
 
-class AddTwoIntsClient:
+class AddTwoIntsClient(SingleNode):
     """The running client: waits for the server, has 2 and 3 added, and ends."""
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, _ = create_node(graph, options, "add_two_ints_client")
         self.finished: asyncio.Future[int] = asyncio.get_running_loop().create_future()
         self._client = self._node.create_client(get_service(_TYPE), "add_two_ints")
-        self._looked = False
         self._timer = self._node.create_timer(0.05, self._look)
         self._ticks = 0
-
-    @property
-    def node(self) -> Node:
-        """Its node in the graph."""
-        return self._node
-
-    def close(self) -> None:
-        """End it."""
-        self._node.destroy_node()
 
     def _look(self) -> None:
         if self._client.service_is_ready():

@@ -7,17 +7,17 @@ from contextlib import AbstractContextManager, nullcontext
 from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean
-from linkwright.graph import Graph, Node, Parameter
+from linkwright.graph import Graph, Parameter
 from linkwright.messages import get_service
 from linkwright.nodes.components import COMPONENTS
-from linkwright.nodes.options import NodeOptions, RunningNode, create_node, starting
+from linkwright.nodes.options import NodeOptions, RunningNode, SingleNode, create_node, starting
 
 OnLoaded = Callable[[RunningNode, NodeOptions], None]
 
 _DEFAULT_NAME = "ComponentManager"
 
 
-class ComponentContainer:
+class ComponentContainer(SingleNode):
     """The running node.
 
     It answers ``~/_container/load_node``, ``unload_node`` and ``list_nodes`` as rclcpp_components does. What it can
@@ -45,11 +45,6 @@ class ComponentContainer:
                 self._node.create_service(f"composition_interfaces/srv/{kind}", f"~/_container/{name}", callback)
 
     @property
-    def node(self) -> Node:
-        """Its node in the graph."""
-        return self._node
-
-    @property
     def loaded(self) -> dict[int, RunningNode]:
         """The nodes in it, by the numbers that it gave them."""
         return dict(self._loaded)
@@ -58,7 +53,7 @@ class ComponentContainer:
         """Unload all nodes and end it."""
         for number in tuple(self._loaded):
             self._close(number)
-        self._node.destroy_node()
+        super().close()
 
     def load(self, package: str, plugin: str, options: NodeOptions) -> tuple[int, RunningNode]:
         """Load a component; returns its number and the node.

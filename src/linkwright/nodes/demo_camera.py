@@ -6,15 +6,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError
-from linkwright.graph import Graph, Node
+from linkwright.graph import Graph
 from linkwright.graph.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy
 from linkwright.messages import get_message
-from linkwright.nodes.options import NodeOptions, create_node, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 
 _BAND_HEIGHT = 1 / 3
 
 
-class DemoCamera:
+class DemoCamera(SingleNode):
     """The running node; its parameters are cam2image's.
 
     Raises:
@@ -25,15 +25,6 @@ class DemoCamera:
         self._node, _ = create_node(graph, options, "cam2image")
         with starting(self._node):
             self._start()
-
-    @property
-    def node(self) -> Node:
-        """Its node in the graph."""
-        return self._node
-
-    def close(self) -> None:
-        """End it."""
-        self._node.destroy_node()
 
     def _start(self) -> None:
         node = self._node

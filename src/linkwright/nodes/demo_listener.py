@@ -2,29 +2,20 @@
 
 from __future__ import annotations
 
-from linkwright.graph import Graph, Node, QoSProfile
+from linkwright.graph import Graph, QoSProfile
 from linkwright.messages import String
-from linkwright.nodes.options import NodeOptions, create_node, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 
 _DEPTH = 10
 
 
-class Listener:
+class Listener(SingleNode):
     """The running node."""
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, _ = create_node(graph, options, "listener")
         with starting(self._node):
             self._node.create_subscription(String, "chatter", self._hear, QoSProfile.of(_DEPTH))
-
-    @property
-    def node(self) -> Node:
-        """Its node in the graph."""
-        return self._node
-
-    def close(self) -> None:
-        """End it."""
-        self._node.destroy_node()
 
     def _hear(self, message: String) -> None:
         self._node.get_logger().info(f"I heard: [{message.data}]")

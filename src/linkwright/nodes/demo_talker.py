@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from linkwright.graph import Graph, Node, QoSProfile
+from linkwright.graph import Graph, QoSProfile
 from linkwright.messages import String
-from linkwright.nodes.options import NodeOptions, create_node, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 
 _PERIOD_SECONDS = 1.0
 _DEPTH = 7
 
 
-class Talker:
+class Talker(SingleNode):
     """The running node."""
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
@@ -19,15 +19,6 @@ class Talker:
         with starting(self._node):
             self._publisher = self._node.create_publisher(String, "chatter", QoSProfile.of(_DEPTH))
             self._node.create_timer(_PERIOD_SECONDS, self._talk)
-
-    @property
-    def node(self) -> Node:
-        """Its node in the graph."""
-        return self._node
-
-    def close(self) -> None:
-        """End it."""
-        self._node.destroy_node()
 
     def _talk(self) -> None:
         self._count += 1

@@ -7,16 +7,16 @@ import asyncio
 from collections.abc import Sequence
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError
-from linkwright.graph import SENSOR_DATA_QOS, Graph, Node, QoSProfile
+from linkwright.graph import SENSOR_DATA_QOS, Graph, QoSProfile
 from linkwright.messages import String
-from linkwright.nodes.options import NodeOptions, create_node, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 
 _PERIOD_SECONDS = 1.0
 _DEPTH = 10
 _ENDLESS = 1 << 31
 
 
-class _Counted:
+class _Counted(SingleNode):
     """What both have in common: their arguments, and an end after some messages."""
 
     _name: str
@@ -32,15 +32,6 @@ class _Counted:
         self._node.get_logger().info(f"{'Reliable' if given.reliable else 'Best effort'} {self._what}")
 
     _what: str
-
-    @property
-    def node(self) -> Node:
-        """Its node in the graph."""
-        return self._node
-
-    def close(self) -> None:
-        """End it."""
-        self._node.destroy_node()
 
     def _begin(self, qos: QoSProfile) -> None:
         raise NotImplementedError

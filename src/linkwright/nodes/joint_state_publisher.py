@@ -21,7 +21,6 @@ from linkwright.graph import (
     DEFAULT_QOS,
     DESCRIPTION_QOS,
     Graph,
-    Node,
     Parameter,
     SetParametersResult,
     Subscription,
@@ -31,7 +30,7 @@ from linkwright.messages import Header, JointState, String
 from linkwright.nodes.joint_layout import layout_of
 from linkwright.nodes.joint_positions import JointPositions
 from linkwright.nodes.joint_settings import JointSettings, declare_settings, settings_from
-from linkwright.nodes.options import NodeOptions, create_node, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 from linkwright.urdf import Robot
 
 _OTHER_FORMATS = {"sdf": "SDF", "COLLADA": "COLLADA"}
@@ -48,7 +47,7 @@ class Watcher(Protocol):
         """Joints were moved by a source or the sweep."""
 
 
-class JointStatePublisher:
+class JointStatePublisher(SingleNode):
     """The running node.
 
     Args:
@@ -88,15 +87,6 @@ class JointStatePublisher:
     def joints(self) -> JointPositions:
         """Where the joints are."""
         return self._joints
-
-    @property
-    def node(self) -> Node:
-        """Its node in the graph."""
-        return self._node
-
-    def close(self) -> None:
-        """End it."""
-        self._node.destroy_node()
 
     def watch(self, watcher: Watcher) -> None:
         """Tell somebody of changes from now on."""

@@ -69,6 +69,21 @@ class FinishingNode(RunningNode, Protocol):
     """Gets the exit status when the node is done; it is to be closed then."""
 
 
+class SingleNode:
+    """What the nodes of this room derive from: each is one node of the graph, `_node`, which goes when it ends."""
+
+    _node: Node
+
+    @property
+    def node(self) -> Node:
+        """Its node in the graph."""
+        return self._node
+
+    def close(self) -> None:
+        """End it."""
+        self._node.destroy_node()
+
+
 Factory = Callable[[Graph, NodeOptions], RunningNode]
 """Starts a node; raises LinkwrightError when it cannot start."""
 

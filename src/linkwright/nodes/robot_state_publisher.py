@@ -25,7 +25,6 @@ from linkwright.graph import (
     STATIC_TF_PUBLISHER_QOS,
     TF_QOS,
     Graph,
-    Node,
     Parameter,
     SetParametersResult,
     Timer,
@@ -33,7 +32,7 @@ from linkwright.graph import (
 from linkwright.graph.parameters.qos_overrides import QoSOverridingOptions, override_qos
 from linkwright.graph.qos import QoSPolicyKind, QoSProfile
 from linkwright.messages import JointState, String, TFMessage
-from linkwright.nodes.options import NodeOptions, create_node, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 from linkwright.nodes.robot_transforms import MOVING_TYPES, RobotTransforms
 from linkwright.nodes.throttle import JointGroup, Throttle
 from linkwright.urdf import Robot
@@ -55,7 +54,7 @@ class _Held:
     timer: Timer
 
 
-class RobotStatePublisher:
+class RobotStatePublisher(SingleNode):
     """The running node.
 
     Raises:
@@ -75,15 +74,10 @@ class RobotStatePublisher:
         with starting(self._node):
             self._start(arguments)
 
-    @property
-    def node(self) -> Node:
-        """Its node in the graph."""
-        return self._node
-
     def close(self) -> None:
         """End it."""
         self._held.clear()
-        self._node.destroy_node()
+        super().close()
 
     def _start(self, arguments: list[str]) -> None:
         node = self._node

@@ -12,10 +12,10 @@ from math import sqrt
 import numpy as np
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError
-from linkwright.graph import STATIC_TF_PUBLISHER_QOS, Graph, Node
+from linkwright.graph import STATIC_TF_PUBLISHER_QOS, Graph
 from linkwright.kinematics import quaternion_from_rpy
 from linkwright.messages import TFMessage, TransformBatch
-from linkwright.nodes.options import NodeOptions, create_node, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 
 USAGE = (
     "static_transform_publisher [--x X] [--y Y] [--z Z] [--qx QX] [--qy QY] [--qz QZ] [--qw QW] "
@@ -78,7 +78,7 @@ def parse_arguments(arguments: Sequence[str]) -> StaticTransform:
     )
 
 
-class StaticTransformPublisher:
+class StaticTransformPublisher(SingleNode):
     """The running node.
 
     Raises:
@@ -94,15 +94,6 @@ class StaticTransformPublisher:
             return
         with starting(self._node):
             self._publish(parse_arguments(arguments))
-
-    @property
-    def node(self) -> Node:
-        """Its node in the graph."""
-        return self._node
-
-    def close(self) -> None:
-        """End it."""
-        self._node.destroy_node()
 
     def _publish(self, transform: StaticTransform) -> None:
         logger = self._node.get_logger()

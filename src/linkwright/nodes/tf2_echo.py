@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError
-from linkwright.graph import Graph, Node, TransformException
+from linkwright.graph import Graph, TransformException
 from linkwright.graph.time import Time
 from linkwright.graph.transforms.core import BufferCore
 from linkwright.graph.transforms.listener import TransformListener
 from linkwright.kinematics import rotation_matrix
-from linkwright.nodes.options import NodeOptions, create_node, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 
 USAGE = """Usage: tf2_echo source_frame target_frame [echo_rate]
 
@@ -27,7 +27,7 @@ Default echo rate is 1 if echo_rate is not given."""
 _LATEST = Time()
 
 
-class Tf2Echo:
+class Tf2Echo(SingleNode):
     """The running node.
 
     Raises:
@@ -50,15 +50,6 @@ class Tf2Echo:
         TransformListener(self._buffer, self._node)
         self._node.create_timer(1.0 / rate, self._look)
         self._look()
-
-    @property
-    def node(self) -> Node:
-        """Its node in the graph."""
-        return self._node
-
-    def close(self) -> None:
-        """End it."""
-        self._node.destroy_node()
 
     def _look(self) -> None:
         if self._waiting:

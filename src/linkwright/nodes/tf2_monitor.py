@@ -6,11 +6,11 @@ import asyncio
 from collections import deque
 from collections.abc import Iterable
 
-from linkwright.graph import STATIC_TF_SUBSCRIPTION_QOS, TF_QOS, Graph, Node, TransformException
+from linkwright.graph import STATIC_TF_SUBSCRIPTION_QOS, TF_QOS, Graph, TransformException
 from linkwright.graph.time import Time
 from linkwright.graph.transforms.core import BufferCore, nanoseconds_of
 from linkwright.messages import TFMessage
-from linkwright.nodes.options import NodeOptions, create_node
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node
 
 AUTHORITY = "<no authority available>"
 USAGE = "TF_Monitor: usage: tf2_monitor framea frameb"
@@ -23,7 +23,7 @@ _LATEST = Time()
 _SHORTEST_SPAN_S = 1e-8
 
 
-class Tf2Monitor:
+class Tf2Monitor(SingleNode):
     """The running node: reports about every ten seconds, on all frames or on the way between two."""
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
@@ -51,15 +51,6 @@ class Tf2Monitor:
         if self._ends is not None:
             self._output(f"Waiting for transform chain to become available between {' and '.join(self._ends)} ")
         self._node.create_timer(_LOOK_EVERY_SECONDS, self._look)
-
-    @property
-    def node(self) -> Node:
-        """Its node in the graph."""
-        return self._node
-
-    def close(self) -> None:
-        """End it."""
-        self._node.destroy_node()
 
     def _hear(self, message: TFMessage, *, static: bool) -> None:
         now_ns = self._clock.now().nanoseconds

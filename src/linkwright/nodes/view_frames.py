@@ -10,13 +10,13 @@ from pathlib import Path
 from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError
-from linkwright.graph import Graph, Node
+from linkwright.graph import Graph
 from linkwright.graph.transforms.listener import DEFAULT_STATIC_TF_TOPIC, DEFAULT_TF_TOPIC, TransformListener
 from linkwright.graph.transforms.waiting import Buffer
-from linkwright.nodes.options import NodeOptions, create_node, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 
 
-class ViewFrames:
+class ViewFrames(SingleNode):
     """The running node. It writes ``frames_DATE.gv`` and ``frames_DATE.pdf`` into the current folder, and ends.
 
     Raises:
@@ -38,15 +38,6 @@ class ViewFrames:
         )
         self._logger.info(f"Listening to tf data for {self._settings.wait_time} seconds...")
         self._timer = self._node.create_timer(max(0.001, self._settings.wait_time), self._finish)
-
-    @property
-    def node(self) -> Node:
-        """Its node in the graph."""
-        return self._node
-
-    def close(self) -> None:
-        """End it."""
-        self._node.destroy_node()
 
     def _finish(self) -> None:
         self._timer.cancel()

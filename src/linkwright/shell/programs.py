@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+import hashlib
+import os
 import shlex
 import subprocess
 import sys
+from collections.abc import MutableMapping
+from contextlib import suppress
 from pathlib import Path
+
+from linkwright.workspace.cache import cache_folder
 
 PROGRAMS = {
     "ros2": ("linkwright.cli.tools", "ros2"),
@@ -21,6 +27,8 @@ PROGRAMS = {
 
 ``urdf_to_graphiz`` is how urdfdom spelt it for years, and still installs beside the right spelling.
 """
+
+_ROS_VARIABLES = {"ROS_DISTRO": "humble", "ROS_VERSION": "2", "ROS_PYTHON_VERSION": "3"}
 
 
 def write_programs(folder: Path, python: str = sys.executable) -> None:
@@ -38,3 +46,25 @@ def write_programs(folder: Path, python: str = sys.executable) -> None:
             program = folder / name
             program.write_text(f'#!/bin/sh\nexec {shlex.join(words)} "$@"\n', encoding="utf-8")
             program.chmod(0o755)
+
+
+def offer_programs(environment: MutableMapping[str, str]) -> None:
+    """Put the commands at the end of the search path, for launch files that run ``ros2 topic pub`` and the like.
+
+    They are kept in the cache folder; where that cannot be written, nothing is offered.
+    """
+    key = hashlib.sha256(repr((sys.executable, sorted(PROGRAMS.items()))).encode()).hexdigest()[:16]
+    folder = cache_folder() / "programs" / key
+    with suppress(OSError):
+        if not all((folder / name).exists() or (folder / f"{name}.cmd").exists() for name in PROGRAMS):
+            folder.mkdir(parents=True, exist_ok=True)
+            write_programs(folder)
+        parts = environment.get("PATH", os.defpath).split(os.pathsep)
+        if str(folder) not in parts:
+            environment["PATH"] = os.pathsep.join([*parts, str(folder)])
+
+
+def offer_ros_variables(environment: MutableMapping[str, str]) -> None:
+    """Set what sourcing a ROS 2 sets and launch files ask for, where none is sourced: we follow Humble."""
+    if "ROS_DISTRO" not in environment:
+        environment.update(_ROS_VARIABLES)

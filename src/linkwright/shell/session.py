@@ -77,12 +77,18 @@ def shell_environment(folder: Path, base: Mapping[str, str]) -> dict[str, str]:
     return variables
 
 
+_STARTED_BY_A_FILE = ("bash", "zsh", "fish")
+
+
 def _interactive(scratch: Path, variables: dict[str, str]) -> list[str]:
     """The words that start the user's shell so that it keeps our search path after its own start-up files."""
     if sys.platform == "win32":
         return [os.environ.get("COMSPEC", "cmd.exe")]
     shell = os.environ.get("SHELL") or "/bin/sh"
     kind = Path(shell).name
+    if kind in _STARTED_BY_A_FILE:  # it puts our folder behind what the user's own file adds
+        parts = variables["PATH"].split(os.pathsep)
+        variables["PATH"] = os.pathsep.join(part for part in parts if part != variables[MARK])
     if kind == "bash":
         start = scratch / "bashrc"
         start.write_text(_start_file("~/.bashrc", variables), encoding="utf-8")
@@ -108,7 +114,7 @@ def _start_file(own: str, variables: Mapping[str, str]) -> str:
     standins = shlex.quote(process.standin_path())
     return f"""\
 [ -f {own} ] && . {own}
-command -v ros2 >/dev/null 2>&1 || export PATH={interpreter}:"$PATH"
+command -v ros2 >/dev/null 2>&1 || case "$PATH:" in {interpreter}:*) ;; *) export PATH={interpreter}:"$PATH" ;; esac
 export PATH="$PATH":{shlex.quote(variables[MARK])}
 case ":$PYTHONPATH:" in *:{standins}:*) ;; *) export PYTHONPATH="${{PYTHONPATH:+$PYTHONPATH:}}"{standins} ;; esac
 PS1="(linkwright) $PS1"

@@ -129,8 +129,8 @@ class _KindLoader(Loader):
                 hint = did_you_mean(name, names) or "it has " + ", ".join(names)
                 message = f"cannot import name '{name}' from '{module.__name__}': {hint}"
                 raise ImportError(message, name=module.__name__) from None
-            except LinkwrightError as error:
-                raise ImportError(str(error), name=module.__name__) from error
+            except LinkwrightError as error:  # a mistake in the file: file and line say it all
+                raise ImportError(str(error), name=module.__name__) from None
             setattr(module, name, found)
             return found
 
@@ -153,7 +153,7 @@ class _InterfaceLoader(Loader):
         try:
             whole = get_interface(self._type_name)
         except LinkwrightError as error:  # a mistake in the file: shown where the import stands
-            raise ImportError(str(error), name=module.__name__) from error
+            raise ImportError(str(error), name=module.__name__) from None
         name = whole.__name__
         found = {name: whole}
         if issubclass(whole, ServiceType):

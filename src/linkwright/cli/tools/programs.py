@@ -69,6 +69,7 @@ def _rviz2(words: Sequence[str]) -> int:
 
 def _colcon(words: Sequence[str]) -> int:
     from colcon_core.command import main as colcon  # type: ignore[import-untyped]  # it ships no types
+
     sys.argv[0] = "colcon"
     status = colcon(argv=list(words))
     return status if isinstance(status, int) else FINE

@@ -61,7 +61,6 @@ class Discovery:
         self._participant = participant
         self._remote = remote
         self._types = types
-        self._default_gid_size = gid_size
         self.gid_size = gid_size
         self.changed = False
         """Whether something outside has changed since somebody last looked and set it back."""
@@ -81,11 +80,6 @@ class Discovery:
             self._dds.dds_set_status_mask(reader, DATA_AVAILABLE)
             thread.attach(reader, handler)
             handler()
-
-    @property
-    def own_endpoints(self) -> tuple[list[bytes], list[bytes]]:
-        """GUIDs of the readers and writers that belong to no node."""
-        return [self._dds.guid(each) for each in self._listeners], [self._dds.guid(self._speaker[1])]
 
     def publish(self, nodes: Sequence[NodeEntities]) -> None:
         """Tell everybody which nodes there are and which endpoints each has."""

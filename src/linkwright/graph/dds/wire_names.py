@@ -9,8 +9,6 @@ from enum import Enum
 DISCOVERY_TOPIC = "ros_discovery_info"
 """Where each participant says which nodes it has."""
 
-DISCOVERY_TYPE = "rmw_dds_common/msg/ParticipantEntitiesInfo"
-
 
 class Role(Enum):
     """What a DDS topic carries."""

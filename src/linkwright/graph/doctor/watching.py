@@ -42,7 +42,10 @@ _ENVIRONMENT = (
 )
 _ANSWER_WITHIN = 1.0
 """Seconds for a node to answer what is asked of it; one that hangs is passed over."""
+_NAMED_WITHIN = 1.0
+"""Seconds for a process to tell whose its endpoints are; those of no ROS node never are anybody's."""
 _FIXED_FRAME = "fixed_frame"
+_LOOK_AGAIN = 0.01
 _LENGTH_TOLERANCE = 1e-3
 _SECOND = 1_000_000_000
 _STAMP = {0: struct.Struct(">iI"), 1: struct.Struct("<iI")}
@@ -78,6 +81,7 @@ async def observe(
     sim_time, lifecycle, shown_in = await asyncio.gather(
         watcher.sim_time(), watcher.lifecycle(), watcher.fixed_frames()
     )
+    await watcher.until_named()
     variables = os.environ if environment is None else environment
     return Observation(
         seconds=seconds,
@@ -116,6 +120,17 @@ class _Watcher:
     def endpoints(self) -> list[EndpointInfo]:
         """The endpoints of those nodes."""
         return [each for each in self._graph.endpoints() if not _is_tool(node_of(each)) and node_of(each) != self._own]
+
+    async def until_named(self) -> None:
+        """Wait until it is known of every endpoint whose it is: of one just made that is told a moment after it.
+
+        Another command's endpoints would be taken for a part of what runs until then.
+        """
+        end = time.monotonic() + _NAMED_WITHIN
+        while time.monotonic() < end:
+            if all(each.node is not None for each in self._graph.endpoints()):
+                break
+            await asyncio.sleep(_LOOK_AGAIN)
 
     @property
     def _own(self) -> str:

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 _NANOSECONDS_PER_SECOND = 1_000_000_000
+_POSTPONED_AT_MOST = 2
 
 
 class Context(Protocol):
@@ -294,12 +295,25 @@ class Executor:
         if item.dispatcher is not self:
             return False
         if item.unblockable:
-            return True
+            return not self._postpone(item)
         group = _group_of(item)
         if group.can_execute(item) and (not begin or group.beginning_execution(item)):
             return True
         self._block(item)
         return False
+
+    def _postpone(self, answer: Entity) -> bool:
+        """Put the answer that a client got behind what else is ready, and behind what that makes ready.
+
+        rclpy runs tasks and messages first: whoever waits for an action's answer to a goal has its feedback by then,
+        if the goal was executed meanwhile.
+        """
+        if answer.postponed >= _POSTPONED_AT_MOST or not self._work.has_ready():
+            answer.postponed = 0
+            return False
+        answer.postponed += 1
+        self._work.add(answer)
+        return True
 
     def _execute(self, item: Any) -> None:
         """Run a task up to its next await, or the next call of an entity whose group knows that it begins.

@@ -17,18 +17,19 @@ from linkwright.graph.executors.errors import (
     ShutdownException,
     TimeoutException,
 )
-from linkwright.graph.executors.executor import Context, Executor, deadline_after
+from linkwright.graph.executors.executor import Context, deadline_after
+from linkwright.graph.executors.spinning import SpinningExecutor
 from linkwright.graph.executors.workers import Workers
-from linkwright.graph.future import Future
 
 _NANOSECONDS_PER_SECOND = 1_000_000_000
 
 
-class MultiThreadedExecutor(Executor):
+class MultiThreadedExecutor(SpinningExecutor):
     """Runs callbacks in a pool of threads, as far as their groups allow (rclpy ``MultiThreadedExecutor``).
 
     The thread that spins gives out the work, at most as much as there are threads; the rest waits with its entities,
-    by their quality of service. What a callback raises leaves ``spin`` in the thread that spins.
+    by their quality of service. `spin_once` does not wait for the end of what it gave out. What a callback raises
+    leaves ``spin`` in the thread that spins.
 
     Args:
         num_threads: how many threads; as many as the process has processors when None.
@@ -51,23 +52,11 @@ class MultiThreadedExecutor(Executor):
 
     def spin(self) -> None:
         """Run callbacks until the executor or the context is shut down."""
-        self._spinner_begins()
         self._goes_on = True
         try:
-            while not self._is_shutdown and self._context_ok():
-                self._give_out_one(None, None)
+            super().spin()
         finally:
             self._goes_on = False
-            self._spinner_ends()
-
-    def spin_once(self, timeout_sec: float | None = None) -> None:
-        """Wait for one callback and give it to a thread; its end is not waited for. See ``Executor.spin_once``."""
-        self._spin_once(timeout_sec, None)
-
-    def spin_once_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
-        """As `spin_once`, but the wait ends when the future is done, too."""
-        future.add_waiter(self.wake)
-        self._spin_once(timeout_sec, future.ended)
 
     def shutdown(self, timeout_sec: float | None = None, *, wait_for_threads: bool = True) -> bool:
         """Run no further callbacks; wait for those that run, and for the threads to end.
@@ -87,14 +76,7 @@ class MultiThreadedExecutor(Executor):
         left = None if deadline_ns is None else max(deadline_ns - time.monotonic_ns(), 0) / _NANOSECONDS_PER_SECOND
         return self._workers.close(left) and ended
 
-    def _spin_once(self, timeout_sec: float | None, condition: Callable[[], bool] | None) -> None:
-        self._spinner_begins()
-        try:
-            self._give_out_one(deadline_after(timeout_sec), condition)
-        finally:
-            self._spinner_ends()
-
-    def _give_out_one(self, deadline_ns: int | None, condition: Callable[[], bool] | None) -> None:
+    def _turn(self, deadline_ns: int | None, condition: Callable[[], bool] | None) -> None:
         while not self._workers.has_room and not self._faults:
             if self._is_shutdown or not self._context_ok() or (condition is not None and condition()):
                 return

@@ -67,6 +67,10 @@ class WorkQueue:
             with self._condition:
                 self._condition.notify_all()
 
+    def has_ready(self) -> bool:
+        """Whether something is ready."""
+        return bool(self._ready)
+
     def take(self) -> Any:
         """The first thing that is ready, after the alarms that are due have made theirs so; None without any."""
         if self._alarms and self._alarms[0].steady_ns <= time.monotonic_ns():

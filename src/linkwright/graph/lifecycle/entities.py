@@ -63,14 +63,14 @@ class SimpleManagedEntity(ManagedEntity):
     def when_enabled(
         wrapped: Callable[..., Any] | None = None, *, when_not_enabled: Callable[..., Any] | None = None
     ) -> Callable[..., Any]:
-        """Decorates a method that does nothing unless its object is enabled, or calls something else then."""
+        """Decorates a method that does nothing unless its object is enabled, or calls the other one instead."""
 
         def decorate(method: Callable[..., Any]) -> Callable[..., Any]:
             @wraps(method)
             def guarded(self: SimpleManagedEntity, *args: Any, **kwargs: Any) -> Any:
                 if self._enabled:
                     return method(self, *args, **kwargs)
-                return when_not_enabled(self, *args, **kwargs) if when_not_enabled is not None else None
+                return None if when_not_enabled is None else when_not_enabled()
 
             return guarded
 

@@ -98,11 +98,6 @@ class LaunchLog:
                 self._unwritable(base, error)
         return self._folder
 
-    @property
-    def is_detailed(self) -> bool:
-        """Whether `detail` shows anything."""
-        return self._debug
-
     def begin(self) -> None:
         """The first lines: where the files are, and how much is told."""
         self.say("launch", f"All log files can be found below {self.folder}")

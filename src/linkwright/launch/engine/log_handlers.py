@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import logging
 import logging.handlers
-from functools import cache
 from typing import Any
 
 from linkwright.launch.engine.user_logging import ForEachLogger
+
+_CLASSES: dict[str, type[Any]] = {}
 
 
 def handler_class(name: str) -> type[Any]:
@@ -22,6 +23,7 @@ def handler_class(name: str) -> type[Any]:
     raise AttributeError(f"module 'launch.logging.handlers' has no attribute '{name}'")
 
 
-@cache
-def _extended(kind: type[Any]) -> type[Any]:
-    return type(kind.__name__, (ForEachLogger, kind), {"__doc__": kind.__doc__})
+def _extended(kind: Any) -> type[Any]:
+    if kind.__name__ not in _CLASSES:
+        _CLASSES[kind.__name__] = type(kind.__name__, (ForEachLogger, kind), {"__doc__": kind.__doc__})
+    return _CLASSES[kind.__name__]

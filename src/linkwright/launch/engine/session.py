@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import os
 from collections import deque
 from collections.abc import Callable, Coroutine, Sequence
 from dataclasses import dataclass
@@ -81,13 +80,11 @@ class LaunchSession:
         self.log = log
         self.descriptions = current_descriptions() or Descriptions(finder)
         self.context = LaunchContext() if context is None else context
-        self.context.attach(self)
-        self.initial_environment = dict(os.environ)
+        self._queue = self.context.attach(self)
         self.loop: asyncio.AbstractEventLoop | None = None
         self.ending = False
         self._failures: set[object] = set()
         self._visiting = False
-        self._queue = self.context._event_queue
         self._wake = asyncio.Event()
         self._queue.on_put = self._wake.set
         self._held: set[asyncio.Future[Any]] = set()
@@ -289,9 +286,8 @@ class LaunchSession:
         context.push_locals()
         try:
             entities: list[LaunchDescriptionEntity] = []
-            for handler in tuple(context._event_handlers):
-                if handler.matches(event):
-                    entities += as_entities(handler.handle(event, context))
+            for handler in context.handlers_of(event):
+                entities += as_entities(handler.handle(event, context))
             if isinstance(event, events.ProcessExited):
                 context.extend_locals({"event": event})
                 entities += event.action.exited(event, context)

@@ -93,6 +93,7 @@ class Parser:
             message = f"the root of a launch file is 'launch', and this is '{entity.type_name}'"
             raise error_at(entity.place, "LAUNCH109", message, promises=promised)
         deprecated = entity.get_attr("deprecated", optional=True)
+        entity.get_attr("version", optional=True)  # of the format, which the design of ROS 2 launch has there
         actions = []
         problems = []
         for child in entity.children:

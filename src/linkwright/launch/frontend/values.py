@@ -64,7 +64,7 @@ def extract_type(data_type: Any) -> tuple[Any, bool]:
     return scalar, is_list
 
 
-def is_instance_of_valid_type(value: Any, *, can_be_str: bool = False) -> bool:
+def is_instance_of_valid_type(value: Any, can_be_str: bool = False) -> bool:
     """Whether a value has one of the types; with `can_be_str`, lists may have texts among other items."""
     if not isinstance(value, list):
         return isinstance(value, ScalarTypesTuple)
@@ -78,7 +78,7 @@ def _scalar_type(value: Any) -> type | None:
     return next((each for each in (bool, int, float, str) if isinstance(value, each)), None)
 
 
-def is_instance_of(value: Any, data_type: Any = None, *, can_be_str: bool = False) -> bool:
+def is_instance_of(value: Any, data_type: Any = None, can_be_str: bool = False) -> bool:
     """Whether a value has a type; None accepts all of them, `can_be_str` also texts in its place.
 
     Raises:
@@ -93,7 +93,7 @@ def is_instance_of(value: Any, data_type: Any = None, *, can_be_str: bool = Fals
     return isinstance(value, accepted)
 
 
-def coerce_to_type(value: str, data_type: Any = None, *, can_be_str: bool = False) -> Any:
+def coerce_to_type(value: str, data_type: Any = None, can_be_str: bool = False) -> Any:
     """A text as a value of a type.
 
     Args:
@@ -154,7 +154,7 @@ def _by_yaml(value: str, problem: str, can_be_str: bool) -> Any:
     return made
 
 
-def coerce_list(value: list[str], data_type: Any = None, *, can_be_str: bool = False) -> list[Any]:
+def coerce_list(value: list[str], data_type: Any = None, can_be_str: bool = False) -> list[Any]:
     """A list of texts as a uniform list of values of a scalar type; see `coerce_to_type`."""
     if not isinstance(value, list):
         raise TypeError(f"expected 'value' to be of type '{list}', but got {value!r} of type {type(value)}")

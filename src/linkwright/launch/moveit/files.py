@@ -98,9 +98,9 @@ def _rendered(text: str, path: Path, mappings: Mapping[str, Any]) -> str:
     except ImportError as error:
         message = f"parameter file '{display_path(path)}' is a template, and there is no jinja2 to fill it in"
         raise error_at(Place.of_caller(), "LAUNCH153", message, "install it: pip install jinja2") from error
-    template = jinja2.Template(text)
-    template.globals.update(radians=math.radians, degrees=math.degrees)
     try:
+        template = jinja2.Template(text)
+        template.globals.update(radians=math.radians, degrees=math.degrees)
         return str(template.render(mappings))
     except jinja2.TemplateError as error:
         message = f"template '{display_path(path)}' cannot be filled in: {error}"

@@ -34,7 +34,7 @@ def generate_controllers_spawner_launch_description(
         [
             DeclareLaunchArgument(manager, default_value=_MANAGER, description="Name of the controller manager's node"),
             DeclareLaunchArgument(_UNLOAD, default_value="false", description="Unload the controllers at the end"),
-            Node(
+            Node(  # noqa: S604 - an argument may be empty, which only a shell drops
                 package=_MANAGER,
                 executable="spawner",
                 arguments=[*words, *extra_spawner_args],

@@ -16,6 +16,7 @@ from pathlib import Path
 import linkwright
 from linkwright.launch.engine.surroundings import python_command
 from linkwright.launch.ros.source_programs import EntryPoint
+from linkwright.workspace.cache import cache_folder
 
 _LONGEST_INTERPRETER_LINE = 120
 """Systems cut longer ones off."""
@@ -72,12 +73,6 @@ def _kept(package: str, name: str, origin: str, text: str) -> Path:
             Path(temporary).unlink()
         raise
     return path
-
-
-def cache_folder() -> Path:
-    """Where files lie that can be made again: ``XDG_CACHE_HOME/linkwright`` or ``~/.cache/linkwright``."""
-    base = os.environ.get("XDG_CACHE_HOME")
-    return (Path(base) if base else Path.home() / ".cache") / "linkwright"
 
 
 def _script(entry: EntryPoint, roots: Sequence[Path]) -> str:

@@ -25,8 +25,9 @@ def with_former_names(**present: str) -> Callable[[_Class], _Class]:
 
         @functools.wraps(initialize)
         def __init__(self: Any, *args: Any, **kwargs: Any) -> None:  # noqa: N807 - becomes the method of that name
-            for former in present.keys() & kwargs.keys():
-                name = present[former]
+            for former, name in present.items():
+                if former not in kwargs:
+                    continue
                 if name in kwargs:
                     raise TypeError(f"{kind.__name__} is given both '{former}' and '{name}', which is its name now")
                 warnings.warn(f"'{former}' of {kind.__name__} is called '{name}' now", UserWarning, stacklevel=2)

@@ -83,7 +83,9 @@ class SetParameter(Action):
         """Reads ``name`` and ``value``."""
         _, kwargs = super().parse(entity, parser)
         kwargs["name"] = parser.parse_substitution(entity.get_attr("name"))
-        kwargs["value"] = parser.parse_if_substitutions(entity.get_attr("value", data_type=None))
+        value = entity.get_attr("value", data_type=None)
+        # A text is read by YAML's rules, also where a YAML file has it in quotes.
+        kwargs["value"] = parser.parse_substitution(entity.get_attr("value")) if isinstance(value, str) else value
         return cls, kwargs
 
     @property
@@ -189,7 +191,7 @@ class SetUseSimTime(SetParameter):
         if not isinstance(value, bool):
             message = f"'use_sim_time' must be true or false, not {value!r}"
             raise error_at(self.place, "LAUNCH132", message, promises=ValueError(message))
-        if getattr(context, "is_running", False):
+        if context.is_running:
             context.session.host.use_simulated_time(value)
 
 

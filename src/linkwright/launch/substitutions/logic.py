@@ -42,7 +42,7 @@ class _TwoSided(Parsed, Substitution):
 
     def describe(self) -> str:
         """Both sides."""
-        return f"{type(self).__name__}({describe(self._left)} {describe(self._right)})"
+        return f"{type(self).__name__}({describe(self._left)}, {describe(self._right)})"
 
 
 @expose_substitution("equals")
@@ -146,7 +146,7 @@ class _Several(Substitution):
 
     def describe(self) -> str:
         """The values."""
-        return f"{type(self).__name__}({' '.join(map(describe, self._values))})"
+        return f"{type(self).__name__}({', '.join(map(describe, self._values))})"
 
     def _truths(self, context: LaunchContext) -> list[bool]:
         return [_boolean(self, context, value) for value in self._values]

@@ -59,9 +59,7 @@ def declare_qos_parameters(
     Raises:
         InvalidQosOverridesError: the profile is refused, or a value is none that its policy has.
     """
-    entity: Literal["publisher", "subscription"] = (
-        "publisher" if issubclass(entity_type, Publisher) else "subscription"
-    )
+    entity: Literal["publisher", "subscription"] = "publisher" if issubclass(entity_type, Publisher) else "subscription"
     overridden = override_qos(node, entity, topic_name, qos, options)
     for kind in options.policy_kinds:
         policy = kind.name.lower()

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
-from linkwright.graph.faults import NotInitializedException
+from linkwright.graph.faults import NotInitializedError
 from linkwright.graph.future import Future
 from linkwright.standins.rclpy_api.context import Context
 from linkwright.standins.rclpy_api.signals import (
@@ -169,7 +169,7 @@ def create_node(node_name: str, **arguments: Any) -> Node:
     """A node; see `Node` for the arguments.
 
     Raises:
-        NotInitializedException: its context is not initialised.
+        NotInitializedError: its context is not initialised.
     """
     from linkwright.standins.rclpy_api.node import Node
 
@@ -233,9 +233,9 @@ def spin_until_future_complete(
 
 
 def check_initialized(context: Context, what: str) -> None:
-    """Raise NotInitializedException unless a context is ok."""
+    """Raise NotInitializedError unless a context is ok."""
     if not context.ok():
-        raise NotInitializedException(what)
+        raise NotInitializedError(what)
 
 
 def _end_global_executor(context: Context | None) -> None:

@@ -77,7 +77,7 @@ class TimeSource:
             ValueError: it is none of ROS time.
         """
         if not isinstance(clock, ROSClock):
-            raise ValueError("Only clocks with type ROS_TIME can be attached.")
+            raise ValueError("Only clocks with type ROS_TIME can be attached.")  # noqa: TRY004 - as in rclpy
         clock.set_ros_time_override(self._last)
         clock.set_ros_time_is_active(self._active)
         self._clocks.add(clock)

@@ -4,6 +4,9 @@ from collections import OrderedDict
 from typing import Any
 
 from linkwright.messages import to_csv, to_dict, to_yaml
+from linkwright.messages.message import Message
+
+_CUT = "..."
 
 
 def message_to_yaml(
@@ -14,22 +17,60 @@ def message_to_yaml(
     no_str: bool = False,
     flow_style: bool = False,
 ) -> str:
-    """A message as YAML."""
+    """A message as YAML; its bytes as they are, in YAML's form for such."""
+    if isinstance(msg, bytes):
+        import yaml
+
+        return str(yaml.safe_dump({"bytes": msg}))
     return to_yaml(msg, truncate_length=truncate_length, no_arr=no_arr, no_str=no_str, flow_style=flow_style)
 
 
 def message_to_csv(msg: Any, *, truncate_length: int | None = None, no_arr: bool = False, no_str: bool = False) -> str:
-    """The values of a message with commas between them."""
+    """The values of a message with commas between them; its bytes as Python shows them."""
+    if isinstance(msg, bytes):
+        return str(msg)
     return to_csv(msg, truncate_length=truncate_length, no_arr=no_arr, no_str=no_str)
 
 
 def message_to_ordereddict(
     msg: Any, *, truncate_length: int | None = None, no_arr: bool = False, no_str: bool = False
 ) -> OrderedDict[str, Any]:
-    """The fields of a message as plain values."""
+    """The fields of a message as plain values; its bytes as the field ``bytes``."""
+    if isinstance(msg, bytes):
+        return OrderedDict(bytes=msg)
     return to_dict(msg, truncate_length=truncate_length, no_arr=no_arr, no_str=no_str)
 
 
 def get_message_slot_types(msg: Any) -> OrderedDict[str, Any]:
     """The names and types of a message's fields."""
     return OrderedDict(zip((slot[1:] for slot in msg.__slots__), msg.SLOT_TYPES, strict=True))
+
+
+def convert_value(
+    value: Any,
+    *,
+    field_type: Any = None,  # noqa: ARG001 - as rosidl_runtime_py has it
+    truncate_length: int | None = None,
+    no_arr: bool = False,
+    no_str: bool = False,
+) -> Any:
+    """A value of a message as a plain one: texts, lists, tuples and dictionaries are cut to a length, each item too."""
+
+    def convert(item: Any) -> Any:
+        return convert_value(item, truncate_length=truncate_length, no_arr=no_arr, no_str=no_str)
+
+    if isinstance(value, bytes):
+        value = value.decode("latin-1")
+    if isinstance(value, str):
+        cut = truncate_length is not None and len(value) > truncate_length
+        return value[:truncate_length] + _CUT if cut else value
+    if isinstance(value, dict):
+        return type(value)((key, convert(item)) for key, item in value.items())
+    if isinstance(value, (tuple, list)):
+        plain = [convert(item) for item in value[:truncate_length]]
+        if truncate_length is not None and len(value) > truncate_length:
+            plain.append(_CUT)
+        return type(value)(plain)
+    if isinstance(value, Message):
+        return message_to_ordereddict(value, truncate_length=truncate_length, no_arr=no_arr, no_str=no_str)
+    return value

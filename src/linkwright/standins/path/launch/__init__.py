@@ -15,6 +15,8 @@ from linkwright.launch.conditions import Condition
 from linkwright.launch.context import LaunchContext
 from linkwright.launch.description import LaunchDescription
 from linkwright.launch.entity import Action, LaunchDescriptionEntity, SomeEntitiesType, SomeEntitiesType_types_tuple
+from linkwright.launch.entity import SomeEntitiesType as SomeActionsType
+from linkwright.launch.entity import SomeEntitiesType_types_tuple as SomeActionsType_types_tuple
 from linkwright.launch.event_handlers import BaseEventHandler, EventHandler
 from linkwright.launch.events import Event
 from linkwright.launch.introspector import LaunchIntrospector
@@ -35,6 +37,8 @@ __all__ = [
     "LaunchDescriptionSource",
     "LaunchIntrospector",
     "LaunchService",
+    "SomeActionsType",
+    "SomeActionsType_types_tuple",
     "SomeEntitiesType",
     "SomeEntitiesType_types_tuple",
     "SomeSubstitutionsType",

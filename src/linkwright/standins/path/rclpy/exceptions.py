@@ -2,7 +2,7 @@
 
 from linkwright.graph.faults import InterruptedWaitError as ROSInterruptException
 from linkwright.graph.faults import InvalidHandleError as InvalidHandle
-from linkwright.graph.faults import NotInitializedException
+from linkwright.graph.faults import NotInitializedError as NotInitializedException
 from linkwright.graph.names import InvalidNameError as NameValidationException
 from linkwright.graph.names import InvalidNamespaceError as InvalidNamespaceException
 from linkwright.graph.names import InvalidNodeNameError as InvalidNodeNameException

@@ -1,6 +1,8 @@
 """Stands in for ``ros2launch.api``."""
 
-from linkwright.standins.launch_command import (
+from linkwright.launch.launch_api import (
+    MultipleLaunchFilesError,
+    get_launch_file_paths,
     get_share_file_path_from_package,
     is_launch_file,
     launch_a_launch_file,
@@ -10,6 +12,8 @@ from linkwright.standins.launch_command import (
 )
 
 __all__ = [
+    "MultipleLaunchFilesError",
+    "get_launch_file_paths",
     "get_share_file_path_from_package",
     "is_launch_file",
     "launch_a_launch_file",

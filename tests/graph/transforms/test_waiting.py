@@ -11,7 +11,7 @@ from linkwright.graph.time import Duration, Time
 from linkwright.graph.transforms.broadcaster import StaticTransformBroadcaster, TransformBroadcaster
 from linkwright.graph.transforms.waiting import Buffer
 from linkwright.messages import TFMessage, get_service
-from tests.graph.test_transform_core import stamped
+from tests.graph.transforms.test_core import stamped
 
 LATEST = Time()
 

@@ -17,7 +17,7 @@ from linkwright.graph.transforms.geometry import (
     transform_covariance,
 )
 from linkwright.messages import get_message
-from tests.graph.test_transform_core import stamped
+from tests.graph.transforms.test_core import stamped
 
 TRANSFORM = stamped("map", "base", 3, x=10.0, yaw=pi / 2)
 

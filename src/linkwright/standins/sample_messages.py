@@ -1,0 +1,84 @@
+"""Messages of ``test_msgs`` with something in them, for tests of what handles messages of any kind."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+from linkwright.messages import Message, get_message
+
+_SEQUENCE = re.compile(r"sequence<(?P<item>[^,]+)(?:, (?P<bound>\d+))?>")
+_ARRAY = re.compile(r"(?P<item>.+)\[(?P<length>\d+)\]")
+_INTEGER = re.compile(r"(?P<sign>u?)int(?P<bits>\d+)")
+_REALS = {"float": (0.0, 1.125, -2.125), "double": (0.0, 1.125, -1.5e300)}
+_TEXTS = ("", "Hello world!", "¡Hola, 世界! ñ")
+_LENGTHS = (0, 2, 3)
+_KINDS = 3
+
+
+def samples(name: str) -> list[Message]:
+    """Messages of a type of ``test_msgs``: with its defaults, with small values, and with extreme ones.
+
+    A type without fields has the first alone.
+
+    Args:
+        name: of the type, such as ``BasicTypes``.
+    """
+    cls = get_message(f"test_msgs/msg/{name}")
+    has_fields = bool(cls.get_fields_and_field_types())
+    return [cls(), *(_filled(cls, kind) for kind in range(1, _KINDS))] if has_fields else [cls()]
+
+
+def _filled(cls: type[Message], kind: int) -> Message:
+    message = cls()
+    for field, type_name in cls.get_fields_and_field_types().items():
+        setattr(message, field, _value(type_name, kind))
+    return message
+
+
+def _value(type_name: str, kind: int) -> Any:
+    if array := _ARRAY.fullmatch(type_name):
+        return [_value(array["item"], (kind + place) % _KINDS) for place in range(int(array["length"]))]
+    if sequence := _SEQUENCE.fullmatch(type_name):
+        return [_value(sequence["item"], place % _KINDS) for place in range(_LENGTHS[kind])]
+    if integer := _INTEGER.fullmatch(type_name):
+        bits = int(integer["bits"])
+        return (0, 23, 2**bits - 1 if integer["sign"] else -(2 ** (bits - 1)))[kind]
+    if type_name in _REALS:
+        return _REALS[type_name][kind]
+    if type_name.startswith(("string", "wstring")):
+        return _TEXTS[kind]
+    if type_name == "boolean":
+        return kind == 1
+    if type_name == "octet":
+        return bytes([(0, 23, 255)[kind]])
+    package, _, name = type_name.partition("/")
+    return _filled(get_message(f"{package}/msg/{name}"), kind)
+
+
+def get_test_msg(message_name: str) -> list[Message]:
+    """The samples of a type; ValueError where there is no such type."""
+    if message_name not in _FIXTURES:
+        raise ValueError(f"test_msgs has no samples of '{message_name}'; it has them of {', '.join(_FIXTURES)}")
+    return samples(message_name)
+
+
+_FIXTURES = (
+    "Arrays",
+    "BasicTypes",
+    "BoundedSequences",
+    "Builtins",
+    "Constants",
+    "Defaults",
+    "Empty",
+    "MultiNested",
+    "Nested",
+    "Strings",
+    "UnboundedSequences",
+    "WStrings",
+)
+
+
+def of_type(name: str) -> Any:
+    """A function without arguments that gives the samples of a type."""
+    return lambda: samples(name)

@@ -1,0 +1,54 @@
+from __future__ import annotations
+
+import asyncio
+import signal
+import sys
+
+import pytest
+from launch.utilities import AsyncSafeSignalManager
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals of users are POSIX")
+
+
+@pytest.fixture
+def before():
+    """What handles the signals outside of the manager: takes note of them."""
+    seen = []
+
+    def note(number, _):
+        seen.append(number)
+
+    saved = {number: signal.signal(number, note) for number in (signal.SIGUSR1, signal.SIGUSR2)}
+    yield seen
+    for number, handler in saved.items():
+        assert signal.getsignal(number) is note
+        signal.signal(number, handler)
+
+
+async def test_handlers_are_called_by_the_loop_while_it_is_entered(before):
+    manager, told = AsyncSafeSignalManager(asyncio.get_running_loop()), []
+    assert manager.handle(signal.SIGUSR1, told.append) is None
+    signal.raise_signal(signal.SIGUSR1)
+    assert before == [signal.SIGUSR1]
+    with manager:
+        manager.handle(signal.SIGUSR2, told.append)
+        signal.raise_signal(signal.SIGUSR1)
+        assert told == []
+        await asyncio.sleep(0)
+        signal.raise_signal(signal.SIGUSR2)
+        await asyncio.sleep(0)
+        assert told == [signal.SIGUSR1, signal.SIGUSR2]
+        assert manager.handle(signal.SIGUSR1, None) == told.append
+        signal.raise_signal(signal.SIGUSR1)
+        assert before == [signal.SIGUSR1] * 2
+    signal.raise_signal(signal.SIGUSR2)
+    assert before[-1] == signal.SIGUSR2
+    with manager:
+        signal.raise_signal(signal.SIGUSR2)
+        await asyncio.sleep(0)
+    assert told == [signal.SIGUSR1, signal.SIGUSR2, signal.SIGUSR2]
+
+
+async def test_a_number_that_is_no_signal():
+    with pytest.raises(ValueError, match="12345"):
+        AsyncSafeSignalManager(asyncio.get_running_loop()).handle(12345, print)

@@ -1,0 +1,305 @@
+"""Details of rclpy that its own tests and careful programs look at."""
+
+from __future__ import annotations
+
+import functools
+from unittest import mock
+
+import pytest
+import rclpy
+from rcl_interfaces.msg import ParameterEvent, SetParametersResult
+from rclpy.action import ActionClient, ActionServer
+from rclpy.clock import Clock, ClockChange, ClockType, JumpThreshold, ROSClock
+from rclpy.context import Context
+from rclpy.duration import Duration
+from rclpy.exceptions import (
+    InvalidParameterException,
+    InvalidServiceNameException,
+    InvalidTopicNameException,
+    NotInitializedException,
+)
+from rclpy.lifecycle import LifecycleNode, TransitionCallbackReturn
+from rclpy.parameter import Parameter, get_parameter_value
+from rclpy.parameter_event_handler import ParameterEventHandler
+from rclpy.publisher import Publisher
+from rclpy.qos import QoSProfile
+from rclpy.qos_overriding_options import (
+    InvalidQosOverridesError,
+    QosCallbackResult,
+    QoSOverridingOptions,
+    _declare_qos_parameters,
+)
+from rclpy.subscription import Subscription
+from rclpy.time import Time
+from rclpy.time_source import CLOCK_TOPIC, TimeSource
+from rclpy.timer import TimerInfo
+from rclpy.topic_endpoint_info import TopicEndpointInfo, TopicEndpointTypeEnum
+from rclpy.validate_parameter_name import validate_parameter_name
+from rclpy.waitable import NumberOfEntities
+from rosgraph_msgs.msg import Clock as ClockMessage
+from std_msgs.msg import String
+from std_srvs.srv import Empty
+from test_msgs.action import Fibonacci
+
+
+@pytest.fixture(autouse=True)
+def ros(monkeypatch):
+    monkeypatch.setenv("LINKWRIGHT_DDS", "0")
+    rclpy.init(args=[])
+    yield
+    rclpy.try_shutdown()
+
+
+@pytest.fixture
+def node():
+    return rclpy.create_node("node", namespace="/ns")
+
+
+class TestMistakes:
+    def test_names_that_are_not_valid_are_value_errors(self, node):
+        with pytest.raises(ValueError, match="unknown substitution") as topic:
+            node.create_publisher(String, "topic/{what}", 10)
+        assert isinstance(topic.value, InvalidTopicNameException)
+        with pytest.raises(ValueError, match="must not contain characters") as service:
+            node.create_client(Empty, "what?")
+        assert isinstance(service.value, InvalidServiceNameException)
+        error = InvalidTopicNameException("42", error_msg="starts with a number", invalid_index=0)
+        assert (error.name, error.error_msg, error.invalid_index) == ("42", "starts with a number", 0)
+
+    @pytest.mark.parametrize(
+        "question",
+        [
+            "count_publishers",
+            "count_subscribers",
+            "count_clients",
+            "count_services",
+            "get_publishers_info_by_topic",
+            "get_subscriptions_info_by_topic",
+        ],
+    )
+    def test_questions_about_names_that_are_none(self, node, question):
+        with pytest.raises(TypeError, match="bad argument type for built-in operation"):
+            getattr(node, question)(1)
+        with pytest.raises(ValueError, match="is invalid"):
+            getattr(node, question)("42")
+
+    def test_declarations_of_the_wrong_form(self, node):
+        with pytest.raises(TypeError, match="is not a str"):
+            node.declare_parameter(1, "value")
+        with pytest.raises(TypeError, match="is not a ParameterDescriptor"):
+            node.declare_parameter("name", 1, "descriptor")
+        assert node.declare_parameter("name", 1, None).value == 1
+
+    def test_names_of_parameters(self):
+        assert validate_parameter_name("a.b") is True
+        with pytest.raises(InvalidParameterException):
+            validate_parameter_name("")
+
+
+class TestParameters:
+    def test_the_callbacks_that_are_asked(self, node):
+        def callback(_):
+            return SetParametersResult(successful=True)
+
+        for kind in ("pre_set", "on_set", "post_set"):
+            getattr(node, f"add_{kind}_parameters_callback")(callback)
+            assert callback in getattr(node, f"_{kind}_parameters_callbacks")
+            getattr(node, f"remove_{kind}_parameters_callback")(callback)
+            assert callback not in getattr(node, f"_{kind}_parameters_callbacks")
+        assert node._parameters_callbacks == node._on_set_parameters_callbacks
+
+    def test_blank_texts_stay_as_they_are(self):
+        assert [get_parameter_value(text).string_value for text in ("", " ")] == ["", " "]
+
+    def test_events_by_the_callbacks_of_a_handler(self, node):
+        handler, told = ParameterEventHandler(node), []
+        first = handler.add_parameter_callback("a", "", lambda each: told.append(("first", each.name)))
+        handler.add_parameter_callback("a", "node", lambda each: told.append(("second", each.name)))
+        everything = handler.add_parameter_event_callback(lambda event: told.append(("event", event.node)))
+        assert set(handler._callbacks.parameter_callbacks) == {("a", "/ns/node")}
+        event = ParameterEvent(node="/ns/node", new_parameters=[Parameter("a", value=1).to_parameter_msg()])
+        handler._callbacks.event_callback(event)
+        assert told == [("second", "a"), ("first", "a"), ("event", "/ns/node")]
+        handler.remove_parameter_callback(first)
+        handler.remove_parameter_event_callback(everything)
+        with pytest.raises(RuntimeError, match="doesn't exist"):
+            handler.remove_parameter_callback(first)
+        with pytest.raises(RuntimeError, match="doesn't exist"):
+            handler.remove_parameter_event_callback(everything)
+
+    @pytest.mark.parametrize("accepts", [True, False])
+    def test_the_verdict_of_a_callback_for_quality_of_service(self, node, accepts):
+        def verdict(_):
+            result = QosCallbackResult()
+            result.successful, result.reason = accepts, "too deep"
+            return result
+
+        options = QoSOverridingOptions.with_default_policies(callback=verdict)
+        if accepts:
+            node.create_publisher(String, "topic", 10, qos_overriding_options=options)
+            return
+        with pytest.raises(InvalidQosOverridesError, match="are not valid: too deep"):
+            node.create_publisher(String, "topic", 10, qos_overriding_options=options)
+
+    @pytest.mark.parametrize(("kind", "word"), [(Publisher, "publisher"), (Subscription, "subscription")])
+    def test_declaring_what_overrides_a_profile(self, kind, word):
+        node = rclpy.create_node("n", parameter_overrides=[Parameter(f"qos_overrides./topic.{word}.depth", value=3)])
+        profile = QoSProfile(depth=10)
+        _declare_qos_parameters(kind, node, "/topic", profile, QoSOverridingOptions.with_default_policies())
+        declared = node.get_parameters_by_prefix("qos_overrides")
+        assert {name: each.value for name, each in declared.items()} == {
+            f"/topic.{word}.depth": 3,
+            f"/topic.{word}.history": "keep_last",
+            f"/topic.{word}.reliability": "reliable",
+        }
+        assert profile.depth == 3
+
+
+class TestTime:
+    def test_what_a_timer_tells(self):
+        info = TimerInfo()
+        assert (info.expected_call_time.nanoseconds, info.actual_call_time.clock_type) == (0, ClockType.SYSTEM_TIME)
+        info = TimerInfo(expected_call_time=1, actual_call_time=2, clock_type=ClockType.STEADY_TIME)
+        assert info.actual_call_time == Time(nanoseconds=2, clock_type=ClockType.STEADY_TIME)
+        with pytest.raises(AttributeError):
+            info.expected_call_time = Time()
+
+    @pytest.mark.parametrize("wrapped", [lambda callback: callback, functools.partial])
+    def test_a_timer_that_tells(self, node, wrapped):
+        told = []
+
+        def callback(info: TimerInfo) -> None:
+            told.append(info)
+
+        with node.create_timer(0.001, wrapped(callback)) as timer:
+            rclpy.spin_once(node, timeout_sec=1)
+            assert told[0].expected_call_time.clock_type == timer.clock.clock_type
+        assert timer not in node.timers
+
+    def test_sleep_needs_a_context_that_is_initialised(self, node):
+        with pytest.raises(NotInitializedException):
+            Clock().sleep_for(Duration(seconds=60), context=Context())
+        clock = node.get_clock()
+        rclpy.shutdown()
+        with pytest.raises(NotInitializedException):
+            clock.sleep_for(Duration(seconds=60))
+
+    def test_clocks_of_a_time_source(self, node):
+        source, clock = TimeSource(node=node), ROSClock()
+        source.attach_clock(clock)
+        assert not clock.ros_time_is_active
+        node.set_parameters([Parameter("use_sim_time", value=True)])
+        assert source.ros_time_is_active
+        assert clock.ros_time_is_active
+        jumps = []
+        threshold = JumpThreshold(min_forward=None, min_backward=None, on_clock_change=True)
+        clock.create_jump_callback(threshold, post_callback=jumps.append)
+        publisher = node.create_publisher(ClockMessage, CLOCK_TOPIC, 1)
+        publisher.publish(ClockMessage(clock=Time(seconds=3).to_msg()))
+        rclpy.spin_once(node, timeout_sec=1)
+        late = ROSClock()
+        late._set_ros_time_is_active(False)
+        source.attach_clock(late)
+        assert clock.now() == late.now() == Time(seconds=3, clock_type=ClockType.ROS_TIME)
+        node.set_parameters([Parameter("use_sim_time", value=False)])
+        assert not late.ros_time_is_active
+        assert [jump.clock_change for jump in jumps] == [ClockChange.ROS_TIME_DEACTIVATED]
+        assert source._clock_sub is None
+
+    def test_a_time_source_changes_its_node(self, node):
+        source = TimeSource()
+        simulated = rclpy.create_node("simulated", parameter_overrides=[Parameter("use_sim_time", value=True)])
+        source.attach_node(simulated)
+        assert source.ros_time_is_active
+        source.attach_node(node)
+        assert not source.ros_time_is_active
+        assert source._get_node() is node
+        simulated.set_parameters([Parameter("use_sim_time", value=False)])
+        with pytest.raises(ValueError, match="ROS_TIME"):
+            source.attach_clock(Clock(clock_type=ClockType.STEADY_TIME))
+
+
+class TestLifecycle:
+    def test_the_state_machine(self):
+        silent = LifecycleNode("silent", enable_communication_interface=False)
+        assert silent._state_machine.service_get_state is None
+        assert silent._state_machine.current_state == (1, "unconfigured")
+        driven = LifecycleNode("driven")
+        assert driven._state_machine.service_get_state in driven.services
+
+    def test_what_is_published_goes_through_the_publisher(self):
+        node = LifecycleNode("node")
+        with mock.patch.object(Publisher, "publish") as publish:
+            publisher = node.create_lifecycle_publisher(String, "topic", 10)
+            publisher.publish(String())
+            publish.assert_not_called()
+            assert node.trigger_configure() == TransitionCallbackReturn.SUCCESS
+            node.trigger_activate()
+            message = String(data="now")
+            publisher.publish(message)
+            publish.assert_called_with(publisher, message)
+
+
+def test_how_much_an_action_is_made_of(node):
+    server = ActionServer(node, Fibonacci, "fibonacci", lambda _: Fibonacci.Result())
+    client = ActionClient(node, Fibonacci, "fibonacci")
+    assert server.get_num_entities() == NumberOfEntities(num_timers=1, num_services=3)
+    assert client.get_num_entities() == NumberOfEntities(2, 0, 0, 3, 0)
+    total = server.get_num_entities()
+    total += client.get_num_entities()
+    assert total == NumberOfEntities(2, 0, 1, 3, 3)
+
+
+def test_feedback_comes_before_the_answer_that_the_goal_is_accepted(node):
+    """Where one thread does everything, rclpy executes the goal and tells of it first."""
+    order = []
+
+    def execute(goal):
+        goal.publish_feedback(Fibonacci.Feedback())
+        goal.succeed()
+        return Fibonacci.Result()
+
+    ActionServer(node, Fibonacci, "fibonacci", execute)
+    client = ActionClient(node, Fibonacci, "fibonacci")
+    answer = client.send_goal_async(Fibonacci.Goal(), feedback_callback=lambda _: order.append("feedback"))
+    answer.add_done_callback(lambda _: order.append("answer"))
+    result = None
+    while result is None or not result.done():
+        rclpy.spin_once(node, timeout_sec=1)
+        if answer.done() and result is None:
+            result = answer.result().get_result_async()
+    assert order == ["feedback", "answer"]
+
+
+def test_endpoints_as_text(node):
+    assert str(TopicEndpointInfo()).splitlines()[:5] == [
+        "Node name: ",
+        "Node namespace: ",
+        "Topic type: ",
+        "Endpoint type: INVALID",
+        "GID: ",
+    ]
+    node.create_publisher(String, "topic", QoSProfile(depth=7))
+    (info,) = node.get_publishers_info_by_topic("topic")
+    assert "Endpoint type: PUBLISHER" in str(info)
+    assert "  History (Depth): KEEP_LAST (7)" in str(info)
+    assert "  Lifespan: Infinite" in str(info)
+    described = TopicEndpointInfo(node_name="node", endpoint_type=TopicEndpointTypeEnum.SUBSCRIPTION)
+    assert described != TopicEndpointInfo()
+    described.node_name, described.endpoint_type = "", TopicEndpointTypeEnum.INVALID
+    assert described == TopicEndpointInfo()
+
+
+def test_the_first_node_waits_for_the_network(monkeypatch):
+    context, waits = Context(), []
+
+    class Joining:
+        def wait_until_ready(self, timeout):
+            waits.append(timeout)
+
+    monkeypatch.setattr("linkwright.graph.dds.join", lambda *_, **__: Joining())
+    rclpy.init(context=context, args=[])
+    for _ in range(2):
+        rclpy.create_node("node", context=context)
+    assert len(waits) == 1
+    context.shutdown()
