@@ -81,7 +81,7 @@ class Watched:
         name: its role.
         process: the process.
         errors: the file of its standard error.
-        samples: (seconds since the start, MB resident, threads, file descriptors).
+        samples: (seconds since the start, MB of its own memory, threads, file descriptors).
         told: the last line of JSON that it printed.
         delays: 99th percentiles of its latencies, ms.
     """
@@ -97,7 +97,9 @@ class Watched:
         """Look at it."""
         with suppress(psutil.Error):
             seen = psutil.Process(self.process.pid)
-            memory = seen.memory_info().rss / 1e6
+            known = seen.memory_info()
+            # Pages of files, libraries above all, come and go as the system likes.
+            memory = (known.rss - getattr(known, "shared", 0)) / 1e6
             self.samples.append((time.monotonic() - since, memory, seen.num_threads(), seen.num_fds()))
 
     def listen(self) -> None:
@@ -150,6 +152,10 @@ class Soak:
         self._judge()
         self._print()
         return 1 if self.faults else 0
+
+    def samples(self) -> dict[str, list[tuple[float, float, int, int]]]:
+        """What was seen of each process: seconds, MB, threads, file descriptors."""
+        return {each.name: each.samples for each in self._watched}
 
     @contextmanager
     def _processes(self, folder: Path) -> Iterator[None]:
@@ -344,10 +350,15 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.soak", description=__doc__)
     parser.add_argument("--minutes", type=float, default=60.0, help="how long (default 60)")
     parser.add_argument("--warm-up", type=float, metavar="MINUTES", help="default: a fifth of it, at most 5")
+    parser.add_argument("--samples", type=Path, metavar="FILE", help="keep what was seen of each process, as JSON")
     parser.add_argument("--domain", default="96", help="the DDS domain (default 96)")
     arguments = parser.parse_args()
     warm_up = min(5.0, arguments.minutes / 5.0) if arguments.warm_up is None else arguments.warm_up
-    return Soak(arguments.minutes * 60.0, warm_up * 60.0, arguments.domain).run()
+    soak = Soak(arguments.minutes * 60.0, warm_up * 60.0, arguments.domain)
+    status = soak.run()
+    if arguments.samples is not None:
+        arguments.samples.write_text(json.dumps(soak.samples()), encoding="utf-8")
+    return status
 
 
 if __name__ == "__main__":

@@ -100,7 +100,10 @@ def run(arguments: argparse.Namespace) -> int:
                     logger.info("Press SPACE for Pause/Resume, CURSOR_RIGHT for the next message while paused")
                     logger.info("Press CURSOR_UP and CURSOR_DOWN to play 10 % faster and slower")
                 player.start()
-                await session.until(lambda: player.finished)
+                try:
+                    await session.until(lambda: player.finished)
+                finally:
+                    player.close()
             for publisher in player.publishers:
                 publisher.wait_for_all_acked(Duration(seconds=arguments.wait_for_all_acked / 1000))
             return 0

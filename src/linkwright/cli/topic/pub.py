@@ -23,6 +23,8 @@ HELP = "publish messages to a topic"
 
 _KEEP_ALIVE = 0.1
 _TELL_WAITING = 1.0
+_MATCHED_BOTH_WAYS = 0.15
+"""Seconds after which the subscription that is known here knows the publisher too: what is sent before may be lost."""
 
 _Filled = tuple[Any, list[Callable[[Any], None]]]
 
@@ -89,6 +91,8 @@ def run(arguments: argparse.Namespace) -> int:
         if not await _wait_for(session, publisher, wanted, arguments.max_wait_time_secs):
             print(f"Timed out waiting for {wanted} matching subscription(s)", file=sys.stderr)
             return 1
+        if wanted:
+            await asyncio.sleep(_MATCHED_BOTH_WAYS)
         print("publisher: beginning loop")
         await _publish(session, publisher, filled, times, arguments)
         await asyncio.sleep(arguments.keep_alive)
