@@ -51,3 +51,17 @@ def test_a_module_that_is_there_already_gives_way_for_a_launch(monkeypatch: pyte
         for name in [name for name in sys.modules if name.partition(".")[0] in LAUNCH_MODULES]:
             del sys.modules[name]
         sys.modules.update(saved)
+
+
+@pytest.mark.parametrize(
+    ("module", "name"),
+    [
+        ("launch_ros.utilities", "normalize_parameters"),
+        ("launch_ros.utilities", "to_parameters_list"),
+        ("launch.frontend", "parse_substitution"),
+        ("rosidl_runtime_py", "get_interfaces"),
+    ],
+)
+def test_a_function_with_the_name_of_its_module_stays_the_function(module: str, name: str) -> None:
+    importlib.import_module(f"{module}.{name}")
+    assert callable(getattr(importlib.import_module(module), name))

@@ -1,8 +1,8 @@
 """Has participants tell at once which nodes they have, where they would take seconds.
 
-A writer of Fast DDS tells a reader what it has told before when it gets to know the reader. Often that is before Cyclone
-knows the writer, so that it is lost; what Cyclone sends to have it repeated, Fast DDS passes over, and repeats it after
-3 s by itself. A reader that is made when the writer is known is told within milliseconds.
+A writer of Fast DDS tells a reader what it has told before when it gets to know the reader. Often that is before
+Cyclone knows the writer, so that it is lost; what Cyclone sends to have it repeated, Fast DDS passes over, and repeats
+it after 3 s by itself. A reader that is made when the writer is known is told within milliseconds.
 """
 
 from __future__ import annotations

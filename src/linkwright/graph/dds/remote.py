@@ -21,6 +21,9 @@ from linkwright.graph.dds.wire_names import (
 from linkwright.graph.qos import QoSProfile
 from linkwright.graph.transport import EndpointInfo, EndpointKind, NodeIdentity
 
+_FAST_DDS = b"\x01\x0f"
+"""How the GUIDs of its entities begin."""
+
 _ENDPOINTS_WITHIN = 1.3
 """Seconds within which a participant's first endpoint is heard of; Fast DDS repeats what was missed after 1 s."""
 
@@ -91,6 +94,11 @@ class RemoteEndpoint:
     def name(self) -> RosName | None:
         """The ROS name of its topic."""
         return ros_name(self.topic)
+
+    @property
+    def is_fast(self) -> bool:
+        """Whether it belongs to a participant of Fast DDS (RTPS vendor 1.15)."""
+        return self.guid.startswith(_FAST_DDS)
 
 
 class RemoteGraph:

@@ -5,9 +5,9 @@ endpoint. That does harm. Cyclone compares descriptions where both sides have on
 sends of types with sequences, so that not even ``ros_discovery_info`` would be shared with a node on
 rmw_fastrtps_cpp. And the Cyclone DDS of Humble (0.10) has been seen to crash on descriptions by this one.
 
-A type is a structure of C whose first member points to a table of functions (``ddsi_sertype_ops``). The package makes a
-topic that nobody uses and that is deleted again; its type stays, is given a table of its own in which the functions that
-describe it are left out; and the topics that are used are made with that type.
+A type is a structure of C whose first member points to a table of functions (``ddsi_sertype_ops``). The package makes
+a topic that nobody uses and that is deleted again; its type stays, is given a table of its own in which the functions
+that describe it are left out; and the topics that are used are made with that type.
 """
 
 from __future__ import annotations
