@@ -203,9 +203,13 @@ def test_a_publisher_outside_that_shows_no_life_is_told(processes):
 def test_every_type_can_be_described():
     """To Cyclone, which makes a description of each when it is used first."""
     from linkwright.graph.dds.wire_types import WireTypes
+    from linkwright.messages import shipped_packages
 
     types = WireTypes()
+    shipped = shipped_packages()
     for name in interface_names("msg"):
-        described = types.message(get_message(name))
         package, _, short = name.split("/")
+        if package not in shipped:
+            continue
+        described = types.message(get_message(name))
         assert described.__idl_typename__ == f"{package}.msg.dds_.{short}_"
