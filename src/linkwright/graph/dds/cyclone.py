@@ -107,8 +107,6 @@ _QUICK: dict[str, tuple[Any, tuple[Any, ...]]] = {
     "dds_qget_userdata": (c.c_bool, (_QOS, c.POINTER(c.c_void_p), c.POINTER(c.c_size_t))),
     "dds_qget_entity_name": (c.c_bool, (_QOS, c.POINTER(c.c_void_p))),
     "dds_get_guid": (c.c_int32, (_ENTITY, c.c_char_p)),
-    "dds_get_entity_sertype": (c.c_int32, (_ENTITY, c.POINTER(c.c_void_p))),
-    "ddsi_sertype_ref": (c.c_void_p, (c.c_void_p,)),
     "dds_set_status_mask": (c.c_int32, (_ENTITY, c.c_uint32)),
     "dds_take_status": (c.c_int32, (_ENTITY, c.POINTER(c.c_uint32), c.c_uint32)),
     "dds_get_publication_matched_status": (c.c_int32, (_ENTITY, c.POINTER(MatchedStatus))),
@@ -123,11 +121,6 @@ _QUICK: dict[str, tuple[Any, tuple[Any, ...]]] = {
 _WAITING: dict[str, tuple[Any, tuple[Any, ...]]] = {
     "dds_create_domain": (_ENTITY, (c.c_uint32, c.c_char_p)),
     "dds_create_participant": (_ENTITY, (c.c_uint32, _QOS, c.c_void_p)),
-    "dds_create_topic_sertype": (
-        _ENTITY,
-        (_ENTITY, c.c_char_p, c.POINTER(c.c_void_p), _QOS, c.c_void_p, c.c_void_p),
-    ),
-    "ddsi_sertype_unref": (None, (c.c_void_p,)),
     "dds_create_reader": (_ENTITY, (_ENTITY, _ENTITY, _QOS, c.c_void_p)),
     "dds_create_writer": (_ENTITY, (_ENTITY, _ENTITY, _QOS, c.c_void_p)),
     "dds_create_waitset": (_ENTITY, (_ENTITY,)),
@@ -171,7 +164,6 @@ class Cyclone:
                 function = getattr(library, name)
                 function.restype, function.argtypes = result, arguments
                 setattr(self, name, function)
-        self.type_version: int | None = c.cast(quick.ddsi_sertype_v0, c.c_void_p).value
         self.take_bytes = _clayer.ddspy_take
         self.take_participants = _clayer.ddspy_take_participant
         self.take_endpoints = _clayer.ddspy_take_endpoint

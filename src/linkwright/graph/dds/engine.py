@@ -182,10 +182,9 @@ class Engine:
         late = self._review_replies()
         self._tell_mismatches()
         self._tell()
-        asking = self._discovery.ask_silent()
         if self._work:
             return 0.0
-        return _LOOK_AGAIN if self._leaving or self._mismatched or late else asking
+        return _LOOK_AGAIN if self._leaving or self._mismatched or late else None
 
     def _work_for(self, seconds: float) -> None:
         until = time.monotonic() + seconds

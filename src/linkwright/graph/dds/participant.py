@@ -10,7 +10,6 @@ from threading import Lock
 from linkwright.diagnostics import Diagnostic, LinkwrightError
 from linkwright.graph.dds.cyclone import CycloneError, checked, load
 from linkwright.graph.dds.settings import PARTICIPANTS, Settings
-from linkwright.graph.dds.untyped import UntypedTopics
 from linkwright.graph.dds.wire_qos import participant_qos
 
 NAME = "linkwright"
@@ -61,10 +60,9 @@ class Participant:
             _close_domain(settings.domain_id)
             raise _no_participant(settings, error) from error
         self.guid: bytes = self._dds.guid(self.entity)
-        self._topics = UntypedTopics(self.entity)
 
     def create_topic(self, name: str, described_type: object) -> int:
-        """A topic of a type, which others are told by its name alone.
+        """A topic of a type.
 
         Args:
             name: its DDS name.
@@ -73,7 +71,7 @@ class Participant:
         Raises:
             CycloneError: Cyclone refuses it.
         """
-        return self._topics.create(name, described_type)
+        return checked(self._dds.create_topic(self.entity, name, described_type, None, None), f"topic '{name}'")
 
     def create_reader(self, topic: int, qos: int | None) -> int:
         """A reader of a topic or of one of Cyclone's own."""
@@ -91,7 +89,6 @@ class Participant:
     def close(self) -> None:
         """Leave the domain; everything that was made goes with it, and with the last its sockets and threads."""
         self.closed = True
-        self._topics.end()
         self._dds.dds_delete(self.entity)
         _close_domain(self._domain_id)
 

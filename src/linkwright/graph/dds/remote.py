@@ -21,12 +21,6 @@ from linkwright.graph.dds.wire_names import (
 from linkwright.graph.qos import QoSProfile
 from linkwright.graph.transport import EndpointInfo, EndpointKind, NodeIdentity
 
-_FAST_DDS = b"\x01\x0f"
-"""How the GUIDs of its entities begin."""
-
-_ENDPOINTS_WITHIN = 1.3
-"""Seconds within which a participant's first endpoint is heard of; Fast DDS repeats what was missed after 1 s."""
-
 
 @dataclass(slots=True)
 class RemoteParticipant:
@@ -43,8 +37,6 @@ class RemoteParticipant:
     enclave: str = "/"
     entity_name: str = ""
     entities: ParticipantEntities | None = None
-    came_at: float = field(default_factory=time.monotonic)
-    """When it was heard of first, by the steady clock."""
 
     @property
     def is_ours(self) -> bool:
@@ -95,11 +87,6 @@ class RemoteEndpoint:
         """The ROS name of its topic."""
         return ros_name(self.topic)
 
-    @property
-    def is_fast(self) -> bool:
-        """Whether it belongs to a participant of Fast DDS (RTPS vendor 1.15)."""
-        return self.guid.startswith(_FAST_DDS)
-
 
 class RemoteGraph:
     """The tables of what discovery told; written by one thread, read by any."""
@@ -123,7 +110,6 @@ class RemoteGraph:
             known = self._participants.get(participant.guid)
             said = self._early.pop(participant.guid, None)
             participant.entities = known.entities if known else said
-            participant.came_at = known.came_at if known else participant.came_at
             self._participants[participant.guid] = participant
 
     def participant_went(self, guid: bytes) -> None:
@@ -186,7 +172,7 @@ class RemoteGraph:
         with self._lock:
             return list(self._participants.values())
 
-    def all_told(self) -> bool:
+    def is_complete(self) -> bool:
         """Whether each participant with a writer of ``ros_discovery_info`` has said which nodes it has."""
         with self._lock:
             speakers = {
@@ -199,16 +185,6 @@ class RemoteGraph:
                 for guid, participant in self._participants.items()
                 if guid in speakers or participant.is_ours
             )
-
-    def is_complete(self) -> bool:
-        """Whether all have told their nodes, and nobody is left of whom nothing is known yet but that it is there."""
-        now = time.monotonic()
-        with self._lock:
-            known = {each.participant for each in self._endpoints.values()}
-            for guid, participant in self._participants.items():
-                if guid not in known and now - participant.came_at < _ENDPOINTS_WITHIN:
-                    return False
-        return self.all_told()
 
     def nodes(self) -> list[NodeIdentity]:
         """The nodes of other processes, one entry for each, in the order of their participants."""

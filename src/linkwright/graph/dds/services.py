@@ -3,9 +3,6 @@
 A service is two topics. rmw_cyclonedds_cpp writes before each request who asks (64 bits) and the number of the request,
 and the server writes the same before its reply; all replies reach all clients of a service, and each picks its own. The
 USER_DATA of both endpoints of a client or a server name them as belonging together.
-
-rmw_fastrtps_cpp has the same beside the samples (inline QoS), where Cyclone's Python package neither reads nor writes
-it. Nothing goes between its clients and servers and ours, because each would take the other's header for content.
 """
 
 from __future__ import annotations
@@ -119,7 +116,6 @@ class OutsideServer:
         self._answers: dict[int, Callable[[Any], None]] = {}
         self._lock = Lock()
         self._is_ready = False
-        self._told = False
 
     def send(self, request: Any, answer: Callable[[Any], None]) -> Callable[[], None]:
         """Ask; what it returns forgets the request."""
@@ -171,20 +167,10 @@ class OutsideServer:
 
     def _server_is_there(self) -> bool:
         listening = [self._remote.endpoint(each) for each in self._dds.matched(self.pair.writer, writer=True)]
-        ours = [each for each in listening if each is not None and not each.is_fast]
-        if not ours:
-            self._tell_of_fast(any(listening))
+        if not listening:
             return False
         replying = [self._remote.endpoint(each) for each in self._dds.matched(self.pair.reader, writer=False)]
-        return any(_belong_together(a, b, "serviceid") for a in ours for b in replying)
-
-    def _tell_of_fast(self, is_there: bool) -> None:
-        if is_there and not self._told:
-            self._told = True
-            self._client.node.get_logger().warning(
-                f"Service '{self._client.name}' is offered by a node on Fast DDS (rmw_fastrtps_cpp), whose services "
-                "cannot be called from here; with RMW_IMPLEMENTATION=rmw_cyclonedds_cpp they can"
-            )
+        return any(_belong_together(a, b, "serviceid") for a in listening for b in replying)
 
 
 class IncomingService:
@@ -211,12 +197,10 @@ class IncomingService:
         count = 0
         for asker, number, body, info in self.pair.samples():
             count += 1
-            sender = self._remote.endpoint(info.publication_handle)
-            if sender is not None and sender.is_fast:
-                continue
             request = _read(body, self._service.srv_type.Request, self._service)
             if request is None:
                 continue
+            sender = self._remote.endpoint(info.publication_handle)
             self._service.receive(request, partial(self._reply, sender, asker, number))
         return count == _AT_ONCE
 
