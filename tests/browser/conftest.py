@@ -97,7 +97,8 @@ def start(tmp_path: Path) -> Iterator[Start]:
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,
-            env={**os.environ, "PYTHONUNBUFFERED": "1", "NO_COLOR": "1"},
+            # Robots of other tests that run at this moment must not come to this page over DDS.
+            env={**os.environ, "PYTHONUNBUFFERED": "1", "NO_COLOR": "1", "LINKWRIGHT_DDS": "0"},
         )
         program = Program(process)
         reader = threading.Thread(target=program.read, daemon=True)
