@@ -93,9 +93,14 @@ def test_a_mismatch_of_quality_of_service_is_told_on_both_sides(processes):
     a, b = processes("a"), processes("b")
     a.node.create_publisher(String, "chatter", QoSProfile(5, reliability=ReliabilityPolicy.BEST_EFFORT))
     b.node.create_subscription(String, "chatter", print, QoSProfile(5))
-    b.spin_until(b.warnings)
-    a.spin_until(a.warnings)
-    (theirs,), (ours,) = b.warnings(), a.warnings()
+
+    def said(process):
+        """Its warnings of a mismatch: one about a node of an earlier test that has not left yet may come besides."""
+        return [text for text in process.warnings() if "incompatible QoS" in text]
+
+    b.spin_until(lambda: said(b))
+    a.spin_until(lambda: said(a))
+    (theirs,), (ours,) = said(b), said(a)
     assert "New publisher discovered on topic '/chatter', offering incompatible QoS" in theirs
     assert "RELIABILITY" in theirs
     assert "'/a'" in theirs
@@ -198,9 +203,13 @@ def test_a_publisher_outside_that_shows_no_life_is_told(processes):
 def test_every_type_can_be_described():
     """To Cyclone, which makes a description of each when it is used first."""
     from linkwright.graph.dds.wire_types import WireTypes
+    from linkwright.messages import shipped_packages
 
     types = WireTypes()
+    shipped = shipped_packages()
     for name in interface_names("msg"):
-        described = types.message(get_message(name))
         package, _, short = name.split("/")
+        if package not in shipped:
+            continue
+        described = types.message(get_message(name))
         assert described.__idl_typename__ == f"{package}.msg.dds_.{short}_"
