@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+
 import pytest
 
 
@@ -11,3 +13,20 @@ def plain_environment(monkeypatch):
     for name in ("AMENT_PREFIX_PATH", "COLCON_PREFIX_PATH", "ROS_PACKAGE_PATH", "NO_COLOR", "FORCE_COLOR"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setenv("LINKWRIGHT_LANG", "en")
+
+
+@pytest.fixture(autouse=True)
+def own_definitions():
+    """Definitions of messages that recordings bring along in a test are not known in the next one."""
+    yield
+    module = sys.modules.get("linkwright.messages.library")
+    carried = module.LIBRARY._carried if module is not None else {}
+    if not carried:
+        return
+    library, classes = module.LIBRARY, sys.modules["linkwright.messages.classes"]._classes
+    brought = {name for name in carried if name not in library._sources or library._sources[name] is carried[name]}
+    for table in (library._definitions, library._sources, classes):
+        for name in brought & table.keys():
+            del table[name]
+    library._checked -= brought
+    carried.clear()

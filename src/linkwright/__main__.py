@@ -1,5 +1,5 @@
 """``python -m linkwright``."""
 
-from linkwright.cli.command import main
+from linkwright.cli import main
 
 raise SystemExit(main())

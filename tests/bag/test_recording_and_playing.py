@@ -13,6 +13,7 @@ from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from linkwright.bag import BagReader, BagWriter, Player, PlayOptions, Recorder, TopicSelection
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import DEFAULT_QOS, DESCRIPTION_QOS, SENSOR_DATA_QOS, Graph, JumpClock, LogRecord, Node
+from linkwright.graph.service_introspection import ServiceIntrospectionState
 from linkwright.messages import String, deserialize, get_message, serialize, type_hash
 
 START = 1_700_000_000_000_000_000
@@ -112,6 +113,46 @@ async def test_an_unknown_type_is_told_once(
     await clock.advance(1)
     recorder.close()
     assert sum("nowhere_msgs" in record.text for record in log) == 1
+    assert log[-1].text == "Not in the recording: /odd"
+
+
+async def test_what_never_came_is_told_at_the_end(graph: Graph, tmp_path: Path, log: list[LogRecord]) -> None:
+    graph.create_node("talker").create_publisher(String, "chatter", DEFAULT_QOS)
+    selection = TopicSelection(names=["/chatter", "/silent"], services=["/asked"])
+    Recorder(graph.create_node("recorder"), selection, BagWriter(tmp_path / "bag")).close()
+    assert log[-1].text == "Not in the recording: /asked/_service_event, /silent"
+
+
+async def test_topics_that_nobody_hears_can_be_left_out(graph: Graph, clock: JumpClock, tmp_path: Path) -> None:
+    node = graph.create_node("talker")
+    node.create_publisher(String, "heard", DEFAULT_QOS)
+    node.create_publisher(String, "unheard", DEFAULT_QOS)
+    node.create_subscription(String, "heard", lambda _message: None, DEFAULT_QOS)
+    writer = BagWriter(tmp_path / "bag")
+    selection = TopicSelection(pattern="heard")
+    recorder = Recorder(graph.create_node("recorder"), selection, writer, without_subscriptions=False)
+    assert list(writer.topics) == ["/heard"]
+    recorder.close()
+
+
+async def test_what_a_service_tells_is_recorded_and_played(graph: Graph, clock: JumpClock, tmp_path: Path) -> None:
+    node = graph.create_node("server")
+    service = node.create_service("example_interfaces/srv/AddTwoInts", "sum", lambda _request, response: response)
+    service.configure_introspection(node.get_clock(), DEFAULT_QOS, ServiceIntrospectionState.CONTENTS)
+    selection = TopicSelection(every_service=True)
+    recorder = Recorder(graph.create_node("recorder"), selection, BagWriter(tmp_path / "bag"))
+    client = graph.create_node("user").create_client("example_interfaces/srv/AddTwoInts", "sum")
+    client.call_async(client.srv_type.Request(a=2, b=3))
+    await clock.advance(0.1)
+    recorder.close()
+    service.destroy()
+    events = []
+    node.create_subscription(service.srv_type.Event, "sum/_service_event", events.append, DEFAULT_QOS)
+    with BagReader(tmp_path / "bag") as bag:
+        Player(graph.create_node("player"), bag, PlayOptions()).start()
+        await clock.advance(1)
+    assert [event.info.event_type for event in events] == [1, 2]
+    assert (events[0].request[0].a, events[0].request[0].b) == (2, 3)
 
 
 def record(folder: Path, times: list[float]) -> BagReader:
@@ -306,3 +347,36 @@ async def test_a_topic_may_be_left_out(graph: Graph, clock: JumpClock, player_no
         await clock.advance(1)
     assert player.finished
     assert player.publishers == ()
+
+
+async def test_only_topics_that_an_expression_finds_are_played(
+    graph: Graph, clock: JumpClock, player_node: Node, tmp_path: Path
+) -> None:
+    with record(tmp_path, [0]) as bag:
+        for options in (PlayOptions(pattern="^/other"), PlayOptions(without_pattern="chat")):
+            assert Player(player_node, bag, options).publishers == ()
+        assert [each.name for each in Player(player_node, bag, PlayOptions(pattern="chat")).publishers] == ["/chatter"]
+
+
+async def test_playing_ends_at_a_moment(graph: Graph, clock: JumpClock, player_node: Node, tmp_path: Path) -> None:
+    listener = Listener(graph, clock)
+    with record(tmp_path, [0, 1, 2]) as bag:
+        player = Player(player_node, bag, PlayOptions(until_ns=round(2.5 * SECOND), duration=9.0))
+        player.start()
+        await clock.advance(5)
+        assert player.finished
+    assert [text for _, text in listener.heard] == ["0", "1"]
+
+
+@pytest.mark.parametrize("options", [PlayOptions(clock_topics=["/chatter"]), PlayOptions(clock_before_all=True)])
+async def test_the_time_is_told_before_messages(
+    graph: Graph, clock: JumpClock, player_node: Node, tmp_path: Path, options: PlayOptions
+) -> None:
+    times = []
+    graph.create_node("watcher").create_subscription(
+        get_message("rosgraph_msgs/msg/Clock"), "/clock", lambda message: times.append(message.clock.sec), 10
+    )
+    with record(tmp_path, [0, 1, 3]) as bag:
+        Player(player_node, bag, options).start()
+        await clock.advance(5)
+    assert times == [1, 2, 4]

@@ -203,10 +203,19 @@ def test_an_unknown_topic_is_told_with_the_nearest(tmp_path: Path) -> None:
         (TopicSelection(everything=True, without_names=["/a"]), ["/b/c"]),
         (TopicSelection(everything=True, without_types=["std_msgs/msg/String"]), ["/b/c"]),
         (TopicSelection(names=["/a"], without_pattern="a"), []),
+        (TopicSelection(every_service=True), ["/s/_service_event"]),
+        (TopicSelection(services=["/s"]), ["/s/_service_event"]),
+        (TopicSelection(every_service=True, without_services=["/s"]), []),
+        (TopicSelection(pattern="^/[sa]$"), ["/a", "/s/_service_event"]),
     ],
 )
 def test_selection(selection: TopicSelection, taken: list[str]) -> None:
-    topics = [("/a", "std_msgs/msg/String"), ("/b/c", "std_msgs/msg/Int32"), ("/b/_hidden", "std_msgs/msg/Int32")]
+    topics = [
+        ("/a", "std_msgs/msg/String"),
+        ("/b/c", "std_msgs/msg/Int32"),
+        ("/b/_hidden", "std_msgs/msg/Int32"),
+        ("/s/_service_event", "std_srvs/srv/Empty_Event"),
+    ]
     assert [name for name, kind in topics if selection.takes(name, kind)] == taken
     assert not selection.is_empty
 

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import signal
+
 import pytest
 import yaml
 
 from linkwright.cli import main
 from linkwright.graph import Graph, ParameterDescriptor
+from linkwright.graph.qos import SERVICES_QOS
+from linkwright.graph.service_introspection import ServiceIntrospectionState
 from linkwright.messages import String, get_service
 
 
@@ -281,6 +285,42 @@ def test_service_call_gives_up(capsys):
 )
 def test_mistakes_of_service_call(capsys, words, said):
     assert said in run(capsys, "service", "call", *words, status=1)[1]
+
+
+def watched(graph: Graph) -> None:
+    """A service that tells of its requests, and somebody who asks it; in the end Ctrl-C is pressed."""
+    node = graph.create_node("watched")
+    service = node.create_service("example_interfaces/srv/AddTwoInts", "sum", add)
+    service.configure_introspection(node.get_clock(), SERVICES_QOS, ServiceIntrospectionState.CONTENTS)
+    client = node.create_client("example_interfaces/srv/AddTwoInts", "sum")
+    node.create_timer(0.1, lambda: client.call_async(client.srv_type.Request(a=2, b=3)))
+    node.create_timer(0.35, lambda: signal.raise_signal(signal.SIGINT))
+
+
+def test_service_echo(in_graph, capsys):
+    in_graph(watched)
+    out, _ = run(capsys, "service", "echo", "/sum", "--flow-style", status=130)
+    received, sent = out.split("---\n")[:2]
+    assert received.startswith("info:\n  event_type: REQUEST_RECEIVED\n  stamp:\n    sec: ")
+    assert received.endswith("  sequence_number: 1\nrequest: [{a: 2, b: 3}]\nresponse: []\n")
+    assert "event_type: RESPONSE_SENT" in sent
+    assert sent.endswith("request: []\nresponse: [{sum: 5}]\n")
+
+
+def test_service_echo_of_a_type_with_commas(in_graph, capsys):
+    in_graph(watched)
+    out, _ = run(capsys, "service", "echo", "/sum", "example_interfaces/srv/AddTwoInts", "--csv", status=130)
+    first = out.splitlines()[0].split(",")
+    assert (first[0], first[-4:]) == ("1", ["1", "2", "3", ""])
+
+
+def test_service_echo_says_when_nothing_is_told(in_graph, capsys):
+    def silent(graph: Graph) -> None:
+        robot(graph)
+        graph.create_node("user").create_timer(0.05, lambda: signal.raise_signal(signal.SIGINT))
+
+    in_graph(silent)
+    assert "nothing is told of '/add_two_ints' yet" in run(capsys, "service", "echo", "/add_two_ints", status=130)[1]
 
 
 def test_unknown_service(capsys):

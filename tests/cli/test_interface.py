@@ -112,7 +112,7 @@ def test_show(capsys):
 
 def test_show_from_standard_input(capsys, monkeypatch):
     monkeypatch.setattr("sys.stdin", io.StringIO("std_msgs/msg/String\n"))
-    assert run(capsys, "show", "-")[0] == "string data\n"
+    assert run(capsys, "show", "-")[0] == "# A text.\nstring data\n"
 
 
 def test_show_of_an_unknown_type(capsys):

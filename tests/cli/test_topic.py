@@ -446,13 +446,3 @@ def test_delay_needs_a_header(in_graph, capsys):
     in_graph(talker)
     assert main(["topic", "delay", "/chatter"]) == 1
     assert "msg does not have header" in capsys.readouterr().err
-
-
-@pytest.mark.parametrize("words", [["hz", "/odd"], ["bw", "/odd"], ["echo", "--raw", "/odd"]])
-def test_a_topic_of_a_type_that_no_package_has_is_told_and_not_waited_for(in_graph, capsys, words):
-    def odd(graph: Graph) -> None:
-        graph.create_node("odd").create_publisher("nowhere_msgs/msg/Odd", "odd", 10)
-
-    in_graph(odd)
-    assert main(["topic", *words]) == 1
-    assert "MSG101" in capsys.readouterr().err

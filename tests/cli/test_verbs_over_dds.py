@@ -10,8 +10,11 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
+from rosbags.rosbag2 import StoragePlugin, Writer
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from linkwright.graph import dds
 
@@ -166,6 +169,37 @@ def test_a_description_published_before_is_echoed_by_a_late_comer():
     finally:
         publisher.send_signal(signal.SIGINT)
         publisher.communicate(timeout=10)
+
+
+def test_a_recording_of_a_type_that_no_package_has_is_played_and_its_bytes_are_echoed(tmp_path: Path):
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    store.register(get_types_from_msg("float64 depth\nstd_msgs/Header header\n", "soil_msgs/msg/Probe"))
+    probe, header = store.types["soil_msgs/msg/Probe"], store.types["std_msgs/msg/Header"]
+    stamp = store.types["builtin_interfaces/msg/Time"](sec=7, nanosec=0)
+    with Writer(tmp_path / "bag", version=9, storage_plugin=StoragePlugin.MCAP) as writer:
+        connection = writer.add_connection("/probe", probe.__msgtype__, typestore=store)
+        data = store.serialize_cdr(probe(depth=1.5, header=header(stamp, "drill")), probe.__msgtype__)
+        for number in range(10):
+            writer.write(connection, number * 50_000_000, data)
+    player = begin("bag", "play", "--loop", str(tmp_path / "bag"))
+    try:
+        until = time.monotonic() + 10
+        while "/probe [soil_msgs/msg/Probe]" not in linkwright("topic", "list", "-t"):
+            assert time.monotonic() < until
+        raw = linkwright("topic", "echo", "--once", "--raw", "/probe")
+        assert raw.startswith(repr(bytes(data))[:-1]), "what travels is filled up to whole words"
+        linkwright("topic", "echo", "--once", "/probe", status=1)  # what is in the type is not known there
+        rate = begin("topic", "hz", "/probe")
+        assert rate.stdout is not None
+        assert rate.stdout.readline().startswith("average rate: ")
+        rate.send_signal(signal.SIGINT)
+        rate.communicate(timeout=10)
+    finally:
+        player.terminate()
+        _, err = player.communicate(timeout=10)
+    assert "is not played" not in err
+    assert "Traceback" not in err
+    assert player.returncode == 143
 
 
 def test_the_doctor_sees_what_runs_outside():

@@ -17,11 +17,11 @@ FOLDER = Path(__file__).parent
 
 
 class Program:
-    """A process that answers."""
+    """A process that answers, of this interpreter or another."""
 
-    def __init__(self, name: str, *words: str, **environment: str) -> None:
+    def __init__(self, name: str, *words: str, python: str = sys.executable, **environment: str) -> None:
         self.process = subprocess.Popen(
-            [sys.executable, "-m", f"tests.dds.{name}", *words],
+            [python, "-m", f"tests.dds.{name}", *words],
             cwd=FOLDER.parents[1],
             env={**os.environ, **environment},
             stdin=subprocess.PIPE,

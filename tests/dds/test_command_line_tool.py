@@ -55,9 +55,8 @@ def test_it_lists_our_endpoints_with_their_facts(processes, tool, domain):
     assert "enclave=/;" in shown
 
 
-def test_it_finds_the_whole_type(processes, tool, domain):
+def test_types_go_by_their_names(processes, tool, domain):
+    """Descriptions of types are not sent: rmw_fastrtps_cpp and Humble's Cyclone DDS do not get on with ours."""
     us = processes("ours")
     us.node.create_publisher(JointState, "joint_states", 10)
-    shown = " ".join(tool("typeof", "rt/joint_states", "-i", str(domain)).split())
-    assert "struct JointState_ { std_msgs::msg::dds_::Header_ header; sequence<string> name;" in shown
-    assert "sequence<double> effort; };" in shown
+    assert "struct" not in tool("typeof", "rt/joint_states", "-i", str(domain))

@@ -26,18 +26,25 @@ def descriptors() -> set[str]:
     return {str(each.readlink()) for each in Path("/proc/self/fd").iterdir() if each.is_symlink()}
 
 
+def kernel_threads() -> int:
+    return len(list(Path("/proc/self/task").iterdir()))
+
+
 @on_linux
 def test_nothing_is_left_after_closing(processes):
     processes("warm").close()
     threads, sockets = threading.active_count(), {each for each in descriptors() if each.startswith("socket")}
-    tasks = len(list(Path("/proc/self/task").iterdir()))
+    tasks = kernel_threads()
     us = processes("ours")
     us.node.create_publisher(String, "chatter", 10)
-    assert len(list(Path("/proc/self/task").iterdir())) > tasks
+    assert kernel_threads() > tasks
     us.close()
     assert threading.active_count() == threads
     assert {each for each in descriptors() if each.startswith("socket")} == sockets
-    assert len(list(Path("/proc/self/task").iterdir())) <= tasks
+    until = time.monotonic() + 1.0
+    while kernel_threads() > tasks and time.monotonic() < until:
+        time.sleep(0.01)  # a thread that was joined is listed a moment longer
+    assert kernel_threads() <= tasks
 
 
 def test_closing_twice_and_before_being_ready_is_fine(processes):
@@ -84,7 +91,6 @@ def test_what_was_sent_reliably_before_closing_arrives(processes):
 
 
 def test_a_program_that_closes_nothing_ends(domain):
-    begin = time.monotonic()
     done = run(
         """
         from linkwright.graph import Graph
@@ -97,7 +103,6 @@ def test_a_program_that_closes_nothing_ends(domain):
         """
     )
     assert (done.returncode, done.stderr) == (0, "")
-    assert time.monotonic() - begin < 10
 
 
 def test_a_program_that_fails_ends(domain):
@@ -111,6 +116,27 @@ def test_a_program_that_fails_ends(domain):
         """
     )
     assert (done.returncode, done.stderr) == (3, "")
+
+
+def test_packets_that_are_none_of_dds_leave_no_line_on_standard_error(domain):
+    done = run(
+        """
+        import os, socket, time
+        from linkwright.graph import Graph
+        from linkwright.graph.dds import join
+        graph = Graph(threads=True)
+        assert join(graph).wait_until_ready(10)
+        first = 7400 + 250 * int(os.environ["ROS_DOMAIN_ID"])
+        header = b"RTPS\\x02\\x01\\x01\\x10" + bytes(12)
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
+            for data in (b"hello", header + b"\\xa0\\x45" + bytes(60), header + b"\\x15\\x01\\x40\\x00" + bytes(9)):
+                for port in range(first, first + 30):
+                    sender.sendto(data, ("127.0.0.1", port))
+        time.sleep(0.3)
+        graph.close_now()
+        """
+    )
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork here")

@@ -200,7 +200,7 @@ async def test_requests_go_out_where_this_process_has_no_server(graph):
     asked, forgotten = [], []
 
     class Outside:
-        def send(self, request, answer):
+        def send(self, request, answer, number):
             asked.append(answer)
             return lambda: forgotten.append(request)
 

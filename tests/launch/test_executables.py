@@ -214,7 +214,7 @@ class TestOurs:
 
     def test_they_run_as_processes(self, finder: PackageFinder) -> None:
         found = find_executable(finder, "tf2_ros", "static_transform_publisher")
-        assert found.command[1:] == ["-m", "linkwright.nodes", "tf2_ros", "static_transform_publisher"]
+        assert found.command[1:] == ["-m", "linkwright.node_program", "tf2_ros", "static_transform_publisher"]
 
     def test_the_substitution_gives_a_file(self, finder: PackageFinder) -> None:
         with use_finder(finder):

@@ -89,6 +89,18 @@ async def test_a_shell(launch) -> None:
     assert done.out.splitlines() == ["[echo-1] a", "[echo-1] b"]
 
 
+async def test_words_that_a_substitution_gives_can_be_divided(launch) -> None:
+    program = "import sys; print(sys.argv[1:])"
+    words = ExecuteProcess(
+        cmd=[sys.executable, "-c", repr(program), LaunchConfiguration("words")],
+        name="py",
+        output="screen",
+        split_arguments=True,
+    )
+    done = await launch(SetLaunchConfiguration("words", "--name 'a b'"), words)
+    assert done.out == "[py-1] ['--name', 'a b']\n"
+
+
 async def test_prefix_and_log_cmd(launch) -> None:
     done = await launch(ExecuteProcess(cmd=["x"], prefix="echo 'a b'", output="screen", name="n", log_cmd=True))
     assert done.out == "[n-1] a b x\n"

@@ -418,3 +418,9 @@ class TestDefinitionsThatDataBringAlong:
     @given(name=st.text(), text=st.text(), idl=st.booleans())
     def test_anything_may_come_along(self, name, text, idl):
         add_definitions(name, text, "some.mcap", idl=idl)
+
+    @pytest.mark.parametrize("field", ["first", "second"])
+    def test_a_test_sees_nothing_of_what_others_brought(self, field):
+        assert not any(name.startswith("carried_msgs/") for name in interface_names("msg"))
+        add_definitions("carried_msgs/msg/Again", f"int32 {field}\n", "some.mcap")
+        assert list(get_message("carried_msgs/msg/Again").get_fields_and_field_types()) == [field]

@@ -36,7 +36,7 @@ def told(gui):
 def test_rows(gui):
     assert gui.panel.sliders() == [
         JointSlider("lift", "prismatic", 0.5, 1.5, 1.0),
-        JointSlider("claw", "revolute", -1.0, 2.0, 0.1, "grip"),
+        JointSlider("claw", "revolute", -1.0, 2.0, 0.1, "grip", -1.0, 0.1),
         JointSlider("grip", "revolute", -1.0, 2.0, 0.0),
         JointSlider("spin", "continuous", -pi, pi, 0.0),
     ]

@@ -24,7 +24,7 @@ class Program:
 
     def __init__(self, arguments: list[str], environment: dict[str, str]) -> None:
         self.process = subprocess.Popen(
-            [sys.executable, "-m", "linkwright.nodes", *arguments],
+            [sys.executable, "-m", "linkwright.node_program", *arguments],
             env=environment,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,

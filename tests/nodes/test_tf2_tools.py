@@ -7,10 +7,12 @@ import numpy as np
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.graph import STATIC_TF_PUBLISHER_QOS, TF_QOS
+from linkwright.graph import STATIC_TF_PUBLISHER_QOS, TF_QOS, ActionClient, Duration
+from linkwright.graph.actions.goal import GoalStatus
 from linkwright.kinematics import quaternion_from_rpy
-from linkwright.messages import TFMessage, TransformBatch
+from linkwright.messages import TFMessage, TransformBatch, get_action
 from linkwright.nodes import NodeOptions
+from linkwright.nodes.tf2_buffer_server import Tf2BufferServer
 from linkwright.nodes.tf2_echo import Tf2Echo, describe
 from linkwright.nodes.tf2_monitor import Tf2Monitor
 from linkwright.nodes.view_frames import ViewFrames
@@ -168,3 +170,51 @@ async def test_describing_a_transform_keeps_the_zeros_of_tf2(stage, send):
     await send("a", "b")
     await stage.graph.settle()
     assert "[0.000, -0.000, 0.000]" in describe(stage.tf[0].transforms[0])
+
+
+@pytest.fixture
+def asking(stage):
+    """Asks a buffer server; gives the result."""
+    Tf2BufferServer(stage.graph, NodeOptions())
+    client = ActionClient(stage.node, "tf2_msgs/action/LookupTransform", "tf2_buffer_server")
+    goal_class = get_action("tf2_msgs/action/LookupTransform").Goal
+
+    def ask(timeout=0.0, **goal):
+        return client.send_goal_async(goal_class(timeout=Duration(seconds=timeout).to_msg(), **goal))
+
+    return ask
+
+
+async def result_of(sent):
+    return (await (await sent).get_result_async()).result
+
+
+async def test_buffer_server_looks_transforms_up(asking, send):
+    await send("map", "base", xyz=(1.0, 2.0, 3.0))
+    result = await result_of(asking(target_frame="map", source_frame="base"))
+    assert (result.error.error, result.transform.transform.translation.y) == (0, 2.0)
+    result = await result_of(asking(target_frame="map", source_frame="base", fixed_frame="map", advanced=True))
+    assert result.transform.child_frame_id == "base"
+
+
+async def test_buffer_server_says_what_is_wrong(asking, send):
+    await send("map", "base")
+    result = await result_of(asking(target_frame="map", source_frame="nowhere"))
+    assert (result.error.error, "nowhere" in result.error.error_string) == (1, True)
+
+
+async def test_buffer_server_waits_as_long_as_it_is_told(stage, asking, send):
+    early, late = (asking(timeout, target_frame="map", source_frame="base") for timeout in (0.5, 5.0))
+    await stage.clock.advance(1.0)
+    await send("map", "base", xyz=(1.0, 0.0, 0.0))
+    await stage.clock.advance(0.1)
+    assert (await result_of(early)).error.error == 1
+    assert (await result_of(late)).transform.transform.translation.x == 1.0
+
+
+async def test_buffer_server_lets_goals_be_canceled(stage, asking):
+    handle = await asking(60.0, target_frame="map", source_frame="base")
+    asked = handle.get_result_async()
+    handle.cancel_goal_async()
+    await stage.clock.advance(0.1)
+    assert (await asked).status == GoalStatus.CANCELED

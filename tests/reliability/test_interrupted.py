@@ -88,10 +88,14 @@ def test_the_terminal_is_as_it_was(machine: Machine, delay: float) -> None:
         heard: list[bytes] = []
         reader = threading.Thread(target=_drain, args=(main, heard), daemon=True)
         reader.start()
-        time.sleep(delay)
-        os.write(main, b"\x03")
-        begin = time.monotonic()
-        status = process.wait(10.0)
+        try:
+            until(lambda main=main, process=process: os.tcgetpgrp(main) == process.pid)  # else nobody gets the Ctrl-C
+            time.sleep(delay)
+            os.write(main, b"\x03")
+            begin = time.monotonic()
+            status = process.wait(10.0)
+        finally:
+            process.kill()
         text = b"".join(heard).decode(errors="replace")
         assert time.monotonic() - begin < 3.0, text
         assert status in (130, 0, 1, -signal.SIGINT), text
@@ -100,6 +104,44 @@ def test_the_terminal_is_as_it_was(machine: Machine, delay: float) -> None:
         os.close(terminal)
         reader.join(5.0)
         os.close(main)
+
+
+FIRST_FILES = {"__init__.py", "_version.py", "cli/__init__.py", "cli/entry.py", "interruption.py"}
+"""What is loaded before Ctrl-C is taken care of: about a millisecond."""
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("linkwright", "topic", "echo", "/nobody", "std_msgs/msg/String"),
+        ("linkwright", "run", "demo_nodes_cpp", "talker"),
+        ("linkwright", "launch", "a.launch.py"),
+        ("linkwright.cli.tools", "ros2", "topic", "echo", "/nobody", "std_msgs/msg/String"),
+        ("linkwright.node_program", "demo_nodes_cpp", "talker"),
+    ],
+)
+def test_loading_modules_ends_without_a_word(machine: Machine, words: tuple[str, ...]) -> None:
+    machine.write("a.launch.py", launch_file("Node(package='demo_nodes_cpp', executable='talker')"))
+    for delay in (0.01, 0.025, 0.04, 0.06, 0.09, 0.13, 0.18, 0.25):
+        process = subprocess.Popen(
+            [sys.executable, "-m", *words],
+            env={**os.environ, **machine.variables},
+            cwd=machine.folder,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            start_new_session=True,
+        )
+        time.sleep(delay)
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate(timeout=10.0)
+        if process.returncode in (1, -signal.SIGINT):  # Python was only starting itself
+            assert set(re.findall(r"linkwright/(\S+\.py)", errors)) <= FIRST_FILES, errors
+        else:
+            # A node that runs ends with 0, as all nodes do.
+            assert process.returncode in ((0, 130) if "talker" in words else (130,)), errors
+            assert not traceback_in(errors), errors
 
 
 def _drain(main: int, heard: list[bytes]) -> None:

@@ -12,6 +12,7 @@ from rclpy.action import ActionClient, ActionServer
 from rclpy.clock import Clock, ClockChange, ClockType, JumpThreshold, ROSClock
 from rclpy.context import Context
 from rclpy.duration import Duration
+from rclpy.event_handler import PublisherEventCallbacks, QoSPublisherEventType, SubscriptionEventCallbacks
 from rclpy.exceptions import (
     InvalidParameterException,
     InvalidServiceNameException,
@@ -29,6 +30,7 @@ from rclpy.qos_overriding_options import (
     QoSOverridingOptions,
     _declare_qos_parameters,
 )
+from rclpy.service_introspection import ServiceIntrospectionState
 from rclpy.subscription import Subscription
 from rclpy.time import Time
 from rclpy.time_source import CLOCK_TOPIC, TimeSource
@@ -303,3 +305,43 @@ def test_the_first_node_waits_for_the_network(monkeypatch):
         rclpy.create_node("node", context=context)
     assert len(waits) == 1
     context.shutdown()
+
+
+class TestEventHandlers:
+    def test_without_callbacks_the_log_tells_of_mismatches(self, node):
+        for endpoint in (node.create_publisher(String, "t", 1), node.create_subscription(String, "t", print, 1)):
+            assert [handler.callback for handler in endpoint.event_handlers] == [None]
+
+    def test_each_callback_has_a_handler(self, node):
+        callbacks = PublisherEventCallbacks(deadline=print, matched=print)
+        publisher = node.create_publisher(String, "t", 1, event_callbacks=callbacks)
+        assert [handler.event_type for handler in publisher.event_handlers] == [
+            QoSPublisherEventType.RCL_PUBLISHER_OFFERED_DEADLINE_MISSED,
+            QoSPublisherEventType.RCL_PUBLISHER_OFFERED_INCOMPATIBLE_QOS,
+            QoSPublisherEventType.RCL_PUBLISHER_MATCHED,
+        ]
+
+    def test_without_the_default_callbacks_nothing_is_left(self, node):
+        callbacks = SubscriptionEventCallbacks(use_default_callbacks=False)
+        assert node.create_subscription(String, "t", print, 1, event_callbacks=callbacks).event_handlers == []
+
+
+class TestServiceIntrospection:
+    def test_a_call_is_told_from_both_sides(self, node):
+        events = []
+        service = node.create_service(Empty, "empty", lambda _request, response: response)
+        client = node.create_client(Empty, "empty")
+        node.create_subscription(Empty.Event, "empty/_service_event", events.append, 10)
+        for endpoint in (service, client):
+            endpoint.configure_introspection(node.get_clock(), QoSProfile(depth=10), ServiceIntrospectionState.CONTENTS)
+        rclpy.spin_until_future_complete(node, client.call_async(Empty.Request()), timeout_sec=5.0)
+        while len(events) < 4:
+            rclpy.spin_once(node, timeout_sec=5.0)
+        assert {event.info.event_type for event in events} == {0, 1, 2, 3}
+        assert [len(event.request) + len(event.response) for event in events] == [1] * 4
+
+    def test_the_topic_of_its_events_is_none_of_the_nodes_own(self, node):
+        before = len(list(node.publishers))
+        service = node.create_service(Empty, "empty", lambda _request, response: response)
+        service.configure_introspection(node.get_clock(), QoSProfile(depth=10), ServiceIntrospectionState.METADATA)
+        assert len(list(node.publishers)) == before

@@ -276,10 +276,23 @@ class TestLittleThings:
         assert ActionClient[Fibonacci].__origin__ is ActionClient
         assert Parameter[bool].__args__ == (bool,)
 
-    def test_a_content_filter_is_said_not_to_filter(self, node, capsys):
+    def test_a_content_filter(self, node):
+        heard = []
         options = ContentFilterOptions(filter_expression="data = %0", expression_parameters=["'yes'"])
-        node.create_subscription(String, "topic", lambda _message: None, 10, content_filter_options=options)
-        assert "not filtered by content" in capsys.readouterr().err
+        subscription = node.create_subscription(
+            String, "topic", lambda message: heard.append(message.data), 10, content_filter_options=options
+        )
+        publisher = node.create_publisher(String, "topic", 10)
+        assert subscription.is_cft_enabled
+        assert subscription.get_content_filter() == options
+        for text in ("no", "yes"):
+            publisher.publish(String(data=text))
+        subscription.set_content_filter("", [])
+        publisher.publish(String(data="all"))
+        while len(heard) < 2:
+            rclpy.spin_once(node, timeout_sec=1.0)
+        assert heard == ["yes", "all"]
+        assert not subscription.is_cft_enabled
 
     def test_a_context_may_be_initialised_by_its_block(self):
         with rclpy.context.Context() as context:

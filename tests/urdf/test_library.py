@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
@@ -111,6 +113,12 @@ class TestLibrary:
         library.remember(GOOD, document)
         found = library.read(GOOD).diagnostics[0]
         assert (found.span.file, found.span.line) == ("robot.xacro", 3)
+
+    def test_the_files_of_a_remembered_document_are_known(self):
+        library = DescriptionLibrary()
+        assert library.files(GOOD) == ()
+        library.remember(GOOD, parse(GOOD, "robot.xacro"), files=[Path("robot.xacro"), Path("wheel.xacro")])
+        assert library.files(GOOD) == (Path("robot.xacro"), Path("wheel.xacro"))
 
     def test_no_xml_is_a_reading_without_a_robot(self):
         reading = DescriptionLibrary().read("not XML at all")

@@ -8,6 +8,7 @@ from typing import Any
 
 from linkwright.bag.qos import profile_for_playing
 from linkwright.bag.reading import BagReader
+from linkwright.bag.selection import TopicSelection
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import Node, Publisher, QoSProfile
 from linkwright.graph.dispatch import Alarm
@@ -26,11 +27,16 @@ class PlayOptions:
         rate: how fast; 2.0 is twice as fast as it was recorded.
         topics: only these; all when empty.
         without: none of these.
+        pattern: where no topics are named, only those in whose name this regular expression is found.
+        without_pattern: none in whose name this one is found.
         loop: begin anew at the end, for ever.
         clock_hz: publish the time of the recording on ``/clock`` so often; 0 for not at all.
+        clock_topics: publish it before each message of these, too.
+        clock_before_all: publish it before each message.
         delay: seconds to wait at the beginning of each round.
         start_offset: seconds from the start of the recording to begin at.
         duration: seconds of the recording to play; None for all.
+        until_ns: play nothing from after this time, nanoseconds since the epoch; None for no end but its own.
         paused: whether it begins paused.
         qos_overrides: topic -> profile to publish with.
     """
@@ -38,11 +44,16 @@ class PlayOptions:
     rate: float = 1.0
     topics: Sequence[str] = ()
     without: Sequence[str] = ()
+    pattern: str = ""
+    without_pattern: str = ""
     loop: bool = False
     clock_hz: float = 0.0
+    clock_topics: Sequence[str] = ()
+    clock_before_all: bool = False
     delay: float = 0.0
     start_offset: float = 0.0
     duration: float | None = None
+    until_ns: int | None = None
     paused: bool = False
     qos_overrides: Mapping[str, QoSProfile] = field(default_factory=dict)
 
@@ -65,11 +76,12 @@ class Player:
         self._options = options
         self._logger = node.get_logger()
         self._publishers = self._make_publishers()
-        self._start_clock()
+        self._clock = self._start_clock()
         self._begin_ns = bag.start_ns + round(options.start_offset * _NANOSECONDS_PER_SECOND)
-        self._end_ns = (
-            None if options.duration is None else self._begin_ns + round(options.duration * _NANOSECONDS_PER_SECOND)
-        )
+        ends = [] if options.until_ns is None else [options.until_ns]
+        if options.duration is not None:
+            ends.append(self._begin_ns + round(options.duration * _NANOSECONDS_PER_SECOND))
+        self._end_ns = min(ends, default=None)
         self._stream: Iterator[tuple[str, int, bytes]] = iter(())
         self._next: tuple[str, int, bytes] | None = None
         self._alarm: Alarm | None = None
@@ -164,7 +176,9 @@ class Player:
 
     def _publish_next(self) -> None:
         assert self._next is not None
-        topic, _, data = self._next
+        topic, stamp_ns, data = self._next
+        if self._clock is not None and (self._options.clock_before_all or topic in self._options.clock_topics):
+            self._tell_time(stamp_ns)
         self._publishers[topic].publish(data)
         self.message_count += 1
         self._next = next(self._stream, None)
@@ -205,8 +219,17 @@ class Player:
         topics = {topic.name: topic for topic in self._bag.topics}
         self._bag.messages(list(options.topics))  # a name that is not there is told before anything is played
         made: dict[str, Publisher[Any]] = {}
+        selection = TopicSelection(
+            everything=not options.pattern,
+            names=options.topics,
+            pattern=options.pattern,
+            without_names=options.without,
+            without_pattern=options.without_pattern,
+            hidden=True,
+            every_service=not options.pattern,
+        )
         for name in options.topics or topics:
-            if name in options.without:
+            if not selection.takes(name, topics[name].type_name):
                 continue
             topic = topics[name]
             try:
@@ -218,12 +241,15 @@ class Player:
             made[name] = self._node.create_publisher(message_class, name, qos)
         return made
 
-    def _start_clock(self) -> None:
-        if not self._options.clock_hz:
-            return
-        clock_class = get_message("rosgraph_msgs/msg/Clock")
-        publisher: Publisher[Any] = self._node.create_publisher(clock_class, "/clock", 10)
-        self._node.create_timer(
-            1.0 / self._options.clock_hz,
-            lambda: publisher.publish(clock_class(clock=Time.from_nanoseconds(self.now_ns()))),
-        )
+    def _start_clock(self) -> Publisher[Any] | None:
+        options = self._options
+        if not (options.clock_hz or options.clock_topics or options.clock_before_all):
+            return None
+        publisher: Publisher[Any] = self._node.create_publisher(get_message("rosgraph_msgs/msg/Clock"), "/clock", 10)
+        if options.clock_hz:
+            self._node.create_timer(1.0 / options.clock_hz, lambda: self._tell_time(self.now_ns()))
+        return publisher
+
+    def _tell_time(self, stamp_ns: int) -> None:
+        if self._clock is not None:
+            self._clock.publish(self._clock.msg_type(clock=Time.from_nanoseconds(stamp_ns)))

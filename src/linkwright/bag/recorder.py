@@ -30,6 +30,7 @@ class Recorder:
         discover: whether topics that appear later are recorded too.
         polling_seconds: how often it is looked for them.
         without_publishers: whether topics that have subscriptions only are recorded too.
+        without_subscriptions: whether topics that nobody subscribes to are recorded too.
         paused: whether messages are dropped until `toggle_paused`.
     """
 
@@ -43,6 +44,7 @@ class Recorder:
         discover: bool = True,
         polling_seconds: float = _POLL_SECONDS,
         without_publishers: bool = False,
+        without_subscriptions: bool = True,
         paused: bool = False,
     ) -> None:
         self._node = node
@@ -50,6 +52,7 @@ class Recorder:
         self._writer = writer
         self._overrides = dict(overrides or {})
         self._without_publishers = without_publishers
+        self._without_subscriptions = without_subscriptions
         self._by_clock = bool(node.get_parameter("use_sim_time").value)
         self._logger = node.get_logger()
         self._refused: set[str] = set()
@@ -71,12 +74,15 @@ class Recorder:
         self._logger.info("Pausing recording." if self.paused else "Resuming recording.")
 
     def close(self) -> None:
-        """Write the rest and close the recording."""
+        """Write the rest and close the recording; say what of that which was asked for is not in it."""
         self._flushing.cancel()
         if self._looking is not None:
             self._looking.cancel()
         self._writer.close()
         self._logger.info("Recording stopped")
+        missing = sorted(self._refused | (self._selection.named - set(self._writer.topics)))
+        if missing:
+            self._logger.warning(f"Not in the recording: {', '.join(missing)}")
 
     def _look(self) -> None:
         for name, types in self._node.get_topic_names_and_types():
@@ -95,6 +101,8 @@ class Recorder:
     def _subscribe(self, name: str, type_name: str) -> None:
         offered = [info.qos_profile for info in self._node.get_publishers_info_by_topic(name)]
         if not offered and not self._without_publishers:
+            return
+        if not self._without_subscriptions and not self._node.count_subscribers(name):
             return
         try:
             message_class = get_message(type_name)

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.graph.service_introspection import EVENT_TOPIC_SUFFIX
 
 
 @dataclass(frozen=True)
@@ -17,11 +18,14 @@ class TopicSelection:
         everything: every topic that is not hidden.
         names: these topics, absolute names.
         types: every topic of one of these types.
-        pattern: every topic in whose name this regular expression is found.
+        pattern: every topic, and every service, in whose name this regular expression is found.
         without_names: none of these, whatever else says.
         without_types: none of these types.
         without_pattern: none in whose name this regular expression is found.
         hidden: hidden topics, those with a name that begins with an underscore, count as others.
+        every_service: the events of every service that tells of its requests.
+        services: the events of these services, absolute names.
+        without_services: of none of these.
 
     Raises:
         LinkwrightError: BAG104, a regular expression is not valid.
@@ -35,6 +39,9 @@ class TopicSelection:
     without_types: Sequence[str] = ()
     without_pattern: str = ""
     hidden: bool = False
+    every_service: bool = False
+    services: Sequence[str] = ()
+    without_services: Sequence[str] = ()
     _wanted: re.Pattern[str] | None = field(init=False, repr=False, compare=False)
     _unwanted: re.Pattern[str] | None = field(init=False, repr=False, compare=False)
 
@@ -45,12 +52,21 @@ class TopicSelection:
     @property
     def is_empty(self) -> bool:
         """Whether it names nothing at all to record."""
-        return not (self.everything or self.names or self.types or self.pattern)
+        return not (self._takes_what_comes or self.names or self.services)
 
     @property
     def is_complete_with(self) -> frozenset[str] | None:
         """The topics after which there is nothing more to look for; None where new ones may always come."""
-        return None if self.everything or self.types or self.pattern else frozenset(self.names)
+        return None if self._takes_what_comes else self.named
+
+    @property
+    def named(self) -> frozenset[str]:
+        """The topics that are asked for by name."""
+        return frozenset((*self.names, *(name + EVENT_TOPIC_SUFFIX for name in self.services)))
+
+    @property
+    def _takes_what_comes(self) -> bool:
+        return bool(self.everything or self.every_service or self.types or self.pattern)
 
     def takes(self, name: str, type_name: str) -> bool:
         """Whether a topic is recorded.
@@ -59,19 +75,26 @@ class TopicSelection:
             name: its absolute name.
             type_name: such as ``std_msgs/msg/String``.
         """
-        if name in self.without_names or type_name in self.without_types:
-            return False
-        if self._unwanted is not None and self._unwanted.search(name):
+        if name in self.without_names or type_name in self.without_types or self._is_unwanted(name):
             return False
         if name in self.names:
             return True
+        if name.endswith(EVENT_TOPIC_SUFFIX):
+            return self._takes_service(name.removesuffix(EVENT_TOPIC_SUFFIX), type_name)
         if not self.hidden and any(part.startswith("_") for part in name.split("/")):
             return False
-        return (
-            self.everything
-            or type_name in self.types
-            or (self._wanted is not None and self._wanted.search(name) is not None)
-        )
+        return self.everything or type_name in self.types or self._is_wanted(name)
+
+    def _takes_service(self, service: str, type_name: str) -> bool:
+        if service in self.without_services or self._is_unwanted(service):
+            return False
+        return self.every_service or service in self.services or type_name in self.types or self._is_wanted(service)
+
+    def _is_wanted(self, name: str) -> bool:
+        return self._wanted is not None and self._wanted.search(name) is not None
+
+    def _is_unwanted(self, name: str) -> bool:
+        return self._unwanted is not None and self._unwanted.search(name) is not None
 
 
 def _compiled(pattern: str) -> re.Pattern[str] | None:

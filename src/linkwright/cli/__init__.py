@@ -1,5 +1,5 @@
 """The command line: one file a verb, each importing its room only when it runs."""
 
-from linkwright.cli.command import main
+from linkwright.cli.entry import main
 
 __all__ = ["main"]

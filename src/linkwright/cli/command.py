@@ -18,9 +18,10 @@ from linkwright.cli.language import HELP as LANGUAGE_HELP
 from linkwright.cli.language import UnknownLanguageError, take_language
 from linkwright.diagnostics import LinkwrightError, did_you_mean, print_diagnostics
 from linkwright.diagnostics.translation import set_language
+from linkwright.interruption import INTERRUPTED, end_at_once, raise_interrupts
 
 GROUPS = {
-    "descriptions": ("view", "xacro", "check", "explain", "inertia", "diagram"),
+    "descriptions": ("view", "xacro", "check", "explain", "inertia", "diagram", "export"),
     "packages and running them": ("pkg", "run", "launch", "shell", "bag"),
     "the running graph, as ros2 does": (
         "topic",
@@ -43,7 +44,11 @@ _IN_ORDER = frozenset({"pkg", "run", "shell"})
 """Verbs whose words are taken in order, beside those with verbs of their own: what follows is another command's.
 Elsewhere options may stand between words (`launch PACKAGE --no-open FILE`)."""
 
-FINE, FINDINGS, USAGE, BUG, INTERRUPTED = 0, 1, 2, 3, 130
+_WITH_A_LOOP = frozenset({"view", "run", "launch", "bag", *GROUPS["the running graph, as ros2 does"]})
+"""Verbs that run an event loop or another program, which care for Ctrl-C themselves; before they do there is nothing to
+be cleaned up."""
+
+FINE, FINDINGS, USAGE, BUG = 0, 1, 2, 3
 
 PROGRAM = "linkwright"
 
@@ -95,6 +100,7 @@ def main(words: Sequence[str] | None = None, *, program: str = PROGRAM) -> int:
     finally:
         set_language(None)
         if whole_process:
+            end_at_once()
             gc.freeze()  # Python would look through everything once more before it ends
 
 
@@ -142,7 +148,12 @@ def _dispatch(words: list[str], program: str) -> int:
             return _unknown(asked, below, parser.prog)
     mixed = not below and name not in _IN_ORDER and any(word.startswith("-") for word in words)
     parse = parser.parse_intermixed_args if mixed else parser.parse_args
-    return module.run(parse(words[1:]))
+    arguments = parse(words[1:])
+    if name not in _WITH_A_LOOP:
+        raise_interrupts()
+    status = module.run(arguments)
+    print(end="", flush=True)  # here, where it is known what to do when nobody reads it
+    return status
 
 
 def _unknown(name: str, known: Iterable[str], prog: str) -> int:

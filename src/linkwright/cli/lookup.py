@@ -87,7 +87,9 @@ async def topic_types(session: Session, name: str, *, wait: bool) -> list[str]:
     return types
 
 
-async def topic_type(session: Session, name: str, given: str | None = None, *, wait: bool = False) -> Any:
+async def topic_type(
+    session: Session, name: str, given: str | None = None, *, wait: bool = False, raw: bool = False
+) -> Any:
     """The class of a topic's messages.
 
     Args:
@@ -95,20 +97,30 @@ async def topic_type(session: Session, name: str, given: str | None = None, *, w
         name: absolute.
         given: the type's name, where the user gave it.
         wait: see `topic_types`.
+        raw: whether the messages' bytes are all that is wanted; of a type that no package here has its name is given.
 
     Raises:
         LinkwrightError: MSG101, there is no such type; CLI411 as `topic_types`; CLI412, the topic has several types.
     """
-    from linkwright.messages import get_message
-
     if given is not None:
-        return get_message(given)
+        return _message_class(given, raw=raw)
     types = await topic_types(session, name, wait=wait)
     if len(types) > 1:
         message = f"Cannot echo topic '{name}', as it contains more than one type: [{', '.join(types)}]"
         hint = "name the one that is meant behind the topic; `linkwright doctor` tells who uses which"
         raise LinkwrightError(Diagnostic("CLI412", message, hint=hint))
-    return get_message(types[0])
+    return _message_class(types[0], raw=raw)
+
+
+def _message_class(name: str, *, raw: bool) -> Any:
+    from linkwright.messages import InterfaceNotFoundError, get_message
+
+    try:
+        return get_message(name)
+    except InterfaceNotFoundError:
+        if raw and name.count("/") == 2:
+            return name
+        raise
 
 
 def _types_of(session: Session, name: str) -> list[str]:

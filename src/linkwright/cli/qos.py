@@ -100,29 +100,17 @@ def fitting_profile(node: Node, topic: str, arguments: argparse.Namespace) -> Qo
     That is what ros2cli does: reliable and transient local where all are, so that what was published once is shown.
     Where no depth is asked for, the queue is longer than ros2's, so that a burst is counted and shown in full.
     """
-    from linkwright.graph.qos import DurabilityPolicy, ReliabilityPolicy
+    from linkwright.graph.qos_fitting import fit
 
     chosen = profile(arguments)
     if any(getattr(arguments, name) is not None for name in (*_SINGLE, _LEASE)):
         return chosen
     chosen.depth = max(chosen.depth, _BURST)
-    offers = [info.qos_profile for info in node.get_publishers_info_by_topic(topic)]
-    if not offers:
-        return chosen
-    reliable = sum(offer.reliability is ReliabilityPolicy.RELIABLE for offer in offers)
-    lasting = sum(offer.durability is DurabilityPolicy.TRANSIENT_LOCAL for offer in offers)
-    _say_of_some(reliable, len(offers), "QoSReliabilityPolicy.RELIABLE", "QoSReliabilityPolicy.BEST_EFFORT")
-    _say_of_some(lasting, len(offers), "QoSDurabilityPolicy.TRANSIENT_LOCAL", "QoSDurabilityPolicy.VOLATILE")
-    everybody = len(offers)
-    chosen.reliability = ReliabilityPolicy.RELIABLE if reliable == everybody else ReliabilityPolicy.BEST_EFFORT
-    chosen.durability = DurabilityPolicy.TRANSIENT_LOCAL if lasting == everybody else DurabilityPolicy.VOLATILE
-    return chosen
-
-
-def _say_of_some(count: int, all_of: int, offered: str, taken: str) -> None:
-    if 0 < count < all_of:
+    fitting = fit(chosen, [info.qos_profile for info in node.get_publishers_info_by_topic(topic)])
+    for offered, taken in fitting.mixed:
         print(
             f"Some, but not all, publishers are offering {offered}. Falling back to {taken} as it will connect to all "
             "publishers",
             file=sys.stderr,
         )
+    return fitting.profile

@@ -18,6 +18,8 @@ from inspect import signature
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note
+from linkwright.event_loop import run_coroutine
+from linkwright.interruption import raise_interrupts
 
 if TYPE_CHECKING:
     from types import FrameType
@@ -28,7 +30,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 _HIDDEN = "_ros2cli"
-_LONGEST_DISCOVERY = 2.0
+_LONGEST_DISCOVERY = 3.0
 _POLL = 0.01
 
 
@@ -197,7 +199,7 @@ def run_in_graph(
     if hasattr(sys.stdout, "reconfigure"):
         sys.stdout.reconfigure(line_buffering=True)
     with _TerminationEnds():
-        return asyncio.run(main())
+        return run_coroutine(main, raise_interrupts)
 
 
 def open_graph() -> Graph:

@@ -22,4 +22,5 @@ def run(arguments: argparse.Namespace) -> int:
     from linkwright.launch import LaunchOptions, run_view
 
     values = parse_assignments(arguments.values)
-    return run_view(arguments.file, values, LaunchOptions(arguments.host, arguments.port, not arguments.no_open))
+    options = LaunchOptions(arguments.host, arguments.port, not arguments.no_open, foxglove=arguments.foxglove)
+    return run_view(arguments.file, values, options)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import threading
 from collections import deque
 from collections.abc import Callable
@@ -10,10 +11,10 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from linkwright.graph.copies import copy_of
 from linkwright.graph.dispatch import CallbackGroup
-from linkwright.graph.endpoint import ServiceEndpoint
 from linkwright.graph.entity import Entity
 from linkwright.graph.future import Future
 from linkwright.graph.qos import QoSProfile
+from linkwright.graph.service_introspection import EventType, IntrospectedEndpoint, RequestId
 from linkwright.graph.transport import EndpointKind, OutsideService
 
 if TYPE_CHECKING:
@@ -24,7 +25,7 @@ Request = TypeVar("Request")
 Response = TypeVar("Response")
 
 
-class Client(ServiceEndpoint, Entity, Generic[Request, Response]):
+class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
     """Asks a service; made by ``Node.create_client``.
 
     A request that is made while no server is there waits for one, up to the depth of the quality of service. Where
@@ -46,11 +47,15 @@ class Client(ServiceEndpoint, Entity, Generic[Request, Response]):
         self._describe(node, srv_type, srv_name, qos_profile)
         self.outside: OutsideService | None = None
         """What takes requests out of the process, while a server there matches; see `set_outside`."""
+        self.unreachable = ""
+        """Why no server can be asked though there are some outside; empty otherwise. See `set_unreachable`."""
+        self._has_told_unreachable = False
         self._server: Service[Request, Response] | None = None
+        self._numbers = itertools.count(1)
         self._lock = threading.RLock()
         self._unsent: deque[tuple[Future[Response], Request]] = deque(maxlen=qos_profile.queue_length)
         self._pending: dict[Future[Response], Callable[[], None]] = {}
-        self._answers: deque[tuple[Future[Response], Response]] = deque()
+        self._answers: deque[tuple[Future[Response], Response, RequestId]] = deque()
 
     @property
     def what(self) -> str:
@@ -75,7 +80,10 @@ class Client(ServiceEndpoint, Entity, Generic[Request, Response]):
         Returns:
             Whether one is there. False also when the graph is closed meanwhile.
         """
-        return self.node.graph.wait_until(self.service_is_ready, timeout_sec)
+        is_there = self.node.graph.wait_until(self.service_is_ready, timeout_sec)
+        if not is_there:
+            self._tell_unreachable()
+        return is_there
 
     def call_async(self, request: Request) -> Future[Response]:
         """Ask; the future gets the response.
@@ -95,6 +103,7 @@ class Client(ServiceEndpoint, Entity, Generic[Request, Response]):
             with self._lock:
                 self._unsent.append((future, request))
             self._send_waiting()
+            self._tell_unreachable()
         return future
 
     def call(self, request: Request, timeout_sec: float | None = None) -> Response | None:
@@ -158,6 +167,7 @@ class Client(ServiceEndpoint, Entity, Generic[Request, Response]):
         self._answers.clear()
         self._server = None
         self.outside = None
+        self.end_introspection()
 
     # --- for the bus and the transport ---------------------------------------------------------------------------
 
@@ -172,6 +182,22 @@ class Client(ServiceEndpoint, Entity, Generic[Request, Response]):
         self._send_waiting()
         self.node.graph.notify_change()
 
+    def set_unreachable(self, reason: str) -> None:
+        """For the transport: say why the servers outside cannot be asked; empty when there are none, or they can.
+
+        It is logged, once, when a request waits or somebody has waited for a server in vain.
+        """
+        self.unreachable = reason
+        if self._unsent:
+            self._tell_unreachable()
+        self.node.graph.notify_change()
+
+    def _tell_unreachable(self) -> None:
+        has_server = self._server is not None or self.outside is not None
+        if self.unreachable and not self._has_told_unreachable and not has_server:
+            self._has_told_unreachable = True
+            self.node.get_logger().warning(self.unreachable)
+
     def _send_waiting(self) -> None:
         while self._server is not None or self.outside is not None:
             with self._lock:
@@ -184,23 +210,28 @@ class Client(ServiceEndpoint, Entity, Generic[Request, Response]):
 
     def _send(self, future: Future[Response], request: Request) -> bool:
         server, outside = self._server, self.outside
-        answer = partial(self._receive, future)
+        if server is None and outside is None:
+            return False
+        request_id = RequestId(self.gid, next(self._numbers))
+        answer = partial(self._receive, future, request_id)
+        if self.service_events is not None:
+            self.service_events.tell(EventType.REQUEST_SENT, request_id, request=request)
         if server is not None:
-            server.receive(request, answer)
+            server.receive(request, answer, request_id)
         elif outside is not None:
-            forget = outside.send(request, answer)
+            forget = outside.send(request, answer, request_id.number)
             if future in self._pending:
                 self._pending[future] = forget
-        else:
-            return False
         return True
 
-    def _receive(self, future: Future[Response], response: Response) -> None:
+    def _receive(self, future: Future[Response], request_id: RequestId, response: Response) -> None:
         if self._pending.pop(future, None) is not None:
-            self._answers.append((future, response))
+            self._answers.append((future, response, request_id))
             self.announce()
 
-    def _hand_over(self, future: Future[Response], response: Response) -> None:
+    def _hand_over(self, future: Future[Response], response: Response, request_id: RequestId) -> None:
+        if self.service_events is not None:
+            self.service_events.tell(EventType.RESPONSE_RECEIVED, request_id, response=response)
         future.hand_over(response, self.dispatcher)
 
 

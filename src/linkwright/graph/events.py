@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from enum import IntEnum
+from typing import Any, NamedTuple
 
 from linkwright.graph.qos import QoSPolicyKind
 
@@ -83,6 +84,39 @@ QoSPublisherMatchedInfo = QoSMatchedInfo
 QoSSubscriptionMatchedInfo = QoSMatchedInfo
 
 
+class QoSPublisherEventType(IntEnum):
+    """What a publisher can tell of; numbers and names are rcl's."""
+
+    RCL_PUBLISHER_OFFERED_DEADLINE_MISSED = 0
+    RCL_PUBLISHER_LIVELINESS_LOST = 1
+    RCL_PUBLISHER_OFFERED_INCOMPATIBLE_QOS = 2
+    RCL_PUBLISHER_INCOMPATIBLE_TYPE = 3
+    RCL_PUBLISHER_MATCHED = 4
+
+
+class QoSSubscriptionEventType(IntEnum):
+    """What a subscription can tell of; numbers and names are rcl's."""
+
+    RCL_SUBSCRIPTION_REQUESTED_DEADLINE_MISSED = 0
+    RCL_SUBSCRIPTION_LIVELINESS_CHANGED = 1
+    RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS = 2
+    RCL_SUBSCRIPTION_MESSAGE_LOST = 3
+    RCL_SUBSCRIPTION_INCOMPATIBLE_TYPE = 4
+    RCL_SUBSCRIPTION_MATCHED = 5
+
+
+class EventHandler(NamedTuple):
+    """That something is told of.
+
+    Attributes:
+        event_type: what.
+        callback: what is called; None where the log tells.
+    """
+
+    event_type: QoSPublisherEventType | QoSSubscriptionEventType
+    callback: EventCallback | None
+
+
 @dataclass(kw_only=True)
 class EndpointEventCallbacks:
     """What the user of a publisher or a subscription wants to hear of; each callback gets the information of its name.
@@ -107,6 +141,17 @@ class EndpointEventCallbacks:
 class PublisherEventCallbacks(EndpointEventCallbacks):
     """What a publisher's user wants to hear of."""
 
+    def handlers(self) -> list[EventHandler]:
+        """What is told of, and to whom."""
+        kinds = QoSPublisherEventType
+        return _handlers(
+            (kinds.RCL_PUBLISHER_OFFERED_DEADLINE_MISSED, self.deadline),
+            (kinds.RCL_PUBLISHER_OFFERED_INCOMPATIBLE_QOS, self.incompatible_qos),
+            (kinds.RCL_PUBLISHER_LIVELINESS_LOST, self.liveliness),
+            (kinds.RCL_PUBLISHER_MATCHED, self.matched),
+            logged=kinds.RCL_PUBLISHER_OFFERED_INCOMPATIBLE_QOS if self.use_default_callbacks else None,
+        )
+
 
 @dataclass(kw_only=True)
 class SubscriptionEventCallbacks(EndpointEventCallbacks):
@@ -117,3 +162,22 @@ class SubscriptionEventCallbacks(EndpointEventCallbacks):
     """
 
     message_lost: EventCallback | None = None
+
+    def handlers(self) -> list[EventHandler]:
+        """What is told of, and to whom."""
+        kinds = QoSSubscriptionEventType
+        return _handlers(
+            (kinds.RCL_SUBSCRIPTION_REQUESTED_DEADLINE_MISSED, self.deadline),
+            (kinds.RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS, self.incompatible_qos),
+            (kinds.RCL_SUBSCRIPTION_LIVELINESS_CHANGED, self.liveliness),
+            (kinds.RCL_SUBSCRIPTION_MESSAGE_LOST, self.message_lost),
+            (kinds.RCL_SUBSCRIPTION_MATCHED, self.matched),
+            logged=kinds.RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS if self.use_default_callbacks else None,
+        )
+
+
+def _handlers(
+    *wanted: tuple[QoSPublisherEventType | QoSSubscriptionEventType, EventCallback | None],
+    logged: QoSPublisherEventType | QoSSubscriptionEventType | None,
+) -> list[EventHandler]:
+    return [EventHandler(kind, callback) for kind, callback in wanted if callback is not None or kind is logged]

@@ -30,6 +30,7 @@ from linkwright.graph.timer import GuardCondition, Timer
 from linkwright.graph.transport import NodeIdentity
 
 if TYPE_CHECKING:
+    from linkwright.graph.content_filter import ContentFilterOptions
     from linkwright.graph.graph import Graph
     from linkwright.graph.parameters.parameter import Parameter
 
@@ -220,6 +221,7 @@ class Node(NodeParameters, NodeQueries):
         callback_group: CallbackGroup | None = None,
         event_callbacks: SubscriptionEventCallbacks | None = None,
         raw: bool = False,
+        content_filter_options: ContentFilterOptions | None = None,
     ) -> Subscription[M]:
         """A subscription to a topic.
 
@@ -232,9 +234,11 @@ class Node(NodeParameters, NodeQueries):
             callback_group: which entities may run beside it.
             event_callbacks: what is called for events of the quality of service.
             raw: whether the callback gets CDR bytes with their header instead of messages.
+            content_filter_options: which messages are wanted.
 
         Raises:
             InvalidTopicNameError: the topic's name is not valid.
+            ContentFilterError: the content filter cannot be understood.
             TypeError: the type is none of a message.
         """
         name = self.resolve_topic_name(topic)
@@ -245,6 +249,8 @@ class Node(NodeParameters, NodeQueries):
         )
         if event_callbacks is not None:
             subscription.events = SubscriptionEvents(subscription, event_callbacks)
+        if content_filter_options is not None:
+            subscription.set_content_filter(*content_filter_options)
         self.add_subscription(subscription)
         return subscription
 

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from linkwright.graph.endpoint import TopicEndpoint
+from linkwright.graph.events import EventHandler, PublisherEventCallbacks
 from linkwright.graph.faults import InvalidHandleError
 from linkwright.graph.qos import DurabilityPolicy, LivelinessPolicy, QoSProfile
 from linkwright.graph.qos_compatibility import limit_ns
@@ -19,7 +20,6 @@ from linkwright.messages import serialize
 if TYPE_CHECKING:
     from linkwright.graph.dispatch import CallbackGroup
     from linkwright.graph.endpoint_events import PublisherEvents
-    from linkwright.graph.events import PublisherEventCallbacks
     from linkwright.graph.node import Node
 
 M = TypeVar("M")
@@ -84,6 +84,11 @@ class Publisher(TopicEndpoint[M]):
                 outside(msg)
         else:
             self._publish_watched(msg)
+
+    @property
+    def event_handlers(self) -> list[EventHandler]:
+        """What is told of its quality of service: what has a callback, and what the log tells where nothing has."""
+        return (self.event_callbacks or PublisherEventCallbacks()).handlers()
 
     def get_subscription_count(self) -> int:
         """How many subscriptions receive what is published, inside the process and outside."""

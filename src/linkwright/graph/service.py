@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from linkwright.graph.copies import copy_of
 from linkwright.graph.dispatch import CallbackGroup
-from linkwright.graph.endpoint import ServiceEndpoint
 from linkwright.graph.entity import Entity
 from linkwright.graph.qos import QoSProfile
+from linkwright.graph.service_introspection import NO_REQUEST_ID, EventType, IntrospectedEndpoint, RequestId
 from linkwright.graph.transport import EndpointKind
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ Reply = Callable[[Any], None]
 """Sends a response to whoever asked; from any thread, once."""
 
 
-class Service(ServiceEndpoint, Entity, Generic[Request, Response]):
+class Service(IntrospectedEndpoint, Entity, Generic[Request, Response]):
     """Answers the requests to a service; made by ``Node.create_service``.
 
     Args:
@@ -51,21 +51,22 @@ class Service(ServiceEndpoint, Entity, Generic[Request, Response]):
         self._describe(node, srv_type, srv_name, qos_profile)
         self.callback: Callable[[Any, Any], Any] = callback
         self._replying = replying
-        self._waiting: deque[tuple[Request, Reply]] = deque(maxlen=qos_profile.queue_length)
+        self._waiting: deque[tuple[Request, Reply, RequestId]] = deque(maxlen=qos_profile.queue_length)
 
     @property
     def what(self) -> str:
         """What it is, for messages."""
         return f"callback of service '{self.name}'"
 
-    def receive(self, request: Request, reply: Reply) -> None:
+    def receive(self, request: Request, reply: Reply, request_id: RequestId = NO_REQUEST_ID) -> None:
         """Have a request answered, from any thread.
 
         Args:
             request: the request.
             reply: called with the response, from any thread, or never.
+            request_id: whose request it is, for who watches.
         """
-        self._waiting.append((request, reply))
+        self._waiting.append((request, reply, request_id))
         self.announce()
 
     def has_work(self) -> bool:
@@ -99,8 +100,13 @@ class Service(ServiceEndpoint, Entity, Generic[Request, Response]):
         """Answer no more."""
         super().retire()
         self._waiting.clear()
+        self.end_introspection()
 
-    def _answer(self, request: Request, reply: Reply) -> object:
+    def _answer(self, request: Request, reply: Reply, request_id: RequestId) -> object:
+        events = self.service_events
+        if events is not None:
+            events.tell(EventType.REQUEST_RECEIVED, request_id, request=request)
+            reply = partial(self._reply_watched, reply, request_id)
         if self._replying:
             return self.callback(request, partial(self.send_response, header=reply))
         response = self.callback(request, self.srv_type.Response())
@@ -111,3 +117,9 @@ class Service(ServiceEndpoint, Entity, Generic[Request, Response]):
 
     async def _answer_later(self, response: Awaitable[Response], reply: Reply) -> None:
         self.send_response(await response, reply)
+
+    def _reply_watched(self, reply: Reply, request_id: RequestId, response: Response) -> None:
+        reply(response)
+        events = self.service_events
+        if events is not None:
+            events.tell(EventType.RESPONSE_SENT, request_id, response=response)

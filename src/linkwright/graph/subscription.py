@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from linkwright.diagnostics import LinkwrightError
+from linkwright.graph.content_filter import ContentFilter, ContentFilterOptions
 from linkwright.graph.dispatch import CallbackGroup, Dispatcher
 from linkwright.graph.endpoint import TopicEndpoint
 from linkwright.graph.entity import Entity
+from linkwright.graph.events import EventHandler, SubscriptionEventCallbacks
 from linkwright.graph.qos import QoSProfile
 from linkwright.graph.signatures import accepts
 from linkwright.graph.transport import EndpointKind, MessageInfo
@@ -21,7 +23,6 @@ from linkwright.messages import deserialize, serialize
 
 if TYPE_CHECKING:
     from linkwright.graph.endpoint_events import SubscriptionEvents
-    from linkwright.graph.events import SubscriptionEventCallbacks
     from linkwright.graph.node import Node
     from linkwright.graph.publisher import Publisher
 
@@ -84,6 +85,7 @@ class Subscription(TopicEndpoint[M], Entity):
         self.event_callbacks = event_callbacks
         self.events: SubscriptionEvents | None = None
         self._publishers: dict[Publisher[Any], None] = {}
+        self._filter: ContentFilter | None = None
 
     @property
     def what(self) -> str:
@@ -117,9 +119,36 @@ class Subscription(TopicEndpoint[M], Entity):
     def _callback_type(self) -> Enum:
         return CallbackType.WithMessageInfo if self._wants_info else CallbackType.MessageOnly
 
+    @property
+    def event_handlers(self) -> list[EventHandler]:
+        """What is told of its quality of service: what has a callback, and what the log tells where nothing has."""
+        return (self.event_callbacks or SubscriptionEventCallbacks()).handlers()
+
     def get_publisher_count(self) -> int:
         """How many publishers it receives from."""
         return len(self._publishers) + self._outside_count
+
+    @property
+    def is_cft_enabled(self) -> bool:
+        """Whether a content filter is in force."""
+        return self._filter is not None
+
+    def get_content_filter(self) -> ContentFilterOptions:
+        """The content filter in force; an empty one where there is none."""
+        return ContentFilterOptions("") if self._filter is None else self._filter.options
+
+    def set_content_filter(self, filter_expression: str, expression_parameters: Sequence[str] = ()) -> None:
+        """Take only messages for which a condition holds, from now on.
+
+        Args:
+            filter_expression: the condition, see `ContentFilter`; an empty one lets every message in again.
+            expression_parameters: what stands for ``%0``, ``%1``, ... in it.
+
+        Raises:
+            ContentFilterError: it cannot be understood, or a field or parameter is not there.
+        """
+        options = ContentFilterOptions(filter_expression, list(expression_parameters))
+        self._filter = ContentFilter(options, self.msg_type) if filter_expression.strip() else None
 
     def lost_outside(self, count: int) -> None:
         """For the transport: messages from outside were lost."""
@@ -133,6 +162,8 @@ class Subscription(TopicEndpoint[M], Entity):
             message: the message, or its CDR bytes, which are read when the callback's turn comes.
             info: where it comes from; needed where that is another process.
         """
+        if self._filter is not None and not self._is_wanted(message, self._filter):
+            return
         self._waiting.append(message if info is None else Detailed(message, info))
         if not self._announced:
             dispatcher = self.dispatcher
@@ -233,6 +264,16 @@ class Subscription(TopicEndpoint[M], Entity):
         if isinstance(message, bytes):
             return message
         return serialize(message)
+
+    def _is_wanted(self, message: Any, content_filter: ContentFilter) -> bool:
+        """Whether the content filter lets a message in; one that cannot be read is, and is complained of later."""
+        inner = message.message if type(message) is Detailed else message
+        if isinstance(inner, (bytes, bytearray, memoryview)):
+            try:
+                inner = deserialize(inner, self.msg_type)
+            except LinkwrightError:
+                return True
+        return content_filter.accepts(inner)
 
     def _read(self, data: bytes | bytearray | memoryview) -> Any:
         """The message that bytes are; None, which is told of once, when they are none."""

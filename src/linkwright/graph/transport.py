@@ -104,12 +104,13 @@ _INFO_NAMES = tuple(field.name for field in fields(MessageInfo))
 class OutsideService(Protocol):
     """A server outside of the process, as a client of it sees it."""
 
-    def send(self, request: Any, answer: Callable[[Any], None]) -> Callable[[], None]:
+    def send(self, request: Any, answer: Callable[[Any], None], number: int) -> Callable[[], None]:
         """Ask it.
 
         Args:
             request: the request.
             answer: called with the response, from any thread, at most once.
+            number: of the request, another one for each of a client's.
 
         Returns:
             What forgets the request.
@@ -120,10 +121,10 @@ class Transport(Protocol):
     """Mirrors the endpoints of one graph outside of the process.
 
     ``open_*`` is called for each endpoint when it is made, ``close_*`` when it is destroyed; neither may block. What
-    comes in is given to ``Subscription.receive(message, info)`` and ``Service.receive(request, reply)``, from any
-    thread. What goes out is asked for with ``Publisher.set_outside`` and ``Client.set_outside`` while somebody outside
-    matches, and no longer when nobody does; a transient local publisher's is set from the start, so that who comes late
-    is served. How many match is told with ``set_outside_count``.
+    comes in is given to ``Subscription.receive(message, info)`` and ``Service.receive(request, reply, request_id)``,
+    from any thread. What goes out is asked for with ``Publisher.set_outside`` and ``Client.set_outside`` while somebody
+    outside matches, and no longer when nobody does; a transient local publisher's is set from the start, so that who
+    comes late is served. How many match is told with ``set_outside_count``.
     """
 
     def open_node(self, node: NodeIdentity) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -17,6 +16,7 @@ from linkwright.launch.engine.descriptions import Descriptions, use_descriptions
 from linkwright.launch.engine.log import LaunchLog
 from linkwright.launch.engine.session import LaunchSession, SessionOptions
 from linkwright.launch.engine.signals import SignalWatch, interruption_text
+from linkwright.launch.entity import Action
 from linkwright.launch.launch_file import load_launch_file
 from linkwright.launch.target import LaunchTarget
 from linkwright.workspace import PackageFinder, use_finder
@@ -35,6 +35,7 @@ class LaunchOptions:
         noninteractive: whether nobody sits at a terminal that would send signals to the processes too.
         prefix: a command to put before those of processes.
         prefix_filter: a regular expression for the names of the programs that get it.
+        foxglove: a port for Foxglove and Lichtblick to connect to; None for none.
     """
 
     host: str = "127.0.0.1"
@@ -45,6 +46,7 @@ class LaunchOptions:
     noninteractive: bool = False
     prefix: str | None = None
     prefix_filter: str | None = None
+    foxglove: int | None = None
 
     @property
     def configurations(self) -> dict[str, str]:
@@ -135,9 +137,11 @@ def run_description(
     with SignalWatch() as signals, use_finder(finder), use_descriptions(Descriptions(finder)):
         try:
             description, values = load(log)
+            if options.foxglove is not None:
+                description.add_action(_foxglove_bridge(options.foxglove))
             session = partial(LaunchSession, finder, options.for_session(title), log)
             given = {**options.configurations, **configurations}
-            succeeded = asyncio.run(_run(description, values, given, session, options.noninteractive, signals))
+            succeeded = signals.run(lambda: _run(description, values, given, session, options.noninteractive, signals))
         except KeyboardInterrupt:
             if signals.received is None:  # not in the main thread, or raised by the user's own code
                 raise
@@ -163,6 +167,14 @@ async def _run(
     session.context.launch_configurations.update(configurations)
     signals.session = session
     return await session.run(description, values)
+
+
+def _foxglove_bridge(port: int) -> Action:
+    """The node that Foxglove and Lichtblick connect to."""
+    from linkwright.launch.ros import Node
+
+    package = executable = "foxglove_bridge"
+    return Node(package=package, executable=executable, parameters=[{"port": port}])
 
 
 def _restore(environment: dict[str, str]) -> None:

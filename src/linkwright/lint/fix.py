@@ -175,5 +175,5 @@ def _opened(element: Element) -> tuple[int, int, int, bool] | None:
     if not name or not rest or name[0] != f"<{element.tag}":
         return None
     is_empty = rest[0].endswith("/>")
-    inside = text[: rest.end() - (2 if is_empty else 1)]
-    return element.offset, max(len(inside.rstrip()), name.end()), rest.end(), is_empty
+    inside = text[name.end() : rest.end() - (2 if is_empty else 1)]
+    return element.offset, name.end() + len(inside.rstrip()), rest.end(), is_empty

@@ -75,7 +75,7 @@ class Library:
         return found
 
     def source(self, name: str) -> SourceText:
-        """The interface file that a definition was read from; of those that come with Linkwright, without comments.
+        """The interface file that a definition was read from; those that come with Linkwright have our own comments.
 
         Raises:
             InterfaceNotFoundError: as `definition`.

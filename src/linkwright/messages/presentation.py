@@ -11,7 +11,7 @@ from linkwright.messages.yaml_text import to_yaml
 
 
 def definition_text(interface: Any) -> str:
-    """The text of an interface file: from the workspace as it is, of an interface that comes with us without comments.
+    """The text of an interface file, as it is in the workspace; of one that comes with us, with comments of our own.
 
     Args:
         interface: a class, or a type name.

@@ -29,6 +29,7 @@ EXECUTABLES: Mapping[tuple[str, str], Factory] = {
     ("tf2_ros", "static_transform_publisher"): _lazy("static_transform_publisher", "StaticTransformPublisher"),
     ("tf2_ros", "tf2_echo"): _lazy("tf2_echo", "Tf2Echo"),
     ("tf2_ros", "tf2_monitor"): _lazy("tf2_monitor", "Tf2Monitor"),
+    ("tf2_ros", "buffer_server"): _lazy("tf2_buffer_server", "Tf2BufferServer"),
     ("tf2_tools", "view_frames"): _lazy("view_frames", "ViewFrames"),
     ("rclcpp_components", "component_container"): _lazy("component_container", "ComponentContainer"),
     ("rclcpp_components", "component_container_mt"): _lazy("component_container", "ComponentContainer"),
@@ -43,5 +44,6 @@ EXECUTABLES: Mapping[tuple[str, str], Factory] = {
     ("demo_nodes_py", "add_two_ints_client"): _lazy("add_two_ints", "AddTwoIntsClient"),
     ("demo_nodes_cpp", "add_two_ints_server"): _lazy("add_two_ints", "AddTwoIntsServer"),
     ("demo_nodes_cpp", "add_two_ints_client"): _lazy("add_two_ints", "AddTwoIntsClient"),
+    ("foxglove_bridge", "foxglove_bridge"): _lazy("foxglove", "FoxgloveBridge"),
     ("image_tools", "cam2image"): _lazy("demo_camera", "DemoCamera"),
 }

@@ -11,6 +11,7 @@ from typing import Literal
 
 from linkwright.graph import Node, run_logged
 from linkwright.nodes.joint_positions import JointPositions
+from linkwright.nodes.joint_settings import Dependence
 from linkwright.urdf import JointType
 
 PanelChange = Literal["sliders", "positions"]
@@ -28,6 +29,8 @@ class JointSlider:
         upper: where it ends.
         zero: where "Center" puts the joint.
         mimic: the joint that this one follows, directly; such a row cannot be moved. None for a free joint.
+        multiplier: of a joint that follows: position = multiplier * position of `mimic` + offset.
+        offset: rad or m.
     """
 
     name: str
@@ -36,6 +39,8 @@ class JointSlider:
     upper: float
     zero: float
     mimic: str | None = None
+    multiplier: float = 1.0
+    offset: float = 0.0
 
 
 class JointPanel:
@@ -127,6 +132,8 @@ class JointPanel:
         free = layout.free
         masters = [free[master].name if master >= 0 else "" for master in layout.masters.tolist()]
         zeros = [free[master].zero if master >= 0 else 0.0 for master in layout.masters.tolist()]
+        follows_nothing = Dependence("")
+        follows = [layout.dependent.get(name, follows_nothing) for name in layout.ranges]
         self._sliders = [
             JointSlider(
                 joint.name,
@@ -134,10 +141,13 @@ class JointPanel:
                 joint.lower,
                 joint.upper,
                 factor * zero + offset,
-                layout.dependent[joint.name].parent if joint.name in layout.dependent else None,
+                direct.parent or None,
+                direct.factor,
+                direct.offset,
             )
-            for joint, master, zero, factor, offset in zip(
+            for joint, direct, master, zero, factor, offset in zip(
                 layout.ranges.values(),
+                follows,
                 masters,
                 zeros,
                 layout.factor.tolist(),

@@ -1,4 +1,4 @@
-"""One of our nodes as a process of its own: ``python -m linkwright.nodes PACKAGE EXECUTABLE ARGUMENTS``."""
+"""One of our nodes as a process of its own: ``python -m linkwright.node_program PACKAGE EXECUTABLE ARGUMENTS``."""
 
 from __future__ import annotations
 
@@ -10,6 +10,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, print_diagnostics
+from linkwright.event_loop import run_coroutine
+from linkwright.interruption import raise_interrupts
 
 if TYPE_CHECKING:
     from linkwright.graph.log.setup import Logging
@@ -39,7 +41,7 @@ def main(package: str, executable: str, arguments: Sequence[str]) -> int:
         print_diagnostics(error.diagnostics, sys.stderr)
         return 1
     try:
-        return asyncio.run(_run(factory, list(arguments), logging))
+        return run_coroutine(lambda: _run(factory, list(arguments), logging), raise_interrupts)
     except LinkwrightError as error:
         print_diagnostics(error.diagnostics, sys.stderr)
         return 1

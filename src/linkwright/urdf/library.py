@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import OrderedDict
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Union
 
@@ -89,18 +89,25 @@ class DescriptionLibrary:
     def __init__(self) -> None:
         self._readings: OrderedDict[str, Reading] = OrderedDict()
         self._tellers: dict[str, Teller] = {}
+        self._files: dict[str, tuple[Path, ...]] = {}
 
-    def remember(self, text: str, document: Document, tell: Teller | None = None) -> None:
+    def remember(self, text: str, document: Document, tell: Teller | None = None, files: Iterable[Path] = ()) -> None:
         """Say that a description text is a document's, whose elements know where they were written.
 
         Args:
             text: the description.
             document: what it is the text of.
             tell: what tells the story of an element of the document (`linkwright.xacro.Expansion.story`).
+            files: what the document was made from, the main file first.
         """
         self._keep(text, read(document))
+        self._files[text] = tuple(files)
         if tell is not None:
             self._tellers[text] = tell
+
+    def files(self, text: str) -> tuple[Path, ...]:
+        """What a remembered description was made from, the main file first; empty where nobody said so."""
+        return self._files.get(text, ())
 
     def story(self, text: str, element: Element) -> Story | None:
         """How an element of a remembered description came to be; None for a text that nobody tells about.
@@ -130,6 +137,7 @@ class DescriptionLibrary:
         if len(self._readings) > _KEPT_TEXTS:
             forgotten, _ = self._readings.popitem(last=False)
             self._tellers.pop(forgotten, None)
+            self._files.pop(forgotten, None)
 
 
 def _is_xacro(root: Element) -> bool:

@@ -121,6 +121,25 @@ def test_the_actions(text: str) -> None:
     assert shutdown.event.reason
 
 
+def test_what_newer_ros_lets_be_written_shorter() -> None:
+    description = parse(
+        """
+        launch:
+        - arg: {name: kind, default: b, choices: [a, b]}
+        - let: {name: number, value: 3.5}
+        - let: {name: truth, value: yes}
+        - group: {if: false, children: [let: {name: never, value: x}]}
+        - include: other.launch.py
+        """
+    )
+    argument, number, truth, group, include = description.entities
+    context = LaunchContext()
+    assert argument.choices == ["a", "b"]
+    assert [perform_substitutions(context, each.value) for each in (number, truth)] == ["3.5", "true"]
+    assert group.visit(context) is None
+    assert "other.launch.py" in include.launch_description_source.location
+
+
 def test_a_packages_own_tag_and_the_entity_that_it_reads() -> None:
     seen: dict[str, Any] = {}
 
@@ -172,7 +191,8 @@ CASES = [
     ("launch:\n- arg: {nam: x}\n", "LAUNCH117", (2, 3), "'arg' needs an attribute 'name'", "it has 'nam'"),
     ("launch:\n- arg: {name: x, defalt: y}\n", "LAUNCH116", (2, 18), "'arg' has no key 'defalt'", "'default'?"),
     ("launch:\n- arg:\n    name: x\n   default: 3\n", "LAUNCH108", (4, 4), "YAML syntax", None),
-    ("launch:\n- let: {name: a, value: 3}\n", "LAUNCH118", (2, 18), "'value' of 'let' is 3, which is no text", None),
+    ("launch:\n- let: {name: a, value: []}\n", "LAUNCH118", (2, 18), "'value' of 'let' is [], which is no text", None),
+    ("launch:\n- arg: {name: a, choices: [b, 3]}\n", "LAUNCH118", (2, 3), "'choices' of 'arg' must be a list", None),
     ("launch:\n- let: {name: a, value: '$(vr x)'}\n", "LAUNCH119", (2, 26), "substitution 'vr'", "mean 'var'?"),
     ("launch:\n- arg: {name: a}\n  let: {name: b}\n", "LAUNCH118", (2, 3), "a mapping with one key", None),
     ("launch:\n- arg: 3\n", "LAUNCH118", (2, 3), "'arg' needs attributes", None),
@@ -206,7 +226,7 @@ def test_classes_of_errors() -> None:
     for text, kind, words in (
         ("<launch><argg/></launch>", RuntimeError, "Unrecognized entity of the type: argg"),
         ('<launch><arg nam="x"/></launch>', AttributeError, "Attribute 'name' of type"),
-        ('<launch><arg name="x" wat="2"/></launch>', ValueError, "`wat`"),
+        ('<launch><arg name="x" wat="2"/></launch>', ValueError, "'wat'"),
         ("<lunch/>", RuntimeError, "Expected 'launch' as root tag"),
         ("<launch><arg></launch>", InvalidLaunchFileError, "syntax error"),
     ):

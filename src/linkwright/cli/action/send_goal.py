@@ -6,6 +6,7 @@ import argparse
 import asyncio
 from typing import TYPE_CHECKING, Any
 
+from linkwright.cli.calls import is_ready
 from linkwright.cli.lookup import absolute
 from linkwright.cli.numbers import positive_float
 from linkwright.cli.session import add_session_arguments, run_in_graph
@@ -48,7 +49,7 @@ def run(arguments: argparse.Namespace) -> int:
 
         client = ActionClient(session.node, kind, name)
         print("Waiting for an action server to become available...")
-        if not await session.until(client.server_is_ready, arguments.timeout):
+        if not await is_ready(session, name, client, client.server_is_ready, arguments.timeout):
             raise LinkwrightError(Diagnostic("CLI430", f"no server of action '{name}' in {arguments.timeout} s"))
         print(f"Sending goal:\n     {to_yaml(goal)}")
 

@@ -5,12 +5,15 @@ from __future__ import annotations
 import argparse
 import sys
 
+from linkwright.cli.bag.storage import add_storage_argument
+
 HELP = "print files, times and topics of a recording"
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     parser.add_argument("bag", metavar="BAG", help="the folder of a recording, or one .mcap or .db3 file")
+    add_storage_argument(parser)
     parser.add_argument("-t", "--topic-name", action="store_true", help="only the names of the topics")
 
 

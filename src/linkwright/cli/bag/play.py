@@ -7,6 +7,7 @@ import math
 from typing import TYPE_CHECKING
 
 from linkwright.cli.bag.overrides import add_overrides_argument, read_overrides
+from linkwright.cli.bag.storage import add_storage_argument
 from linkwright.diagnostics import Diagnostic, LinkwrightError
 
 if TYPE_CHECKING:
@@ -21,12 +22,16 @@ _DEFAULT_CLOCK_HZ = 40.0
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     parser.add_argument("bag", metavar="BAG", help="the folder of a recording, or one .mcap or .db3 file")
-    parser.add_argument(
-        "-s", "--storage", choices=("mcap", "sqlite3"), help="accepted for ros2's sake; the files tell their format"
-    )
+    add_storage_argument(parser)
     parser.add_argument("-r", "--rate", metavar="FACTOR", type=_positive, default=1.0, help="how fast, default 1.0")
     parser.add_argument("--topics", metavar="TOPIC", nargs="+", default=[], help="only these topics")
     parser.add_argument("--exclude-topics", metavar="TOPIC", nargs="+", default=[], help="none of these topics")
+    parser.add_argument(
+        "-e", "--regex", metavar="PATTERN", default="", help="only topics in whose name the expression is found"
+    )
+    parser.add_argument(
+        "-x", "--exclude", "--exclude-regex", metavar="PATTERN", default="", help="none in whose name this is found"
+    )
     parser.add_argument("-l", "--loop", action="store_true", help="begin anew at the end, until Ctrl-C")
     parser.add_argument(
         "-m", "--remap", metavar="FROM:=TO", nargs="+", default=[], help="publish topics under other names"
@@ -41,6 +46,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="publish the recording's time on /clock, 40 times a second or as often as said",
     )
     parser.add_argument(
+        "--clock-topics", metavar="TOPIC", nargs="+", default=[], help="publish it before each message of these topics"
+    )
+    parser.add_argument("--clock-topics-all", action="store_true", help="publish it before each message")
+    parser.add_argument(
         "-d", "--delay", metavar="SECONDS", type=_not_negative, default=0.0, help="wait before each round"
     )
     parser.add_argument(
@@ -49,6 +58,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--playback-duration", metavar="SECONDS", type=_not_negative, help="stop after so much of the recording"
     )
+    until = parser.add_mutually_exclusive_group()
+    until.add_argument(
+        "--playback-until-sec", metavar="SECONDS", type=float, help="stop at this time, counted since the epoch"
+    )
+    until.add_argument("--playback-until-nsec", metavar="NANOSECONDS", type=int, help="the same in nanoseconds")
     parser.add_argument("-p", "--start-paused", action="store_true", help="begin paused; the space key goes on")
     parser.add_argument(
         "--wait-for-all-acked",
@@ -59,6 +73,13 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--disable-keyboard-controls", action="store_true", help="do not listen to keys")
     add_overrides_argument(parser)
+    for name, metavar in (
+        ("--read-ahead-queue-size", "N"),
+        ("--storage-preset-profile", "NAME"),
+        ("--storage-config-file", "FILE"),
+    ):
+        parser.add_argument(name, metavar=metavar, help="accepted for ros2's sake; there is nothing to be tuned")
+    parser.add_argument("--disable-loan-message", action="store_true", help="accepted for ros2's sake")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -69,6 +90,11 @@ def run(arguments: argparse.Namespace) -> int:
     options = PlayOptions(
         rate=arguments.rate,
         topics=[_absolute(name) for name in arguments.topics],
+        pattern=arguments.regex,
+        without_pattern=arguments.exclude,
+        clock_topics=[_absolute(name) for name in arguments.clock_topics],
+        clock_before_all=arguments.clock_topics_all,
+        until_ns=_until_ns(arguments),
         without=[_absolute(name) for name in arguments.exclude_topics],
         loop=arguments.loop,
         clock_hz=arguments.clock,
@@ -109,6 +135,14 @@ def run(arguments: argparse.Namespace) -> int:
             return 0
 
         return run_in_graph(arguments, job, node_name="rosbag2_player", remappings=remappings)
+
+
+def _until_ns(arguments: argparse.Namespace) -> int | None:
+    """The last moment that is played; as in ros2, a negative one stands for none."""
+    until_ns: int | None = arguments.playback_until_nsec
+    if arguments.playback_until_sec is not None:
+        until_ns = round(arguments.playback_until_sec * 1e9)
+    return None if until_ns is None or until_ns < 0 else until_ns
 
 
 def _absolute(name: str) -> str:

@@ -25,8 +25,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--topic-types", metavar="TYPE", nargs="+", default=[], help="record every topic of these types"
     )
-    parser.add_argument("-a", "--all", action="store_true", help="record every topic but hidden ones")
-    parser.add_argument("--all-topics", action="store_true", help="the same")
+    parser.add_argument(
+        "--services", metavar="SERVICE", nargs="+", default=[], help="record what these services tell of their requests"
+    )
+    parser.add_argument(
+        "-a", "--all", action="store_true", help="record every topic but hidden ones, and every service"
+    )
+    parser.add_argument("--all-topics", action="store_true", help="record every topic but hidden ones")
+    parser.add_argument("--all-services", action="store_true", help="record what services tell of their requests")
     parser.add_argument(
         "-e", "--regex", metavar="PATTERN", default="", help="record topics in whose name the expression is found"
     )
@@ -34,11 +40,15 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "-x", "--exclude", "--exclude-regex", metavar="PATTERN", default="", help="but none in whose name this is found"
     )
     parser.add_argument("--exclude-topics", metavar="TOPIC", nargs="+", default=[], help="and none of these")
+    parser.add_argument(
+        "--exclude-services", metavar="SERVICE", nargs="+", default=[], help="and none of these services"
+    )
     parser.add_argument("--exclude-topic-types", metavar="TYPE", nargs="+", default=[], help="and none of these types")
     parser.add_argument("--include-hidden-topics", action="store_true", help="hidden topics count as others")
     parser.add_argument(
         "--include-unpublished-topics", action="store_true", help="record topics that have subscriptions only, too"
     )
+    parser.add_argument("--ignore-leaf-topics", action="store_true", help="record no topic that nobody subscribes to")
     parser.add_argument("--no-discovery", action="store_true", help="record only what is there at the start")
     parser.add_argument(
         "-p",
@@ -60,6 +70,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
         default="none",
         help="whether chunks of an MCAP file are compressed with zstd",
     )
+    parser.add_argument(
+        "--compression-format", choices=("zstd",), help="accepted for ros2's sake; zstd is the only one there is"
+    )
     parser.add_argument("--start-paused", action="store_true", help="begin paused; the space key goes on")
     parser.add_argument("--use-sim-time", action="store_true", help="write down the times that /clock tells")
     parser.add_argument(
@@ -67,6 +80,15 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--disable-keyboard-controls", action="store_true", help="do not listen to keys")
     add_overrides_argument(parser)
+    for names, metavar in (
+        (("-f", "--serialization-format"), "FORMAT"),
+        (("--max-cache-size",), "BYTES"),
+        (("--storage-preset-profile",), "NAME"),
+        (("--storage-config-file",), "FILE"),
+        (("--compression-queue-size",), "N"),
+        (("--compression-threads",), "N"),
+    ):
+        parser.add_argument(*names, metavar=metavar, help="accepted for ros2's sake; there is nothing to be tuned")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -99,6 +121,7 @@ def run(arguments: argparse.Namespace) -> int:
                 discover=not arguments.no_discovery,
                 polling_seconds=arguments.polling_interval / 1000,
                 without_publishers=arguments.include_unpublished_topics,
+                without_subscriptions=not arguments.ignore_leaf_topics,
                 paused=arguments.start_paused,
             )
             keys = {} if arguments.disable_keyboard_controls else {SPACE: recorder.toggle_paused}
@@ -119,14 +142,20 @@ def run(arguments: argparse.Namespace) -> int:
 def _selection(arguments: argparse.Namespace) -> TopicSelection:
     from linkwright.bag import TopicSelection
 
-    names = [f"/{name.lstrip('/')}" for name in (*arguments.names, *arguments.topics)]
     return TopicSelection(
         everything=arguments.all or arguments.all_topics,
-        names=names,
+        names=_absolute(*arguments.names, *arguments.topics),
         types=arguments.topic_types,
         pattern=arguments.regex,
-        without_names=[f"/{name.lstrip('/')}" for name in arguments.exclude_topics],
+        without_names=_absolute(*arguments.exclude_topics),
         without_types=arguments.exclude_topic_types,
         without_pattern=arguments.exclude,
         hidden=arguments.include_hidden_topics,
+        every_service=arguments.all or arguments.all_services,
+        services=_absolute(*arguments.services),
+        without_services=_absolute(*arguments.exclude_services),
     )
+
+
+def _absolute(*names: str) -> list[str]:
+    return [f"/{name.lstrip('/')}" for name in names]

@@ -50,7 +50,7 @@ def run(arguments: argparse.Namespace) -> int:
 @asynccontextmanager
 async def _container(name: str) -> AsyncIterator[Process]:
     """A process with an empty container, which ends with the block."""
-    words = ("-m", "linkwright.nodes", "rclcpp_components", "component_container")
+    words = ("-m", "linkwright.node_program", "rclcpp_components", "component_container")
     process = await asyncio.create_subprocess_exec(sys.executable, *words, "--ros-args", "-r", f"__node:={name}")
     try:
         yield process

@@ -15,6 +15,9 @@ if TYPE_CHECKING:
 
 HELP = "say what a node publishes, subscribes to, serves and calls"
 
+_APPEARS_WITHIN = 1.0
+"""Seconds for which to wait for a node that is not known yet."""
+
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
@@ -29,6 +32,7 @@ def run(arguments: argparse.Namespace) -> int:
     hidden = arguments.include_hidden
 
     async def job(session: Session) -> int:
+        await session.until(lambda: full in node_names(session, hidden=hidden), _APPEARS_WITHIN)
         names = node_names(session, hidden=hidden)
         count = names.count(full)
         if not count:

@@ -130,14 +130,6 @@ def parameter_of(name: str, text: str) -> Any:
     return Parameter(name, ParameterType.STRING, text).to_parameter_msg()
 
 
-def plain_value(value: Any) -> Any:
-    """A parameter's value as plain Python data; arrays as lists."""
-    from linkwright.graph.parameters.parameter import parameter_value_to_python
-
-    found = parameter_value_to_python(value)
-    return found if found is None or isinstance(found, (bool, int, float, str)) else list(found)
-
-
 def print_result(result: Any, good: str, bad: str) -> None:
     """Say whether something was set: one of two texts, and the reason where there is one."""
     text = good if result.successful else bad

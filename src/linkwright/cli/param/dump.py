@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from linkwright.cli.output import write_output
-from linkwright.cli.param.access import RemoteParameters, plain_value
+from linkwright.cli.param.access import RemoteParameters
 from linkwright.cli.param.arguments import add_node_arguments
 from linkwright.cli.session import run_in_graph
 
@@ -28,15 +28,13 @@ def run(arguments: argparse.Namespace) -> int:
     """Print the file or write it."""
 
     async def job(session: Session) -> int:
-        import yaml
+        from linkwright.graph.parameters.file_text import parameter_file_text, plain_value
 
         parameters = await RemoteParameters.of(session, arguments)
         names = await parameters.names()
         values = await parameters.values(names) if names else []
-        tree: dict[str, Any] = {}
-        for name, value in zip(names, values, strict=False):
-            _insert(tree, name.split("."), plain_value(value))
-        text = yaml.dump({parameters.node: {"ros__parameters": tree}}, default_flow_style=False, allow_unicode=True)
+        plain = {name: plain_value(value) for name, value in zip(names, values, strict=False)}
+        text = parameter_file_text(parameters.node, plain)
         if arguments.output_dir is None:
             print(text)
             return 0
@@ -46,14 +44,3 @@ def run(arguments: argparse.Namespace) -> int:
         return 0
 
     return run_in_graph(arguments, job)
-
-
-def _insert(tree: dict[str, Any], path: list[str], value: Any) -> None:
-    """Put a value below the parts of its name; where a part has a value itself the name stays whole."""
-    for at, part in enumerate(path[:-1]):
-        below = tree.setdefault(part, {})
-        if not isinstance(below, dict):
-            tree[".".join(path[at:])] = value
-            return
-        tree = below
-    tree[path[-1]] = value

@@ -6,6 +6,7 @@ import argparse
 import asyncio
 from typing import TYPE_CHECKING
 
+from linkwright.cli.calls import is_ready
 from linkwright.cli.lookup import absolute
 from linkwright.cli.numbers import positive_float
 from linkwright.cli.session import add_session_arguments, run_in_graph
@@ -43,10 +44,10 @@ def run(arguments: argparse.Namespace) -> int:
 
     async def job(session: Session) -> int:
         client = session.node.create_client(kind, name)
-        if not await session.until(client.service_is_ready, _AT_ONCE):
+        if not await is_ready(session, name, client, client.service_is_ready, _AT_ONCE):
             _check_type(session, name, kind.TYPE_NAME)
             print("waiting for service to become available...")
-            if not await session.until(client.service_is_ready, arguments.timeout):
+            if not await is_ready(session, name, client, client.service_is_ready, arguments.timeout):
                 message = f"service '{name}' did not appear in {arguments.timeout} s"
                 raise LinkwrightError(Diagnostic("CLI421", message))
         loop = asyncio.get_running_loop()

@@ -9,6 +9,7 @@ from linkwright.cli.nested import configure_nested, run_nested
 HELP = "list and call services"
 VERBS = {
     "call": "call",
+    "echo": "echo",
     "find": "find",
     "info": "info",
     "list": "listing",

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import sys
 
-from linkwright.cli.tools.programs import main
+from linkwright.interruption import end_at_once
 
 if __name__ == "__main__":
+    end_at_once()
+    from linkwright.cli.tools.programs import main
+
     sys.exit(main(sys.argv[1], sys.argv[2:]))

@@ -9,6 +9,7 @@ from linkwright.cli.command import FINE
 from linkwright.cli.command import main as linkwright
 from linkwright.cli.tools.ros2 import ros2
 from linkwright.diagnostics import LinkwrightError, print_diagnostics
+from linkwright.interruption import raise_interrupts
 
 _FAILED = 255
 """What the programs of urdfdom end with: ``return -1``."""
@@ -71,6 +72,7 @@ def _colcon(words: Sequence[str]) -> int:
     from colcon_core.command import main as colcon  # type: ignore[import-untyped]  # it ships no types
 
     sys.argv[0] = "colcon"
+    raise_interrupts()
     status = colcon(argv=list(words))
     return status if isinstance(status, int) else FINE
 

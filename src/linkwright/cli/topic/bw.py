@@ -33,7 +33,7 @@ def run(arguments: argparse.Namespace) -> int:
     name = absolute(arguments.topic_name)
 
     async def job(session: Session) -> int:
-        kind = await topic_type(session, name, wait=True)
+        kind = await topic_type(session, name, wait=True, raw=True)
         window = BandwidthWindow(arguments.window)
 
         def count(data: bytes) -> None:

@@ -70,8 +70,9 @@ def run(arguments: argparse.Namespace) -> int:
     async def job(session: Session) -> int:
         from linkwright.graph.events import SubscriptionEventCallbacks
 
-        kind = await topic_type(session, name, arguments.message_type)
-        select(kind(), form.field)
+        kind = await topic_type(session, name, arguments.message_type, raw=arguments.raw)
+        if not arguments.raw:
+            select(kind(), form.field)
         write = sys.stdout.write
 
         def show(message: Any, info: MessageInfo) -> None:

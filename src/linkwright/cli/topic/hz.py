@@ -51,7 +51,7 @@ def run(arguments: argparse.Namespace) -> int:
                 print("time has reset, resetting counters", file=sys.stderr)
 
         for name, window in windows.items():
-            kind = await topic_type(session, name, wait=True)
+            kind = await topic_type(session, name, wait=True, raw=fits is None)
             subscribe(session, arguments, kind, name, partial(count, window), raw=fits is None)
             if len(names) > 1:
                 print(f"Subscribed to [{name}]")

@@ -7,6 +7,8 @@ from collections import deque
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 
+from linkwright.graph.traffic import TrafficWindow
+
 _SECOND = 1_000_000_000
 
 
@@ -110,34 +112,18 @@ class DelayWindow:
         return f"average delay: {spread.mean / _SECOND:.3f}\n{spread.bounds()}"
 
 
-class BandwidthWindow:
-    """The sizes of the last messages of a topic.
-
-    Args:
-        size: how many are kept.
-    """
-
-    def __init__(self, size: int) -> None:
-        self._messages: deque[tuple[int, int]] = deque(maxlen=size)
-
-    def add(self, now_ns: int, size: int) -> None:
-        """Count a message of `size` bytes."""
-        self._messages.append((now_ns, size))
+class BandwidthWindow(TrafficWindow):
+    """The sizes of the last messages of a topic, as ``topic bw`` tells of them."""
 
     def text(self, now_ns: int) -> str | None:
         """What ``topic bw`` prints; None while there are fewer than two messages."""
-        if len(self._messages) < 2:
+        traffic = self.traffic(now_ns)
+        if traffic is None:
             return None
-        first = self._messages[0][0]
-        if now_ns <= first:
-            self._messages.clear()
-            return None
-        sizes = [size for _, size in self._messages]
-        rate = sum(sizes) * _SECOND / (now_ns - first)
-        write = _unit_for(rate)
-        shown = {"mean": sum(sizes) / len(sizes), "min": min(sizes), "max": max(sizes)}
+        write = _unit_for(traffic.bytes_per_second)
+        shown = {"mean": traffic.mean_size, "min": traffic.least_size, "max": traffic.most_size}
         figures = " ".join(f"{name}: {write(value)}" for name, value in shown.items())
-        return f"{write(rate)}/s from {len(sizes)} messages\n\tMessage size {figures}"
+        return f"{write(traffic.bytes_per_second)}/s from {traffic.count} messages\n\tMessage size {figures}"
 
 
 def _unit_for(bytes_each_second: float) -> Callable[[float], str]:

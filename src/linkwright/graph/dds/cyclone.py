@@ -30,6 +30,9 @@ ANY_STATE = 0x7F
 
 INSTANCE_ALIVE = 16
 
+LOG_ERRORS = 3
+"""DDS_LC_FATAL and DDS_LC_ERROR."""
+
 OFFERED_INCOMPATIBLE_QOS = 1 << 3
 REQUESTED_INCOMPATIBLE_QOS = 1 << 4
 SAMPLE_LOST = 1 << 5
@@ -83,6 +86,7 @@ _QUICK: dict[str, tuple[Any, tuple[Any, ...]]] = {
     "dds_create_qos": (_QOS, ()),
     "dds_delete_qos": (None, (_QOS,)),
     "dds_free": (None, (c.c_void_p,)),
+    "dds_alloc": (c.c_void_p, (c.c_size_t,)),
     "dds_qset_history": (None, (_QOS, c.c_int, c.c_int32)),
     "dds_qset_reliability": (None, (_QOS, c.c_int, c.c_int64)),
     "dds_qset_durability": (None, (_QOS, c.c_int)),
@@ -107,6 +111,8 @@ _QUICK: dict[str, tuple[Any, tuple[Any, ...]]] = {
     "dds_qget_userdata": (c.c_bool, (_QOS, c.POINTER(c.c_void_p), c.POINTER(c.c_size_t))),
     "dds_qget_entity_name": (c.c_bool, (_QOS, c.POINTER(c.c_void_p))),
     "dds_get_guid": (c.c_int32, (_ENTITY, c.c_char_p)),
+    "dds_get_entity_sertype": (c.c_int32, (_ENTITY, c.POINTER(c.c_void_p))),
+    "ddsi_sertype_ref": (c.c_void_p, (c.c_void_p,)),
     "dds_set_status_mask": (c.c_int32, (_ENTITY, c.c_uint32)),
     "dds_take_status": (c.c_int32, (_ENTITY, c.POINTER(c.c_uint32), c.c_uint32)),
     "dds_get_publication_matched_status": (c.c_int32, (_ENTITY, c.POINTER(MatchedStatus))),
@@ -115,12 +121,21 @@ _QUICK: dict[str, tuple[Any, tuple[Any, ...]]] = {
     "dds_get_liveliness_changed_status": (c.c_int32, (_ENTITY, c.POINTER(LivelinessChangedStatus))),
     "dds_set_guardcondition": (c.c_int32, (_ENTITY, c.c_bool)),
     "dds_take_guardcondition": (c.c_int32, (_ENTITY, c.POINTER(c.c_bool))),
+    "dds_get_matched_publication_data": (c.c_void_p, (_ENTITY, c.c_uint64)),
+    "dds_builtintopic_free_endpoint": (None, (c.c_void_p,)),
+    "dds_set_log_mask": (None, (c.c_uint32,)),
     "dds_strretcode": (c.c_char_p, (c.c_int32,)),
 }
 
 _WAITING: dict[str, tuple[Any, tuple[Any, ...]]] = {
     "dds_create_domain": (_ENTITY, (c.c_uint32, c.c_char_p)),
     "dds_create_participant": (_ENTITY, (c.c_uint32, _QOS, c.c_void_p)),
+    "dds_create_topic_sertype": (
+        _ENTITY,
+        (_ENTITY, c.c_char_p, c.POINTER(c.c_void_p), _QOS, c.c_void_p, c.c_void_p),
+    ),
+    "ddsi_sertype_unref": (None, (c.c_void_p,)),
+    "ddsi_sertype_free": (None, (c.c_void_p,)),
     "dds_create_reader": (_ENTITY, (_ENTITY, _ENTITY, _QOS, c.c_void_p)),
     "dds_create_writer": (_ENTITY, (_ENTITY, _ENTITY, _QOS, c.c_void_p)),
     "dds_create_waitset": (_ENTITY, (_ENTITY,)),
@@ -164,6 +179,7 @@ class Cyclone:
                 function = getattr(library, name)
                 function.restype, function.argtypes = result, arguments
                 setattr(self, name, function)
+        self.type_version: int | None = c.cast(quick.ddsi_sertype_v0, c.c_void_p).value
         self.take_bytes = _clayer.ddspy_take
         self.take_participants = _clayer.ddspy_take_participant
         self.take_endpoints = _clayer.ddspy_take_endpoint
@@ -188,6 +204,16 @@ class Cyclone:
             if count <= size:
                 return list(handles[: max(count, 0)])
             size = count + 16
+
+    def writer_guid(self, reader: int, handle: int) -> bytes:
+        """The globally unique identifier of a remote writer that a reader is connected with; empty when it left."""
+        data = self.dds_get_matched_publication_data(reader, handle)
+        if not data:
+            return b""
+        try:
+            return c.string_at(data, 16)
+        finally:
+            self.dds_builtintopic_free_endpoint(data)
 
     def user_data(self, qos: int) -> bytes:
         """The USER_DATA of a set of policies."""

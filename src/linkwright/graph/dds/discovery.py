@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
+from linkwright.graph.dds.asking import Asking
 from linkwright.graph.dds.cyclone import (
     ANY_STATE,
     BUILTIN_PARTICIPANTS,
@@ -69,13 +70,15 @@ class Discovery:
         self._participants = self._builtin(BUILTIN_PARTICIPANTS)
         self._publications = self._builtin(BUILTIN_PUBLICATIONS)
         self._subscriptions = self._builtin(BUILTIN_SUBSCRIPTIONS)
-        self._listeners = [self._listener(size) for size in (OLD_GID_SIZE, GID_SIZE)]
+        self._listener = self._new_listener()
+        self._thread = thread
+        self._asking = Asking(self._listen_again)
         self._speaker = self._new_speaker()
         for reader, handler in (
             (self._participants, self._take_participants),
             (self._publications, lambda: self._take_endpoints(self._publications, is_writer=True)),
             (self._subscriptions, lambda: self._take_endpoints(self._subscriptions, is_writer=False)),
-            *((each, lambda each=each: self._take_entities(each)) for each in self._listeners),
+            (self._listener[1], lambda: self._take_entities(self._listener[1])),
         ):
             self._dds.dds_set_status_mask(reader, DATA_AVAILABLE)
             thread.attach(reader, handler)
@@ -92,10 +95,10 @@ class Discovery:
     def _builtin(self, topic: int) -> int:
         return self._participant.create_reader(topic, None)
 
-    def _listener(self, gid_size: int) -> int:
-        topic = self._participant.create_topic(DISCOVERY_TOPIC, self._types.discovery(gid_size))
+    def _new_listener(self) -> tuple[int, int]:
+        topic = self._participant.create_topic(DISCOVERY_TOPIC, self._types.discovery())
         with endpoint_qos(_LISTENER_QOS) as qos:
-            return self._participant.create_reader(topic, qos)
+            return topic, self._participant.create_reader(topic, qos)
 
     def _take_participants(self) -> bool:
         taken = self._dds.take_participants(self._participants, _AT_ONCE, self._participant_sample, _pointer)
@@ -149,6 +152,21 @@ class Discovery:
                 self.changed = True
         return len(samples) == _AT_ONCE
 
+    def ask_silent(self) -> float | None:
+        """Have those tell their nodes who have not; seconds after which to call this again, or None."""
+        return self._asking.review(is_complete=self._remote.all_told())
+
+    def _listen_again(self) -> Callable[[], None]:
+        topic, reader = self._new_listener()
+
+        def stop() -> None:
+            self._thread.detach(reader)
+            self._participant.delete(reader, topic)
+
+        self._dds.dds_set_status_mask(reader, DATA_AVAILABLE)
+        self._thread.attach(reader, lambda: self._take_entities(reader))
+        return stop
+
     # --- telling -----------------------------------------------------------------------------------------------------
 
     def review_gid_size(self) -> None:
@@ -163,7 +181,7 @@ class Discovery:
             self.publish(self._nodes)
 
     def _new_speaker(self) -> tuple[int, int]:
-        topic = self._participant.create_topic(DISCOVERY_TOPIC, self._types.discovery(self.gid_size))
+        topic = self._participant.create_topic(DISCOVERY_TOPIC, self._types.discovery())
         facts = f"typehash={DISCOVERY_TYPE_HASH};".encode() if self.gid_size == GID_SIZE else b""
         with endpoint_qos(_SPEAKER_QOS, facts) as qos:
             return topic, self._participant.create_writer(topic, qos)

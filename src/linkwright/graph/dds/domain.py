@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from linkwright.graph.dds.participant import Participant
 from linkwright.graph.dds.remote import RemoteGraph
@@ -17,8 +17,10 @@ class Domain:
         participant: ours.
         remote: who is outside.
         types: descriptions of types.
+        said: what was told of the domain as a whole, once.
     """
 
     participant: Participant
     remote: RemoteGraph
     types: WireTypes
+    said: set[str] = field(default_factory=set)

@@ -22,7 +22,6 @@ from linkwright.graph.dds.services import IncomingService, OutsideServer
 from linkwright.graph.dds.settings import Settings
 from linkwright.graph.dds.topics import IncomingTopic, OutgoingTopic
 from linkwright.graph.dds.waiting import WaitingThread
-from linkwright.graph.dds.wire_types import WireTypes
 from linkwright.graph.log.logger import Logger
 from linkwright.graph.transport import NodeIdentity
 
@@ -59,8 +58,8 @@ class Engine:
         self._remote = remote
         self._work = work
         self._logger = logger
-        types = WireTypes()
         self._participant = Participant(settings)
+        types = self._participant.types
         self._domain = Domain(self._participant, remote, types)
         owner = self._participant.entity
         self._control = WaitingThread("linkwright-dds", owner, self._report, self._idle)
@@ -182,9 +181,10 @@ class Engine:
         late = self._review_replies()
         self._tell_mismatches()
         self._tell()
+        asking = self._discovery.ask_silent()
         if self._work:
             return 0.0
-        return _LOOK_AGAIN if self._leaving or self._mismatched or late else None
+        return _LOOK_AGAIN if self._leaving or self._mismatched or late else asking
 
     def _work_for(self, seconds: float) -> None:
         until = time.monotonic() + seconds

@@ -21,6 +21,15 @@ from linkwright.graph.dds.wire_names import (
 from linkwright.graph.qos import QoSProfile
 from linkwright.graph.transport import EndpointInfo, EndpointKind, NodeIdentity
 
+_FAST_DDS = b"\x01\x0f"
+"""How the GUIDs of its entities begin."""
+
+_ENDPOINTS_WITHIN = 1.3
+"""Seconds within which a participant's first endpoint is heard of; Fast DDS repeats what was missed after 1 s."""
+
+_ALL_WITHIN = 3.0
+"""Seconds within which the endpoints are heard of that a participant says its nodes have."""
+
 
 @dataclass(slots=True)
 class RemoteParticipant:
@@ -37,6 +46,12 @@ class RemoteParticipant:
     enclave: str = "/"
     entity_name: str = ""
     entities: ParticipantEntities | None = None
+    came_at: float = field(default_factory=time.monotonic)
+    """When it was heard of first, by the steady clock."""
+
+    def endpoints(self) -> set[bytes]:
+        """The GUIDs of the endpoints that it says its nodes have."""
+        return {gid for node in (self.entities.nodes if self.entities else ()) for gid in _gids(node)}
 
     @property
     def is_ours(self) -> bool:
@@ -87,6 +102,11 @@ class RemoteEndpoint:
         """The ROS name of its topic."""
         return ros_name(self.topic)
 
+    @property
+    def is_fast(self) -> bool:
+        """Whether it belongs to a participant of Fast DDS (RTPS vendor 1.15)."""
+        return is_fast(self.guid)
+
 
 class RemoteGraph:
     """The tables of what discovery told; written by one thread, read by any."""
@@ -110,6 +130,7 @@ class RemoteGraph:
             known = self._participants.get(participant.guid)
             said = self._early.pop(participant.guid, None)
             participant.entities = known.entities if known else said
+            participant.came_at = known.came_at if known else participant.came_at
             self._participants[participant.guid] = participant
 
     def participant_went(self, guid: bytes) -> None:
@@ -172,7 +193,7 @@ class RemoteGraph:
         with self._lock:
             return list(self._participants.values())
 
-    def is_complete(self) -> bool:
+    def all_told(self) -> bool:
         """Whether each participant with a writer of ``ros_discovery_info`` has said which nodes it has."""
         with self._lock:
             speakers = {
@@ -185,6 +206,22 @@ class RemoteGraph:
                 for guid, participant in self._participants.items()
                 if guid in speakers or participant.is_ours
             )
+
+    def is_complete(self) -> bool:
+        """Whether all have told their nodes, and those nodes' endpoints are known.
+
+        Of who is there, and nothing else is known of it, something is awaited for a moment.
+        """
+        now = time.monotonic()
+        with self._lock:
+            known = {each.participant for each in self._endpoints.values()}
+            for guid, participant in self._participants.items():
+                age = now - participant.came_at
+                if guid not in known and age < _ENDPOINTS_WITHIN:
+                    return False
+                if age < _ALL_WITHIN and not self._endpoints.keys() >= participant.endpoints():
+                    return False
+        return self.all_told()
 
     def nodes(self) -> list[NodeIdentity]:
         """The nodes of other processes, one entry for each, in the order of their participants."""
@@ -232,6 +269,11 @@ class RemoteGraph:
             dead = frozenset(each.guid for each in self.participants() if each.has_died())
             self._dead = (now, dead)
         return dead
+
+
+def is_fast(guid: bytes) -> bool:
+    """Whether an entity belongs to a participant of Fast DDS (RTPS vendor 1.15)."""
+    return guid.startswith(_FAST_DDS)
 
 
 def _gids(node: NodeEntities) -> Iterator[bytes]:

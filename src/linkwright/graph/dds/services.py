@@ -3,12 +3,14 @@
 A service is two topics. rmw_cyclonedds_cpp writes before each request who asks (64 bits) and the number of the request,
 and the server writes the same before its reply; all replies reach all clients of a service, and each picks its own. The
 USER_DATA of both endpoints of a client or a server name them as belonging together.
+
+rmw_fastrtps_cpp has the same beside the samples (inline QoS), which Cyclone neither hands on nor writes.
+Nothing goes between its clients and servers and ours, because each would take the other's header for content.
 """
 
 from __future__ import annotations
 
 import ctypes as c
-import itertools
 import os
 import struct
 import time
@@ -21,10 +23,11 @@ from typing import TYPE_CHECKING, Any
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph.dds.cyclone import ANY_STATE, DATA_AVAILABLE, PUBLICATION_MATCHED, SUBSCRIPTION_MATCHED, load
 from linkwright.graph.dds.domain import Domain
-from linkwright.graph.dds.remote import RemoteEndpoint
+from linkwright.graph.dds.remote import RemoteEndpoint, is_fast
 from linkwright.graph.dds.wire_names import Role, dds_topic, endpoint_id
 from linkwright.graph.dds.wire_qos import endpoint_qos
 from linkwright.graph.dds.writing import write
+from linkwright.graph.service_introspection import RequestId
 from linkwright.messages import deserialize, serialize, type_hash
 
 if TYPE_CHECKING:
@@ -39,6 +42,14 @@ _ENCAPSULATION = 4
 _BODY = _ENCAPSULATION + HEADER.size
 _LITTLE_ENDIAN = b"\x00\x01\x00\x00"
 _AT_ONCE = 64
+_OUT_OF_REACH = (
+    "Service '{}' is offered by a node on Fast DDS (rmw_fastrtps_cpp), whose services cannot be called from here; "
+    "start that node with RMW_IMPLEMENTATION=rmw_cyclonedds_cpp"
+)
+_ASKED_IN_VAIN = (
+    "A node on Fast DDS (rmw_fastrtps_cpp) calls service '{}', and perhaps others; it cannot be answered from here: "
+    "start that node with RMW_IMPLEMENTATION=rmw_cyclonedds_cpp"
+)
 _REPLY_WAITS = 1.0
 """Seconds for which a reply waits for the asker's reader to be known, before it is written all the same."""
 
@@ -112,16 +123,13 @@ class OutsideServer:
         self._dds = load()
         self.pair = _Pair(client, domain, is_server=False)
         self._asker = int.from_bytes(os.urandom(8), "little")
-        self._numbers = itertools.count(1)
         self._answers: dict[int, Callable[[Any], None]] = {}
-        self._lock = Lock()
         self._is_ready = False
+        self._is_out_of_reach = False
 
-    def send(self, request: Any, answer: Callable[[Any], None]) -> Callable[[], None]:
+    def send(self, request: Any, answer: Callable[[Any], None], number: int) -> Callable[[], None]:
         """Ask; what it returns forgets the request."""
-        with self._lock:
-            number = next(self._numbers)
-            self._answers[number] = answer
+        self._answers[number] = answer
         self.pair.write(self._asker, number, request)
         return partial(self._forget, number)
 
@@ -151,6 +159,10 @@ class OutsideServer:
         if is_ready != self._is_ready:
             self._is_ready = is_ready
             self._client.set_outside(self if is_ready else None)
+        is_out_of_reach = not is_ready and self._server_is_fast()
+        if is_out_of_reach != self._is_out_of_reach:
+            self._is_out_of_reach = is_out_of_reach
+            self._client.set_unreachable(_OUT_OF_REACH.format(self._client.name) if is_out_of_reach else "")
 
     def close(self) -> None:
         """Leave; requests without a reply stay so."""
@@ -167,10 +179,14 @@ class OutsideServer:
 
     def _server_is_there(self) -> bool:
         listening = [self._remote.endpoint(each) for each in self._dds.matched(self.pair.writer, writer=True)]
-        if not listening:
-            return False
+        ours = [each for each in listening if each is not None and not each.is_fast]
         replying = [self._remote.endpoint(each) for each in self._dds.matched(self.pair.reader, writer=False)]
-        return any(_belong_together(a, b, "serviceid") for a in listening for b in replying)
+        return any(_belong_together(a, b, "serviceid") for a in ours for b in replying)
+
+    def _server_is_fast(self) -> bool:
+        """Whether a server is there that cannot be asked; to be known, it need not be connected."""
+        readers = self._remote.endpoints_of(self.pair.request_topic, writers=False)
+        return any(each.is_fast for each in readers)
 
 
 class IncomingService:
@@ -188,20 +204,25 @@ class IncomingService:
         self._remote = domain.remote
         self._dds = load()
         self.pair = _Pair(service, domain, is_server=True)
+        self._said = domain.said
         self._late: deque[tuple[float, RemoteEndpoint | None, int, int, Any]] = deque()
         self._lock = Lock()
 
     def on_data(self) -> bool:
         """Have the requests answered that have come; whether there are more."""
-        self.pair.has_matched(self.pair.reader)
+        if self.pair.has_matched(self.pair.reader):
+            self._tell_of_fast_clients()
         count = 0
         for asker, number, body, info in self.pair.samples():
             count += 1
+            sender = self._remote.endpoint(info.publication_handle)
+            if sender is not None and sender.is_fast:
+                continue
             request = _read(body, self._service.srv_type.Request, self._service)
             if request is None:
                 continue
-            sender = self._remote.endpoint(info.publication_handle)
-            self._service.receive(request, partial(self._reply, sender, asker, number))
+            gid = bytes(16) if sender is None else sender.guid
+            self._service.receive(request, partial(self._reply, sender, asker, number), RequestId(gid, number))
         return count == _AT_ONCE
 
     def review(self) -> None:
@@ -222,6 +243,15 @@ class IncomingService:
     def close(self) -> None:
         """Answer nobody outside any more."""
         self.pair.close()
+
+    def _tell_of_fast_clients(self) -> None:
+        """Say once that some cannot be answered; what they ask may not even look like a request here."""
+        if _ASKED_IN_VAIN in self._said:
+            return
+        asking = self._dds.matched(self.pair.reader, writer=False)
+        if any(is_fast(self._dds.writer_guid(self.pair.reader, each)) for each in asking):
+            self._said.add(_ASKED_IN_VAIN)
+            self._service.node.get_logger().warning(_ASKED_IN_VAIN.format(self._service.name))
 
     def _reply(self, sender: RemoteEndpoint | None, asker: int, number: int, response: Any) -> None:
         if not self._service.destroyed:

@@ -6,7 +6,7 @@ import ctypes as c
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from linkwright.graph.dds.cyclone import (
     ANY_STATE,
@@ -33,7 +33,7 @@ from linkwright.graph.matching import tell_publisher, tell_subscription, what_si
 from linkwright.graph.qos import DurabilityPolicy, HistoryPolicy
 from linkwright.graph.qos_compatibility import incompatible_policies
 from linkwright.graph.transport import MessageInfo
-from linkwright.messages import serialize, type_hash
+from linkwright.messages import InterfaceNotFoundError, serialize, type_hash
 
 if TYPE_CHECKING:
     from linkwright.graph.endpoint import TopicEndpoint
@@ -73,13 +73,18 @@ class _MirroredTopic(ABC):
         self._remote = domain.remote
         profile = endpoint.qos_profile
         self.topic_name = dds_topic(Role.TOPIC, endpoint.name, plain=profile.avoid_ros_namespace_conventions)
-        self._topic = self._participant.create_topic(self.topic_name, domain.types.message(endpoint.interface))
-        with endpoint_qos(profile, type_facts(endpoint.interface)) as qos:
+        described, facts = self._describe_type(endpoint, domain)
+        self._topic = self._participant.create_topic(self.topic_name, described)
+        with endpoint_qos(profile, facts) as qos:
             self.entity = self._create(qos)
         self.guid = self._dds.guid(self.entity)
         endpoint.gid = self.guid
         self._dds.dds_set_status_mask(self.entity, self._STATUS)
         self._told = _Told()
+
+    def _describe_type(self, endpoint: TopicEndpoint[Any], domain: Domain) -> tuple[Any, bytes]:
+        """What Cyclone is told of the type, and what others are told of it in USER_DATA."""
+        return domain.types.message(endpoint.interface), type_facts(endpoint.interface)
 
     @abstractmethod
     def _create(self, qos: Any) -> int:
@@ -203,6 +208,15 @@ class IncomingTopic(_MirroredTopic):
     def close(self) -> None:
         """Take the reader back."""
         self._participant.delete(self.entity, self._topic)
+
+    def _describe_type(self, endpoint: TopicEndpoint[Any], domain: Domain) -> tuple[Any, bytes]:
+        """As it is; a type that no package here has goes by its name, where the bytes alone are wanted."""
+        try:
+            return super()._describe_type(endpoint, domain)
+        except InterfaceNotFoundError:
+            if not cast("Subscription[Any]", endpoint).raw:
+                raise
+            return domain.types.by_name(endpoint.type_name), b""
 
     def _create(self, qos: Any) -> int:
         return self._participant.create_reader(self._topic, qos)

@@ -21,6 +21,8 @@ HEADER_MEMBERS = ("client_guid", "sequence_number")
 
 _OCTETS = ("byte", "char")
 
+DISCOVERY_TYPE = "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_"
+
 
 class UndescribableError(Exception):
     """A type has a member that Cyclone's Python package has no word for (wide strings)."""
@@ -30,7 +32,7 @@ class WireTypes:
     """Makes the descriptions, each once; may be used from any thread."""
 
     def __init__(self) -> None:
-        self._made: dict[tuple[str, str], Any] = {}
+        self._made: dict[tuple[str, object], Any] = {}
         self._lock = RLock()
 
     def message(self, message_class: type[Any]) -> Any:
@@ -41,16 +43,25 @@ class WireTypes:
         """The description of a request or reply with the header that goes before it."""
         return self._described("header", definition_of(message_class))
 
-    def discovery(self, gid_size: int) -> Any:
-        """The description of ``rmw_dds_common/msg/ParticipantEntitiesInfo`` with gids of a size in bytes."""
-        key = (f"gid{gid_size}", "ParticipantEntitiesInfo")
+    def discovery(self) -> Any:
+        """The description of ``rmw_dds_common/msg/ParticipantEntitiesInfo``: its name, and nothing of its contents.
+
+        Those differ with the distribution (`discovery_info`), and Cyclone would reject what does not fit.
+        """
+        return self._named(DISCOVERY_TYPE)
+
+    def by_name(self, type_name: str) -> Any:
+        """The description of a message type of which nothing but its name is known."""
+        return self._named(dds_type(type_name))
+
+    def _named(self, name: str) -> Any:
         with self._lock:
-            if key not in self._made:
-                self._made[key] = _discovery(gid_size)
-            return self._made[key]
+            if ("", name) not in self._made:
+                self._made["", name] = struct_class(name, {})
+            return self._made["", name]
 
     def _described(self, variant: str, structure: Structure) -> Any:
-        key = (variant, structure.type_name)
+        key = (variant, structure)
         with self._lock:
             if key not in self._made:
                 self._made[key] = struct_class(dds_type(structure.type_name), self._members(structure, variant))
@@ -109,21 +120,3 @@ def struct_class(type_name: str, members: dict[str, Any]) -> Any:
 def _idl_types() -> Any:
     """`cyclonedds.idl.types`, whose classes are subscripted in ways of their own."""
     return import_module("cyclonedds.idl.types")
-
-
-def _discovery(gid_size: int) -> Any:
-    types = _idl_types()
-    prefix = "rmw_dds_common::msg::dds_::"
-    gid = struct_class(prefix + "Gid_", {"data": types.array[types.uint8, gid_size]})
-    node = struct_class(
-        prefix + "NodeEntitiesInfo_",
-        {
-            "node_namespace": types.bounded_str[256],
-            "node_name": types.bounded_str[256],
-            "reader_gid_seq": types.sequence[gid],
-            "writer_gid_seq": types.sequence[gid],
-        },
-    )
-    return struct_class(
-        prefix + "ParticipantEntitiesInfo_", {"gid": gid, "node_entities_info_seq": types.sequence[node]}
-    )

@@ -160,6 +160,11 @@ class TransformBuffer:
         self._plans.clear()
         self._structure_changed()
 
+    def clear(self) -> None:
+        """Forget all transforms but the static ones, as when time begins anew."""
+        moving = (self._parents >= 0) & ~self._static
+        self.remove([name for name, row in self._rows.items() if moving[row]])
+
     def _structure_changed(self) -> None:
         self._revision += 1
         self._names = tuple(self._rows)

@@ -25,6 +25,21 @@ if TYPE_CHECKING:
 _TRUTHS = ("true", "false", "True", "False", "TRUE", "FALSE")
 
 
+def _listed_choices(entity: Entity) -> list[str] | None:
+    """The list ``choices`` of YAML.
+
+    Raises:
+        TypeError: LAUNCH118, it is no list of texts.
+    """
+    try:
+        listed: list[str] | None = entity.get_attr("choices", data_type=list[str], optional=True)
+    except TypeError as error:
+        promised = TypeError("Attribute 'choices' of Entity 'arg' expected to be a list of strings")
+        message = f"key 'choices' of '{entity.type_name}' must be a list of texts"
+        raise error_at(entity.place, "LAUNCH118", message, promises=promised) from error
+    return listed
+
+
 @expose_action("arg")
 class DeclareLaunchArgument(Action):
     """Declares an argument and sets the launch configuration of its name, to the value given or the default.
@@ -65,7 +80,7 @@ class DeclareLaunchArgument(Action):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Reads ``name``, ``default``, ``description`` and the ``choice`` inside."""
+        """Reads ``name``, ``default``, ``description`` and the ``choice`` inside, or the list ``choices`` of YAML."""
         _, kwargs = super().parse(entity, parser)
         kwargs["name"] = parser.escape_characters(entity.get_attr("name"))
         default = entity.get_attr("default", optional=True)
@@ -79,6 +94,10 @@ class DeclareLaunchArgument(Action):
             kwargs["choices"] = [parser.escape_characters(choice.get_attr("value")) for choice in choices]
             for choice in choices:
                 choice.assert_entity_completely_parsed()
+        else:
+            listed = _listed_choices(entity)
+            if listed is not None:
+                kwargs["choices"] = [parser.escape_characters(choice) for choice in listed]
         return cls, kwargs
 
     @property

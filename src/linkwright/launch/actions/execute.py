@@ -56,6 +56,8 @@ class ExecuteLocal(Action):
         respawn: whether it is started again when it ends before the launch does.
         respawn_delay: seconds to wait before that.
         respawn_max_retries: how often at most; any number if negative.
+        split_arguments: whether each word of the command is divided as a shell would do; for substitutions that give
+            several words.
         kwargs: see `Action`.
 
     Attributes:
@@ -79,6 +81,7 @@ class ExecuteLocal(Action):
         respawn: bool | SomeSubstitutionsType = False,
         respawn_delay: float | None = None,
         respawn_max_retries: int = -1,
+        split_arguments: bool = False,
         **kwargs: Any,
     ) -> None:
         super().__init__(**kwargs)
@@ -93,6 +96,7 @@ class ExecuteLocal(Action):
         self._respawn = normalize_typed_substitution(_plain(respawn), bool)
         self._respawn_delay = respawn_delay
         self._respawn_max_retries = respawn_max_retries
+        self._split_arguments = split_arguments
         self._sigterm_timeout = _timeout(sigterm_timeout, "sigterm_timeout")
         self._sigkill_timeout = _timeout(sigkill_timeout, "sigkill_timeout")
         self._emulate_tty = emulate_tty
@@ -199,6 +203,8 @@ class ExecuteLocal(Action):
         about = self._description
         if not command or not command[0].strip():
             raise error_at(self.place, "LAUNCH141", "the command of the process is empty")
+        if self._split_arguments and not self._shell:
+            command = [word for part in command for word in self._divided(part)]
         program = [shlex.split(command[0])[0]] if self._shell else command
         return ProcessPlan(
             action=self,
@@ -217,6 +223,13 @@ class ExecuteLocal(Action):
             seconds_to_sigterm=self._seconds(context, self._sigterm_timeout, "sigterm_timeout"),
             seconds_to_sigkill=self._seconds(context, self._sigkill_timeout, "sigkill_timeout"),
         )
+
+    def _divided(self, text: str) -> list[str]:
+        try:
+            return shlex.split(text)
+        except ValueError as error:
+            message = f"'{text}' cannot be divided into words: {str(error).lower()}"
+            raise error_at(self.place, "LAUNCH118", message, promises=error) from error
 
     def _environment(self, context: LaunchContext) -> dict[str, str]:
         return self._description.environment(context)

@@ -159,12 +159,16 @@ def _name(function: Callable[..., Any]) -> str:
 def iteration(children: Sequence[Action], values: Mapping[str, Any]) -> list[LaunchDescriptionEntity]:
     """The actions of a loop for one set of values, which ``$(for-var NAME)`` and ``$(index NAME)`` give in them."""
 
-    def enter(context: LaunchContext) -> None:
+    def begin(context: LaunchContext) -> None:
         context.push_locals()
+
+    def enter(context: LaunchContext) -> None:
         context.extend_locals({local_name(name): str(value) for name, value in values.items()})
 
     def leave(context: LaunchContext) -> None:
         context.pop_locals()
 
-    # Copies, because an action such as a node keeps what it was started as.
-    return [OpaqueFunction(function=enter), *deepcopy(list(children)), OpaqueFunction(function=leave)]
+    # Three functions, as in ROS, whose users count what a loop makes. The children are copies, because an action such
+    # as a node keeps what it was started as.
+    around = [OpaqueFunction(function=each) for each in (begin, enter, leave)]
+    return [*around[:2], *deepcopy(list(children)), around[2]]

@@ -105,9 +105,9 @@ class Descriptions:
     def remember(self, call: XacroCall, expansion: Expansion, text: str | None = None) -> str:
         """Keep an expansion; returns its text, which is `text` if that is what stands for it elsewhere."""
         text = str(expansion) if text is None else text
-        self.library.remember(text, expansion.document, expansion.story)
-        self._calls[text] = call
         self._files[call] = expansion.dependencies
+        self.library.remember(text, expansion.document, expansion.story, self._files[call])
+        self._calls[text] = call
         self._warnings[call] = expansion.diagnostics
         return text
 

@@ -7,10 +7,14 @@ import signal
 import sys
 import threading
 import time
+from collections.abc import Callable, Coroutine
 from types import FrameType, TracebackType
-from typing import Any
+from typing import Any, TypeVar
 
+from linkwright.event_loop import run_coroutine
 from linkwright.launch.engine.session import LaunchSession
+
+T = TypeVar("T")
 
 _DEADLINE_SECONDS = 1.9
 """However badly something hangs: this long after the first signal the program is over, unless a launch file gives its
@@ -34,6 +38,7 @@ class SignalWatch:
         self.session: LaunchSession | None = None
         self.received: int | None = None
         self._received_at = 0.0
+        self._is_making_loop = False
         self._before: dict[int, Any] = {}
         self._deadline: threading.Timer | None = None
 
@@ -59,6 +64,20 @@ class SignalWatch:
         for number, handler in self._before.items():
             signal.signal(number, handler)
 
+    def run(self, make: Callable[[], Coroutine[Any, Any, T]]) -> T:
+        """Run a coroutine on a loop of its own.
+
+        Raises:
+            KeyboardInterrupt: a signal came while the loop was made.
+        """
+        self._is_making_loop = True
+        return run_coroutine(make, self._loop_is_made)
+
+    def _loop_is_made(self) -> None:
+        self._is_making_loop = False
+        if self.received is not None:
+            raise KeyboardInterrupt
+
     def _handle(self, number: int, _: FrameType | None) -> None:
         now = time.monotonic()
         if self.received is not None:
@@ -70,6 +89,8 @@ class SignalWatch:
         self._deadline = threading.Timer(max(_DEADLINE_SECONDS, needed), self._end_at_once)
         self._deadline.daemon = True
         self._deadline.start()
+        if self._is_making_loop:
+            return
         session = self.session
         if session is None or session.loop is None or session.visiting:
             raise KeyboardInterrupt

@@ -90,13 +90,22 @@ def _reading_all(method: Any) -> Any:
     return parse
 
 
+def _method(methods: dict[str, Any], name: str) -> Any:
+    """What reads a tag or substitution; when nobody knows it, those of packages that were not built are loaded."""
+    if name not in methods:
+        from linkwright.launch.frontend.workspace_extensions import load_workspace_extensions
+
+        load_workspace_extensions()
+    return methods.get(name)
+
+
 def instantiate_action(entity: Entity, parser: Parser) -> Action:
     """The action of a tag.
 
     Raises:
         RuntimeError: LAUNCH115, the tag is not known.
     """
-    method = action_parse_methods.get(entity.type_name)
+    method = _method(action_parse_methods, entity.type_name)
     place = entity.place
     if method is None:
         raise error_at(
@@ -124,7 +133,7 @@ def instantiate_substitution(
     Raises:
         RuntimeError: LAUNCH119, the name is not known, or its arguments are wrong.
     """
-    method = substitution_parse_methods.get(type_name)
+    method = _method(substitution_parse_methods, type_name)
     if method is None:
         raise error_at(
             place,

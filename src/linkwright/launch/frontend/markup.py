@@ -52,7 +52,7 @@ class MarkupEntity(Entity):
         if not unknown:
             return
         name = unknown[0]
-        listed = ", ".join(f"`{each}`" for each in unknown)
+        listed = ", ".join(repr(str(each)) for each in unknown)
         known = [each for each in self._asked if each not in unknown]
         hint = did_you_mean(name, known)
         if hint is None and known:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 _TEXTS = {"cwd": "cwd", "name": "name", "prefix": "launch-prefix", "output": "output", "respawn": "respawn"}
 """Argument -> attribute, of those that may have substitutions in them."""
 
-_TRUTHS = ("shell", "emulate_tty", "log_cmd", "cached_output")
+_TRUTHS = ("shell", "emulate_tty", "log_cmd", "cached_output", "split_arguments")
 _SECONDS = ("sigkill_timeout", "sigterm_timeout")
 
 

@@ -18,6 +18,9 @@ from linkwright.launch.promises import keeping
 
 _CHILDREN = "children"
 
+_BARE = {"include": "file"}
+"""Tag -> what stands behind it alone, as in ``- include: other.launch.py``."""
+
 
 class Entity(MarkupEntity):
     """An action of a launch file: a mapping of attributes, or a list of actions.
@@ -68,6 +71,10 @@ class Entity(MarkupEntity):
             place = getattr(item, "place", None) or place_of(item) or self.place
             raise error_at(place, "LAUNCH118", message, hint, promises=RuntimeError(text))
         [(name, element)] = item.items()
+        if isinstance(element, str) and name in _BARE:
+            whole = PlacedMapping({_BARE[name]: element})
+            whole.place = place_of(element)
+            element = whole
         return Entity({} if element is None else element, name, parent=self)
 
     def assert_entity_completely_parsed(self) -> None:
@@ -86,7 +93,7 @@ class Entity(MarkupEntity):
     def get_attr(self, name: str, *, data_type: Any = str, optional: bool = False, can_be_str: bool = True) -> Any:
         """An attribute, or the entities inside of one name; see `linkwright.launch.frontend.entity.Entity`.
 
-        The value must be of the type as YAML reads it.
+        The value must be of the type as YAML reads it; but a number or truth value will do for a text, as in newer ROS.
         """
         self._asked[name] = None
         if not isinstance(self._element, (dict, list)):
@@ -104,6 +111,8 @@ class Entity(MarkupEntity):
             text = f"Attribute '{name}' of Entity '{self.type_name}' expected to be a list of dictionaries."
             message = f"key '{name}' of '{self.type_name}' must be a list of mappings"
             raise error_at(self._place_of_part(name), "LAUNCH118", message, promises=TypeError(text))
+        if data_type is str and isinstance(value, (bool, int, float)):
+            return PlacedText(_spelled(value), self._place_of_part(name))
         if not is_instance_of(value, data_type, can_be_str=can_be_str):
             text = (
                 f"Attribute '{name}' of Entity '{self.type_name}' expected to be of type '{data_type}', "
@@ -117,6 +126,11 @@ class Entity(MarkupEntity):
             if key == name:
                 return (place_of(value) if name in self._asked else None) or place_of(key) or self.place
         return self.place
+
+
+def _spelled(value: bool | float) -> str:
+    """A value of YAML as a text that means the same to conditions and parameters."""
+    return str(value).lower() if isinstance(value, bool) else str(value)
 
 
 class Parser(AnyParser):

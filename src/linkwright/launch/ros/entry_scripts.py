@@ -47,9 +47,12 @@ def script_for_ours(package: str, name: str) -> Path:
         *_interpreter_lines(),
         "import sys",
         "",
-        "from linkwright.nodes.process import main",
+        "from linkwright.interruption import end_at_once",
         "",
         'if __name__ == "__main__":',
+        "    end_at_once()",
+        "    from linkwright.nodes.process import main",
+        "",
         f"    sys.exit(main({package!r}, {name!r}, sys.argv[1:]))",
         "",
     ]

@@ -55,7 +55,7 @@ class Executable:
         from linkwright.launch.ros.interpreters import interpreter_words, needs_our_interpreter
 
         if self.path is None:
-            return python_command(["-m", "linkwright.nodes", self.package, self.name])
+            return python_command(["-m", "linkwright.node_program", self.package, self.name])
         if needs_our_interpreter(self.path):
             return python_command([str(self.path)])
         if os.access(self.path, os.X_OK):

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeVar
 from linkwright.graph import Node as GraphNode
 from linkwright.graph.client import Client
 from linkwright.graph.clock import Clock, ROSClock
+from linkwright.graph.content_filter import ContentFilterOptions
 from linkwright.graph.dispatch import CallbackGroup, Dispatcher
 from linkwright.graph.executors import MutuallyExclusiveCallbackGroup
 from linkwright.graph.faults import InvalidHandleError
@@ -25,9 +26,9 @@ from linkwright.graph.rate import Rate
 from linkwright.graph.remapping import Remappings
 from linkwright.graph.ros_arguments import RosArguments
 from linkwright.graph.service import Service
+from linkwright.graph.service_introspection import EVENT_TOPIC_SUFFIX
 from linkwright.graph.subscription import Subscription
 from linkwright.graph.timer import GuardCondition, Timer
-from linkwright.standins.rclpy_api.content_filter import ContentFilterOptions
 from linkwright.standins.rclpy_api.context import Context, read_ros_arguments
 from linkwright.standins.rclpy_api.forwarding import to_graph_node, to_graph_node_by_name
 from linkwright.standins.rclpy_api.session import check_initialized, get_default_context
@@ -173,8 +174,12 @@ class Node:
 
     @property
     def publishers(self) -> Iterator[Publisher[Any]]:
-        """The publishers of the node; the one of ``/rosout`` is none of its own."""
-        return (publisher for publisher in self.__core.publishers if publisher.type_name != "rcl_interfaces/msg/Log")
+        """The publishers of the node; those of ``/rosout`` and of the events of services are none of its own."""
+        return (
+            publisher
+            for publisher in self.__core.publishers
+            if publisher.type_name != "rcl_interfaces/msg/Log" and not publisher.name.endswith(EVENT_TOPIC_SUFFIX)
+        )
 
     @property
     def subscriptions(self) -> Iterator[Subscription[Any]]:
@@ -280,14 +285,12 @@ class Node:
             event_callbacks: told of mismatches, missed deadlines and the like.
             qos_overriding_options: which policies parameters can override.
             raw: whether the callback gets the bytes of messages.
-            content_filter_options: which messages are wanted; they all come, as with every middleware that does not
-                filter by content.
+            content_filter_options: which messages are wanted.
+
+        Raises:
+            ContentFilterError: the content filter cannot be understood.
         """
         check_is_valid_msg_type(msg_type)
-        if content_filter_options is not None:
-            self.get_logger().warning(
-                f"Messages of topic '{topic}' are not filtered by content: all of them come to the callback"
-            )
         qos = self.__overridden("subscription", topic, qos_profile, qos_overriding_options)
         return self.__core.create_subscription(
             msg_type,
@@ -297,6 +300,7 @@ class Node:
             callback_group=callback_group or self.__default_callback_group,
             event_callbacks=event_callbacks,
             raw=raw,
+            content_filter_options=content_filter_options,
         )
 
     def create_client(

@@ -1,30 +1,36 @@
 """Stands in for ``rclpy.event_handler``."""
 
 from linkwright.graph.events import (
+    EventHandler,
     PublisherEventCallbacks,
     QoSLivelinessChangedInfo,
     QoSLivelinessLostInfo,
     QoSMessageLostInfo,
     QoSOfferedDeadlineMissedInfo,
     QoSOfferedIncompatibleQoSInfo,
+    QoSPublisherEventType,
     QoSPublisherMatchedInfo,
     QoSRequestedDeadlineMissedInfo,
     QoSRequestedIncompatibleQoSInfo,
+    QoSSubscriptionEventType,
     QoSSubscriptionMatchedInfo,
     SubscriptionEventCallbacks,
 )
 from linkwright.standins.rclpy_api.errors import UnsupportedEventTypeError
 
 __all__ = [
+    "EventHandler",
     "PublisherEventCallbacks",
     "QoSLivelinessChangedInfo",
     "QoSLivelinessLostInfo",
     "QoSMessageLostInfo",
     "QoSOfferedDeadlineMissedInfo",
     "QoSOfferedIncompatibleQoSInfo",
+    "QoSPublisherEventType",
     "QoSPublisherMatchedInfo",
     "QoSRequestedDeadlineMissedInfo",
     "QoSRequestedIncompatibleQoSInfo",
+    "QoSSubscriptionEventType",
     "QoSSubscriptionMatchedInfo",
     "SubscriptionEventCallbacks",
     "UnsupportedEventTypeError",

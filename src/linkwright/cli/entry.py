@@ -1,0 +1,22 @@
+"""Where the command line begins: nothing is loaded before Ctrl-C ends the process quietly."""
+
+from __future__ import annotations
+
+from linkwright.interruption import end_at_once
+
+
+def main(words: list[str] | None = None, *, program: str = "linkwright") -> int:
+    """Run the command line; see `linkwright.cli.command.main`.
+
+    Args:
+        words: the command line after the program's name; this process's when left out.
+        program: the name that usage lines begin with.
+
+    Returns:
+        The exit status.
+    """
+    if words is None:
+        end_at_once()
+    from linkwright.cli.command import main as run
+
+    return run(words, program=program)

@@ -1,0 +1,53 @@
+"""The definition of a message type together with those of the types in it.
+
+The form is MCAP's ``ros2msg`` schema encoding, which is also that of rosbag2's SQLite files and of Foxglove.
+"""
+
+from __future__ import annotations
+
+from linkwright.messages.classes import get_message
+from linkwright.messages.message import definition_of
+from linkwright.messages.presentation import definition_text
+
+_SEPARATOR = "=" * 80
+
+
+def schema_of(type_name: str) -> str:
+    """The definitions of a type and of all types in it.
+
+    Args:
+        type_name: such as ``sensor_msgs/msg/JointState``, or that of a service's events.
+
+    Raises:
+        LinkwrightError: MSG101, the type is not known.
+    """
+    texts = [_text(type_name)]
+    seen = {type_name}
+    waiting = _types_in(type_name)
+    while waiting:
+        nested = waiting.pop(0)
+        if nested in seen:
+            continue
+        seen.add(nested)
+        texts.append(f"{_SEPARATOR}\nMSG: {nested.replace('/msg/', '/')}\n{_text(nested)}")
+        waiting += _types_in(nested)
+    return "\n".join(text.rstrip("\n") for text in texts) + "\n"
+
+
+def _text(type_name: str) -> str:
+    """The text of a message; of what rosidl makes of a service, which no file defines, one with its fields."""
+    if "/msg/" in type_name:
+        return definition_text(type_name)
+    lines = []
+    for field in definition_of(get_message(type_name)).fields:
+        base = field.type.base
+        package, _, name = base.rpartition("/")
+        spelled = field.type.spelled()
+        if "/srv" in package:  # names of messages have two parts, so that the kind would be lost
+            spelled = spelled.replace(f"{package.partition('/')[0]}/{name}", base, 1)
+        lines.append(f"{spelled} {field.name}")
+    return "\n".join(lines)
+
+
+def _types_in(type_name: str) -> list[str]:
+    return list(definition_of(get_message(type_name)).references)

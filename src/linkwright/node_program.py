@@ -1,0 +1,17 @@
+"""``python -m linkwright.node_program PACKAGE EXECUTABLE ARGUMENTS``: see `linkwright.nodes.process`.
+
+It is outside of the package of the nodes, so that Ctrl-C ends it quietly while that is being loaded.
+"""
+
+import sys
+
+from linkwright.interruption import end_at_once
+
+if __name__ == "__main__":
+    end_at_once()
+    if len(sys.argv) < 3:
+        print("usage: python -m linkwright.node_program PACKAGE EXECUTABLE [ARGUMENTS ...]", file=sys.stderr)
+        sys.exit(2)
+    from linkwright.nodes.process import main
+
+    sys.exit(main(sys.argv[1], sys.argv[2], sys.argv[3:]))

@@ -1,0 +1,74 @@
+"""The files that clients may fetch: meshes and images of packages that a robot description names."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path, PurePosixPath
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.workspace import PackageFinder
+
+_PACKAGE = re.compile(r"package://([^/\s\"'%]+)/")
+_ENDINGS = frozenset(
+    (".stl", ".dae", ".obj", ".glb", ".gltf", ".mtl", ".bin", ".png", ".jpg", ".jpeg", ".bmp", ".gif", ".webp", ".tga",
+     ".tif", ".tiff", ".urdf", ".xacro")
+)  # fmt: skip
+_LARGEST = 256 << 20
+
+
+class AssetRefusedError(Exception):
+    """A file is not given; the text says why."""
+
+
+class Assets:
+    """Finds files by their ``package://`` addresses.
+
+    Args:
+        finder: finds packages; None for that of the environment, made when it is needed.
+    """
+
+    def __init__(self, finder: PackageFinder | None = None) -> None:
+        self._finder = finder
+        self._packages: set[str] = set()
+
+    def described(self, text: str) -> None:
+        """A robot description came: the packages that it names may be read from."""
+        self._packages.update(_PACKAGE.findall(text))
+
+    def read(self, uri: str) -> bytes:
+        """The content of a file.
+
+        Raises:
+            AssetRefusedError: it may not be read, or is not there.
+        """
+        found = _PACKAGE.match(uri)
+        relative = PurePosixPath(uri[found.end() :]) if found else PurePosixPath()
+        if found is None or found[1] not in self._packages:
+            raise AssetRefusedError("only files of packages that a robot description names are given")
+        if relative.suffix.lower() not in _ENDINGS:
+            raise AssetRefusedError("only meshes and images are given")
+        if ".." in relative.parts or relative.is_absolute() or "\0" in uri or "\\" in uri:
+            raise AssetRefusedError("the path leads out of its package")
+        try:
+            if self._finder is None:
+                self._finder = PackageFinder()
+            share = self._finder.find(found[1])
+            if share is None:
+                raise AssetRefusedError(f"there is no package '{found[1]}'")
+            return _content(share, relative)
+        except LinkwrightError as error:
+            raise AssetRefusedError(error.diagnostics[0].message) from None
+        except OSError as error:
+            raise AssetRefusedError(error.strerror or str(error)) from None
+
+
+def _content(share: Path, relative: PurePosixPath) -> bytes:
+    """The file, links followed and checked."""
+    path = (share / relative).resolve(strict=True)
+    if not path.is_relative_to(share.resolve(strict=True)):
+        raise AssetRefusedError("a link leads out of the package")
+    if not path.is_file() or path.suffix.lower() not in _ENDINGS:
+        raise AssetRefusedError("it is no mesh and no image")
+    if path.stat().st_size > _LARGEST:
+        raise AssetRefusedError("it is too large")
+    return path.read_bytes()

@@ -1,0 +1,43 @@
+"""Which web pages may connect: any page that the user opens can reach this machine's own addresses."""
+
+from __future__ import annotations
+
+import ipaddress
+from collections.abc import Collection
+from urllib.parse import urlsplit
+
+_APPLICATIONS = ("foxglove.dev", "lichtblick-suite.github.io")
+_SCHEMES_OF_PROGRAMS = ("file", "app", "foxglove", "lichtblick")
+"""Desktop programs that are made of web pages."""
+
+
+def is_welcome(origin: str | None, more: Collection[str] = ()) -> bool:
+    """Whether a client with an ``Origin`` header may connect.
+
+    Programs send none. Pages of Foxglove and Lichtblick are welcome, and those that this machine serves itself.
+
+    Args:
+        origin: the header; None without.
+        more: origins that are welcome too; ``*`` stands for all.
+    """
+    if origin is None or "*" in more or origin in more:
+        return True
+    try:
+        parts = urlsplit(origin)
+        host = (parts.hostname or "").lower()
+    except ValueError:
+        return False
+    if parts.scheme in _SCHEMES_OF_PROGRAMS:
+        return True
+    if parts.scheme not in ("http", "https"):
+        return False
+    if host == "localhost" or _is_loopback(host):
+        return True
+    return parts.scheme == "https" and any(host == name or host.endswith(f".{name}") for name in _APPLICATIONS)
+
+
+def _is_loopback(host: str) -> bool:
+    try:
+        return ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return False

@@ -1,0 +1,118 @@
+"""Parameters of all nodes for clients, by names such as ``/node.parameter``."""
+
+from __future__ import annotations
+
+import asyncio
+import base64
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from linkwright.graph import EndpointKind, Node, Parameter
+from linkwright.graph.parameters.client import AsyncParameterClient
+from linkwright.graph.parameters.file_text import plain_value
+from linkwright.nodes.foxglove.names import NameFilter
+
+_PATIENCE = 2.0
+_SERVICE = "/get_parameters"
+
+
+class Parameters:
+    """Reads and sets the parameters of other nodes.
+
+    Args:
+        node: asks.
+        wanted: which parameters.
+    """
+
+    def __init__(self, node: Node, wanted: NameFilter) -> None:
+        self._node = node
+        self._wanted = wanted
+        self._clients: dict[str, AsyncParameterClient] = {}
+
+    async def get(self, names: Sequence[str]) -> list[dict[str, Any]]:
+        """The parameters with these names, or all, as clients are told of them."""
+        by_node: dict[str, list[str] | None] = {}
+        if names:
+            for name in names:
+                node, _, parameter = name.partition(".")
+                by_node[node] = [*(by_node.get(node) or ()), parameter]
+        else:
+            by_node = dict.fromkeys(self._nodes())
+        found = await asyncio.gather(*(self._of(node, wanted) for node, wanted in by_node.items()))
+        return [each for parameters in found for each in parameters if self._wanted.accepts(each["name"])]
+
+    async def set(self, told: Sequence[Mapping[str, Any]]) -> None:
+        """Set parameters; what nodes refuse stays as it was."""
+        for each in told:
+            name = str(each.get("name", ""))
+            node, _, parameter = name.partition(".")
+            if parameter and self._wanted.accepts(name):
+                value = _value(each)
+                await self._answer(self._client(node).set_parameters([Parameter(parameter, value=value)]))
+
+    def close(self) -> None:
+        """Ask no more."""
+        for client in self._clients.values():
+            client.destroy()
+        self._clients.clear()
+
+    def _nodes(self) -> list[str]:
+        own = self._node.get_fully_qualified_name()
+        services = {
+            endpoint.name.removesuffix(_SERVICE)
+            for endpoint in self._node.graph.endpoints()
+            if endpoint.kind is EndpointKind.SERVICE and endpoint.name.endswith(_SERVICE)
+        }
+        return sorted(services - {own})
+
+    async def _of(self, node: str, wanted: Sequence[str] | None) -> list[dict[str, Any]]:
+        client = self._client(node)
+        if wanted is None:
+            listed = await self._answer(client.list_parameters())
+            wanted = list(listed.result.names) if listed is not None else []
+        if not wanted:
+            return []
+        answer = await self._answer(client.get_parameters(list(wanted)))
+        if answer is None:
+            return []
+        pairs = zip(wanted, map(plain_value, answer.values), strict=False)
+        return [told(f"{node}.{name}", value) for name, value in pairs if value is not None]
+
+    def _client(self, node: str) -> AsyncParameterClient:
+        if node not in self._clients:
+            self._clients[node] = AsyncParameterClient(self._node, node)
+        return self._clients[node]
+
+    async def _answer(self, future: Any) -> Any:
+        """The result of a future of the graph; None when it takes too long."""
+        loop = asyncio.get_running_loop()
+        done = asyncio.Event()
+        future.add_done_callback(lambda _: loop.call_soon_threadsafe(done.set))
+        try:
+            await asyncio.wait_for(done.wait(), _PATIENCE)
+            return future.result()
+        except asyncio.TimeoutError:
+            return None
+
+
+def told(name: str, value: Any) -> dict[str, Any]:
+    """A parameter as clients are told of it."""
+    parameter: dict[str, Any] = {"name": name, "value": value}
+    if isinstance(value, (bytes, bytearray)):
+        parameter.update(value=base64.b64encode(value).decode(), type="byte_array")
+    elif isinstance(value, float):
+        parameter["type"] = "float64"
+    elif isinstance(value, list) and value and all(isinstance(each, float) for each in value):
+        parameter["type"] = "float64_array"
+    return parameter
+
+
+def _value(told: Mapping[str, Any]) -> Any:
+    value, kind = told.get("value"), told.get("type")
+    if kind == "byte_array":
+        return [bytes([byte]) for byte in base64.b64decode(str(value))]
+    if kind == "float64" and isinstance(value, (int, float)):
+        return float(value)
+    if kind == "float64_array" and isinstance(value, list):
+        return [float(each) for each in value]
+    return value

@@ -1,0 +1,104 @@
+"""Messages of the Foxglove WebSocket protocol, version 1.
+
+Specification: https://github.com/foxglove/ws-protocol/blob/main/docs/spec.md. Numbers are little endian.
+"""
+
+from __future__ import annotations
+
+import struct
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import Any
+
+SUBPROTOCOLS = ("foxglove.websocket.v1", "foxglove.sdk.v1")
+"""The second is what Foxglove's SDK calls the same messages."""
+
+ENCODING = "cdr"
+SCHEMA_ENCODING = "ros2msg"
+
+_MESSAGE, _TIME, _SERVICE_RESPONSE, _ASSET = 1, 2, 3, 4
+_CLIENT_MESSAGE, _SERVICE_REQUEST = 1, 2
+
+
+class StatusLevel(IntEnum):
+    """How bad what a client is told is."""
+
+    INFO = 0
+    WARNING = 1
+    ERROR = 2
+
+
+class BadFrameError(ValueError):
+    """What a client sent is no message of the protocol; the text says why."""
+
+
+@dataclass(frozen=True, slots=True)
+class ClientMessage:
+    """A client publishes on a channel of its own."""
+
+    channel: int
+    data: bytes
+
+
+@dataclass(frozen=True, slots=True)
+class ServiceRequest:
+    """A client calls a service."""
+
+    service: int
+    call: int
+    encoding: str
+    data: bytes
+
+
+def message_data(subscription: int, time_ns: int, data: bytes) -> bytes:
+    """A message of a channel."""
+    return struct.pack("<BIQ", _MESSAGE, subscription, max(0, time_ns)) + data
+
+
+def time_frame(time_ns: int) -> bytes:
+    """The time of the graph."""
+    return struct.pack("<BQ", _TIME, max(0, time_ns))
+
+
+def service_response(service: int, call: int, data: bytes) -> bytes:
+    """The answer of a service."""
+    encoding = ENCODING.encode()
+    return struct.pack("<BIII", _SERVICE_RESPONSE, service, call, len(encoding)) + encoding + data
+
+
+def asset(request: int, data: bytes) -> bytes:
+    """A file that was asked for."""
+    return struct.pack("<BIBI", _ASSET, request, 0, 0) + data
+
+
+def asset_error(request: int, why: str) -> bytes:
+    """A file that was asked for, and why it is not given."""
+    text = why.encode()
+    return struct.pack("<BIBI", _ASSET, request, 1, len(text)) + text
+
+
+def read_frame(frame: bytes) -> ClientMessage | ServiceRequest:
+    """A binary message of a client.
+
+    Raises:
+        BadFrameError: it is none.
+    """
+    try:
+        kind = frame[0]
+        if kind == _CLIENT_MESSAGE:
+            (channel,) = struct.unpack_from("<I", frame, 1)
+            return ClientMessage(channel, frame[5:])
+        if kind == _SERVICE_REQUEST:
+            service, call, length = struct.unpack_from("<III", frame, 1)
+            start = 13 + length
+            if start > len(frame):
+                raise BadFrameError("the message is too short")
+            return ServiceRequest(service, call, frame[13:start].decode(), frame[start:])
+    except (IndexError, struct.error, UnicodeDecodeError):
+        raise BadFrameError("the message is too short") from None
+    raise BadFrameError(f"no message has the code {kind}")
+
+
+def status(level: StatusLevel, message: str) -> dict[str, Any]:
+    """Something that the user of the client should know."""
+    return {"op": "status", "level": int(level), "message": message}

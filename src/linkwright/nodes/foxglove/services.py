@@ -1,0 +1,121 @@
+"""Services of the graph for clients."""
+
+from __future__ import annotations
+
+import asyncio
+from dataclasses import dataclass
+from typing import Any
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph import Client as ServiceClient
+from linkwright.graph import EndpointKind, Node
+from linkwright.messages import deserialize, get_service, serialize
+from linkwright.messages.schema_text import schema_of
+from linkwright.nodes.foxglove.names import NameFilter
+from linkwright.nodes.foxglove.protocol import ENCODING, SCHEMA_ENCODING, ServiceRequest
+
+_PATIENCE = 10.0
+"""Seconds for an answer."""
+
+
+class CallFailedError(Exception):
+    """A service did not answer; the text says why."""
+
+
+@dataclass(frozen=True, slots=True)
+class OfferedService:
+    """A service with its type, by a number."""
+
+    number: int
+    name: str
+    type_name: str
+
+    def told(self) -> dict[str, Any]:
+        """As clients are told of it, in the form of old ones too."""
+        schemas = {part: schema_of(f"{self.type_name}_{part}") for part in ("Request", "Response")}
+        told: dict[str, Any] = {"id": self.number, "name": self.name, "type": self.type_name}
+        for part, schema in schemas.items():
+            told[part.lower()] = {
+                "encoding": ENCODING,
+                "schemaName": f"{self.type_name}_{part}",
+                "schemaEncoding": SCHEMA_ENCODING,
+                "schema": schema,
+            }
+            told[f"{part.lower()}Schema"] = schema
+        return told
+
+
+class Services:
+    """What clients can call.
+
+    Args:
+        node: calls.
+        wanted: which services.
+    """
+
+    def __init__(self, node: Node, wanted: NameFilter) -> None:
+        self._node = node
+        self._wanted = wanted
+        self._offered: dict[tuple[str, str], OfferedService] = {}
+        self._clients: dict[int, ServiceClient[Any, Any]] = {}
+        self._last = 0
+
+    def all(self) -> list[OfferedService]:
+        """Every service now."""
+        return list(self._offered.values())
+
+    def look(self) -> tuple[list[OfferedService], list[int]]:
+        """The services that came since the last look, and the numbers of those that went."""
+        there = {
+            (endpoint.name, endpoint.type_name)
+            for endpoint in self._node.graph.endpoints()
+            if endpoint.kind is EndpointKind.SERVICE and self._wanted.accepts(endpoint.name)
+        }
+        gone = [self._offered.pop(key).number for key in list(self._offered) if key not in there]
+        for number in gone:
+            if number in self._clients:
+                self._node.destroy_client(self._clients.pop(number))
+        come = []
+        for name, type_name in sorted(there - self._offered.keys()):
+            try:
+                get_service(type_name)
+            except LinkwrightError:
+                continue  # its definition is not here
+            self._last += 1
+            self._offered[name, type_name] = OfferedService(self._last, name, type_name)
+            come.append(self._offered[name, type_name])
+        return come, gone
+
+    async def call(self, request: ServiceRequest) -> bytes:
+        """The answer, as CDR.
+
+        Raises:
+            CallFailedError: there is none.
+        """
+        service = next((each for each in self._offered.values() if each.number == request.service), None)
+        if service is None:
+            raise CallFailedError("there is no such service any more")
+        if request.encoding != ENCODING:
+            raise CallFailedError(f"the encoding '{request.encoding[:40]}' is not understood; send {ENCODING}")
+        kind: Any = get_service(service.type_name)
+        client = self._clients.get(service.number)
+        if client is None:
+            client = self._clients[service.number] = self._node.create_client(kind, service.name)
+        try:
+            wanted = deserialize(request.data, kind.Request)
+        except LinkwrightError as error:
+            raise CallFailedError(error.diagnostics[0].message) from None
+        future = client.call_async(wanted)
+        loop = asyncio.get_running_loop()
+        answered = asyncio.Event()
+        future.add_done_callback(lambda _: loop.call_soon_threadsafe(answered.set))
+        try:
+            await asyncio.wait_for(answered.wait(), _PATIENCE)
+        except asyncio.TimeoutError:
+            client.remove_pending_request(future)
+            raise CallFailedError(f"'{service.name}' did not answer within {_PATIENCE:g} s") from None
+        try:
+            answer: Any = future.result()
+            return bytes(serialize(answer))
+        except Exception as error:  # noqa: BLE001 - whatever the service's code raised
+            raise CallFailedError(str(error)) from None

@@ -1,0 +1,107 @@
+"""buffer_server of tf2_ros: looks transforms up for other processes, which need not hear all of ``/tf`` for it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from linkwright.graph import ActionServer, Graph, TransformException
+from linkwright.graph.actions.goal import CancelResponse, ServerGoalHandle
+from linkwright.graph.time import Duration, Time
+from linkwright.graph.transforms.core import BufferCore
+from linkwright.graph.transforms.errors import (
+    ConnectivityException,
+    ExtrapolationException,
+    InvalidArgumentException,
+    LookupException,
+    TimeoutException,
+)
+from linkwright.graph.transforms.listener import TransformListener
+from linkwright.messages import get_action, get_message
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node
+
+_BUFFER_SECONDS = 120.0
+_CHECK_SECONDS = 0.01
+_NO_ERROR, _OTHER_ERROR = 0, 6
+_NUMBERS: dict[type[TransformException], int] = {
+    LookupException: 1,
+    ConnectivityException: 2,
+    ExtrapolationException: 3,
+    InvalidArgumentException: 4,
+    TimeoutException: 5,
+}
+"""Of tf2_msgs/msg/TF2Error."""
+
+
+class Tf2BufferServer(SingleNode):
+    """The running node; it serves the action ``tf2_buffer_server`` (tf2_msgs/action/LookupTransform).
+
+    A goal whose transform is not there yet is looked at again until its timeout. What went wrong is part of the result,
+    so every goal that is not canceled succeeds, as in tf2_ros.
+    """
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        self._node, _ = create_node(graph, options, "tf_buffer")
+        seconds = float(self._node.declare_parameter("buffer_size", _BUFFER_SECONDS).value)
+        self._buffer = BufferCore(Duration(seconds=seconds), logger=self._node.get_logger().get_child("tf2"))
+        TransformListener(self._buffer, self._node)
+        self._waiting: dict[ServerGoalHandle, int] = {}
+        self._looking = self._node.create_timer(_CHECK_SECONDS, self._look, autostart=False)
+        self._lookup = get_action("tf2_msgs/action/LookupTransform")
+        self._error = get_message("tf2_msgs/msg/TF2Error")
+        ActionServer(
+            self._node,
+            self._lookup,
+            "tf2_buffer_server",
+            self._answer,
+            handle_accepted_callback=self._accepted,
+            cancel_callback=lambda _handle: CancelResponse.ACCEPT,
+        )
+
+    def _accepted(self, handle: ServerGoalHandle) -> None:
+        until_ns = self._now_ns() + Duration.from_msg(handle.request.timeout).nanoseconds
+        if until_ns <= self._now_ns() or self._can_answer(handle.request):
+            handle.execute()
+            return
+        self._waiting[handle] = until_ns
+        self._looking.reset()
+
+    def _look(self) -> None:
+        now_ns = self._now_ns()
+        for handle, until_ns in tuple(self._waiting.items()):
+            if handle.is_cancel_requested or now_ns >= until_ns or self._can_answer(handle.request):
+                del self._waiting[handle]
+                handle.execute()
+        if not self._waiting:
+            self._looking.cancel()
+
+    def _answer(self, handle: ServerGoalHandle) -> Any:
+        result = self._lookup.Result()
+        if handle.is_cancel_requested:
+            handle.canceled()
+            return result
+        try:
+            result.transform = self._transform(handle.request)
+        except TransformException as error:
+            number = _NUMBERS.get(type(error), _OTHER_ERROR)
+            result.error = self._error(error=number, error_string=error.diagnostics[0].message)
+        handle.succeed()
+        return result
+
+    def _transform(self, goal: Any) -> Any:
+        source_time = Time.from_msg(goal.source_time)
+        if not goal.advanced:
+            return self._buffer.lookup_transform_core(goal.target_frame, goal.source_frame, source_time)
+        target_time = Time.from_msg(goal.target_time)
+        return self._buffer.lookup_transform_full_core(
+            goal.target_frame, target_time, goal.source_frame, source_time, goal.fixed_frame
+        )
+
+    def _can_answer(self, goal: Any) -> bool:
+        try:
+            self._transform(goal)
+        except TransformException:
+            return False
+        return True
+
+    def _now_ns(self) -> int:
+        return self._node.get_clock().now().nanoseconds
