@@ -1,4 +1,4 @@
-"""From the command to the page: start-up, slider and file latency, and what a large robot costs the server.
+"""From the command to the page: start-up, latencies, frames a second, and what pages cost the server.
 
 Needs a Chromium (LINKWRIGHT_CHROMIUM, or one on the PATH). Times are wall times of the whole program as a user meets
 it, `linkwright` started anew each time with a warm file cache.
@@ -6,201 +6,173 @@ it, `linkwright` started anew each time with a warm file cache.
 
 from __future__ import annotations
 
-import os
 import shutil
-import signal
-import socket
 import statistics
-import subprocess
-import sys
 import tempfile
 import time
-import urllib.error
-import urllib.request
-from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack
 from pathlib import Path
 
-import psutil
-from playwright.sync_api import Browser, Page, sync_playwright
+from playwright.sync_api import Browser
 
 from benchmarks.measure import Row
+from benchmarks.page_programs import Core, answered, chromium, opened, showing, started, viewer_url
+from benchmarks.page_questions import (
+    frames_drawn,
+    images_shown,
+    open_every_panel,
+    rate_of,
+    save_latency,
+    scripts_loaded,
+    slider_latency,
+    transform_age,
+    wheel_latency,
+)
 from benchmarks.robots import write_sweep
 from linkwright.workspace import PackageFinder
 
 RUNS = 7
 MOVES = 40
 SAVES = 15
-FLAGS = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking")
+TURNS = 30
+SECONDS = 10.0
+PAGES = 4
+CORE = "% of a core"
 
 
-@contextmanager
-def started(*words: str) -> Iterator[tuple[subprocess.Popen[str], int, float]]:
-    """A `linkwright` process on a port of its own: the process, the port, and when it was started."""
-    port = free_port()
-    environment = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
-    begin = time.perf_counter()
-    process = subprocess.Popen(
-        [sys.executable, "-m", "linkwright", *words, "--no-open", "--port", str(port)],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL,
-        env=environment,
-        text=True,
-    )
-    try:
-        yield process, port, begin
-    finally:
-        process.send_signal(signal.SIGINT)
-        process.communicate(timeout=10)
-
-
-def free_port() -> int:
-    """A port that nobody listens on."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
-
-
-def viewer_url(process: subprocess.Popen[str]) -> str:
-    """The address that the program prints."""
-    assert process.stdout is not None
-    for line in process.stdout:
-        if line.startswith("Viewer: "):
-            return line.split()[1]
-    raise SystemExit("the program ended without printing its address")
-
-
-def answered(port: int, begin: float) -> float:
-    """Seconds from `begin` until the server answers a request at all (a refusal for want of a token counts)."""
-    while True:
-        try:
-            urllib.request.urlopen(f"http://127.0.0.1:{port}/", timeout=5).close()
-        except urllib.error.HTTPError:
-            pass
-        except OSError:
-            time.sleep(0.002)
-            continue
-        return time.perf_counter() - begin
-
-
-def drawn(page: Page, url: str) -> None:
-    """Open the address and wait for the robot."""
-    page.goto(url)
-    page.wait_for_function("window.linkwright?.ready === true", timeout=60_000)
-
-
-def start_up(browser: Browser, launch: str) -> tuple[list[float], list[float]]:
-    """Seconds from the command to the first answer, and to the drawn robot."""
-    answers, robots = [], []
-    for _ in range(RUNS):
-        with started("launch", launch) as (process, port, begin):
-            answers.append(answered(port, begin))
-            url = viewer_url(process)
-            page = browser.new_page(viewport={"width": 1280, "height": 800})
-            drawn(page, url)
-            robots.append(time.perf_counter() - begin)
-            page.close()
-    return answers, robots
-
-
-_MOVE = """
-async ([row, value]) => {
-  const slider = document.querySelector(`[data-joint="${row}"] input[type=range]`);
-  const before = JSON.stringify(window.linkwright.frames.left_wheel_link.orientation);
-  const begin = performance.now();
-  slider.value = String(value);
-  slider.dispatchEvent(new Event("input", { bubbles: true }));
-  while (JSON.stringify(window.linkwright.frames.left_wheel_link.orientation) === before) {
-    if (performance.now() - begin > 2000) return null;
-    await new Promise((next) => setTimeout(next, 1));
-  }
-  return performance.now() - begin;
-}
-"""
-
-_SAVED = """
-async ([link, z]) => {
-  const limit = performance.now() + 5000;
-  while (Math.abs((window.linkwright.frames[link]?.position[2] ?? NaN) - z) > 1e-6 || Number.isNaN(z)) {
-    if (performance.now() > limit) return null;
-    await new Promise((next) => setTimeout(next, 1));
-  }
-  return performance.timeOrigin + performance.now();
-}
-"""
-
-
-def slider_latency(page: Page) -> list[float]:
-    """Milliseconds from a slider's input event to the new transform in `window.linkwright.frames`."""
-    times = []
-    for number in range(MOVES):
-        page.wait_for_timeout(37 + 13 * (number % 7))
-        value = -1 + 2 * ((number * 7) % MOVES) / MOVES
-        times.append(page.evaluate(_MOVE, ["left_wheel_joint", value]))
-    return times
-
-
-def save_latency(page: Page, model: Path) -> list[float]:
-    """Milliseconds from the end of a file's writing to the changed frame in the page."""
-    text = model.read_text(encoding="utf-8")
-    times = []
-    for number in range(SAVES):
-        page.wait_for_timeout(150)
-        z = -0.05 - 0.001 * (number + 1)
-        model.write_text(text.replace("0 0.19 -0.05", f"0 0.19 {z:.4f}"), encoding="utf-8")
-        begin = time.time() * 1000
-        end = page.evaluate(_SAVED, ["left_wheel_link", z])
-        times.append(end - begin)
-    return times
-
-
-def server_cost(browser: Browser, links: int, rate: int, seconds: float = 10) -> tuple[float, float]:
-    """Share of a core that the server uses while every joint moves, and frames the page draws a second."""
-    with tempfile.TemporaryDirectory() as folder:
-        launch = write_sweep(Path(folder), links, rate)
-        with started("launch", str(launch)) as (process, _, _):
-            page = browser.new_page(viewport={"width": 1280, "height": 800})
-            drawn(page, viewer_url(process))
-            time.sleep(1)
-            server = psutil.Process(process.pid)
-            frames = page.evaluate("() => window.linkwright.framesDrawn")
-            before, begin = server.cpu_times(), time.perf_counter()
-            time.sleep(seconds)
-            after, elapsed = server.cpu_times(), time.perf_counter() - begin
-            frames = page.evaluate("() => window.linkwright.framesDrawn") - frames
-            page.close()
-    used = after.user + after.system - before.user - before.system
-    return 100 * used / elapsed, frames / elapsed
-
-
-def row(what: str, values: list[float], unit: str, target: str) -> Row:
+def row(what: str, values: list[float], unit: str, target: str = "") -> Row:
     """One row: the median, with the lowest and the highest."""
     return Row(f"{what} ({min(values):.3g} to {max(values):.3g})", statistics.median(values), unit, target)
 
 
-def rows() -> list[Row]:
-    """Measure everything."""
-    chromium = os.environ.get("LINKWRIGHT_CHROMIUM") or shutil.which("chromium")
-    if chromium is None:
-        raise SystemExit("no Chromium: set LINKWRIGHT_CHROMIUM or put one on the PATH")
-    package = PackageFinder().share("my_robot_description")
-    with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=chromium, args=list(FLAGS))
-        answers, robots = start_up(browser, str(package / "launch" / "display.launch.py"))
-        table = [
-            row("command to first HTTP answer", answers, "s", "0.7 s"),
-            row("command to robot drawn", robots, "s", "2.5 s"),
-        ]
+def start_up(browser: Browser, launch: str) -> list[Row]:
+    """From the command to the first answer and to the drawn robot, and from opening to the drawn robot."""
+    answers, robots, openings = [], [], []
+    size = 0.0
+    for _ in range(RUNS):
+        with started("launch", launch) as (process, port, begin):
+            answers.append(answered(port, begin))
+            url = viewer_url(process)
+            with opened(browser, url) as page:
+                robots.append(time.perf_counter() - begin)
+                size = scripts_loaded(page)
+            begin = time.perf_counter()
+            with opened(browser, url):
+                openings.append(time.perf_counter() - begin)
+    return [
+        row("command to first HTTP answer", answers, "s", "0.7 s"),
+        row("command to robot drawn", robots, "s", "2.5 s"),
+        row("page opened to robot drawn", openings, "s", "2 s"),
+        Row("scripts and styles loaded until then", size, "KiB"),
+    ]
+
+
+def latencies(browser: Browser, package: Path) -> list[Row]:
+    """From a slider, and from a saved file."""
+    with tempfile.TemporaryDirectory() as folder:
         model = Path(folder) / "model.urdf"
         shutil.copy(package / "urdf" / "mbot_base.urdf", model)
-        with started("view", str(model)) as (process, _, _):
-            page = browser.new_page(viewport={"width": 1280, "height": 800})
-            drawn(page, viewer_url(process))
-            table.append(row("slider moved to frames in the page", slider_latency(page), "ms", "50 ms"))
-            table.append(row("file saved to frames in the page", save_latency(page, model), "ms", "150 ms"))
-            page.close()
-        cost, fps = server_cost(browser, links=500, rate=30)
-        table.append(Row("server, 500 links moving at 30 Hz", cost, "% of a core", "5"))
-        table.append(Row("page, 500 links moving at 30 Hz, frames drawn", fps, "1/s"))
-        browser.close()
-    return table
+        with started("view", str(model)) as (process, _, _), opened(browser, viewer_url(process)) as page:
+            known, drawn = slider_latency(page, MOVES)
+            saved = save_latency(page, model, SAVES)
+    return [
+        row("slider moved to frames in the page", known, "ms", "50 ms"),
+        row("slider moved to drawn frame", drawn, "ms", "100 ms"),
+        row("file saved to frames in the page", saved, "ms", "150 ms"),
+    ]
+
+
+def robots(browser: Browser, links: int, *, server: str, page_rate: str) -> list[Row]:
+    """While every joint moves at 30 Hz: what the server uses, and how often the page draws."""
+    what = f"{links} links moving at 30 Hz"
+    with tempfile.TemporaryDirectory() as folder:
+        launch = write_sweep(Path(folder), links, 30)
+        with started("launch", str(launch)) as (process, _, _), opened(browser, viewer_url(process)) as page:
+            time.sleep(1)
+            core = Core(process)
+            rate = rate_of(frames_drawn, page, SECONDS)
+            share = core.share
+    return [
+        Row(f"server, {what}", share, CORE, server),
+        Row(f"page, {what}, frames drawn", rate, "1/s", page_rate),
+    ]
+
+
+def many_pages(browser: Browser, links: int) -> list[Row]:
+    """Several pages at once: each gets the newest transforms, however few frames it can draw."""
+    what = f"{PAGES} browsers at once, {links} links at 30 Hz"
+    with tempfile.TemporaryDirectory() as folder, ExitStack() as stack:
+        launch = write_sweep(Path(folder), links, 30)
+        process, _, _ = stack.enter_context(started("launch", str(launch)))
+        url = viewer_url(process)
+        pages = [stack.enter_context(opened(browser, url)) for _ in range(PAGES)]
+        time.sleep(1)
+        core = Core(process)
+        rate = rate_of(frames_drawn, pages[0], SECONDS)
+        share = core.share
+        age = transform_age(pages, 20)
+    return [
+        Row(f"server, {what}", share, CORE),
+        Row(f"page, {what}, frames drawn by each", rate, "1/s"),
+        Row(f"age of the transforms in the slowest page, {what}", age, "ms"),
+    ]
+
+
+def data(browser: Browser, scene: str, what: str, *, server: str = "", page_rate: str = "") -> list[Row]:
+    """A display of data: the server's cost, how often the page draws, and how soon it heeds the mouse."""
+    with showing(scene) as process, opened(browser, viewer_url(process), "window.linkwright?.framesDrawn > 5") as page:
+        time.sleep(2)
+        core = Core(process)
+        rate = rate_of(frames_drawn, page, SECONDS)
+        share = core.share
+        turns = wheel_latency(page, TURNS)
+    return [
+        Row(f"server, {what}", share, CORE, server),
+        Row(f"page, {what}, frames drawn", rate, "1/s", page_rate),
+        row(f"page, {what}, wheel to drawn frame", turns, "ms"),
+    ]
+
+
+def images(browser: Browser) -> list[Row]:
+    """Images are shown in a panel; the scene beside it is not drawn for them."""
+    what = "image 640x480 at 30 Hz"
+    shown = "window.linkwright?.displays[0]?.drawn?.images > 5"
+    with showing("image") as process, opened(browser, viewer_url(process), shown) as page:
+        time.sleep(2)
+        core = Core(process)
+        rate = rate_of(images_shown, page, SECONDS)
+        share = core.share
+    return [Row(f"server, {what}", share, CORE), Row(f"page, {what}, shown", rate, "1/s", "30")]
+
+
+def nothing(browser: Browser, model: Path) -> list[Row]:
+    """A robot that stands still, with all panels open."""
+    with started("view", str(model)) as (process, _, _), opened(browser, viewer_url(process)) as page:
+        page.set_viewport_size({"width": 1600, "height": 1200})
+        open_every_panel(page)
+        time.sleep(3)
+        before, core = frames_drawn(page), Core(process)
+        time.sleep(5)
+        drawn, share = frames_drawn(page) - before, core.share
+    return [
+        Row("page, nothing moves, all panels open, frames drawn in 5 s", drawn, "", "0"),
+        Row("server, nothing moves, all panels open", share, CORE, "0.5"),
+    ]
+
+
+def rows() -> list[Row]:
+    """Measure everything."""
+    package = PackageFinder().share("my_robot_description")
+    with chromium() as browser:
+        return [
+            *start_up(browser, str(package / "launch" / "display.launch.py")),
+            *latencies(browser, package),
+            *robots(browser, 12, server="3", page_rate="30"),
+            *robots(browser, 500, server="5", page_rate="20"),
+            *many_pages(browser, 12),
+            *data(browser, "points", "100 000 points at 10 Hz", page_rate="10"),
+            *data(browser, "markers", "1000 markers at 10 Hz", page_rate="10"),
+            *images(browser),
+            *data(browser, "scan", "500 links at 30 Hz and a scan"),
+            *nothing(browser, package / "urdf" / "mbot_base.urdf"),
+        ]

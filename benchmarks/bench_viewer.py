@@ -12,17 +12,18 @@ import multiprocessing
 import statistics
 import struct
 import time
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
+from dataclasses import dataclass
 from typing import Any
 
 import aiohttp
-import numpy as np
 
+from benchmarks.data_scenes import Frames, at_rate
 from benchmarks.measure import Row
 from benchmarks.robots import tree_robot
-from linkwright.graph import DESCRIPTION_QOS, TF_QOS, Graph
-from linkwright.messages import String, TFMessage, TransformBatch
+from linkwright.graph import DESCRIPTION_QOS, Graph
+from linkwright.messages import String
 from linkwright.nodes import NodeOptions
 from linkwright.nodes.joint_state_publisher_gui import JointStatePublisherGui
 from linkwright.nodes.robot_state_publisher import RobotStatePublisher
@@ -34,25 +35,6 @@ LINKS = 500
 RATE = 30
 SECONDS = 6.0
 MOVES = 60
-
-
-class Publisher:
-    """Publishes a chain of moving frames, all in one message, at a steady rate."""
-
-    def __init__(self, graph: Graph, links: int) -> None:
-        self._tf = graph.create_node("publisher").create_publisher(TFMessage, "/tf", TF_QOS)
-        self._parents = tuple(f"link_{number // 2}" for number in range(1, links))
-        self._children = tuple(f"link_{number}" for number in range(1, links))
-        self._poses = np.tile([0.1, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0], (links - 1, 1))
-
-    async def run(self, seconds: float) -> None:
-        """Publish for a while."""
-        start = time.perf_counter()
-        for turn in range(round(seconds * RATE)):
-            poses = self._poses.copy()
-            poses[:, 2] = 0.01 * turn
-            self._tf.publish(TFMessage(batch=TransformBatch(self._parents, self._children, time.time_ns(), poses)))
-            await asyncio.sleep(max(0.0, start + (turn + 1) / RATE - time.perf_counter()))
 
 
 @asynccontextmanager
@@ -67,61 +49,77 @@ async def viewer_of(graph: Graph, library: DescriptionLibrary) -> AsyncIterator[
         await viewer.close()
 
 
-def listen(url: str, ready: Any, stop: Any, counted: Any) -> None:
-    """In another process: be a page, and count what comes."""
+@dataclass
+class Heard:
+    """What a page was sent: how often a second, and how old it was when it came (milliseconds)."""
+
+    rate: float
+    ages: list[float]
+
+
+@dataclass
+class Cost:
+    """Share of a core, in percent, and what each page heard."""
+
+    share: float
+    pages: list[Heard]
+
+
+def listen(url: str, ready: Any, stop: Any, told: Any) -> None:
+    """In another process: be a page, and note the transforms that come."""
 
     async def be_a_page() -> None:
-        frames = size = 0
+        ages = []
         async with aiohttp.ClientSession() as session, session.ws_connect(url, max_msg_size=0) as socket:
             ready.set()
+            begin = time.perf_counter()
             while not stop.is_set():
                 try:
                     message = await socket.receive(timeout=0.1)
                 except asyncio.TimeoutError:
                     continue
                 if message.type is aiohttp.WSMsgType.BINARY:
-                    frames += 1
-                size += len(message.data)
-            counted.put((frames, size))
+                    (stamp,) = struct.unpack_from("<d", message.data, 16)
+                    ages.append(1e3 * (time.time() - stamp))
+            told.put(Heard(len(ages) / (time.perf_counter() - begin), ages))
 
     asyncio.run(be_a_page())
 
 
-async def cost(pages: int | None) -> tuple[float, float]:
-    """Share of a core, and binary frames a second to each page; None pages for no viewer at all."""
+async def cost(links: int, pages: int | None) -> Cost:
+    """What moving frames cost with so many pages open; None pages for no viewer at all."""
     graph = Graph(on_log=lambda _: None)
-    publisher = Publisher(graph, LINKS)
+    publish = Frames(graph, links).publish
     if pages is None:
-        await publisher.run(0.5)
-        return await _measured(publisher), 0.0
+        await at_rate(RATE, publish, 0.5)
+        return Cost(await _measured(publish), [])
     spawn = multiprocessing.get_context("spawn")
     library = DescriptionLibrary()
     async with viewer_of(graph, library) as viewer:
         description = graph.create_node("describer").create_publisher(String, "robot_description", DESCRIPTION_QOS)
-        description.publish(String(tree_robot(LINKS)))
-        stop, counted = spawn.Event(), spawn.Queue()
+        description.publish(String(tree_robot(links)))
+        stop, told = spawn.Event(), spawn.Queue()
         url = viewer.url.replace("/?", "/ws?")
         readies = [spawn.Event() for _ in range(pages)]
-        processes = [spawn.Process(target=listen, args=(url, ready, stop, counted)) for ready in readies]
+        processes = [spawn.Process(target=listen, args=(url, ready, stop, told)) for ready in readies]
         for process in processes:
             process.start()
         for ready in readies:
             await asyncio.to_thread(ready.wait)
-        await publisher.run(1.0)
-        share = await _measured(publisher)
+        await at_rate(RATE, publish, 1.0)
+        share = await _measured(publish)
         stop.set()
-        totals = [await asyncio.to_thread(counted.get) for _ in processes]
+        heard = [await asyncio.to_thread(told.get) for _ in processes]
         for process in processes:
             await asyncio.to_thread(process.join)
     await graph.close()
-    frames = statistics.mean(total[0] for total in totals) if totals else 0.0
-    return share, frames / (SECONDS + 1.0)
+    return Cost(share, heard)
 
 
-async def _measured(publisher: Publisher) -> float:
+async def _measured(publish: Callable[[int], None]) -> float:
     cpu, wall = time.process_time(), time.perf_counter()
-    await publisher.run(SECONDS)
-    return (time.process_time() - cpu) / (time.perf_counter() - wall)
+    await at_rate(RATE, publish, SECONDS)
+    return 100 * (time.process_time() - cpu) / (time.perf_counter() - wall)
 
 
 async def slider_latencies(joints: int) -> list[float]:
@@ -179,15 +177,25 @@ async def _drained(socket: aiohttp.ClientWebSocketResponse) -> None:
         return
 
 
+def moving(links: int, target: str, pages: tuple[tuple[int, str], ...]) -> list[Row]:
+    """What frames that move cost with nobody, one or many watching, and how old they are when they come."""
+    what = f"{links} links at {RATE} Hz"
+    alone = asyncio.run(cost(links, None)).share
+    table = [Row(f"publisher alone, {what}", alone, "% of a core")]
+    for count, label in pages:
+        found = asyncio.run(cost(links, count))
+        table.append(Row(f"viewer, {what}, {label}", found.share - alone, "% of a core", target if count == 1 else ""))
+        if count:
+            oldest = max(statistics.median(page.ages) for page in found.pages)
+            table.append(Row(f"frames to each page, {label}", min(page.rate for page in found.pages), "1/s", "30"))
+            table.append(Row(f"age of frames when they come, {label}", oldest, "ms"))
+    return table
+
+
 def rows() -> list[Row]:
     """The table."""
-    alone, _ = asyncio.run(cost(None))
-    table = [Row(f"publisher alone, {LINKS} links at {RATE} Hz", alone * 100, "% of a core")]
-    for pages, label in ((0, "nobody watches"), (1, "one page"), (4, "four pages")):
-        share, rate = asyncio.run(cost(pages))
-        table.append(Row(f"viewer, {LINKS} links at {RATE} Hz, {label}", (share - alone) * 100, "% of a core"))
-        if pages:
-            table.append(Row(f"frames to each page, {label}", rate, "1/s"))
+    table = moving(12, "3", ((1, "one page"),))
+    table += moving(LINKS, "5", ((0, "nobody watches"), (1, "one page"), (4, "four pages")))
     for joints in (5, LINKS):
         delays = asyncio.run(slider_latencies(joints))
         table.append(

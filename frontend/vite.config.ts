@@ -13,5 +13,7 @@ export default defineConfig({
   },
   test: {
     include: ["test/**/*.test.ts"],
+    // Its colours are tested; other styles are nothing to tests.
+    css: { include: [/theme\.css/] },
   },
 });

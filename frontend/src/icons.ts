@@ -1,5 +1,10 @@
+import { DISPLAY_PATHS, type DisplayIcon } from "./icons/displays";
+import { SHELL_PATHS } from "./icons/shell";
+
 /** Our own icons, 16 x 16, drawn with lines in the colour of the text around them. */
 const PATHS = {
+  ...DISPLAY_PATHS,
+  ...SHELL_PATHS,
   chevron: "M6 4l4 4-4 4",
   close: "M4.5 4.5l7 7M11.5 4.5l-7 7",
   check: "M3.5 8.5l3 3 6-7",
@@ -26,7 +31,45 @@ const PATHS = {
   language: "M8 2a6 6 0 100 12A6 6 0 008 2zM2.2 8h11.6M8 2c-4 4-4 8 0 12M8 2c4 4 4 8 0 12",
   copy: "M5.5 5.5h8v8h-8zM10.5 5.5v-3h-8v8h3",
   frame: "M8 14s4.5-4.2 4.5-7.6A4.5 4.5 0 003.5 6.4C3.5 9.8 8 14 8 14zM8 8a1.6 1.6 0 100-3.2A1.6 1.6 0 008 8z",
+  plus: "M8 3.5v9M3.5 8h9",
+  minus: "M3.5 8h9",
+  keys: "M1.8 4h12.4v8H1.8zM4 6.5v.01M6.7 6.5v.01M9.3 6.5v.01M12 6.5v.01M4.5 9.5h7",
+  interact: "M6.5 8.5V3.2a1.1 1.1 0 012.2 0v4l3.6.8c.8.2 1.2.8 1.1 1.6l-.6 3.9H7.2L4.3 10.3a1.1 1.1 0 011.6-1.5z",
+  move: "M8 1.8v12.4M1.8 8h12.4M6.3 3.5L8 1.8l1.7 1.7M6.3 12.5L8 14.2l1.7-1.7M3.5 6.3L1.8 8l1.7 1.7M12.5 6.3L14.2 8l-1.7 1.7",
+  select: "M2.5 5V2.5H5M11 2.5h2.5V5M13.5 11v2.5H11M5 13.5H2.5V11M6.5 6.5l5 2-2.2.9-.9 2.2z",
+  focus: "M8 4.5a3.5 3.5 0 100 7 3.5 3.5 0 000-7zM8 1.5v3M8 11.5v3M1.5 8h3M11.5 8h3",
+  measure: "M1.8 10.8l9-9 3.4 3.4-9 9zM4.5 8.1l1.5 1.5M7 5.6l2 2M9.5 3.1l1.5 1.5",
+  estimate: "M8 9.5a2 2 0 100 4 2 2 0 000-4zM8 9.5V2.5M5.5 5L8 2.5 10.5 5",
+  goal: "M3.5 14V2.5h8.5l-2 2.7 2 2.8H3.5",
+  clock: "M8 2a6 6 0 100 12A6 6 0 008 2zM8 4.8V8l2.3 1.5",
+  pause: "M5.5 3.5v9M10.5 3.5v9",
+  plot: "M2 2v12h12M4 10.5l2.5-4 2.5 2.5L13.5 4",
+  topics: "M2 4h3M7 4h7M2 8h3M7 8h7M2 12h3M7 12h7",
+  graph: "M3.5 6.2a1.7 1.7 0 100-3.4 1.7 1.7 0 000 3.4M3.5 13.2a1.7 1.7 0 100-3.4 1.7 1.7 0 000 3.4M11.5 6.2h2v3.6h-4V6.2zM5.2 4.8l4.3 2.4M5.2 11.2l4.3-2.4",
+  parameters: "M2 4h7M12 4h2M2 8h2M7 8h7M2 12h6M11 12h3M10.5 2.5v3M5.5 6.5v3M9.5 10.5v3",
+  log: "M2 3h12v10H2zM4.5 6l2 2-2 2M8.5 10.3h3",
+  teleop: "M8 1.8l2 2.4H6zM8 14.2l2-2.4H6zM1.8 8l2.4-2v4zM14.2 8l-2.4-2v4zM8 6.4a1.6 1.6 0 100 3.2 1.6 1.6 0 000-3.2",
+  download: "M8 2v7.5M4.8 6.5L8 9.7l3.2-3.2M2.5 13.5h11",
+  clear: "M3 4.5h10M6.5 4.5V3h3v1.5M4.5 4.5l.6 9h5.8l.6-9",
+  follow: "M8 2v8M4.8 7L8 10.2 11.2 7M3 13.5h10",
   search: "M7 2.5a4.5 4.5 0 100 9 4.5 4.5 0 000-9zM10.3 10.3l3.4 3.4",
+  tree: "M3 2.5h4v2.6H3zM9 7h4v2.6H9zM9 11.4h4V14H9zM5 5.1v7.6h4M5 8.3h4",
+  diagram: "M5.5 1.8h5v3h-5zM1.8 11.2h4.6v3H1.8zM9.6 11.2h4.6v3H9.6zM8 4.8v3.2M4.1 11.2V8h7.8v3.2",
+  code: "M5.5 4.5L2 8l3.5 3.5M10.5 4.5L14 8l-3.5 3.5M9.2 2.8L6.8 13.2",
+  table: "M2 3h12v10H2zM2 6.3h12M2 9.6h12M6 3v10",
+  expand: "M4 6l4-4 4 4M4 10l4 4 4-4",
+  collapse: "M4 2l4 4 4-4M4 14l4-4 4 4",
+  fit: "M2.5 6V2.5H6M10 2.5h3.5V6M13.5 10v3.5H10M6 13.5H2.5V10",
+  more: "M3.5 8v.01M8 8v.01M12.5 8v.01",
+  play: "M5 3l7.5 5L5 13z",
+  stop: "M4 4h8v8H4z",
+  inspect: "M8 3.5C4.5 3.5 2 8 2 8s2.5 4.5 6 4.5S14 8 14 8s-2.5-4.5-6-4.5zM8 6.2a1.8 1.8 0 100 3.6 1.8 1.8 0 000-3.6z",
+  image: "M2 3h12v10H2zM2 11l3.5-3.5 2.5 2.5 2.5-2.5L14 11M10.8 5.8v.01",
+  cloud: "M3 10.5v.01M5 7v.01M6 12v.01M8 4.5v.01M8 9v.01M10.5 11.5v.01M11 6.5v.01M13 9.5v.01M3.5 4v.01M13 4v.01",
+  laser: "M2.5 13.5a9 9 0 0111 0M8 13.5L3.8 4M8 13.5V2.5M8 13.5L12.2 4",
+  map: "M1.8 4l4-1.8 4.4 1.8 4-1.8v9.8l-4 1.8-4.4-1.8-4 1.8zM5.8 2.2V12M10.2 4v9.8",
+  gauge: "M8 2.2a2 2 0 012 2v4.6a3.2 3.2 0 11-4 0V4.2a2 2 0 012-2zM8 5.5v5.5",
+  hand: "M4.5 9V5a1 1 0 012 0V3a1 1 0 012 0v-.3a1 1 0 012 0V4a1 1 0 012 0v5.5c0 2.6-1.7 4.5-4.2 4.5-2 0-3-.8-4-2.6L2.6 8.6a1 1 0 011.7-1z",
 } as const;
 
 export type IconName = keyof typeof PATHS;
@@ -42,6 +85,12 @@ export function icon(name: IconName, className = ""): SVGSVGElement {
   path.setAttribute("d", PATHS[name]);
   svg.append(path);
   return svg;
+}
+
+/** The icon of a class of displays, such as `rviz_default_plugins/Grid`. */
+export function displayIcon(cls: string): IconName {
+  const name = cls.split("/").pop() ?? cls;
+  return name in DISPLAY_PATHS ? (name as DisplayIcon) : "unknown";
 }
 
 /** The sign of a status level or severity. */

@@ -1,7 +1,12 @@
-import type { StatusLevel, StatusRow } from "./protocol.gen";
+import type { PropertyValue, StatusLevel, StatusRow } from "./protocol.gen";
 import type { Stage } from "./scene/stage";
+import type { Toolbox } from "./scene/tools/toolbox";
 import type { FramePose } from "./state/frames";
+import type { SelectedItem } from "./state/selection";
 import type { Session } from "./state/session";
+import type { Camera } from "./state/views/camera";
+import { shortName } from "./state/views/catalog";
+import { number, vector } from "./state/views/view-controller";
 
 /** What tests and curious users read as `window.linkwright`; every value is a copy made when it is read. */
 export interface Inspection {
@@ -17,6 +22,8 @@ export interface Inspection {
     enabled: boolean;
     level: StatusLevel;
     status: StatusRow[];
+    /** What its drawing tells: counts, bounds, colours. */
+    drawn: object | null;
   }[];
   readonly view: {
     type: string;
@@ -24,11 +31,38 @@ export interface Inspection {
     pitch: number;
     distance: number;
     focalPoint: [number, number, number];
+    /** All values by the paths of their properties. */
+    values: Record<string, PropertyValue>;
+    /** The camera in the fixed frame. */
+    camera: Camera;
+    saved: string[];
   };
+  /** The tool in hand; `state` is what it tells of itself. */
+  readonly tool: { class: string | null; hint: string; cursor: string; state: object | null };
+  readonly tools: string[];
+  /** All that is selected. */
+  readonly selection: SelectedItem[];
+  readonly time: { paused: boolean; mode: string; source: string; sources: string[] };
   /** Joint positions of the Joints panel, rad or m. */
   readonly joints: Record<string, number>;
+  /** The description of the first robot, and what the panels about it show. */
+  readonly description: {
+    revision: number;
+    links: number;
+    joints: number;
+    /** The link or joint that the panels are about. */
+    focus: { kind: string; name: string } | null;
+    /** Links and joints that edits have changed, in order. */
+    edited: string[];
+    findings: { link: string; code: string }[];
+  };
+  readonly panels: Record<string, object>;
+  /** What is drawn of the invisible. */
+  readonly inspected: object | null;
   readonly selected: { link: string; file: string | null; line: number | null; column: number | null } | null;
   readonly framesDrawn: number;
+  /** Time of the newest transforms, seconds. */
+  readonly stamp: number;
 }
 
 declare global {
@@ -38,7 +72,14 @@ declare global {
 }
 
 /** Publishes `window.linkwright`. */
-export function publishInspection(session: Session, stage: Stage | null): void {
+export function publishInspection(
+  session: Session,
+  stage: Stage | null,
+  toolbox: Toolbox | null,
+  panels: Readonly<Record<string, () => object>>,
+): void {
+  const edited: string[] = [];
+  session.description.edited.on(({ links, joints }) => edited.push(...links, ...joints));
   const inspection: Inspection = {
     get ready() {
       return stage?.ready ?? false;
@@ -51,27 +92,74 @@ export function publishInspection(session: Session, stage: Stage | null): void {
       return robot && { name: robot.name, links: robot.links.length, visuals: stage?.visualsDrawn ?? 0 };
     },
     get displays() {
-      return session.displays.displays.map(({ name, cls, enabled, level, status }) => ({
+      return session.displays.displays.map(({ id, name, cls, enabled, level, status }) => ({
         name,
         class: cls,
         enabled,
         level,
         status: status.map((row) => ({ ...row })),
+        drawn: stage?.inspect(id) ?? null,
       }));
     },
     get view(): Inspection["view"] {
-      const { yaw, pitch, distance, focal } = session.view.orbit;
-      const type = session.view.current.cls.split("/").pop() ?? "";
-      return { type, yaw, pitch, distance, focalPoint: [focal[0], focal[1], focal[2]] };
+      const { current, values, camera, saved } = session.view;
+      const [x, y, z] = vector(values, "Focal Point", [0, 0, 0]);
+      return {
+        type: shortName(current.cls),
+        yaw: number(values, "Yaw", 0),
+        pitch: number(values, "Pitch", 0),
+        distance: number(values, "Distance", 0),
+        focalPoint: [x, y, z],
+        values: { ...values },
+        camera,
+        saved: saved.map(({ view }) => view.name),
+      };
+    },
+    get tool() {
+      const { current, hint } = session.tools;
+      const cursor = stage?.viewport.canvas.style.cursor ?? "";
+      return { class: current?.cls ?? null, hint, cursor, state: toolbox?.current.inspect?.() ?? null };
+    },
+    get tools() {
+      return session.tools.tools.map(({ cls }) => cls);
+    },
+    get selection() {
+      return session.selection.items.map((item) => ({ ...item }));
+    },
+    get time() {
+      const { paused, mode, source, sources } = session.time;
+      return { paused, mode, source, sources: [...sources] };
     },
     get joints() {
       return { ...session.joints.positions };
+    },
+    get description() {
+      const display = session.robot?.display ?? "";
+      const model = session.description.of(display);
+      const { current } = session.focus;
+      return {
+        revision: model?.description.revision ?? 0,
+        links: model?.links.size ?? 0,
+        joints: model?.joints.size ?? 0,
+        focus: current && { kind: current.kind, name: current.name },
+        edited: [...edited],
+        findings: session.description.findingsOf(display).map(({ link, code }) => ({ link, code })),
+      };
+    },
+    get panels() {
+      return Object.fromEntries(Object.entries(panels).map(([name, inspect]) => [name, inspect()]));
+    },
+    get inspected() {
+      return stage?.inspected ?? null;
     },
     get selected() {
       const link = session.selection.selected?.link;
       if (!link) return null;
       const { file = null, line = null, column = null } = link.place ?? {};
       return { link: link.name, file, line, column };
+    },
+    get stamp() {
+      return session.frames.stamp;
     },
     get framesDrawn() {
       return stage?.loop.framesDrawn ?? 0;

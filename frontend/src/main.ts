@@ -5,60 +5,150 @@ import "./styles/tree.css";
 import "./styles/controls.css";
 import "./styles/scene.css";
 import "./styles/panels.css";
+import "./styles/shell.css";
+import "./styles/pictures.css";
+import "./styles/description.css";
+import "./styles/monitor.css";
+import "./styles/plots.css";
 import { Connection, socketUrl } from "./connection/connection";
 import { h } from "./dom";
 import { publishInspection } from "./inspection";
 import { DiagnosticsPanel } from "./panels/diagnostics-panel";
+import { DiagramPanel } from "./panels/diagram-panel";
 import { DisplaysPanel } from "./panels/displays-panel";
 import { Dock } from "./panels/dock";
+import { fullScreenOnF11 } from "./panels/full-screen";
+import { JointTablePanel } from "./panels/joint-table-panel";
 import { JointsPanel } from "./panels/joints-panel";
+import { livePanels } from "./panels/live-panels";
+import { LinksPanel } from "./panels/links-panel";
+import { KeySheet } from "./panels/key-sheet";
 import { ScenePanel } from "./panels/scene-panel";
+import { ShareMenu } from "./panels/share-menu";
+import { SelectionPanel } from "./panels/selection-panel";
+import { SourcePanel } from "./panels/source-panel";
 import { StatusBar } from "./panels/status-bar";
-import { TitleBar } from "./panels/title-bar";
+import { TimePanel } from "./panels/time-panel";
+import { ToolPropertiesPanel } from "./panels/tool-properties-panel";
+import { TransformationPanel } from "./panels/transformation-panel";
 import { ViewsPanel } from "./panels/views-panel";
 import { Controls } from "./scene/controls";
+import { JointDrag } from "./scene/joint-drag";
+import { Keyboard } from "./scene/keyboard";
+import type { PanelHost } from "./scene/displays/display-panel";
 import { Stage } from "./scene/stage";
+import { Toolbox } from "./scene/tools/toolbox";
+import { FileCommands } from "./shell/file-commands";
+import { hasOwnDisplays, ownKey } from "./shell/own-displays";
+import { matches, SHORTCUTS } from "./shell/shortcuts";
+import { ThemeState } from "./shell/theme";
+import { TitleBar } from "./shell/title-bar";
 import { Session } from "./state/session";
+import { browserStorage } from "./state/storage";
 import { language, strings } from "./strings";
 
 function start(app: HTMLElement): void {
   document.documentElement.lang = language === "zh" ? "zh-CN" : "en";
-  const connection = new Connection(socketUrl(location.href));
+  const theme = new ThemeState(document.documentElement, browserStorage(), matchMedia("(prefers-color-scheme: light)"));
+  const connection = new Connection(socketUrl(location.href, hasOwnDisplays(location.href) ? ownKey(sessionStorage) : null));
   // Before anything is drawn: the answer takes a moment.
   connection.open();
   const session = new Session(connection);
 
-  const scene = new ScenePanel(session, () => dock.open("diagnostics"));
+  const sheet = new KeySheet(session.tools);
+  const scene = new ScenePanel(
+    session,
+    () => dock.open("diagnostics"),
+    () => sheet.toggle(),
+  );
   const dockBox = h("main", { class: "dock" });
   app.append(dockBox);
+  const [source, diagram] = [new SourcePanel(session), new DiagramPanel(session)];
   const dock = new Dock(dockBox, [
     scene,
     new DisplaysPanel(session),
     new ViewsPanel(session),
+    new ToolPropertiesPanel(session),
+    new SelectionPanel(session, (item) => stage?.picker.describe(item) ?? null),
+    new TimePanel(session.time),
+    new TransformationPanel(),
     new JointsPanel(session),
+    new LinksPanel(session),
+    diagram,
+    source,
+    new JointTablePanel(session),
     new DiagnosticsPanel(session),
+    ...livePanels(session.monitor, (id) => dock.open(id)),
   ]);
   session.joints.controlsChanged.on(() => {
     if (session.joints.controls === null) dock.close("joints");
     else if (!dock.isOpen("joints")) dock.open("joints");
   });
 
+  session.description.placeAsked.on(({ file, line }) => {
+    dock.open("source");
+    source.reveal(file, line);
+  });
+  session.displays.treeChanged.on(() => dock.displayPanels.keep(session.displays.displays.map(({ id }) => id)));
   session.diagnosticsChanged.on(() => dock.setCount("diagnostics", session.diagnostics.length));
 
-  const stage = makeStage(scene.container, session);
-  if (stage) new Controls(stage, session.view);
-  app.prepend(new TitleBar(session, dock).element);
+  const stage = makeStage(scene.container, session, dock.displayPanels);
+  const toolbox = stage && takeTools(stage, session);
+  const files = new FileCommands(session.configuration);
+  app.prepend(new TitleBar(session, dock, files, theme, new ShareMenu(session, stage)).element);
+  takeFileKeys(session, files);
   app.append(new StatusBar(session, stage).element);
+  fullScreenOnF11(scene.box);
   document.addEventListener("keydown", (event) => {
-    if (event.key === "Escape") session.selection.select(null);
+    const typing = event.target instanceof HTMLInputElement || event.target instanceof HTMLTextAreaElement;
+    if (event.key === "?" && !typing) sheet.toggle();
   });
-  publishInspection(session, stage);
+  publishInspection(session, stage, toolbox, {
+    source: () => source.inspect(),
+    diagram: () => diagram.inspect(),
+    monitor: () => session.monitor.inspect(),
+  });
+}
+
+/** Mouse and keys for the scene. */
+function takeTools(stage: Stage, session: Session): Toolbox {
+  const toolbox = new Toolbox(stage, session);
+  const joints = new JointDrag(stage, session);
+  const controls = new Controls(stage, session.view, (event) => {
+    if (!joints.pointer(event)) toolbox.current.pointer(event);
+  });
+  new Keyboard(session, stage, toolbox, controls);
+  return toolbox;
+}
+
+/** The keys of the File menu, and undo: they work everywhere but in dialogs; where text is typed, undo is the text's. */
+function takeFileKeys(session: Session, files: FileCommands): void {
+  const { configuration } = session;
+  const keys = [
+    { shortcut: SHORTCUTS.save, run: () => files.save() },
+    { shortcut: SHORTCUTS.saveAs, run: () => files.saveAs() },
+    { shortcut: SHORTCUTS.open, run: () => files.chooseFile() },
+    { shortcut: SHORTCUTS.undo, run: () => configuration.undo(), text: true },
+    { shortcut: SHORTCUTS.redo, run: () => configuration.redo(), text: true },
+    { shortcut: SHORTCUTS.redoToo, run: () => configuration.redo(), text: true },
+  ];
+  const taken = (event: KeyboardEvent): void => {
+    const target = event.target instanceof Element ? event.target : null;
+    const found = keys.find(({ shortcut }) => matches(event, shortcut));
+    if (!found || target?.closest("dialog")) return;
+    if (found.text === true && target?.matches("input[type=text], textarea")) return;
+    event.preventDefault();
+    event.stopPropagation();
+    found.run();
+  };
+  // Before a field that is edited keeps its keys to itself: the browser would save the page.
+  document.addEventListener("keydown", taken, true);
 }
 
 /** Without WebGL everything else still works. */
-function makeStage(container: HTMLElement, session: Session): Stage | null {
+function makeStage(container: HTMLElement, session: Session, panels: PanelHost): Stage | null {
   try {
-    return new Stage(container, session);
+    return new Stage(container, session, panels);
   } catch (error) {
     console.error(error);
     container.append(h("p", { class: "no-webgl" }, strings.scene.noWebgl));

@@ -1,3 +1,4 @@
+import { browserStorage } from "./state/storage";
 import { en, type Strings } from "./strings/en";
 import { zh } from "./strings/zh";
 
@@ -6,7 +7,7 @@ export type Language = "en" | "zh";
 const LANGUAGE_KEY = "linkwright.language";
 
 function preferred(): Language {
-  const chosen = localStorage.getItem(LANGUAGE_KEY);
+  const chosen = browserStorage().getItem(LANGUAGE_KEY);
   if (chosen === "en" || chosen === "zh") return chosen;
   return navigator.language.toLowerCase().startsWith("zh") ? "zh" : "en";
 }
@@ -18,6 +19,6 @@ export const strings: Strings = language === "zh" ? zh : en;
 
 /** Remembers the choice and shows the page anew. */
 export function chooseLanguage(next: Language): void {
-  localStorage.setItem(LANGUAGE_KEY, next);
+  browserStorage().setItem(LANGUAGE_KEY, next);
   location.reload();
 }

@@ -66,6 +66,15 @@ describe("the connection", () => {
     expect(transforms).toHaveBeenCalledOnce();
   });
 
+  it("acknowledges the greeting and whatever is large", () => {
+    const { socket } = opened();
+    socket.hello();
+    socket.onmessage?.({ data: packed(1, [[0, 0, 0, 0, 0, 0, 1]], [0]) });
+    socket.onmessage?.({ data: JSON.stringify({ type: "hello", protocol: PROTOCOL_VERSION, version: "1", title: "x".repeat(2000) }) });
+    const counts = socket.sent.map((text) => JSON.parse(text) as unknown);
+    expect(counts).toEqual([{ type: "received", count: 1 }, { type: "received", count: 3 }]);
+  });
+
   it("comes back with growing pauses", () => {
     const { connection, socket } = opened();
     socket.hello();

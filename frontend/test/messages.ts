@@ -12,6 +12,7 @@ export function property(part: Partial<Property> & Pick<Property, "id" | "name">
     read_only: false,
     expanded: false,
     children: [],
+    details: null,
     ...part,
   };
 }
@@ -20,6 +21,7 @@ export function display(part: Partial<Display> & Pick<Display, "id">): Display {
   return {
     cls: "rviz_default_plugins/Grid",
     name: "Grid",
+    group: null,
     enabled: true,
     supported: true,
     level: "ok",
@@ -48,12 +50,14 @@ export function robot(displayId: string, ...links: string[]): RobotScene {
     display: displayId,
     revision: 1,
     name: "mbot",
+    joints: [],
     links: links.map((name) => ({
       name,
       frame: name,
       parent_joint: null,
       visuals: [],
       collisions: [],
+      inertia: null,
       place: { file: "mbot.urdf", line: 3, column: 5, trail: [] },
     })),
   };

@@ -83,34 +83,44 @@ describe("the selection", () => {
 });
 
 describe("the view", () => {
-  const view = (yaw: number): ServerMessage => ({
+  const view = (yaw: number, revision = 1): ServerMessage => ({
     type: "view_state",
-    view: { ...session.view.current, yaw, distance: 1.7 },
+    view: { ...session.view.current, values: { ...session.view.values, Yaw: yaw, Distance: 1.7 } },
+    revision,
   });
 
   it("is taken from the server once; a reconnect does not move the user's camera", () => {
     receive(view(1));
-    expect(session.view.orbit).toMatchObject({ yaw: 1, distance: 1.7 });
-    session.view.update({ yaw: 2 });
+    expect(session.view.values).toMatchObject({ Yaw: 1, Distance: 1.7 });
+    session.view.update({ Yaw: 2 });
     receive(view(1));
-    expect(session.view.orbit.yaw).toBe(2);
+    expect(session.view.values["Yaw"]).toBe(2);
     session.view.reset();
-    expect(session.view.orbit.yaw).toBe(1);
+    expect(session.view.values["Yaw"]).toBe(1);
+  });
+
+  it("of another file moves the camera", () => {
+    receive(view(1));
+    session.view.update({ Yaw: 2 });
+    receive(view(3, 2));
+    expect(session.view.values["Yaw"]).toBe(3);
   });
 
   it("is told to the server when the user moves it, a few times a second", () => {
     receive(view(1));
-    for (let i = 0; i < 20; i++) session.view.update({ yaw: 2 + i / 100 });
+    for (let i = 0; i < 20; i++) session.view.update({ Yaw: 2 + i / 100 });
     vi.advanceTimersByTime(1000);
     expect(sent).toHaveLength(1);
-    expect(sent[0]).toMatchObject({ type: "view_changed", view: { yaw: 2.19 } });
+    expect(sent[0]).toMatchObject({ type: "view_changed", view: { values: { Yaw: 2.19 } } });
   });
 
   it("does not jump when another frame becomes its target", () => {
     receive({ type: "frame_table", revision: 1, names: ["base", "arm"], parents: [-1, 0] });
     session.frames.poses.set([5, 6, 7, 0, 0, 0, 1], 7);
+    const before = session.view.camera.position;
     session.view.setTargetFrame("arm");
-    expect(session.view.current.focal_point).toEqual([-5, -6, -7]);
-    expect(session.view.targetPosition()).toEqual([5, 6, 7]);
+    expect(session.view.values).toMatchObject({ "Focal Point/X": -5, "Focal Point/Y": -6, "Focal Point/Z": -7 });
+    expect(session.view.target.position).toEqual([5, 6, 7]);
+    session.view.camera.position.forEach((value, i) => expect(value).toBeCloseTo(before[i] ?? 0));
   });
 });

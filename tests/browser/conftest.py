@@ -20,6 +20,8 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
 
+from tests.browser.live import LiveViewer
+
 _FLAGS = (
     "--no-sandbox",
     "--use-angle=swiftshader",
@@ -118,12 +120,26 @@ def start(tmp_path: Path) -> Iterator[Start]:
 
 
 @pytest.fixture
-def open_page(browser: Browser) -> Iterator[Callable[[Program], Page]]:
+def live() -> Iterator[Callable[..., LiveViewer]]:
+    """A function that starts a viewer in this process with a configuration; see `LiveViewer`."""
+    running: list[LiveViewer] = []
+
+    def run(config: str, **options: Any) -> LiveViewer:
+        running.append(LiveViewer(config, **options))
+        return running[-1]
+
+    yield run
+    for each in running:
+        each.close()
+
+
+@pytest.fixture
+def open_page(browser: Browser) -> Iterator[Callable[..., Page]]:
     """A function that opens a program's page at 1280x800 and waits until the robot is drawn."""
     contexts = []
     complaints: list[str] = []
 
-    def open_url(program: Program, *, wait: bool = True) -> Page:
+    def open_url(program: Program | LiveViewer, *, wait: bool = True) -> Page:
         context = browser.new_context(viewport={"width": 1280, "height": 800}, locale="en-US")
         contexts.append(context)
         page = context.new_page()
@@ -147,4 +163,6 @@ def state(page: Page, name: str) -> Any:
 
 def until(page: Page, condition: str, seconds: float = 10) -> None:
     """Wait until a JavaScript condition over `lw` (window.linkwright) holds."""
-    page.wait_for_function(f"() => {{ const lw = window.linkwright; return {condition}; }}", timeout=seconds * 1000)
+    page.wait_for_function(
+        f"() => {{ const lw = window.linkwright; return lw && ({condition}); }}", timeout=seconds * 1000
+    )

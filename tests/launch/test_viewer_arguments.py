@@ -2,7 +2,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from linkwright.launch.engine.viewer_arguments import read_viewer_config
+import pytest
+
+from linkwright.launch import run_viewer
+from linkwright.launch.engine.viewer_arguments import asks_for_help, read_viewer_config
 
 CONFIG = """
 Visualization Manager:
@@ -40,3 +43,13 @@ def test_no_file() -> None:
 def test_remarks() -> None:
     messages = [finding.message for finding in read_viewer_config(["--display-confg", "-l", "-d"])[1]]
     assert messages == ["argument '--display-confg' of rviz2 is unknown", "argument '-d' of rviz2 needs a value"]
+
+
+@pytest.mark.parametrize("arguments", [["--help"], ["-d", "x.rviz", "-h"]])
+def test_help_is_printed_and_nothing_is_started(arguments, capsys):
+    assert run_viewer(arguments) == 0
+    assert capsys.readouterr().out.startswith("usage: rviz2 ")
+
+
+def test_what_the_node_is_given_asks_for_no_help():
+    assert not asks_for_help(["-d", "x.rviz", "--ros-args", "-p", "a:=-h", "--help"])

@@ -68,9 +68,10 @@ class World:
 
     @asynccontextmanager
     async def client(self, protocols=V1, **options):
-        async with aiohttp.ClientSession() as session, session.ws_connect(
-            f"ws://127.0.0.1:{self.port}/", protocols=protocols, **options
-        ) as connection:
+        async with (
+            aiohttp.ClientSession() as session,
+            session.ws_connect(f"ws://127.0.0.1:{self.port}/", protocols=protocols, **options) as connection,
+        ):
             yield Foxglove(connection)
 
 
@@ -87,6 +88,14 @@ async def world(**parameters):
         made.bridge.close()
         await asyncio.sleep(0.05)
         await made.graph.close()
+
+
+async def until(condition) -> None:
+    for _ in range(300):
+        if condition():
+            return
+        await asyncio.sleep(0.01)
+    pytest.fail("it never happened")
 
 
 def test_launch_files_that_start_it_find_it():
@@ -117,8 +126,7 @@ async def test_messages_come_as_cdr_and_stop_on_demand():
         publisher = w.node.create_publisher(String, "/chatter", 10)
         channel = await client.channel("/chatter")
         await client.send("subscribe", subscriptions=[{"id": 42, "channelId": channel["id"]}])
-        while not publisher.get_subscription_count():
-            await asyncio.sleep(0.01)
+        await until(lambda: publisher.get_subscription_count() == 1)
         publisher.publish(String("hello"))
         frame = await client.frame(1)
         code, subscription, stamp = struct.unpack_from("<BIQ", frame)
@@ -126,8 +134,7 @@ async def test_messages_come_as_cdr_and_stop_on_demand():
         assert stamp > 1_600_000_000_000_000_000
         assert deserialize(frame[13:], String).data == "hello"
         await client.send("unsubscribe", subscriptionIds=[42])
-        while publisher.get_subscription_count():
-            await asyncio.sleep(0.01)
+        await until(lambda: publisher.get_subscription_count() == 0)
 
 
 async def test_a_late_client_gets_what_lasts():
@@ -159,10 +166,7 @@ async def test_clients_publish():
         message = twist()
         message.linear.x = 0.5
         await client.socket.send_bytes(struct.pack("<BI", 1, 9) + serialize(message))
-        for _ in range(100):
-            await asyncio.sleep(0.01)
-            if heard:
-                break
+        await until(lambda: heard)
         assert heard[0].linear.x == 0.5
         await client.send("unadvertise", channelIds=[9])
         await client.socket.send_bytes(struct.pack("<BI", 1, 9) + serialize(message))
@@ -323,14 +327,19 @@ async def test_another_protocol_is_refused():
         assert client.socket.close_code == 1002
 
 
-@pytest.mark.filterwarnings("ignore::aiohttp.web_ws.WebSocketError")
 async def test_nonsense_is_answered_and_the_bridge_lives_on():
     async with world() as w, w.client() as client:
-        for text in ("nonsense", "[]", "{}", '{"op": "fly"}', '{"op": "subscribe"}', '{"op": "advertise", "channels": [{}]}',
-                     '{"op": "getParameters"}', "[" * 100_000):  # fmt: skip
+        empty = '{"op": "advertise", "channels": [{}]}'
+        for text in ("nonsense", "[]", "{}", '{"op": "fly"}', '{"op": "subscribe"}', empty, "[" * 100_000):
             await client.socket.send_str(text)
             assert (await client.until("status"))["level"] == 2
-        for frame in (b"", b"\x01", b"\xff1234", struct.pack("<BIII", 2, 1, 1, 4_000_000_000), struct.pack("<BI", 1, 5)):
+        for frame in (
+            b"",
+            b"\x01",
+            b"\xff1234",
+            struct.pack("<BIII", 2, 1, 1, 4_000_000_000),
+            struct.pack("<BI", 1, 5),
+        ):
             await client.socket.send_bytes(frame)
             assert (await client.until("status"))["level"] == 2
         await client.send("subscribeConnectionGraph")

@@ -130,12 +130,12 @@ class Client:
     """A page without a picture: keeps what it is told."""
 
     socket: aiohttp.ClientWebSocketResponse
-    messages: list[dict | Transforms] = field(default_factory=list)
+    messages: list[dict | Transforms | bytes] = field(default_factory=list)
 
-    async def receive(self, timeout: float = 2.0) -> dict | Transforms:
+    async def receive(self, timeout: float = 2.0) -> dict | Transforms | bytes:
         message = await self.socket.receive(timeout=timeout)
         if message.type is aiohttp.WSMsgType.BINARY:
-            decoded: dict | Transforms = unpack(message.data)
+            decoded: dict | Transforms | bytes = unpack(message.data) if message.data[0] == 1 else message.data
         elif message.type is aiohttp.WSMsgType.TEXT:
             decoded = json.loads(message.data)
         else:
@@ -156,7 +156,7 @@ class Client:
             if isinstance(message, Transforms):
                 return message
 
-    async def drain(self, quiet: float = 0.15) -> list[dict | Transforms]:
+    async def drain(self, quiet: float = 0.15) -> list[dict | Transforms | bytes]:
         """Everything that comes until nothing comes for a while."""
         start = len(self.messages)
         with suppress(asyncio.TimeoutError):

@@ -20,6 +20,14 @@ async def opened(made):
         return await client.opened()
 
 
+async def rows_with(client, identity: str) -> dict[str, dict]:
+    """The rows of a display once there is one with this id: frames are heard of one after the other."""
+    while True:
+        rows = rows_by_id((await client.until("display_properties"))["properties"])
+        if identity in rows:
+            return rows
+
+
 # --- Grid ----------------------------------------------------------------------------------------------------------
 
 
@@ -92,7 +100,7 @@ async def test_tf_lists_the_frames_it_hears_of():
 async def test_tf_boxes_are_kept_in_the_file():
     async with world(config(tf())) as made, page(made.viewer) as client:
         made.move_arm()
-        await client.until("display_properties", display="display-1")
+        await rows_with(client, "display-1/Frames/mark")
         await client.set("display-1/Frames/tip", False)
         assert (await client.until("property_changed", id="display-1/Frames/tip"))["value"] is False
         await client.set("display-1/Frames/All Enabled", False)
@@ -101,6 +109,19 @@ async def test_tf_boxes_are_kept_in_the_file():
         section = made.viewer.config.displays[0].section
         assert section.scalar("Frames", "base").text == "false"
         assert section.section("Frames", "base").keys() == ["Value"]
+
+
+async def test_a_frame_that_is_off_takes_the_box_over_all_along():
+    async with world(config(tf())) as made, page(made.viewer) as client:
+        made.move_arm()
+        properties = (await client.until("display_properties", display="display-1"))["properties"]
+        rows = rows_by_id(properties)
+        assert rows["display-1/Frames/tip"]["details"] == "frame"
+        assert rows["display-1/Frames/All Enabled"]["details"] is None
+        await client.set("display-1/Frames/tip", False)
+        assert (await client.until("property_changed", id="display-1/Frames/All Enabled"))["value"] is False
+        await client.until("property_changed", id="display-1/Frames/tip")
+        assert made.display("TF").properties.get("Frames", "base") is True
 
 
 async def test_tf_frames_that_cannot_be_placed_are_warned_of():
@@ -117,7 +138,7 @@ async def test_tf_frames_that_cannot_be_placed_are_warned_of():
 async def test_tf_filters_choose_frames():
     async with world(config(tf())) as made, page(made.viewer) as client:
         made.move_arm()
-        await client.until("display_properties", display="display-1")
+        await rows_with(client, "display-1/Frames/mark")
 
         async def frames_with(name: str, text: str) -> list[str]:
             await client.set(f"display-1/{name}", text)
@@ -153,11 +174,11 @@ async def test_a_chain_of_frames_may_be_long():
 
 
 async def test_displays_of_other_classes_are_shown_and_kept():
-    text = "    - {Class: rviz_default_plugins/LaserScan, Enabled: true, Name: Laser, Size (m): 0.05}\n"
+    text = "    - {Class: my_plugins/Radar, Enabled: true, Name: Radar, Size (m): 0.05}\n"
     async with world(config(text)) as made:
-        (laser,) = (await opened(made))["tree"]["displays"]
-        assert (laser["supported"], laser["level"], laser["properties"]) == (False, "warn", [])
-        assert "rviz_default_plugins/LaserScan" in laser["status"][0]["text"]
+        (radar,) = (await opened(made))["tree"]["displays"]
+        assert (radar["supported"], radar["level"], radar["properties"]) == (False, "warn", [])
+        assert "my_plugins/Radar" in radar["status"][0]["text"]
         assert "Size (m): 0.05" in made.viewer.config.text()
 
 

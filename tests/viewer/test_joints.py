@@ -9,7 +9,10 @@ from linkwright.graph import Graph
 from linkwright.nodes import NodeOptions
 from linkwright.nodes.joint_state_publisher_gui import JointStatePublisherGui
 from linkwright.viewer.joints import JointBridge
-from linkwright.viewer.protocol import CenterJoints, JointPositions, Joints, RandomizeJoints, SetJoint
+from linkwright.viewer.protocol import CenterJoints, JointPositions, Joints, RandomizeJoints, SetJoint, SetJoints
+
+PAGE = object()
+"""Whoever asks; the bridge tells all pages."""
 
 GRIPPER = """\
 <robot name="gripper">
@@ -66,8 +69,8 @@ async def filled(graph, panel):
 
 
 def test_without_a_panel_there_are_no_joints(bridge):
-    assert bridge.messages() == [Joints(None)]
-    bridge.receive(RandomizeJoints())
+    assert bridge.opening() == [Joints(None)]
+    bridge.receive(PAGE, RandomizeJoints())
 
 
 async def test_a_panel_is_shown(graph, bridge, panel, published):
@@ -78,9 +81,10 @@ async def test_a_panel_is_shown(graph, bridge, panel, published):
     assert (by_name["turn"].kind, by_name["turn"].lower, by_name["turn"].upper) == ("continuous", -math.pi, math.pi)
     assert (by_name["open"].lower, by_name["open"].upper) == (0.01, 0.05)
     assert by_name["open"].zero == pytest.approx(0.03)
-    assert by_name["follow"].mimic == "open"
+    follow = by_name["follow"]
+    assert (follow.mimic, follow.multiplier, follow.offset) == ("open", -1.0, 0.0)
     assert positions.positions == pytest.approx({"turn": 0.0, "open": 0.03, "follow": -0.03})
-    assert bridge.messages() == published
+    assert bridge.opening() == published
 
 
 async def test_rows_follow_the_description(graph, bridge, panel, published):
@@ -96,16 +100,19 @@ async def test_rows_follow_the_description(graph, bridge, panel, published):
 async def test_pages_move_joints_that_are_free(graph, bridge, panel, published):
     await filled(graph, panel)
     bridge.attach(panel)
-    bridge.receive(SetJoint("turn", 0.5))
-    bridge.receive(SetJoint("open", 7.0))
-    bridge.receive(SetJoint("follow", 0.0))
-    bridge.receive(SetJoint("nobody", 0.0))
+    bridge.receive(PAGE, SetJoint("turn", 0.5))
+    bridge.receive(PAGE, SetJoint("open", 7.0))
+    bridge.receive(PAGE, SetJoint("follow", 0.0))
+    bridge.receive(PAGE, SetJoint("nobody", 0.0))
     await told(graph)
     assert published[-1].positions == pytest.approx({"turn": 0.5, "open": 0.05, "follow": -0.05})
-    bridge.receive(CenterJoints())
+    bridge.receive(PAGE, SetJoints({"turn": -0.25, "open": 0.02, "follow": 1.0, "nobody": 1.0}))
+    await told(graph)
+    assert published[-1].positions == pytest.approx({"turn": -0.25, "open": 0.02, "follow": -0.02})
+    bridge.receive(PAGE, CenterJoints())
     await told(graph)
     assert published[-1].positions == pytest.approx({"turn": 0.0, "open": 0.03, "follow": -0.03})
-    bridge.receive(RandomizeJoints())
+    bridge.receive(PAGE, RandomizeJoints())
     await told(graph)
     assert published[-1].positions["turn"] != 0.0
 

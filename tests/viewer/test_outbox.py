@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from linkwright.viewer.outbox import FRAME_TABLE, TRANSFORMS, Outbox
+from linkwright.viewer.scaled_data import ScaledData
 
 
 async def emptied(outbox: Outbox) -> list:
@@ -27,6 +28,46 @@ async def test_a_replaced_payload_goes_to_the_end():
     for key, payload in (("a", "a1"), ("b", "b1"), ("a", "a2")):
         outbox.put(key, payload)
     assert await emptied(outbox) == ["b1", "a2"]
+
+
+def scaled(key: str) -> ScaledData:
+    return ScaledData(key, key, lambda _: key, str.encode)
+
+
+async def test_heavy_content_keeps_its_place_so_that_none_starves():
+    outbox = Outbox()
+    for key in ("a", "b", "c"):
+        outbox.put(key, scaled(key))
+    newer = scaled("a")
+    outbox.put("a", newer)
+    assert await outbox.take() is newer
+
+
+async def test_heavy_content_that_was_taken_away_comes_after_what_said_so():
+    outbox = Outbox()
+    old, new = scaled("a"), scaled("a")
+    outbox.put("a", old)
+    old.gone = True
+    outbox.put("forgotten", "forgotten")
+    outbox.put("a", new)
+    assert [await outbox.take(), await outbox.take()] == ["forgotten", new]
+    outbox.put("a", old)
+    outbox.put("b", "b")
+    assert await outbox.take() == "b"
+
+
+async def test_a_held_outbox_gives_transforms_only():
+    outbox = Outbox()
+    outbox.put("a", "a")
+    outbox.hold(True)
+    taking = asyncio.ensure_future(outbox.take())
+    await asyncio.sleep(0)
+    outbox.put(TRANSFORMS, b"1")
+    assert await asyncio.wait_for(taking, 1) == b"1"
+    outbox.put(TRANSFORMS, b"2")
+    assert await outbox.take() == b"2"
+    outbox.hold(False)
+    assert await outbox.take() == "a"
 
 
 async def test_transforms_overtake_but_do_not_starve_the_rest():

@@ -67,9 +67,26 @@ async def test_properties_are_those_of_rviz():
         "Description Source": "Topic",
         "Description Topic": "/robot_description",
         "TF Prefix": "",
+        "Mass Properties": None,
         "Links": None,
+        "Joints": None,
     }
     rows = rows_by_id(properties)
+    masses = {row["name"]: row["value"] for row in rows["display-1/Mass Properties"]["children"]}
+    assert masses == {"Mass": False, "Inertia": False}
+    options = {row["name"]: row["value"] for row in rows["display-1/Links"]["children"][:5]}
+    assert options == {
+        "Link Tree Style": "Links in Alphabetic Order",
+        "Expand Tree": False,
+        "Expand Link Details": False,
+        "Expand Joint Details": False,
+        "All Links Enabled": True,
+    }
+    assert (rows["display-1/Joints/turn"]["kind"], rows["display-1/Joints/fix"]["kind"]) == ("bool", "group")
+    assert [row["name"] for row in rows["display-1/Joints/turn"]["children"]] == ["Show Axes", "Show Joint Axis"]
+    assert [row["name"] for row in rows["display-1/Joints/fix"]["children"]] == ["Show Axes"]
+    details = [rows[f"display-1/{name}"]["details"] for name in ("Links/base", "Links/mark", "Joints/fix", "Links")]
+    assert details == ["link", "link", "joint", None]
     assert rows["display-1/Links/All Links Enabled"]["value"] is True
     assert (rows["display-1/Links/base"]["kind"], rows["display-1/Links/mark"]["kind"]) == ("bool", "group")
     assert [row["name"] for row in rows["display-1/Links/base"]["children"]] == ["Alpha", "Show Trail", "Show Axes"]
@@ -94,9 +111,102 @@ async def test_the_box_over_all_links_sets_them_all():
         async with page(made.viewer) as client:
             await client.opened()
             await client.set("display-1/Links/All Links Enabled", False)
-            rows = rows_by_id((await client.until("display_properties"))["properties"])
-            assert [rows[f"display-1/Links/{name}"]["value"] for name in ("base", "tip")] == [False, False]
+            for name in ("Links/base", "Links/tip", "Joints/turn"):
+                assert (await client.until("property_changed", id=f"display-1/{name}"))["value"] is False
             assert made.viewer.config.displays[0].section.scalar("Links", "tip").text == "false"
+
+
+async def test_a_joint_sets_the_links_below_it_and_follows_them():
+    async with world(config(", Links: {Link Tree Style: Tree of links and joints}")) as made:
+        made.describe(
+            ARM.replace(
+                '<link name="mark"/>',
+                '<link name="mark"><visual><geometry><sphere radius="1"/></geometry></visual></link>',
+            )
+        )
+        await made.settle()
+        display = made.display("RobotModel")
+
+        def boxes() -> dict[str, object]:
+            paths = (("Links", "base"), ("Links", "tip"), ("Links", "mark"), ("Joints", "turn"), ("Joints", "fix"))
+            found = {path[1]: display.properties.get(*path) for path in paths}
+            return {**found, "all": display.properties.get("Links", "All Links Enabled")}
+
+        on = dict.fromkeys(boxes(), True)
+        assert boxes() == on
+        display.set_property(("Joints", "turn"), False)
+        assert boxes() == {**dict.fromkeys(on, False), "base": True}
+        display.set_property(("Links", "mark"), True)
+        assert boxes() == {**on, "tip": False, "turn": False, "all": False}
+        display.set_property(("Links", "tip"), True)
+        assert boxes() == on
+        display.set_property(("Links", "Link Tree Style"), "Joints in Alphabetic Order")
+        display.set_property(("Joints", "turn"), False)
+        assert boxes() == {**on, "tip": False, "turn": False, "all": False}
+
+
+@pytest.mark.parametrize("box", ["Joints/turn", "Links/All Links Enabled", "Links/base"])
+async def test_undo_takes_back_all_that_a_box_set(box):
+    async with world(config(", Links: {tip: {Value: false}}")) as made:
+        made.describe(ARM)
+        await made.settle()
+        display = made.display("RobotModel")
+        paths = (("Links", "base"), ("Links", "tip"), ("Joints", "turn"), ("Links", "All Links Enabled"))
+
+        def boxes() -> list[object]:
+            return [display.properties.get(*path) for path in paths]
+
+        before, text = boxes(), made.viewer.config.text()
+        assert before == [True, False, False, False]
+        async with page(made.viewer) as client:
+            await client.opened()
+            value = not display.properties.get(*box.split("/"))
+            await client.set(f"display-1/{box}", value)
+            await client.until("property_changed", id=f"display-1/{box}")
+            assert boxes() != before
+            await client.send("undo")
+            await client.until("display_properties", display="display-1")
+            assert boxes() == before
+            assert made.viewer.config.text() == text
+
+
+async def test_boxes_of_the_file_are_left_to_the_user():
+    text = ", Links: {All Links Enabled: true, tip: {Value: false}}"
+    async with world(config(text)) as made:
+        before = made.viewer.config.text()
+        made.describe(ARM)
+        await made.settle()
+        display = made.display("RobotModel")
+        assert display.properties.get("Joints", "turn") is False
+        assert display.properties.get("Links", "All Links Enabled") is False
+        assert made.viewer.config.text() == before
+
+
+async def test_joints_and_masses_are_drawn_from_the_description():
+    heavy = '<inertial><mass value="2"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
+    limited = '<axis xyz="0 0 1"/><origin xyz="0 0 1"/><limit lower="-1" upper="2" effort="1" velocity="1"/>'
+    async with world(config()) as made:
+        text = ARM.replace('type="continuous"', 'type="revolute"').replace('<axis xyz="0 0 1"/>', limited)
+        made.describe(text.replace('<link name="mark"/>', f'<link name="mark">{heavy}</link>'))
+        await made.settle()
+        scene = (await opened(made))["robot_scene"]
+    turn, fix = scene["joints"]
+    assert turn == {
+        "name": "turn",
+        "kind": "revolute",
+        "parent": "base",
+        "child": "tip",
+        "position": [0.0, 0.0, 1.0],
+        "quaternion": [0.0, 0.0, 0.0, 1.0],
+        "axis": [0.0, 0.0, 1.0],
+        "lower": -1.0,
+        "upper": 2.0,
+    }
+    assert (fix["kind"], fix["lower"]) == ("fixed", None)
+    base, _, mark = scene["links"]
+    assert base["inertia"] is None
+    assert mark["inertia"]["mass"] == 2.0
+    assert mark["inertia"]["box"] == pytest.approx([3**0.5] * 3)
 
 
 async def test_a_new_description_replaces_the_robot_and_its_frames():

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from linkwright.viewer.schema import MAXIMUM_TEXT, PropertySpec, accept, from_text, to_text
 
 ALPHA = PropertySpec("Alpha", "float", 1.0, minimum=0.0, maximum=1.0)
+LENGTH = PropertySpec("Length", "float", 0.0)
 COUNT = PropertySpec("Count", "int", 10, minimum=1)
 STYLE = PropertySpec("Style", "enum", "Lines", options=("Lines", "Billboards"))
 COLOUR = PropertySpec("Color", "color", "#a0a0a4")
@@ -79,9 +80,19 @@ def test_other_values_are_refused(spec, value):
         (COUNT, "12", 12),
         (COLOUR, "160; 160; 164", "#a0a0a4"),
         (COLOUR, "0;0;999", "#0000ff"),
+        (COLOUR, "-1; 2 ;3; 128", "#000203"),
         (COLOUR, "#ff0000", "#ff0000"),
+        (COLOUR, "#F0a", "#ff00aa"),
+        (COLOUR, "SkyBlue", "#87ceeb"),
         (BOX, "True", True),
         (BOX, "0", False),
+        (BOX, "", False),
+        (COUNT, "1e+06", 1_000_000),
+        (ALPHA, "nan", 1.0),
+        (ALPHA, "-.NaN", 1.0),
+        (ALPHA, "inf", 1.0),
+        (LENGTH, "-Infinity", -3.4028234663852886e38),
+        (LENGTH, ".inf", 3.4028234663852886e38),
         (FRAME, "/base_footprint", "base_footprint"),
     ],
 )
@@ -89,7 +100,18 @@ def test_spellings_of_files_are_read(spec, text, value):
     assert from_text(spec, text) == value
 
 
-@pytest.mark.parametrize(("spec", "text"), [(ALPHA, "much"), (ALPHA, "nan"), (BOX, "maybe"), (COLOUR, "1; 2")])
+SPELLINGS_OF_NOTHING = [
+    (ALPHA, "much"),
+    (ALPHA, "1,5"),
+    (COUNT, "inf"),
+    (BOX, "maybe"),
+    (COLOUR, "1; 2"),
+    (COLOUR, "255, 0, 0"),
+    (COLOUR, "reddish"),
+]
+
+
+@pytest.mark.parametrize(("spec", "text"), SPELLINGS_OF_NOTHING)
 def test_spellings_that_mean_nothing_are_named(spec, text):
     with pytest.raises(ValueError, match="expected"):
         from_text(spec, text)

@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import asyncio
+import time
+from contextlib import suppress
 from pathlib import Path
 from urllib.parse import urlsplit
 
 import aiohttp
+import psutil
 import pytest
 
+from linkwright.viewer.admission import MAXIMUM_CONNECTIONS
 from linkwright.viewer.audience import MAXIMUM_PAGES
+from linkwright.viewer.protocol import DisplayStatus, StatusRow
 from linkwright.viewer.server import MAXIMUM_MESSAGE
 from tests.viewer.scene import page, world
 from tests.viewer.test_mesh_files import package, write
@@ -105,6 +110,17 @@ async def test_no_path_leads_out_of_the_package(served, path):
     assert status in (400, 403, 404)
     assert "secret" not in body
     assert "root:" not in body
+
+
+async def test_a_link_out_of_the_package_is_refused(served, robot):
+    for name in ("link.stl", "folder"):
+        target = robot.parent / "secret.png" if name == "link.stl" else robot.parent
+        (robot / "meshes" / name).symlink_to(target)
+    base = mesh_url(served.viewer).split("meshes/")[0] + "meshes/"
+    for path in ("link.stl", "folder/secret.png"):
+        status, body, _ = await raw(served.viewer, base + path)
+        assert status == 403
+        assert "secret" not in body
 
 
 @pytest.mark.parametrize(
@@ -215,3 +231,224 @@ async def test_more_pages_than_allowed_are_refused(served):
         pages[0] = await session.ws_connect(address)
         for page in pages:
             await page.close()
+
+
+# --- many, slow and half connections -------------------------------------------------------------------------------
+
+
+def memory() -> int:
+    """Resident bytes of this process."""
+    return psutil.Process().memory_info().rss
+
+
+async def knock(viewer, said: bytes = b"") -> asyncio.StreamWriter:
+    address = urlsplit(viewer.url)
+    _, writer = await asyncio.open_connection(address.hostname, address.port)
+    writer.write(said)
+    return writer
+
+
+async def answers_within(client, seconds: float) -> None:
+    """The page that is there is served."""
+    began = time.monotonic()
+    wanted = "tip" if client.messages and "base" in str(client.messages[-1]) else "base"
+    await client.set("global/Fixed Frame", wanted)
+    await client.until("property_changed", id="global/Fixed Frame", value=wanted)
+    assert time.monotonic() - began < seconds
+
+
+async def test_a_thousand_connections_trouble_nobody(served):
+    async with page(served.viewer) as client:
+        await client.opened()
+        before = memory()
+        knocking = [await knock(served.viewer) for _ in range(1000)]
+        await answers_within(client, 1.0)
+        await asyncio.sleep(0.1)
+        # Those that say nothing make room for one who shows the token.
+        assert (await raw(served.viewer, mesh_url(served.viewer)))[:2] == (200, "solid arm")
+        assert served.viewer._server._admission._count <= MAXIMUM_CONNECTIONS
+        assert memory() - before < 64 << 20
+        for each in knocking:
+            each.close()
+        await answers_within(client, 1.0)
+
+
+async def test_a_thousand_sockets_are_refused_but_for_some(served):
+    address = served.viewer.url.replace("/?", "/ws?")
+    statuses: list[int] = []
+    kept: list[aiohttp.ClientWebSocketResponse | None] = []
+    async with page(served.viewer) as client, aiohttp.ClientSession(connector=aiohttp.TCPConnector(limit=0)) as session:
+
+        async def connect() -> aiohttp.ClientWebSocketResponse | None:
+            try:
+                return await session.ws_connect(address)
+            except aiohttp.WSServerHandshakeError as error:
+                statuses.append(error.status)
+            except aiohttp.ClientConnectionError:
+                statuses.append(0)
+            return None
+
+        await client.opened()
+        for _ in range(10):
+            kept += await asyncio.gather(*(connect() for _ in range(100)))
+            await answers_within(client, 2.0)
+        assert set(statuses) <= {0, 503}
+        assert len(statuses) >= 1000 - MAXIMUM_PAGES
+        assert len(served.viewer._audience) <= MAXIMUM_PAGES
+
+
+async def test_half_a_request_is_not_waited_for_long(served, monkeypatch):
+    monkeypatch.setattr("linkwright.viewer.admission.PATIENCE", 0.2)
+    address = urlsplit(served.viewer.url)
+    for said in (b"", b"GET / HT", b"GET / HTTP/1.1\r\nHost: localhost\r\nX-Slow: "):
+        reader, writer = await asyncio.open_connection(address.hostname, address.port)
+        writer.write(said)
+        for _ in range(20):  # a byte now and then changes nothing
+            await asyncio.sleep(0.02)
+            writer.write(b"a")
+        with suppress(ConnectionError):
+            await asyncio.wait_for(reader.read(), 1)
+        assert reader.at_eof() or reader.exception() is not None
+        writer.close()
+
+
+async def test_a_page_that_is_let_in_may_take_its_time(served, monkeypatch):
+    monkeypatch.setattr("linkwright.viewer.admission.PATIENCE", 0.1)
+    async with page(served.viewer) as client:
+        await client.opened()
+        await asyncio.sleep(0.4)
+        await answers_within(client, 1.0)
+
+
+async def test_a_refused_request_ends_its_connection(served):
+    address = urlsplit(served.viewer.url)
+    reader, writer = await asyncio.open_connection(address.hostname, address.port)
+    writer.write(f"GET / HTTP/1.1\r\nHost: {address.netloc}\r\n\r\n".encode())
+    answer = await asyncio.wait_for(reader.read(), 2)
+    assert answer.startswith(b"HTTP/1.1 401")
+    writer.close()
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        b"GET /" + b"a" * 100_000 + b" HTTP/1.1\r\n\r\n",
+        b"GET / HTTP/1.1\r\nHost: localhost\r\nX: " + b"a" * 100_000 + b"\r\n\r\n",
+        b"GET / HTTP/1.1\r\n" + b"".join(b"X-%d: 1\r\n" % i for i in range(20_000)) + b"\r\n",
+        b"\x16\x03\x01\x02\x00\x01\x00" * 100,
+        b"POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 99999999999\r\n\r\n",
+        b"POST / HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: chunked\r\n\r\nFFFFFFFFFFFFFFFF\r\n",
+    ],
+    ids=["path", "header", "headers", "tls", "length", "chunk"],
+)
+async def test_requests_beyond_all_bounds_are_refused(served, said):
+    before = memory()
+    address = urlsplit(served.viewer.url)
+    reader, writer = await asyncio.open_connection(address.hostname, address.port)
+    with suppress(ConnectionError):
+        writer.write(said)
+        answer = await asyncio.wait_for(reader.read(4096), 3)
+        assert answer == b"" or answer.split(b" ")[1][:1] == b"4"
+    writer.close()
+    assert memory() - before < 16 << 20
+    assert (await raw(served.viewer, mesh_url(served.viewer)))[0] == 200
+
+
+async def test_a_flood_of_messages_slows_its_sender_alone(served):
+    async with page(served.viewer) as flooding, page(served.viewer) as client:
+        await client.opened()
+
+        async def flood() -> None:
+            for number in range(100_000):
+                await flooding.socket.send_str(f'{{"type":"received","count":{number}}}' + 500 * " ")
+
+        task = asyncio.ensure_future(flood())
+        await asyncio.sleep(0.2)
+        for _ in range(5):
+            await answers_within(client, 1.0)
+            await asyncio.sleep(0.1)
+        assert not task.done()
+        task.cancel()
+        await asyncio.gather(task, return_exceptions=True)
+
+
+async def test_a_page_that_reads_nothing_costs_little(served):
+    """Its outbox keeps the newest of each kind only."""
+    address = urlsplit(served.viewer.url)
+    reader, writer = await asyncio.open_connection(address.hostname, address.port)
+    key = "dGhlIHNhbXBsZSBub25jZQ=="
+    lines = [f"GET /ws?{address.query} HTTP/1.1", f"Host: {address.netloc}", "Connection: Upgrade"]
+    lines += ["Upgrade: websocket", "Sec-WebSocket-Version: 13", f"Sec-WebSocket-Key: {key}"]
+    writer.write(("\r\n".join(lines) + "\r\n\r\n").encode())
+    await reader.readuntil(b"\r\n\r\n")
+    before = memory()
+    for number in range(3000):
+        served.move_arm(x=number / 1000)
+        served.viewer.manager.publish(
+            DisplayStatus("display-1", "ok", [StatusRow("Topic", "ok", "x" * 2000 + str(number))])
+        )
+        if number % 100 == 0:
+            await asyncio.sleep(0)
+    assert memory() - before < 16 << 20
+    writer.close()
+
+
+# --- exports -------------------------------------------------------------------------------------------------------
+
+
+async def exported(client, kind: str = "glb") -> dict:
+    await client.send("ask_export", format=kind, view={"cls": "rviz_default_plugins/Orbit", "name": "", "values": {}})
+    while True:
+        message = await client.receive()
+        if isinstance(message, dict) and message["type"] in ("export_ready", "export_failed"):
+            return message
+
+
+async def test_an_export_is_fetched_once_and_only_with_the_token(served):
+    served.describe('<robot name="../../evil name"><link name="base"/></robot>')
+    await served.settle()
+    async with page(served.viewer) as client:
+        ready = await exported(client)
+        assert ready["name"] == "evil_name.glb"
+        assert (await raw(served.viewer, ready["url"], token=False))[0] == 401
+        assert (await raw(served.viewer, ready["url"], host="evil.example"))[0] == 403
+        status, body, head = await raw(served.viewer, ready["url"])
+        assert (status, body[:4]) == (200, "glTF")
+        assert "content-disposition: attachment" in head
+        assert (await raw(served.viewer, ready["url"]))[0] == 404
+        for guess in ("/export/x/evil_name.glb", "/export/../server.py", "/export/%2e%2e/server.py", "/export/"):
+            assert (await raw(served.viewer, guess))[0] in (403, 404)
+
+
+async def test_exports_that_nobody_fetches_are_forgotten(served):
+    served.describe('<robot name="arm"><link name="base"/></robot>')
+    await served.settle()
+    async with page(served.viewer) as client:
+        ready = [await exported(client) for _ in range(6)]
+        assert [(await raw(served.viewer, each["url"]))[0] for each in ready] == [404, 404, 200, 200, 200, 200]
+
+
+async def test_an_export_that_fails_says_why(served):
+    async with page(served.viewer) as client:
+        failed = await exported(client)
+        assert failed["type"] == "export_failed"
+        assert "arm.stl" in failed["message"]
+
+
+# --- what pages save -----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "name", ["notes.txt", ".bashrc", "x.rviz/../notes.txt", "a.rviz\0.txt", "link.rviz", "dir.rviz"]
+)
+async def test_pages_write_nothing_but_configurations(served, tmp_path, name):
+    (tmp_path / "notes.txt").write_text("mine")
+    (tmp_path / ".bashrc").write_text("mine")
+    (tmp_path / "link.rviz").symlink_to(tmp_path / "notes.txt")
+    (tmp_path / "dir.rviz").mkdir()
+    async with page(served.viewer) as client:
+        await client.send("save_configuration", path=f"{tmp_path}/{name}", replace=True)
+        assert (await client.until("configuration_refused"))["question"] is None
+    assert (tmp_path / "notes.txt").read_text() == (tmp_path / ".bashrc").read_text() == "mine"
+    assert sorted(each.name for each in tmp_path.iterdir() if each.is_file()) == [
+        ".bashrc", "link.rviz", "notes.txt", "secret.png"]  # fmt: skip

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import gzip
 import math
 import time
 from urllib.parse import urlsplit
@@ -11,7 +12,8 @@ import aiohttp
 import pytest
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, SourceText
-from linkwright.graph import Graph
+from linkwright.graph import CLOCK_QOS, Graph
+from linkwright.messages import Time, get_message
 from linkwright.nodes import NodeOptions
 from linkwright.nodes.joint_state_publisher_gui import JointStatePublisherGui
 from linkwright.nodes.robot_state_publisher import RobotStatePublisher
@@ -21,6 +23,8 @@ from linkwright.viewer.protocol import PROTOCOL_VERSION
 from linkwright.workspace import PackageFinder
 from tests.places import TUTORIAL
 from tests.viewer.scene import ARM, page, world
+
+Clock = get_message("rosgraph_msgs/msg/Clock")
 
 
 async def test_a_page_that_opens_gets_everything_in_order():
@@ -32,7 +36,9 @@ async def test_a_page_that_opens_gets_everything_in_order():
             transforms = await client.transforms()
             kinds = [message["type"] for message in client.messages[:-1]]
             first, table = client.messages[0], client.messages[-2]
-    assert kinds == ["hello", "tree", "robot_scene", "view_state", "joints", "diagnostics", "frame_table"]
+    assert kinds[:3] == ["hello", "tree", "robot_scene"]
+    assert kinds[-2:] == ["diagnostics", "frame_table"]
+    assert {"configuration", "display_classes", "view_state", "joints"} < set(kinds)
     assert (first["protocol"], first["title"]) == (PROTOCOL_VERSION, "arm")
     assert transforms.revision == table["revision"]
     assert transforms.poses[table["names"].index("tip")].tolist() == [1, 0, 0, 0, 0, 0, 1]
@@ -47,7 +53,7 @@ async def test_transforms_are_in_the_fixed_frame_and_follow_it():
         while (await client.transforms()).poses[names.index("tip")][0] != 2.0:
             pass
         await client.set("global/Fixed Frame", "/tip")
-        assert (await client.until("property_changed", id="global/Fixed Frame"))["value"] == "tip"
+        await client.until("property_changed", id="global/Fixed Frame", value="tip")
         assert (await client.transforms()).poses[names.index("base")][0] == -2.0
 
 
@@ -115,14 +121,14 @@ async def test_every_page_begins_with_the_view_of_the_file():
     async with world(config) as made:
         async with page(made.viewer) as client:
             view = (await client.opened())["view_state"]["view"]
-            assert view["distance"] == 1.5
-            await client.send("view_changed", view=view | {"distance": 7.0})
-            await client.send("view_changed", view=view | {"focal_point": [1.0]})
+            assert view["values"]["Distance"] == 1.5
+            await client.send("view_changed", view=view | {"values": view["values"] | {"Distance": 7.0}})
+            await client.send("view_changed", view=view | {"values": {"Focal Point": 1.0}})
             await client.set("display-1/Alpha", 1.0)
             await client.until("property_changed")
         async with page(made.viewer) as client:
-            assert (await client.opened())["view_state"]["view"]["distance"] == 1.5
-    assert RvizConfig.parse(config.text()).view.distance == 7.0
+            assert (await client.opened())["view_state"]["view"]["values"]["Distance"] == 1.5
+    assert RvizConfig.parse(config.text()).views.current.values["Distance"] == 7.0
     assert "a view that is none" in made.logged()
 
 
@@ -255,7 +261,7 @@ async def test_a_taken_port_leaves_no_node_behind():
             finder=PackageFinder(),
             config=RvizConfig.default(),
             port=port,
-            name="second",
+            options=NodeOptions(name="second"),
         )
         with pytest.raises(LinkwrightError) as caught:
             await second.start()
@@ -287,6 +293,15 @@ async def test_the_page_and_its_hashed_files_are_served(tmp_path, monkeypatch):
             assert answer.status == 200
             assert answer.content_type == "text/javascript"
             assert "immutable" in answer.headers["Cache-Control"]
+        (tmp_path / "assets" / "index-abc.js.gz").write_bytes(gzip.compress(b"export {}"))
+        async with session.get(f"{base}assets/index-abc.js") as answer:
+            assert answer.headers["Content-Encoding"] == "gzip"
+            assert answer.headers["Vary"] == "Accept-Encoding"
+            assert answer.content_type == "text/javascript"
+            assert await answer.text() == "export {}"
+        async with session.get(f"{base}assets/index-abc.js", headers={"Accept-Encoding": "identity"}) as answer:
+            assert "Content-Encoding" not in answer.headers
+            assert await answer.text() == "export {}"
         async with session.get(f"{base}assets/gone.js") as answer:
             assert answer.status == 404
         async with session.ws_connect(f"{base}ws") as socket:
@@ -307,9 +322,33 @@ async def test_the_models_of_the_tutorial_are_shown(model, links):
         async with page(made.viewer) as client:
             opening = await client.opened()
     assert len(opening["robot_scene"]["links"]) == links
-    view = opening["view_state"]["view"]
-    assert (view["distance"], view["pitch"], view["yaw"]) == (1.7, 0.33, 5.5)
+    view = opening["view_state"]["view"]["values"]
+    assert (view["Distance"], view["Pitch"], view["Yaw"]) == (1.7, 0.33, 5.5)
     alpha = next(row for row in opening["tree"]["displays"][1]["properties"] if row["name"] == "Alpha")
     assert alpha["value"] == 0.8
     if model == "mbot_with_kinect":
         assert str(share / "meshes" / "kinect.dae") in made.status("RobotModel")["kinect_link"][1]
+
+
+async def test_the_node_is_given_what_a_launch_file_gives_it():
+    options = NodeOptions(
+        name="eyes",
+        namespace="/robot",
+        parameters={"use_sim_time": True, "fixed_frame": "tip"},
+        arguments=["--ros-args", "-r", "robot_description:=other"],
+    )
+    async with world(options=options) as made:
+        (name,) = [each for each in made.graph.node_names() if each.endswith("/eyes")]
+        assert name == "/robot/eyes"
+        assert made.viewer.manager.fixed_frame == "tip"
+        assert made.viewer.manager.stage.time.now_ns() == 0  # no /clock yet
+        clock = made.graph.create_node("clock").create_publisher(Clock, "/clock", CLOCK_QOS)
+        clock.publish(Clock(clock=Time(sec=12)))
+        await made.settle()
+        assert made.viewer.manager.stage.time.now_ns() == 12_000_000_000
+
+
+async def test_a_ros_argument_that_is_none_is_refused():
+    with pytest.raises(LinkwrightError, match="--no-such"):
+        async with world(options=NodeOptions(arguments=["--ros-args", "--no-such"])):
+            pass

@@ -19,7 +19,12 @@ MESSAGES = st.one_of(
     st.builds(protocol.MeshStatus, display=st.text(), link=st.text(), url=st.text(), error=st.none() | st.text()),
     st.builds(
         protocol.ViewChanged,
-        view=st.builds(protocol.OrbitView, distance=FLOATS, focal_point=st.lists(FLOATS, max_size=3)),
+        view=st.builds(
+            protocol.View,
+            cls=st.text(),
+            name=st.text(),
+            values=st.dictionaries(st.text(), st.booleans() | FLOATS | st.text()),
+        ),
     ),
 )
 JSON = st.recursive(

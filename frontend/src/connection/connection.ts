@@ -1,5 +1,7 @@
 import { PROTOCOL_VERSION, type PageMessage, type ServerMessage } from "../protocol.gen";
 import { Signal } from "../state/signal";
+import { unpackData, type DisplayData } from "./data";
+import { unpackSamples, type SeriesSamples } from "./samples";
 import { unpackTransforms, type Transforms } from "./transforms";
 
 /** `ended`: the program said goodbye; one with the same token may still come back. `outdated`: a reload did not help. */
@@ -8,18 +10,33 @@ export type ConnectionState = "connecting" | "connected" | "reconnecting" | "end
 const FIRST_RETRY_MS = 250;
 const LONGEST_RETRY_MS = 4000;
 const GOING_AWAY = 1001;
+/** Messages of this length, in bytes or characters, are acknowledged: fewer than the server counts on. */
+const LARGE = 1024;
 const RELOADED_KEY = "linkwright.reloaded-for-protocol";
 
 /** The WebSocket to the server, opened again with growing pauses whenever it is lost. */
 export class Connection {
   readonly message = new Signal<ServerMessage>();
   readonly transforms = new Signal<Transforms>();
+  readonly data = new Signal<DisplayData>();
+  readonly samples = new Signal<SeriesSamples[]>();
   readonly stateChanged = new Signal<ConnectionState>();
   private socket: WebSocket | null = null;
   private retryMs = FIRST_RETRY_MS;
+  private receivedCount = 0;
   private current: ConnectionState = "connecting";
 
   constructor(private readonly url: string) {}
+
+  /** Calls `listener` with every message of a type until the returned function is called. */
+  on<T extends ServerMessage["type"]>(
+    type: T,
+    listener: (message: Extract<ServerMessage, { type: T }>) => void,
+  ): () => void {
+    return this.message.on((message) => {
+      if (message.type === type) listener(message as Extract<ServerMessage, { type: T }>);
+    });
+  }
 
   get state(): ConnectionState {
     return this.current;
@@ -31,6 +48,7 @@ export class Connection {
     socket.onmessage = (event: MessageEvent<string | ArrayBuffer>) => this.receive(event.data);
     socket.onclose = (event) => this.lost(event.code);
     this.socket = socket;
+    this.receivedCount = 0;
   }
 
   /** Sends now or not at all: what the user did while there was no server is not replayed later. */
@@ -39,9 +57,12 @@ export class Connection {
   }
 
   private receive(data: string | ArrayBuffer): void {
+    this.receivedCount += 1;
+    const length = typeof data === "string" ? data.length : data.byteLength;
+    // Before it is worked on: the server measures the line with it.
+    if (this.receivedCount === 1 || length >= LARGE) this.send({ type: "received", count: this.receivedCount });
     if (data instanceof ArrayBuffer) {
-      const transforms = unpackTransforms(data);
-      if (transforms) this.transforms.emit(transforms);
+      this.receiveBytes(data);
       return;
     }
     const message = JSON.parse(data) as ServerMessage;
@@ -55,6 +76,15 @@ export class Connection {
       this.become("connected");
     }
     this.message.emit(message);
+  }
+
+  protected receiveBytes(bytes: ArrayBuffer): void {
+    const transforms = unpackTransforms(bytes);
+    if (transforms) this.transforms.emit(transforms);
+    const content = unpackData(bytes);
+    if (content) this.data.emit(content);
+    const samples = unpackSamples(bytes);
+    if (samples) this.samples.emit(samples);
   }
 
   private lost(code: number): void {
@@ -76,19 +106,24 @@ export class Connection {
     location.reload();
   }
 
-  private become(state: ConnectionState): void {
+  protected become(state: ConnectionState): void {
     if (state === this.current) return;
     this.current = state;
     this.stateChanged.emit(state);
   }
 }
 
-/** Where the server's WebSocket is for a page at `page`; a token in the page's address goes along. */
-export function socketUrl(page: string): string {
+/**
+ * Where the server's WebSocket is for a page at `page`; a token in the page's address goes along.
+ *
+ * `own` is by what the page names displays of its own.
+ */
+export function socketUrl(page: string, own: string | null = null): string {
   const from = new URL(page);
   const url = new URL("ws", page);
   url.protocol = from.protocol === "https:" ? "wss:" : "ws:";
   const token = from.searchParams.get("token");
   if (token) url.searchParams.set("token", token);
+  if (own !== null) url.searchParams.set("own", own);
   return url.href;
 }

@@ -1,6 +1,6 @@
-import { h } from "../dom";
+import { button, h } from "../dom";
 import { icon, LEVEL_ICONS } from "../icons";
-import type { DiagnosticItem } from "../protocol.gen";
+import type { DiagnosticItem, DiagnosticNote } from "../protocol.gen";
 import type { Session } from "../state/session";
 import { strings } from "../strings";
 import type { Panel } from "./panel";
@@ -26,20 +26,21 @@ export class DiagnosticsPanel implements Panel {
       );
       return;
     }
-    this.element.replaceChildren(...diagnostics.map(card));
+    const show = (file: string, line: number): void => this.session.description.placeAsked.emit({ file, line });
+    this.element.replaceChildren(...diagnostics.map((item) => card(item, show)));
   }
 }
 
-function card(item: DiagnosticItem): HTMLElement {
-  const place = item.file === null ? "" : placeText(shortPath(item.file), item.line, item.column);
+type Show = (file: string, line: number) => void;
+
+function card(item: DiagnosticItem, show: Show): HTMLElement {
   const notes = item.notes.map((note) => {
-    const at = note.file === null ? "" : placeText(shortPath(note.file), note.line, note.column);
     return h(
       "li",
       {},
       h("span", { class: "tag" }, strings.diagnostics.note),
       note.message,
-      at ? h("span", { class: "place", title: placeText(note.file, note.line, note.column) }, at) : null,
+      placeButton(note, show),
     );
   });
   const hints = item.hints.map((hint) =>
@@ -55,10 +56,17 @@ function card(item: DiagnosticItem): HTMLElement {
       h("strong", {}, item.message),
       h("code", { class: "code" }, item.code),
     ),
-    place ? h("div", { class: "place", title: placeText(item.file, item.line, item.column) }, icon("file"), place) : null,
+    placeButton(item, show),
     excerpt(item),
     notes.length + hints.length > 0 ? h("ul", {}, ...notes, ...hints) : null,
   );
+}
+
+/** A place that is shown in the Source panel when it is clicked. */
+function placeButton({ file, line, column }: Pick<DiagnosticNote, "file" | "line" | "column">, show: Show): HTMLElement | null {
+  if (file === null) return null;
+  const text = placeText(shortPath(file), line, column);
+  return button(placeText(file, line, column), () => show(file, line ?? 1), "place", icon("file"), text);
 }
 
 /** The source line with the part in question marked. */

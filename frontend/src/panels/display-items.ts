@@ -1,17 +1,12 @@
-import type { IconName } from "../icons";
+import { displayIcon } from "../icons";
 import type { PropertyValue, StatusLevel, StatusRow } from "../protocol.gen";
 import type { DisplayState } from "../state/displays";
-import type { PropertyNode } from "../state/properties";
 import type { Session } from "../state/session";
 import { DRAWINGS } from "../scene/displays/registry";
 import { strings } from "../strings";
+import { propertyItem } from "../tree/property-item";
 import type { TreeItem } from "../tree/tree-item";
-
-const ICONS: Readonly<Record<string, IconName>> = {
-  Grid: "grid",
-  RobotModel: "robot",
-  TF: "axes",
-};
+import { displayRows } from "./robot-rows";
 
 /** The rows of the Displays panel, read from the session each time the tree is drawn. */
 export function displayItems(session: Session): TreeItem[] {
@@ -30,52 +25,75 @@ export function displayItems(session: Session): TreeItem[] {
       children: () => displays.globalOptions.nodes.map((node) => propertyItem(node, set)),
     },
     statusItem("#status", strings.tree.globalStatus, displays.globalLevel, displays.globalStatus, true),
-    ...displays.displays.map((display) => displayItem(display, set)),
+    ...displays.within(null).map((display) => displayItem(session, display, set)),
   ];
 }
 
-/** The keys of a link's row and of the rows above it, from the top; null when it has no row. */
-export function linkPath(display: DisplayState, link: string): string[] | null {
-  const top = display.rows.find("Links");
-  const below = top && pathTo(top, link);
-  return below ? [display.id, ...below] : null;
-}
-
-/** The display and link whose row has this key. */
-export function linkOfKey(session: Session, key: string): { display: DisplayState; link: string } | null {
-  for (const display of session.displays.displays) {
-    const robot = session.robots.get(display.id);
-    if (!robot) continue;
-    for (const node of display.rows.find("Links")?.walk() ?? []) {
-      if (node.id === key && isLink(node)) return { display, link: node.name };
-    }
-  }
-  return null;
-}
-
-function displayItem(display: DisplayState, set: (id: string, value: PropertyValue) => void): TreeItem {
-  const drawn = display.supported && DRAWINGS.has(display.cls);
-  const short = display.cls.split("/").pop() ?? display.cls;
+function displayItem(
+  session: Session,
+  display: DisplayState,
+  set: (id: string, value: PropertyValue) => void,
+): TreeItem {
+  const drawn = isDrawn(display);
   const status: TreeItem[] = [];
   if (display.enabled && display.status.length > 0) {
     const name = `${strings.tree.status}: ${strings.tree.levels[display.level]}`;
     status.push(statusItem(`${display.id}#status`, name, display.level, display.status, false));
   }
+  const within = (): TreeItem[] =>
+    session.displays.within(display).map((each) => displayItem(session, each, set));
+  const offered = (item: TreeItem): TreeItem =>
+    item.kind === "topic" ? { ...item, ask: (show) => offerTopics(session, display, show) } : item;
   return {
     key: display.id,
     name: display.name,
     kind: "bool",
-    value: display.enabled,
-    description: drawn ? `${display.cls}. ${strings.tree.enabledHelp}` : `${display.cls}. ${strings.tree.notDrawnHelp}`,
-    icon: drawn ? (ICONS[short] ?? "unknown") : "unknown",
+    value: display.checked,
+    description: describe(display, drawn),
+    icon: drawn ? displayIcon(display.cls) : "unknown",
     strong: true,
     muted: !drawn || !display.enabled,
-    ...(drawn && display.enabled ? { level: display.level } : {}),
+    ...(drawn && display.enabled ? { level: worstWithin(session, display) } : {}),
     ...(drawn ? {} : { badge: strings.tree.notDrawn }),
-    expanded: short === "RobotModel" && display.enabled,
-    children: () => [...status, ...display.rows.nodes.map((node) => propertyItem(node, set))],
+    expanded: display.isGroup || (display.cls.endsWith("/RobotModel") && display.enabled),
+    children: () => [...status, ...displayRows(display, session, set).map(offered), ...within()],
     set: (value) => set(display.enabledId, value),
   };
+}
+
+/** What descriptions of robots come as. */
+const TEXT = "std_msgs/msg/String";
+
+/** The topics that a display can show. */
+function offerTopics(session: Session, display: DisplayState, show: (names: readonly string[]) => void): void {
+  const { configuration } = session;
+  const known = configuration.classes.find((each) => each.cls === display.cls)?.messages ?? [];
+  const messages = known.length > 0 ? known : [TEXT];
+  const forget = configuration.topicsListed.on((topics) => {
+    forget();
+    show(topics.filter(({ message }) => messages.includes(message)).map(({ topic }) => topic));
+  });
+  configuration.askTopics();
+}
+
+function isDrawn(display: DisplayState): boolean {
+  return display.isGroup || (display.supported && DRAWINGS.has(display.cls));
+}
+
+/** What a display is, in a sentence or two. */
+export function describe(display: DisplayState, drawn = isDrawn(display)): string {
+  const name = display.cls.split("/").pop() ?? "";
+  const about = (strings.displays.about as Readonly<Record<string, string | undefined>>)[name];
+  const rest = drawn ? (about ?? strings.tree.enabledHelp) : strings.tree.notDrawnHelp;
+  return `${display.cls}. ${rest}`;
+}
+
+/** A group shows the worst of what is in it. */
+function worstWithin(session: Session, display: DisplayState): StatusLevel {
+  const levels = [display, ...session.displays.displays.filter((each) => each.isWithin(display))]
+    .filter((each) => each.enabled)
+    .map((each) => each.level);
+  return levels.includes("error") ? "error" : levels.includes("warn") ? "warn" : "ok";
 }
 
 function statusItem(
@@ -112,35 +130,4 @@ function statusItem(
 function worstFirst(rows: readonly StatusRow[]): StatusRow[] {
   const order: Readonly<Record<StatusLevel, number>> = { error: 0, warn: 1, ok: 2 };
   return [...rows].sort((a, b) => order[a.level] - order[b.level]);
-}
-
-function propertyItem(node: PropertyNode, set: (id: string, value: PropertyValue) => void): TreeItem {
-  return {
-    key: node.id,
-    name: node.name,
-    kind: node.kind,
-    value: node.value,
-    description: node.description,
-    options: node.options,
-    minimum: node.minimum,
-    maximum: node.maximum,
-    readOnly: node.readOnly,
-    expanded: node.expanded,
-    ...(node.children.length > 0 ? { children: () => node.children.map((child) => propertyItem(child, set)) } : {}),
-    ...(node.readOnly ? {} : { set: (value: PropertyValue) => set(node.id, value) }),
-  };
-}
-
-/** Only links have a trail, however the tree below Links is arranged. */
-function isLink(node: PropertyNode): boolean {
-  return node.children.some((child) => child.name === "Show Trail");
-}
-
-function pathTo(node: PropertyNode, link: string): string[] | null {
-  if (node.name === link && isLink(node)) return [node.id];
-  for (const child of node.children) {
-    const below = pathTo(child, link);
-    if (below) return [node.id, ...below];
-  }
-  return null;
 }

@@ -2,6 +2,7 @@
 import { createDockview, type DockviewApi, type IContentRenderer } from "dockview-core/dist/esm";
 import { strings } from "../strings";
 import { addPanels } from "./default-layout";
+import { DisplayPanels } from "./display-panels";
 import type { Panel, PanelId } from "./panel";
 import { PanelTab } from "./panel-tab";
 
@@ -9,14 +10,16 @@ const LAYOUT_KEY = "linkwright.layout.1";
 
 /** The dockable panels; their arrangement is remembered by the browser. */
 export class Dock {
+  /** The panels of displays. */
+  readonly displayPanels = new DisplayPanels(() => this.api);
   private readonly api: DockviewApi;
   private readonly panels: ReadonlyMap<string, Panel>;
 
   constructor(parent: HTMLElement, panels: readonly Panel[]) {
     this.panels = new Map(panels.map((panel) => [panel.id, panel]));
     this.api = createDockview(parent, {
-      createComponent: ({ name }) => this.content(name),
-      createTabComponent: ({ id }) => new PanelTab(this.panels.get(id)?.icon ?? "panels", id !== "scene"),
+      createComponent: ({ name }) => this.displayPanels.content(name) ?? this.content(name),
+      createTabComponent: ({ id }) => this.displayPanels.tab(id) ?? new PanelTab(this.panels.get(id)?.icon ?? "panels", id !== "scene"),
       theme: { name: "linkwright", className: "dockview-theme-linkwright" },
       disableFloatingGroups: true,
       noPanelsOverlay: "emptyGroup",
@@ -25,6 +28,11 @@ export class Dock {
     this.api.layout(parent.clientWidth, parent.clientHeight);
     if (!this.restore()) this.reset();
     this.api.onDidLayoutChange(() => this.remember());
+  }
+
+  /** The panels that can be opened and closed. */
+  get ids(): PanelId[] {
+    return [...this.panels.values()].map((panel) => panel.id).filter((id) => id !== "scene");
   }
 
   isOpen(id: PanelId): boolean {
@@ -52,13 +60,14 @@ export class Dock {
   reset(): void {
     const joints = this.api.getPanel("joints") !== undefined;
     this.api.clear();
-    addPanels(this.api, ["scene", "displays", "views", "diagnostics", ...(joints ? (["joints"] as const) : [])]);
+    addPanels(this.api, ["scene", "time", "displays", "links", "views", "tool-properties", "selection", "diagnostics", ...(joints ? (["joints"] as const) : [])]);
+    this.displayPanels.restore();
   }
 
   private content(name: string): IContentRenderer {
     const panel = this.panels.get(name);
     if (!panel) throw new Error(`no panel '${name}'`);
-    return { element: panel.element, init: () => undefined };
+    return { element: panel.element, init: () => panel.opened?.(), dispose: () => panel.closed?.() };
   }
 
   private restore(): boolean {
@@ -66,7 +75,7 @@ export class Dock {
     if (saved === null) return false;
     try {
       this.api.fromJSON(JSON.parse(saved) as Parameters<DockviewApi["fromJSON"]>[0]);
-      for (const panel of this.api.panels) panel.api.setTitle(title(panel.id));
+      for (const panel of this.api.panels) if (this.panels.has(panel.id)) panel.api.setTitle(title(panel.id));
       return this.isOpen("scene");
     } catch {
       // A layout of another version of the page: start over.

@@ -1,10 +1,10 @@
 import { h } from "../dom";
 import { icon } from "../icons";
 import type { JointControl } from "../protocol.gen";
+import type { AngleUnits } from "../state/angle-unit";
+import { mimicText } from "../state/joint-table";
 import { strings } from "../strings";
 import { clamp, parseNumber } from "../tree/numbers";
-
-export type AngleUnit = "rad" | "deg";
 
 /** After the user's last touch, how long the server's positions wait before they move the slider, ms. */
 const HANDS_OFF_MS = 250;
@@ -16,19 +16,20 @@ export class JointRow {
   private readonly field = h("input", { class: "field numeric" });
   private readonly unit = h("span", { class: "unit" });
   private readonly limits = [h("span"), h("span")] as const;
+  private readonly relation = h("span");
   private position = 0;
   private touchedAt = -Infinity;
   private dragging = false;
 
   constructor(
     readonly joint: JointControl,
-    private angles: AngleUnit,
+    private readonly angles: AngleUnits,
     private readonly moved: (position: number) => void,
   ) {
     const follower = joint.mimic !== null;
     const name = h("span", { class: "joint-name", title: joint.name }, joint.name);
     const mimic = follower
-      ? h("span", { class: "mimic", title: strings.joints.follows(joint.mimic ?? "") }, icon("link"), joint.mimic)
+      ? h("div", { class: "mimic", title: strings.joints.follows(joint.mimic ?? "") }, icon("link"), this.relation)
       : null;
     this.slider.type = "range";
     this.slider.min = String(joint.lower);
@@ -43,19 +44,20 @@ export class JointRow {
     this.element = h(
       "div",
       { class: follower ? "joint follower" : "joint", data: { joint: joint.name } },
-      h("div", { class: "joint-head" }, name, mimic, h("span", { class: "spacer" }), this.field, this.unit),
+      h("div", { class: "joint-head" }, name, h("span", { class: "spacer" }), this.field, this.unit),
       h("div", { class: "joint-slide" }, this.limits[0], this.slider, this.limits[1]),
+      mimic,
     );
-    this.setAngles(angles);
+    this.showUnit();
   }
 
-  setAngles(angles: AngleUnit): void {
-    this.angles = angles;
-    const { lower, upper, kind } = this.joint;
-    const words = strings.joints;
-    this.unit.textContent = kind === "prismatic" ? words.metres : angles === "deg" ? words.degrees : words.radians;
-    this.limits[0].textContent = this.format(lower);
-    this.limits[1].textContent = this.format(upper);
+  /** Angles are shown in another unit. */
+  showUnit(): void {
+    const { lower, upper } = this.joint;
+    this.unit.textContent = this.unitName;
+    this.limits[0].textContent = `${this.format(lower)} ${this.unitName}`;
+    this.limits[1].textContent = `${this.format(upper)} ${this.unitName}`;
+    this.relation.textContent = this.relationText;
     this.show();
   }
 
@@ -111,13 +113,25 @@ export class JointRow {
   }
 
   private get scale(): number {
-    return this.joint.kind !== "prismatic" && this.angles === "deg" ? 180 / Math.PI : 1;
+    return this.angles.scale(this.joint.kind);
+  }
+
+  private get unitName(): string {
+    const words = strings.joints;
+    if (this.joint.kind === "prismatic") return words.metres;
+    return this.angles.current === "deg" ? words.degrees : words.radians;
+  }
+
+  /** How a joint follows another: `2 × elbow + 0.1 rad`. */
+  private get relationText(): string {
+    const { mimic, multiplier, offset } = this.joint;
+    return mimic === null ? "" : mimicText(mimic, multiplier, offset * this.scale, this.unitName);
   }
 
   /** What an arrow key in the number field moves: 1 degree, 0.01 rad, 1 mm. */
   private get step(): number {
     if (this.joint.kind === "prismatic") return 0.001;
-    return this.angles === "deg" ? Math.PI / 180 : 0.01;
+    return this.angles.current === "deg" ? Math.PI / 180 : 0.01;
   }
 
   private format(position: number): string {

@@ -1,48 +1,104 @@
 import { h } from "../dom";
-import { icon } from "../icons";
+import { icon, type IconName } from "../icons";
 
 export interface MenuEntry {
   label: string;
   checked?: boolean;
+  icon?: IconName;
+  /** The keys that do the same, as shown to the user. */
+  keys?: string;
+  disabled?: boolean;
+  /** What the label shortens. */
+  hint?: string;
+  /** A line above it. */
+  separate?: boolean;
   run: () => void;
 }
 
 /** Opens a menu below `anchor`; arrows move, Enter runs, Escape or a click elsewhere closes. */
 export function openMenu(anchor: HTMLElement, entries: readonly MenuEntry[]): void {
-  const items = entries.map((entry) => {
-    const item = h("li", { role: entry.checked === undefined ? "menuitem" : "menuitemcheckbox", tabIndex: -1 });
-    if (entry.checked !== undefined) item.setAttribute("aria-checked", String(entry.checked));
-    item.append(h("span", { class: "menu-check" }, entry.checked === true ? icon("check") : null), entry.label);
-    item.addEventListener("click", () => {
-      close();
-      entry.run();
-    });
-    return item;
-  });
-  const menu = h("ul", { class: "popup menu", role: "menu" }, ...items);
-  const close = (): void => {
+  const box = anchor.getBoundingClientRect();
+  showMenu(entries, { x: box.left, y: box.bottom + 4, above: box.top - 4 }, anchor);
+}
+
+/** Opens a menu where the user asked for one; the keyboard goes back to `origin` when it closes. */
+export function openMenuAt(x: number, y: number, origin: HTMLElement | null, entries: readonly MenuEntry[]): void {
+  showMenu(entries, { x, y, above: y }, origin);
+}
+
+interface Place {
+  x: number;
+  y: number;
+  /** Where the menu ends when there is no room below. */
+  above: number;
+}
+
+function showMenu(entries: readonly MenuEntry[], place: Place, origin: HTMLElement | null): void {
+  const close = (back: boolean): void => {
     menu.remove();
     document.removeEventListener("pointerdown", outside, true);
+    origin?.setAttribute("aria-expanded", "false");
+    if (back) origin?.focus();
   };
   const outside = (event: Event): void => {
-    if (!menu.contains(event.target as Node)) close();
+    if (!menu.contains(event.target as Node)) close(false);
   };
+  const items = entries.map((entry) => menuItem(entry, () => close(true)));
+  const menu = h("ul", { class: "popup menu", role: "menu" }, ...items);
+  const enabled = items.filter((item) => item.getAttribute("aria-disabled") !== "true");
   menu.addEventListener("keydown", (event) => {
-    const index = items.indexOf(document.activeElement as HTMLLIElement);
-    if (event.key === "ArrowDown") items[(index + 1) % items.length]?.focus();
-    else if (event.key === "ArrowUp") items.at(index - 1)?.focus();
-    else if (event.key === "Enter" || event.key === " ") items[index]?.click();
-    else if (event.key === "Escape") {
-      close();
-      anchor.focus();
-    } else return;
+    if (event.key === "Escape" || event.key === "Tab") close(true);
+    else if (!moveFocus(enabled, event.key)) return;
     event.preventDefault();
     event.stopPropagation();
   });
+  menu.addEventListener("focusout", (event) => {
+    if (event.relatedTarget instanceof Node && !menu.contains(event.relatedTarget)) close(false);
+  });
+  menu.addEventListener("contextmenu", (event) => event.preventDefault());
   document.addEventListener("pointerdown", outside, true);
-  document.body.append(menu);
-  const box = anchor.getBoundingClientRect();
-  menu.style.top = `${box.bottom + 4}px`;
-  menu.style.left = `${Math.min(box.left, window.innerWidth - menu.offsetWidth - 8)}px`;
-  items[0]?.focus();
+  // In a dialog only what is in it can be reached.
+  (origin?.closest("dialog") ?? document.body).append(menu);
+  origin?.setAttribute("aria-expanded", "true");
+  const below = window.innerHeight - place.y;
+  if (below < menu.offsetHeight + 8 && place.above > below) menu.style.bottom = `${window.innerHeight - place.above}px`;
+  else menu.style.top = `${place.y}px`;
+  menu.style.left = `${Math.max(4, Math.min(place.x, window.innerWidth - menu.offsetWidth - 8))}px`;
+  enabled[0]?.focus();
+}
+
+function menuItem(entry: MenuEntry, close: () => void): HTMLLIElement {
+  const item = h("li", {
+    role: entry.checked === undefined ? "menuitem" : "menuitemcheckbox",
+    tabIndex: -1,
+    class: entry.separate === true ? "separate" : "",
+  });
+  if (entry.checked !== undefined) item.setAttribute("aria-checked", String(entry.checked));
+  if (entry.disabled === true) item.setAttribute("aria-disabled", "true");
+  if (entry.hint !== undefined) item.title = entry.hint;
+  const sign = entry.checked === true ? icon("check") : entry.icon ? icon(entry.icon) : null;
+  item.append(h("span", { class: "menu-check" }, sign), h("span", { class: "menu-label" }, entry.label));
+  if (entry.keys !== undefined) item.append(h("kbd", {}, entry.keys));
+  item.addEventListener("click", () => {
+    if (entry.disabled === true) return;
+    close();
+    entry.run();
+  });
+  return item;
+}
+
+/** The keys of a menu; whether this was one. A letter goes to the next entry that begins with it. */
+function moveFocus(items: readonly HTMLLIElement[], key: string): boolean {
+  const index = items.indexOf(document.activeElement as HTMLLIElement);
+  if (key === "ArrowDown") items[(index + 1) % items.length]?.focus();
+  else if (key === "ArrowUp") items.at(index - 1)?.focus();
+  else if (key === "Home") items[0]?.focus();
+  else if (key === "End") items.at(-1)?.focus();
+  else if (key === "Enter" || key === " ") items[index]?.click();
+  else if (key.length === 1) {
+    const letter = key.toLowerCase();
+    const ordered = [...items.slice(index + 1), ...items.slice(0, index + 1)];
+    ordered.find((item) => item.querySelector(".menu-label")?.textContent.toLowerCase().startsWith(letter))?.focus();
+  } else return false;
+  return true;
 }

@@ -1,5 +1,5 @@
 import { h } from "../dom";
-import { cameraAxes } from "../state/orbit";
+import type { Session } from "../state/session";
 import type { ViewState } from "../state/view";
 
 const SIZE = 64;
@@ -20,16 +20,22 @@ export class OrientationSign {
     return { arm, line, label };
   });
 
-  constructor(private readonly view: ViewState) {
+  private readonly view: ViewState;
+
+  constructor({ view, frames }: Session) {
+    this.view = view;
     this.svg.setAttribute("viewBox", `${-SIZE / 2} ${-SIZE / 2} ${SIZE} ${SIZE}`);
     this.svg.append(...this.arms.map(({ arm }) => arm));
     this.element.append(this.svg);
     view.changed.on(() => this.update());
+    frames.posesChanged.on(() => {
+      if (view.controller.followsYaw) this.update();
+    });
     this.update();
   }
 
   private update(): void {
-    const { right, up, back } = cameraAxes(this.view.orbit);
+    const { right, up, back } = this.view.camera;
     const drawn = this.arms.map(({ arm, line, label }, i) => {
       const [x, y, depth] = [right[i] ?? 0, -(up[i] ?? 0), back[i] ?? 0];
       line.setAttribute("x2", String(x * ARM));

@@ -11,6 +11,7 @@ export class PanelTab implements ITabRenderer {
   constructor(
     private readonly iconName: IconName,
     private readonly closable: boolean,
+    private readonly onClose: (() => void) | null = null,
   ) {}
 
   init({ title, api }: TabPartInitParameters): void {
@@ -18,7 +19,7 @@ export class PanelTab implements ITabRenderer {
     api.onDidTitleChange((event) => (this.title.textContent = event.title));
     this.element.append(icon(this.iconName), this.title);
     if (!this.closable) return;
-    const close = button(strings.close, () => api.close(), "tab-close", icon("close"));
+    const close = button(strings.close, () => (this.onClose ? this.onClose() : api.close()), "tab-close", icon("close"));
     // Pressing the button must not start to drag the tab.
     close.addEventListener("pointerdown", (event) => event.stopPropagation());
     this.element.append(close);

@@ -1,10 +1,14 @@
 import type { IconName } from "../icons";
 
-export type PanelId = "displays" | "scene" | "views" | "joints" | "diagnostics";
+export type PanelId = "plot" | "topics" | "graph" | "parameters" | "log" | "teleop" | "displays" | "scene" | "joint-table" | "source" | "diagram" | "links" | "views" | "tool-properties" | "selection" | "time" | "transformation" | "joints" | "diagnostics";
 
 /** What stands in a dock: made once, shown, hidden and moved by the user. */
 export interface Panel {
   readonly id: PanelId;
   readonly icon: IconName;
   readonly element: HTMLElement;
+  /** The user opened it; it may lie behind another. */
+  opened?(): void;
+  /** The user closed it. */
+  closed?(): void;
 }

@@ -3,9 +3,13 @@ import type { Session } from "../state/session";
 import { strings } from "../strings";
 import { ConnectionNotice } from "./connection-notice";
 import { DiagnosticsBanner } from "./diagnostics-banner";
+import { InspectMenu } from "./inspect-menu";
 import { OrientationSign } from "./orientation-sign";
+import { LineNotice } from "./line-notice";
 import type { Panel } from "./panel";
+import { showSceneMenus } from "./scene-menu";
 import { SelectionCard } from "./selection-card";
+import { Toolbar } from "./toolbar";
 
 /** The 3-D view and what lies over it. */
 export class ScenePanel implements Panel {
@@ -14,23 +18,31 @@ export class ScenePanel implements Panel {
   readonly element: HTMLElement;
   /** Where the canvas goes. */
   readonly container = h("div", { class: "canvas-box", role: "region", aria: { label: strings.scene.label } });
+  /** The scene and what lies over it: what full screen shows. */
+  readonly box: HTMLElement;
   private readonly waiting = h("div", { class: "waiting" }, h("span", { class: "pulse" }), strings.scene.waiting);
 
-  constructor(session: Session, showDiagnostics: () => void) {
+  constructor(session: Session, showDiagnostics: () => void, showKeys: () => void) {
+    const toolbar = new Toolbar(session.tools, showKeys);
     const banner = new DiagnosticsBanner(session, showDiagnostics);
     const notice = new ConnectionNotice(session.connection);
     const card = new SelectionCard(session);
-    const sign = new OrientationSign(session.view);
-    this.element = h(
+    const inspect = new InspectMenu(session);
+    const sign = new OrientationSign(session);
+    this.box = h(
       "div",
-      { class: "scene-panel" },
+      { class: "scene-box" },
       this.container,
-      h("div", { class: "overlay" }, h("div", { class: "notices" }, notice.element, banner.element), this.waiting, card.element, sign.element),
+      h("div", { class: "overlay" }, h("div", { class: "notices" }, notice.element, banner.element), this.waiting, card.element, inspect.element, sign.element, new LineNotice(session).element),
     );
+    showSceneMenus(this.box, session.sceneMenu);
+    this.element = h("div", { class: "scene-panel" }, toolbar.element, this.box);
     const update = (): void => {
-      this.waiting.hidden = session.robot !== null;
+      const awaited = session.displays.displays.some(({ cls, enabled }) => enabled && cls.endsWith("/RobotModel"));
+      this.waiting.hidden = session.robot !== null || !awaited;
     };
     session.robotChanged.on(update);
     session.displays.treeChanged.on(update);
+    session.displays.enabledChanged.on(update);
   }
 }

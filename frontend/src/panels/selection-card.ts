@@ -25,7 +25,7 @@ export class SelectionCard {
     this.element.replaceChildren(
       h("header", {}, icon("cube"), h("strong", { title: words.title }, link.name), h("span", { class: "spacer" }), clear),
       ...details(link),
-      place(link),
+      place(link, (file, line) => this.session.description.placeAsked.emit({ file, line })),
       ...trail(link),
     );
     if (link.place) this.session.connection.send({ type: "ask_story", display: selected.display, link: link.name });
@@ -49,7 +49,7 @@ function details(link: LinkScene): HTMLElement[] {
   return rows.map(([name, value]) => h("div", { class: "detail" }, h("span", {}, name), h("span", {}, value)));
 }
 
-function place(link: LinkScene): HTMLElement {
+function place(link: LinkScene, show: (file: string, line: number) => void): HTMLElement {
   const words = strings.selection;
   const at = link.place;
   if (!at) return h("p", { class: "hint" }, words.noPlace);
@@ -65,7 +65,7 @@ function place(link: LinkScene): HTMLElement {
     "tool bare",
     icon("copy"),
   );
-  const text = h("span", { class: "place", title: full }, icon("file"), placeText(shortPath(at.file), at.line, at.column));
+  const text = button(full, () => show(at.file, at.line), "place", icon("file"), placeText(shortPath(at.file), at.line, at.column));
   return h("div", { class: "card-place" }, text, copy);
 }
 

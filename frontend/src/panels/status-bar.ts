@@ -11,6 +11,7 @@ export class StatusBar {
   private readonly connection = h("span", { class: "connection", role: "status" });
   private readonly fixedFrame = h("span", { class: "status-value" });
   private readonly robot = h("span", { class: "status-item" });
+  private readonly hint = h("span", { class: "status-item mouse" });
   private readonly rate = h("span", { class: "status-item rate" });
 
   constructor(
@@ -24,10 +25,16 @@ export class StatusBar {
       h("span", { class: "status-item" }, h("span", { class: "status-name" }, strings.status.fixedFrame), this.fixedFrame),
       this.robot,
       h("span", { class: "spacer" }),
-      h("span", { class: "status-item mouse" }, strings.scene.mouse),
+      this.hint,
       h("span", { class: "spacer" }),
       this.rate,
     );
+    const showHint = (text: string): void => {
+      this.hint.textContent = text;
+      this.hint.title = text;
+    };
+    session.tools.hintChanged.on(showHint);
+    showHint(session.tools.hint);
     session.connection.stateChanged.on(() => this.update());
     session.displays.treeChanged.on(() => this.update());
     session.displays.valueChanged.on(() => this.update());

@@ -1,82 +1,175 @@
 import { button, h } from "../dom";
 import { icon } from "../icons";
-import type { PropertyKind, PropertyValue } from "../protocol.gen";
+import type { Property, PropertyValue } from "../protocol.gen";
 import type { Session } from "../state/session";
-import { FIXED_FRAME } from "../state/view";
+import { FIXED_FRAME, type ViewState } from "../state/view";
+import { shortName } from "../state/views/catalog";
+import type { ViewValues } from "../state/views/view-controller";
 import { strings } from "../strings";
 import type { TreeItem } from "../tree/tree-item";
 import { TreeView } from "../tree/tree-view";
 import type { Panel } from "./panel";
 
-/** RViz's Views panel for the current view. */
+const CURRENT = "current";
+
+/** RViz's Views panel: the current view, and those that are kept. */
 export class ViewsPanel implements Panel {
   readonly id = "views";
   readonly icon = "camera";
   readonly element: HTMLElement;
+  private readonly view: ViewState;
+  private readonly type = h("select", { class: "choice", aria: { label: strings.views.type } });
+  private readonly name = h("input", { class: "field", aria: { label: strings.views.newName } });
+  private readonly remove: HTMLButtonElement;
+  private readonly rename: HTMLButtonElement;
+  /** The saved view whose row, or a row below it, is selected. */
+  private chosen: string | null = null;
 
-  constructor(private readonly session: Session) {
-    const { view, frames } = session;
+  constructor({ view, frames }: Session) {
+    this.view = view;
     const words = strings.views;
     const tree = new TreeView(
       strings.panels.views,
       () => this.items(),
       () => [FIXED_FRAME, ...frames.names],
     );
-    const bar = h(
+    this.remove = button(words.removeHint, () => this.removeChosen(), "tool", words.remove);
+    this.rename = button(words.renameHint, () => this.startRename(), "tool", words.rename);
+    this.type.addEventListener("change", () => view.setClass(this.type.value));
+    this.name.addEventListener("keydown", (event) => this.named(event));
+    this.name.addEventListener("blur", () => {
+      this.name.hidden = true;
+    });
+    this.name.hidden = true;
+    this.element = h(
       "div",
-      { class: "toolbar" },
-      h("span", { class: "toolbar-label" }, words.orbit),
-      h("span", { class: "spacer" }),
-      button(words.zeroHint, () => view.zero(), "tool", icon("zero"), words.zero),
-      button(words.resetHint, () => view.reset(), "tool", icon("reset"), words.reset),
+      { class: "panel" },
+      h(
+        "div",
+        { class: "toolbar" },
+        h("label", { class: "view-type" }, h("span", { class: "toolbar-label" }, words.type), this.type),
+        button(words.zeroHint, () => view.zero(), "tool", icon("zero"), words.zero),
+        button(words.resetHint, () => view.reset(), "tool bare", icon("reset")),
+      ),
+      tree.element,
+      h(
+        "div",
+        { class: "toolbar bottom" },
+        button(words.saveHint, () => view.save(shortName(view.current.cls)), "tool", words.save),
+        this.remove,
+        this.rename,
+        this.name,
+      ),
     );
-    this.element = h("div", { class: "panel" }, bar, tree.element);
-    view.changed.on(tree.refresh);
+    tree.element.addEventListener("keydown", (event) => this.keyed(event), true);
+    tree.selected.on((item) => {
+      const [owner] = item.key.split("|");
+      this.chosen = owner === CURRENT ? null : (owner ?? null);
+      this.update();
+    });
+    view.changed.on(() => {
+      this.update();
+      tree.refresh();
+    });
+    view.listsChanged.on(() => {
+      if (!view.saved.some((each) => each.id === this.chosen)) this.chosen = null;
+      this.update();
+      tree.refresh();
+    });
+    this.update();
+  }
+
+  private update(): void {
+    const { classes, current } = this.view;
+    if (this.type.options.length !== classes.length) {
+      this.type.replaceChildren(...classes.map(({ cls }) => new Option(shortName(cls), cls)));
+    }
+    this.type.value = current.cls;
+    this.remove.disabled = this.rename.disabled = this.chosen === null;
   }
 
   private items(): TreeItem[] {
-    const { view } = this.session;
-    const current = view.current;
-    const { names, help } = strings.views;
-    const [x = 0, y = 0, z = 0] = current.focal_point;
-    const row = (
-      key: keyof typeof names,
-      kind: PropertyKind,
-      value: PropertyValue,
-      set: (value: PropertyValue) => void,
-      minimum: number | null = null,
-    ): TreeItem => ({ key, name: names[key], kind, value, description: help[key], minimum, set });
-    const coordinate = (name: string, index: number, value: number): TreeItem => ({
-      key: `focalPoint/${name}`,
-      name,
-      kind: "float",
-      value,
-      description: help.focalPoint,
-      set: (next) => {
-        view.update({ focal_point: [x, y, z].map((old, i) => (i === index ? Number(next) : old)) });
-      },
-    });
-    const number = (part: string) => (value: PropertyValue) => view.update({ [part]: Number(value) });
+    const { view } = this;
+    const { current } = view;
+    const set = (path: string, value: PropertyValue): void => view.set(path, value);
     return [
-      row("distance", "float", current.distance, number("distance"), 0.01),
-      row("yaw", "float", current.yaw, number("yaw")),
-      row("pitch", "float", current.pitch, number("pitch")),
       {
-        key: "focalPoint",
-        name: names.focalPoint,
+        key: CURRENT,
+        name: strings.views.current,
         kind: "group",
-        value: [x, y, z].map((each) => String(Number(each.toPrecision(4)))).join("; "),
-        description: help.focalPoint,
+        value: shortName(current.cls),
+        description: "",
+        strong: true,
         expanded: true,
-        children: () => [coordinate("X", 0, x), coordinate("Y", 1, y), coordinate("Z", 2, z)],
+        children: () => rows(CURRENT, view.properties, current.values, set),
       },
-      row("targetFrame", "frame", current.target_frame, (value) => view.setTargetFrame(String(value))),
-      row("nearClip", "float", current.near_clip_distance, number("near_clip_distance"), 0.001),
-      row("invertZ", "bool", current.invert_z_axis, (value) => view.update({ invert_z_axis: value === true })),
-      row("shapeSize", "float", current.focal_shape_size, number("focal_shape_size"), 0.001),
-      row("shapeFixed", "bool", current.focal_shape_fixed_size, (value) =>
-        view.update({ focal_shape_fixed_size: value === true }),
-      ),
+      ...view.saved.map(({ id, view: saved }): TreeItem => ({
+        key: id,
+        name: saved.name,
+        kind: "group",
+        value: shortName(saved.cls),
+        description: strings.views.useHint,
+        activate: () => view.use(id),
+        children: () =>
+          rows(id, view.propertiesOf(saved.cls), saved.values, (path, value) => view.setSaved(id, path, value)),
+      })),
     ];
   }
+
+  private keyed(event: KeyboardEvent): void {
+    if (!(event.target as HTMLElement).matches("[role=treeitem]") || this.chosen === null) return;
+    if (event.key === "Delete") this.removeChosen();
+    else if (event.key === "F2" && (event.target as HTMLElement).dataset["key"] === this.chosen) this.startRename();
+    else return;
+    event.preventDefault();
+    event.stopPropagation();
+  }
+
+  private removeChosen(): void {
+    if (this.chosen !== null) this.view.remove(this.chosen);
+  }
+
+  private startRename(): void {
+    const saved = this.view.saved.find((each) => each.id === this.chosen);
+    if (!saved) return;
+    this.name.hidden = false;
+    this.name.value = saved.view.name;
+    this.name.focus();
+    this.name.select();
+  }
+
+  private named(event: KeyboardEvent): void {
+    if (event.key === "Enter" && this.chosen !== null) this.view.rename(this.chosen, this.name.value);
+    if (event.key === "Enter" || event.key === "Escape") this.name.hidden = true;
+    event.stopPropagation();
+  }
+}
+
+/** The rows of a view; their keys begin with its owner's. */
+function rows(
+  owner: string,
+  properties: readonly Property[],
+  values: ViewValues,
+  set: (path: string, value: PropertyValue) => void,
+): TreeItem[] {
+  return properties.map((property): TreeItem => {
+    const { id, name, kind, description, minimum, maximum, children } = property;
+    const isGroup = kind === "group";
+    return {
+      key: `${owner}|${id}`,
+      name,
+      kind,
+      value: isGroup ? summary(children, values) : (values[id] ?? property.value),
+      description,
+      minimum,
+      maximum,
+      ...(children.length > 0 ? { children: () => rows(owner, children, values, set) } : {}),
+      ...(isGroup ? {} : { set: (value: PropertyValue) => set(id, value) }),
+    };
+  });
+}
+
+/** `1; 2; 3` for a point. */
+function summary(children: readonly Property[], values: ViewValues): string {
+  return children.map(({ id, value }) => String(Number(Number(values[id] ?? value).toPrecision(4)))).join("; ");
 }

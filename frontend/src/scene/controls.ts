@@ -1,21 +1,27 @@
-import { dollyDrag, dollyWheel, pan, rotate, zoomDrag, zoomWheel, type Orbit } from "../state/orbit";
 import type { ViewState } from "../state/view";
 import type { Stage } from "./stage";
+import type { PointerButton, ToolEvent } from "./tools/tool";
 
 /** A press that moves less than this is a click, pixels. */
 const CLICK_SLOP = 4;
 const LINE_PX = 40;
 const KEY_PX = 20;
 const ZOOM_NOTCH = 120;
+/** The wheel delta that changes a distance by all of it: so much finger movement zooms. */
+const PINCH_UNIT = 1000;
+const BUTTONS: readonly PointerButton[] = ["left", "middle", "right"];
 
-/** The mouse bindings of RViz's Orbit view, a touch screen's, and keys. */
+/** Turns what mouse, fingers and arrow keys do on the canvas into events for the tool in hand. */
 export class Controls {
   private readonly pointers = new Map<number, { x: number; y: number }>();
+  private last = { x: 0, y: 0 };
   private travelled = 0;
+  private isOver = false;
 
   constructor(
     private readonly stage: Stage,
     private readonly view: ViewState,
+    private readonly tell: (event: ToolEvent) => void,
   ) {
     const { canvas } = stage.viewport;
     canvas.tabIndex = 0;
@@ -23,13 +29,15 @@ export class Controls {
     canvas.addEventListener("pointermove", (event) => this.moved(event));
     canvas.addEventListener("pointerup", (event) => this.released(event, true));
     canvas.addEventListener("pointercancel", (event) => this.released(event, false));
+    canvas.addEventListener("pointerleave", (event) => this.left(event));
     canvas.addEventListener("wheel", (event) => this.wheeled(event), { passive: false });
     canvas.addEventListener("contextmenu", (event) => event.preventDefault());
     canvas.addEventListener("keydown", (event) => this.keyed(event));
   }
 
-  private get height(): number {
-    return this.stage.viewport.canvas.clientHeight;
+  /** Where the pointer is over the canvas; null while it is elsewhere. */
+  get place(): { x: number; y: number } | null {
+    return this.isOver ? this.last : null;
   }
 
   private pressed(event: PointerEvent): void {
@@ -39,33 +47,45 @@ export class Controls {
     canvas.setPointerCapture(event.pointerId);
     this.pointers.set(event.pointerId, { x: event.clientX, y: event.clientY });
     this.travelled = this.pointers.size > 1 ? CLICK_SLOP : 0;
+    this.isOver = true;
+    this.last = { x: event.offsetX, y: event.offsetY };
+    this.tell(this.eventOf("down", event));
   }
 
   private moved(event: PointerEvent): void {
-    const last = this.pointers.get(event.pointerId);
-    if (!last) return;
-    const [dx, dy] = [event.clientX - last.x, event.clientY - last.y];
-    if (dx === 0 && dy === 0) return;
+    const pointer = this.pointers.get(event.pointerId);
     const spread = this.spread();
-    last.x = event.clientX;
-    last.y = event.clientY;
-    this.travelled += Math.hypot(dx, dy);
-    this.stage.focalShapeVisible = true;
-    if (this.pointers.size > 1) {
-      // Two fingers: each moves the view half, and their distance zooms.
-      const moved = pan(this.view.orbit, dx / 2, dy / 2, this.height);
-      const distance = spread > 0 ? (moved.distance * spread) / Math.max(1, this.spread()) : moved.distance;
-      this.view.setOrbit({ ...moved, distance });
-      return;
+    if (pointer) {
+      this.travelled += Math.hypot(event.clientX - pointer.x, event.clientY - pointer.y);
+      pointer.x = event.clientX;
+      pointer.y = event.clientY;
     }
-    this.view.setOrbit(dragged(this.view.orbit, event, dx, dy, this.height));
+    const told = this.eventOf("move", event);
+    this.isOver = true;
+    this.last = { x: event.offsetX, y: event.offsetY };
+    if (told.dx === 0 && told.dy === 0) return;
+    if (this.pointers.size > 1) this.pinched(told, spread);
+    else this.tell(told);
+  }
+
+  /** Two fingers: each moves the view half, and their distance zooms. */
+  private pinched(told: ToolEvent, before: number): void {
+    const { x, y, dx, dy } = told;
+    const half = { dx: dx / 2, dy: dy / 2, x: x - dx, y: y - dy };
+    this.view.drag({ ...this.stage.viewport.size, ...half, left: false, middle: true, right: false, shift: false });
+    const after = Math.max(1, this.spread());
+    if (before > 0) this.view.wheel((1 - before / after) * PINCH_UNIT, false);
   }
 
   private released(event: PointerEvent, complete: boolean): void {
     if (!this.pointers.delete(event.pointerId)) return;
-    if (this.pointers.size === 0) this.stage.focalShapeVisible = false;
-    const click = complete && event.button === 0 && this.travelled < CLICK_SLOP && !event.shiftKey;
-    if (click) this.stage.pick(event.offsetX, event.offsetY);
+    const click = complete && this.travelled < CLICK_SLOP;
+    this.tell({ ...this.eventOf("up", event), click });
+  }
+
+  private left(event: PointerEvent): void {
+    this.isOver = false;
+    if (this.pointers.size === 0) this.tell(this.eventOf("leave", event));
   }
 
   /** Distance between the first two fingers, pixels; 0 with fewer. */
@@ -78,55 +98,62 @@ export class Controls {
     event.preventDefault();
     // Browsers turn the wheel sideways while Shift is held.
     const amount = event.deltaY !== 0 ? event.deltaY : event.deltaX;
-    const delta = -amount * (event.deltaMode === WheelEvent.DOM_DELTA_LINE ? LINE_PX : 1);
-    const { orbit } = this.view;
-    this.view.setOrbit(event.shiftKey ? dollyWheel(orbit, delta) : zoomWheel(orbit, delta));
+    const wheel = -amount * (event.deltaMode === WheelEvent.DOM_DELTA_LINE ? LINE_PX : 1);
+    this.tell({ ...this.eventOf("wheel", event), wheel });
+  }
+
+  private eventOf(type: ToolEvent["type"], event: MouseEvent): ToolEvent {
+    const { offsetX: x, offsetY: y, buttons } = event;
+    const acts = type === "down" || type === "up";
+    return {
+      type,
+      x,
+      y,
+      dx: type === "move" ? x - this.last.x : 0,
+      dy: type === "move" ? y - this.last.y : 0,
+      wheel: 0,
+      button: acts ? (BUTTONS[event.button] ?? null) : null,
+      left: (buttons & 1) !== 0,
+      middle: (buttons & 4) !== 0,
+      right: (buttons & 2) !== 0,
+      shift: event.shiftKey,
+      ctrl: event.ctrlKey || event.metaKey,
+      alt: event.altKey,
+      click: false,
+    };
   }
 
   private keyed(event: KeyboardEvent): void {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
-    const { orbit } = this.view;
-    const turn = (dx: number, dy: number): Orbit =>
-      event.shiftKey ? pan(orbit, dx, dy, this.height) : rotate(orbit, dx, dy);
+    const { size } = this.stage.viewport;
+    const turn = (dx: number, dy: number): void => {
+      const middle = { x: size.width / 2, y: size.height / 2 };
+      const buttons = { left: !event.shiftKey, middle: event.shiftKey, right: false, shift: false };
+      this.view.drag({ ...size, ...middle, ...buttons, dx, dy });
+    };
     switch (event.key) {
       case "ArrowLeft":
-        this.view.setOrbit(turn(-KEY_PX, 0));
+        turn(-KEY_PX, 0);
         break;
       case "ArrowRight":
-        this.view.setOrbit(turn(KEY_PX, 0));
+        turn(KEY_PX, 0);
         break;
       case "ArrowUp":
-        this.view.setOrbit(turn(0, -KEY_PX));
+        turn(0, -KEY_PX);
         break;
       case "ArrowDown":
-        this.view.setOrbit(turn(0, KEY_PX));
+        turn(0, KEY_PX);
         break;
       case "+":
       case "=":
-        this.view.setOrbit(zoomWheel(orbit, ZOOM_NOTCH));
+        this.view.wheel(ZOOM_NOTCH, false);
         break;
       case "-":
-        this.view.setOrbit(zoomWheel(orbit, -ZOOM_NOTCH));
-        break;
-      case "f":
-      case "F":
-        this.stage.focusSelected();
-        break;
-      case "z":
-      case "Z":
-        this.view.reset();
+        this.view.wheel(-ZOOM_NOTCH, false);
         break;
       default:
         return;
     }
     event.preventDefault();
   }
-}
-
-function dragged(orbit: Orbit, event: PointerEvent, dx: number, dy: number, height: number): Orbit {
-  const [left, right, middle] = [1, 2, 4].map((bit) => (event.buttons & bit) !== 0);
-  if (middle || (left && event.shiftKey)) return pan(orbit, dx, dy, height);
-  if (left) return rotate(orbit, dx, dy);
-  if (right) return event.shiftKey ? dollyDrag(orbit, dy) : zoomDrag(orbit, dy);
-  return orbit;
 }

@@ -10,12 +10,20 @@ import {
 import { SCREEN_VERTEX, ScreenQuad } from "./objects/screen-quad";
 import type { Viewport } from "./viewport";
 
-const OUTLINE_LAYER = 1;
-const COLOR = 0x5db0ff;
+/** How an outline looks; each needs a layer of its own, and `fill` is how much of the objects is tinted, 0 to 1. */
+export interface OutlineLook {
+  color: number;
+  layer: number;
+  fill: number;
+}
+
+const SELECTION: OutlineLook = { color: 0x5db0ff, layer: 1, fill: 0.16 };
 const FRAGMENT = /* glsl */ `
   uniform sampler2D mask;
   uniform vec2 texel;
   uniform vec3 color;
+  uniform float fill;
+  uniform float strength;
   varying vec2 vUv;
   void main() {
     float inside = texture2D(mask, vUv).r;
@@ -23,7 +31,7 @@ const FRAGMENT = /* glsl */ `
     for (int x = -1; x <= 1; x++)
       for (int y = -1; y <= 1; y++)
         near = max(near, texture2D(mask, vUv + vec2(x, y) * texel).r);
-    gl_FragColor = vec4(color, max((near - inside) * 0.95, inside * 0.16));
+    gl_FragColor = vec4(color, max((near - inside) * 0.95, inside * fill) * strength);
   }
 `;
 /** Draws a line around the selected objects, also where something hides them, and a tint over them. */
@@ -34,7 +42,9 @@ export class Outline {
   private readonly uniforms = {
     mask: { value: this.mask.texture },
     texel: { value: new Vector2() },
-    color: { value: new Color(COLOR) },
+    color: { value: new Color() },
+    fill: { value: 0 },
+    strength: { value: 1 },
   };
 
   private readonly quad = new ScreenQuad(
@@ -48,11 +58,22 @@ export class Outline {
     }),
   );
 
-  constructor(private readonly viewport: Viewport) {}
+  constructor(
+    private readonly viewport: Viewport,
+    private readonly look = SELECTION,
+  ) {
+    this.uniforms.color.value.setHex(look.color);
+    this.uniforms.fill.value = look.fill;
+  }
+
+  /** 1 as it is, 0 not at all. */
+  set strength(strength: number) {
+    this.uniforms.strength.value = strength;
+  }
 
   set(objects: readonly Object3D[]): void {
-    for (const object of this.objects) object.layers.disable(OUTLINE_LAYER);
-    for (const object of objects) object.layers.enable(OUTLINE_LAYER);
+    for (const object of this.objects) object.layers.disable(this.look.layer);
+    for (const object of objects) object.layers.enable(this.look.layer);
     this.objects = objects;
   }
 
@@ -68,7 +89,7 @@ export class Outline {
     renderer.setClearColor(0x000000);
     renderer.setRenderTarget(this.mask);
     scene.overrideMaterial = this.white;
-    camera.layers.set(OUTLINE_LAYER);
+    camera.layers.set(this.look.layer);
     renderer.render(scene, camera);
     camera.layers.set(0);
     scene.overrideMaterial = null;

@@ -1,15 +1,20 @@
-import { Box3, Matrix4, Raycaster, Vector2, Vector3 } from "three";
+import { Box3, type Object3D } from "three";
 import type { DisplayState } from "../state/displays";
 import type { Session } from "../state/session";
-import type { Drawing } from "./displays/drawing";
+import type { PanelHost } from "./displays/display-panel";
+import type { Drawing, DrawnScene } from "./displays/drawing";
 import { Pacing } from "./displays/pacing";
 import { DRAWINGS } from "./displays/registry";
 import { RobotModelDrawing } from "./displays/robot-model";
+import { Flash } from "./flash";
 import { FocalShape } from "./focal-shape";
 import { FrameLoop } from "./frame-loop";
+import { InspectLayer } from "./inspect/inspect-layer";
+import { SERVED, type MeshFiles } from "./meshes/mesh-files";
 import { MeshLibrary } from "./meshes/mesh-library";
 import { Outline } from "./outline";
-import { framePose } from "./pose";
+import { Picker } from "./picker";
+import type { Interaction } from "./picking";
 import { Viewport } from "./viewport";
 
 interface DrawnDisplay {
@@ -21,21 +26,32 @@ interface DrawnDisplay {
 /** The 3-D view: one drawing for each display, drawn when something changed. */
 export class Stage {
   readonly viewport: Viewport;
+  readonly picker: Picker;
   readonly loop = new FrameLoop((fine) => this.draw(fine));
-  private readonly meshes = new MeshLibrary();
+  private readonly meshes: MeshLibrary;
   private readonly drawings = new Map<string, DrawnDisplay>();
   private readonly outline: Outline;
+  private readonly flash: Flash;
+  private readonly marks: InspectLayer;
   private readonly focalShape = new FocalShape();
+  private interaction: Interaction = { enabled: false, hideOthers: false };
   private robotSettled = false;
 
   constructor(
     container: HTMLElement,
     private readonly session: Session,
+    private readonly panels: PanelHost,
+    files: MeshFiles = SERVED,
   ) {
+    this.meshes = new MeshLibrary(files);
     // A resized canvas is empty until it is drawn: at once, or it would flicker.
     this.viewport = new Viewport(container, () => this.draw(false));
+    this.picker = new Picker(this.viewport, session, () => this.enabled());
     this.outline = new Outline(this.viewport);
-    this.viewport.scene.add(this.focalShape.root);
+    const invalidate = (): void => this.loop.invalidate();
+    this.flash = new Flash(this.viewport, session, (display, link) => this.objectsOf(display, link), invalidate);
+    this.marks = new InspectLayer(session, (display) => this.boundsOf(display), invalidate);
+    this.viewport.scene.add(this.focalShape.root, this.marks.root);
     this.listen();
     this.matchDisplays();
   }
@@ -54,49 +70,53 @@ export class Stage {
     return count;
   }
 
+  /** What a display draws, for tests. */
+  inspect(display: string): object | null {
+    return this.drawings.get(display)?.drawing.inspect?.() ?? null;
+  }
+
+  /** What is drawn of the invisible, for tests. */
+  get inspected(): object {
+    return this.marks.inspect();
+  }
+
   set focalShapeVisible(visible: boolean) {
-    if (this.focalShape.root.visible === visible) return;
-    this.focalShape.root.visible = visible;
+    if (this.focalShape.shown === visible) return;
+    this.focalShape.shown = visible;
     this.loop.invalidate();
   }
 
-  /** Selects the link at a place of the canvas (pixels from its upper left corner), or nothing. */
-  pick(x: number, y: number): void {
-    const { clientWidth, clientHeight } = this.viewport.canvas;
-    const ray = new Raycaster();
-    ray.setFromCamera(
-      new Vector2((x / clientWidth) * 2 - 1, 1 - (y / clientHeight) * 2),
-      this.viewport.camera,
-    );
-    let best: { display: string; link: string; distance: number } | null = null;
-    for (const [id, { display, drawing }] of this.drawings) {
-      const hit = display.enabled ? drawing.pick?.(ray) : null;
-      if (hit && (best === null || hit.distance < best.distance)) best = { display: id, ...hit };
-    }
-    const name = best?.link;
-    const link = best && this.session.robots.get(best.display)?.links.find((each) => each.name === name);
-    this.session.selection.select(best && link ? { display: best.display, link } : null);
+  /** The scene as PNG, without what is selected or shown while the camera moves. */
+  async picture(scale: number): Promise<Blob | null> {
+    const focal = this.focalShape.root.visible;
+    this.focalShape.root.visible = false;
+    const picture = this.viewport.picture(scale);
+    this.focalShape.root.visible = focal;
+    this.draw(true);
+    return picture;
   }
 
-  /** Moves the focal point to the middle of the selected link, or of all robots when none is selected. */
+  /** Whether some display has things that the Interact tool moves. */
+  get isInteractive(): boolean {
+    return [...this.enabled()].some(([, drawing]) => "pointer" in drawing);
+  }
+
+  /** Looks at the middle of what is selected, or of all robots when nothing is. */
   focusSelected(): void {
-    const { selected } = this.session.selection;
-    const box = new Box3();
-    for (const [id, { drawing }] of this.drawings) {
-      if (selected && selected.display !== id) continue;
-      const objects = selected ? drawing.objectsOf?.(selected.link.name) : drawing.pick && [drawing.root];
-      for (const object of objects ?? []) box.expandByObject(object);
-    }
-    const pose = new Matrix4();
-    const { frames } = this.session;
-    if (box.isEmpty() && selected && framePose(frames, frames.row(selected.link.frame), pose)) {
-      // A link that draws nothing is where its frame is.
-      box.expandByPoint(new Vector3().setFromMatrixPosition(pose));
-    }
-    if (box.isEmpty()) return;
-    const middle = box.getCenter(new Vector3());
-    const [x, y, z] = this.session.view.targetPosition();
-    this.session.view.update({ focal_point: [middle.x - x, middle.y - y, middle.z - z] });
+    const middle = this.picker.middleOfSelection();
+    if (middle) this.session.view.lookAt(middle);
+  }
+
+  /** Tells the drawings whether their things can be moved now. */
+  setInteraction(interaction: Interaction): void {
+    this.interaction = interaction;
+    for (const { drawing } of this.drawings.values()) drawing.interactionChanged?.(interaction);
+    this.loop.invalidate();
+  }
+
+  /** The enabled displays by id. */
+  private *enabled(): Generator<readonly [string, Drawing]> {
+    for (const [id, { display, drawing }] of this.drawings) if (display.enabled) yield [id, drawing];
   }
 
   private listen(): void {
@@ -110,10 +130,21 @@ export class Stage {
       else this.globalOptionsChanged();
     });
     displays.enabledChanged.on((display) => this.propertiesChanged(display));
+    session.data.received.on((data) => {
+      const drawn = this.drawings.get(data.display);
+      drawn?.drawing.dataChanged?.(data);
+      if (drawn?.display.enabled && !drawn.drawing.isElsewhere) loop.invalidate();
+    });
+    session.data.forgotten.on(({ display, key }) => {
+      this.drawings.get(display)?.drawing.dataForgotten?.(key);
+      loop.invalidate();
+    });
     frames.tableChanged.on(invalidate);
     frames.posesChanged.on(invalidate);
     view.changed.on(invalidate);
-    selection.changed.on(invalidate);
+    selection.changed.on(() => this.selectionChanged());
+    session.focus.hoverChanged.on(invalidate);
+    session.time.wasReset.on(invalidate);
   }
 
   private matchDisplays(): void {
@@ -125,16 +156,19 @@ export class Stage {
       drawing.dispose();
       this.drawings.delete(id);
     }
+    this.session.selection.drop((item) => displays.some((display) => display.id === item.display));
     for (const display of displays) {
       const known = this.drawings.get(display.id);
       const Drawing = DRAWINGS.get(display.cls);
       if (known) this.propertiesChanged(known.display);
       else if (Drawing && display.supported) {
-        const { session, meshes } = this;
+        const { session, meshes, panels } = this;
         const invalidate = (): void => this.loop.invalidate();
-        const drawing = new Drawing({ display, session, meshes, invalidate });
+        const drawing = new Drawing({ display, session, meshes, panels, invalidate, camera: () => this.viewport.camera });
         this.drawings.set(display.id, { display, drawing, pacing: new Pacing(invalidate) });
         this.viewport.scene.add(drawing.root);
+        drawing.interactionChanged?.(this.interaction);
+        for (const data of session.data.of(display.id)) drawing.dataChanged?.(data);
       }
     }
     this.globalOptionsChanged();
@@ -155,7 +189,7 @@ export class Stage {
   }
 
   private draw(fine: boolean): void {
-    const { view, selection } = this.session;
+    const { view } = this.session;
     this.viewport.aim(view);
     this.focalShape.place(view);
     let settled = true;
@@ -166,12 +200,63 @@ export class Stage {
       if (pacing.due(now, 1000 * display.rows.number(0, "Update Interval"))) drawing.update();
       settled &&= drawing.settled?.() ?? true;
     }
-    const { selected } = selection;
-    const owner = selected && this.drawings.get(selected.display);
-    const objects = selected && owner?.display.enabled ? owner.drawing.objectsOf?.(selected.link.name) : null;
-    this.outline.set(objects ?? []);
+    this.marks.update();
+    this.outline.set(this.selectedObjects());
     this.viewport.render(fine);
     this.outline.render();
+    this.flash.render();
+    this.drawElsewhere();
     this.robotSettled ||= settled && this.visualsDrawn > 0;
+  }
+
+  /** Has the displays draw that show the scene in panels of their own. */
+  private drawElsewhere(): void {
+    const { renderer, scene } = this.viewport;
+    const background = this.session.displays.globalOptions.text("#303030", "Background Color");
+    const view: DrawnScene = { renderer, scene, background, showing: (accepts, draw) => this.showing(accepts, draw) };
+    for (const { display, drawing } of this.drawings.values()) if (display.enabled) drawing.drawn?.(view);
+  }
+
+  private showing(accepts: (display: DisplayState) => boolean, draw: () => void): void {
+    const focal = this.focalShape.root.visible;
+    this.focalShape.root.visible = false;
+    for (const { display, drawing } of this.drawings.values()) {
+      drawing.root.visible = display.enabled && accepts(display);
+    }
+    draw();
+    for (const { display, drawing } of this.drawings.values()) drawing.root.visible = display.enabled;
+    this.focalShape.root.visible = focal;
+  }
+
+  private selectionChanged(): void {
+    const keys = new Map<string, Set<string>>();
+    for (const { display, key } of this.session.selection.items) {
+      let mine = keys.get(display);
+      if (!mine) keys.set(display, (mine = new Set()));
+      mine.add(key);
+    }
+    const none: ReadonlySet<string> = new Set();
+    for (const [id, { drawing }] of this.drawings) drawing.highlight?.(keys.get(id) ?? none);
+    this.loop.invalidate();
+  }
+
+  private selectedObjects(): Object3D[] {
+    const objects: Object3D[] = [];
+    for (const { display, key } of this.session.selection.items) objects.push(...this.objectsOf(display, key));
+    const { hovered } = this.session.focus;
+    const link = hovered && this.session.focus.linkOf(hovered);
+    if (hovered && link !== null && link !== undefined) objects.push(...this.objectsOf(hovered.display, link));
+    return objects;
+  }
+
+  private objectsOf(display: string, key: string): readonly Object3D[] {
+    const drawn = this.drawings.get(display);
+    return (drawn?.display.enabled && drawn.drawing.objectsOf?.(key)) || [];
+  }
+
+  /** The box around what a display draws, in the fixed frame, m. */
+  boundsOf(display: string): Box3 {
+    const drawn = this.drawings.get(display);
+    return drawn ? new Box3().expandByObject(drawn.drawing.root) : new Box3();
   }
 }

@@ -4,18 +4,23 @@ import {
   ColorManagement,
   DirectionalLight,
   LinearSRGBColorSpace,
+  OrthographicCamera,
   PerspectiveCamera,
   Scene,
   Vector3,
   WebGLRenderer,
 } from "three";
-import { cameraAxes, FIELD_OF_VIEW } from "../state/orbit";
 import type { ViewState } from "../state/view";
+import { FIELD_OF_VIEW, type Camera, type ViewSize } from "../state/views/camera";
+import { number } from "../state/views/view-controller";
+import { distanceBetween } from "../state/views/vector";
 import { AMBIENT } from "./light";
 import { Smoothing } from "./smoothing";
 
 const LARGEST_PIXEL_RATIO = 2;
 const FAR_CLIP = 1000;
+/** Longest side of a picture, pixels. */
+const LARGEST_PICTURE = 8192;
 
 // RViz writes colours to the screen as they are in the URDF; a surface facing the camera shows exactly its colour.
 ColorManagement.enabled = false;
@@ -23,7 +28,9 @@ ColorManagement.enabled = false;
 /** Canvas, camera and the light that follows the camera. */
 export class Viewport {
   readonly scene = new Scene();
-  readonly camera = new PerspectiveCamera((FIELD_OF_VIEW * 180) / Math.PI, 1, 0.01, FAR_CLIP);
+  private readonly perspective = new PerspectiveCamera((FIELD_OF_VIEW * 180) / Math.PI, 1, 0.01, FAR_CLIP);
+  private readonly orthographic = new OrthographicCamera();
+  private inUse: PerspectiveCamera | OrthographicCamera = this.perspective;
   readonly renderer: WebGLRenderer;
   private readonly smoothing = new Smoothing();
   private readonly light = new DirectionalLight(0xffffff, (1 - AMBIENT) * Math.PI);
@@ -34,7 +41,7 @@ export class Viewport {
     this.renderer.debug.checkShaderErrors = import.meta.env.DEV;
     this.renderer.outputColorSpace = LinearSRGBColorSpace;
     this.renderer.setClearColor(0x303030);
-    this.camera.matrixAutoUpdate = false;
+    this.perspective.matrixAutoUpdate = this.orthographic.matrixAutoUpdate = false;
     this.scene.add(new AmbientLight(0xffffff, AMBIENT * Math.PI), this.light, this.light.target);
     container.prepend(this.canvas);
     new ResizeObserver(() => {
@@ -52,24 +59,26 @@ export class Viewport {
     this.renderer.setClearColor(new Color(color));
   }
 
+  /** The camera in use: views differ in their projection. */
+  get camera(): PerspectiveCamera | OrthographicCamera {
+    return this.inUse;
+  }
+
   /** Puts the camera where the view says. */
   aim(view: ViewState): void {
-    const { orbit } = view;
-    const { right, up, back } = cameraAxes(orbit);
-    const target = view.targetPosition();
-    const at = (i: 0 | 1 | 2): number => target[i] + orbit.focal[i] + back[i] * orbit.distance;
-    this.camera.matrix
-      .makeBasis(new Vector3(...right), new Vector3(...up), new Vector3(...back))
-      .setPosition(at(0), at(1), at(2));
-    this.camera.matrixWorldNeedsUpdate = true;
-    const near = view.current.near_clip_distance;
-    const far = Math.max(FAR_CLIP, orbit.distance * 10);
-    if (this.camera.near !== near || this.camera.far !== far) {
-      this.camera.near = near;
-      this.camera.far = far;
-      this.camera.updateProjectionMatrix();
-    }
-    this.light.position.set(...back);
+    const seen = view.camera;
+    this.inUse = seen.scale === null ? this.perspective : this.orthographic;
+    this.project(seen, number(view.values, "Near Clip Distance", 0.01));
+    this.inUse.matrix
+      .makeBasis(new Vector3(...seen.right), new Vector3(...seen.up), new Vector3(...seen.back))
+      .setPosition(...seen.position);
+    this.inUse.updateMatrixWorld(true);
+    this.light.position.set(...seen.back);
+  }
+
+  /** Of the canvas, pixels. */
+  get size(): ViewSize {
+    return { width: Math.max(1, this.canvas.clientWidth), height: Math.max(1, this.canvas.clientHeight) };
   }
 
   /** Draws the scene; `fine` smooths its edges. */
@@ -79,13 +88,38 @@ export class Viewport {
     else draw();
   }
 
+  /** The scene as PNG, so many times as large as the canvas, or as large as the graphics can. */
+  picture(scale: number): Promise<Blob | null> {
+    const { renderer, canvas } = this;
+    const { width, height } = this.size;
+    const largest = Math.min(renderer.capabilities.maxTextureSize, LARGEST_PICTURE) / Math.max(width, height);
+    renderer.setPixelRatio(Math.min(scale, largest));
+    renderer.setSize(width, height, false);
+    this.render(true);
+    // What was drawn is there until the browser goes on.
+    const picture = new Promise<Blob | null>((resolve) => canvas.toBlob(resolve, "image/png"));
+    this.fit();
+    return picture;
+  }
+
+  private project(seen: Camera, near: number): void {
+    const { perspective, orthographic } = this;
+    const { width, height } = this.size;
+    if (seen.scale !== null) {
+      const [x, y] = [width / seen.scale / 2, height / seen.scale / 2];
+      Object.assign(orthographic, { left: -x, right: x, bottom: -y, top: y, near, far: FAR_CLIP });
+      orthographic.updateProjectionMatrix();
+      return;
+    }
+    const distance = seen.focal ? distanceBetween(seen.position, seen.focal) : 0;
+    Object.assign(perspective, { aspect: width / height, near, far: Math.max(FAR_CLIP, distance * 10) });
+    perspective.updateProjectionMatrix();
+  }
 
   private fit(): void {
     const width = Math.max(1, this.container.clientWidth);
     const height = Math.max(1, this.container.clientHeight);
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, LARGEST_PIXEL_RATIO));
     this.renderer.setSize(width, height);
-    this.camera.aspect = width / height;
-    this.camera.updateProjectionMatrix();
   }
 }

@@ -2,12 +2,17 @@ import type { Display, Property, PropertyValue, StatusLevel, StatusRow, Tree } f
 import { PropertyNode, PropertyRows } from "./properties";
 import { Signal } from "./signal";
 
+const GROUP = "rviz_common/Group";
+
 /** One display as the server describes it. */
 export class DisplayState {
   readonly id: string;
   readonly cls: string;
   name = "";
-  enabled = false;
+  /** Its own box. */
+  checked = false;
+  /** The group it is in. */
+  group: DisplayState | null = null;
   supported = false;
   level: StatusLevel = "ok";
   status: readonly StatusRow[] = [];
@@ -23,9 +28,24 @@ export class DisplayState {
     return `${this.id}/Enabled`;
   }
 
+  /** Whether it is drawn: its box and those of the groups around it are on. */
+  get enabled(): boolean {
+    return this.checked && (this.group?.enabled ?? true);
+  }
+
+  /** Whether it holds displays instead of drawing something. */
+  get isGroup(): boolean {
+    return this.cls === GROUP;
+  }
+
+  /** Whether it is in a group, however deep. */
+  isWithin(group: DisplayState): boolean {
+    return this.group !== null && (this.group === group || this.group.isWithin(group));
+  }
+
   update(display: Display): void {
     this.name = display.name;
-    this.enabled = display.enabled;
+    this.checked = display.enabled;
     this.supported = display.supported;
     this.level = display.level;
     this.status = display.status;
@@ -64,6 +84,10 @@ export class DisplaysState {
       return old;
     });
     this.displays.splice(0, this.displays.length, ...next);
+    for (const [index, { group }] of tree.displays.entries()) {
+      const display = next[index];
+      if (display) display.group = (group !== null && next.find((each) => each.id === group)) || null;
+    }
     this.globalOptions = new PropertyRows(tree.global_options.map((property) => new PropertyNode(property)));
     this.globalStatus = tree.global_status;
     this.globalLevel = tree.global_level;
@@ -103,9 +127,17 @@ export class DisplaysState {
       return;
     }
     const display = this.displays.find((each) => each.enabledId === id);
-    if (!display || typeof value !== "boolean" || display.enabled === value) return;
-    display.enabled = value;
-    this.enabledChanged.emit(display);
+    if (!display || typeof value !== "boolean" || display.checked === value) return;
+    const before = this.displays.map((each) => each.enabled);
+    display.checked = value;
+    for (const [index, each] of this.displays.entries()) {
+      if (each === display || each.enabled !== before[index]) this.enabledChanged.emit(each);
+    }
+  }
+
+  /** The displays in a group, or the outermost ones, in their order. */
+  within(group: DisplayState | null): DisplayState[] {
+    return this.displays.filter((display) => display.group === group);
   }
 
   find(id: string): DisplayState | undefined {

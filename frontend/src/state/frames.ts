@@ -23,6 +23,8 @@ export class FrameStore {
   poses: Float32Array = NOTHING;
   ages: Float32Array = NOTHING;
   stamp = 0;
+  /** The fixed frame, which tf need not know. */
+  fixedFrame = "";
   private revision = -1;
   private rows = new Map<string, number>();
   private early: Transforms | null = null;

@@ -1,5 +1,11 @@
+import type { Connection } from "../connection/connection";
 import type { JointControl } from "../protocol.gen";
 import { Signal } from "./signal";
+
+/** Joints in one message: the server takes messages of 64 KiB. */
+const MOST_AT_ONCE = 200;
+
+export type Positions = Readonly<Record<string, number>>;
 
 /** The Joints panel's rows and the positions the server last told. */
 export class JointsState {
@@ -7,15 +13,69 @@ export class JointsState {
   readonly positionsChanged = new Signal();
   /** Null while nothing publishes from sliders. */
   controls: readonly JointControl[] | null = null;
-  positions: Readonly<Record<string, number>> = {};
+  positions: Positions = {};
+  /** Links are dragged without holding Alt. */
+  handsOn = false;
+  private waiting: Record<string, number> | null = null;
 
-  setControls(controls: readonly JointControl[] | null): void {
+  constructor(
+    private readonly connection: Connection,
+    private readonly nextFrame: (work: () => void) => void = (work) => void requestAnimationFrame(work),
+  ) {
+    connection.on("joints", ({ controls }) => this.setControls(controls));
+    connection.on("joint_positions", ({ positions }) => this.setPositions(positions));
+  }
+
+  /** Moves joints, rad or m: at once, and what follows within an animation frame as one. */
+  move(positions: Positions): void {
+    if (this.waiting) {
+      Object.assign(this.waiting, positions);
+      return;
+    }
+    this.send(positions);
+    this.waiting = {};
+    this.nextFrame(() => {
+      const late = this.waiting ?? {};
+      this.waiting = null;
+      if (Object.keys(late).length > 0) this.move(late);
+    });
+  }
+
+  /** The joint that must be moved for `name` to get to `position`, and where to; null where nothing moves it. */
+  leader(name: string, position: number): { control: JointControl; position: number } | null {
+    const seen = new Set<string>();
+    for (let at = position, next = name; !seen.has(next); ) {
+      seen.add(next);
+      const control = this.controls?.find((each) => each.name === next);
+      if (!control) return null;
+      if (control.mimic === null) return { control, position: at };
+      if (control.multiplier === 0) return null;
+      at = (at - control.offset) / control.multiplier;
+      next = control.mimic;
+    }
+    return null;
+  }
+
+  private setControls(controls: readonly JointControl[] | null): void {
     this.controls = controls;
     this.controlsChanged.emit();
   }
 
-  setPositions(positions: Readonly<Record<string, number>>): void {
+  private setPositions(positions: Positions): void {
     this.positions = positions;
     this.positionsChanged.emit();
+  }
+
+  private send(positions: Positions): void {
+    const entries = Object.entries(positions);
+    const [only] = entries;
+    if (only && entries.length === 1) {
+      this.connection.send({ type: "set_joint", name: only[0], position: only[1] });
+      return;
+    }
+    for (let i = 0; i < entries.length; i += MOST_AT_ONCE) {
+      const part = Object.fromEntries(entries.slice(i, i + MOST_AT_ONCE));
+      this.connection.send({ type: "set_joints", positions: part });
+    }
   }
 }

@@ -1,4 +1,4 @@
-import type { Property, PropertyKind, PropertyValue } from "../protocol.gen";
+import type { Property, PropertyKind, PropertyValue, RowDetails } from "../protocol.gen";
 
 /** One row of a property tree; the value changes in place, the rest does not. */
 export class PropertyNode {
@@ -11,6 +11,8 @@ export class PropertyNode {
   readonly readOnly: boolean;
   readonly expanded: boolean;
   readonly children: readonly PropertyNode[];
+  /** What the row stands for, if the page shows more of it in rows of its own. */
+  readonly details: RowDetails | null;
   value: PropertyValue;
   options: readonly string[];
 
@@ -25,6 +27,7 @@ export class PropertyNode {
     this.maximum = property.maximum;
     this.readOnly = property.read_only;
     this.expanded = property.expanded;
+    this.details = property.details;
     this.children = property.children.map((child) => new PropertyNode(child));
   }
 

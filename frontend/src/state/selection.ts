@@ -1,31 +1,79 @@
 import type { LinkScene, RobotScene } from "../protocol.gen";
 import { Signal } from "./signal";
 
+/** A thing of a display: a link, a marker, a point; `key` is what the display's drawing calls it. */
+export interface SelectedItem {
+  readonly display: string;
+  readonly key: string;
+}
+
 /** A link of one RobotModel display. */
 export interface SelectedLink {
   display: string;
   link: LinkScene;
 }
 
-/** The link selected in the scene and in the tree; it outlives a reload of the robot that still has it. */
+/** How a selection changes what was selected before. */
+export type SelectionMode = "replace" | "add" | "remove";
+
+/** What is selected in the scene and in the tree; links outlive a reload of the robot that still has them. */
 export class SelectionState {
   readonly changed = new Signal<SelectedLink | null>();
-  private current: SelectedLink | null = null;
+  private current: readonly SelectedItem[] = [];
+  private link: SelectedLink | null = null;
 
-  get selected(): SelectedLink | null {
+  constructor(private readonly robots: ReadonlyMap<string, RobotScene>) {}
+
+  get items(): readonly SelectedItem[] {
     return this.current;
   }
 
+  /** The first link among them. */
+  get selected(): SelectedLink | null {
+    return this.link;
+  }
+
   select(selected: SelectedLink | null): void {
-    if (selected?.link === this.current?.link && selected?.display === this.current?.display) return;
-    this.current = selected;
-    this.changed.emit(selected);
+    this.pick(selected ? [{ display: selected.display, key: selected.link.name }] : [], "replace");
+  }
+
+  pick(items: readonly SelectedItem[], mode: SelectionMode): void {
+    const next = new Map((mode === "replace" ? [] : this.current).map((item) => [identity(item), item]));
+    for (const item of items) {
+      if (mode === "remove") next.delete(identity(item));
+      else next.set(identity(item), item);
+    }
+    const same = next.size === this.current.length && this.current.every((item) => next.has(identity(item)));
+    if (!same) this.take([...next.values()]);
+  }
+
+  /** Takes away what its display shows no more. */
+  drop(isThere: (item: SelectedItem) => boolean): void {
+    const left = this.current.filter(isThere);
+    if (left.length < this.current.length) this.take(left);
   }
 
   robotChanged(robot: RobotScene): void {
-    if (this.current?.display !== robot.display) return;
-    const { name } = this.current.link;
-    const link = robot.links.find((each) => each.name === name);
-    this.select(link ? { display: robot.display, link } : null);
+    const mine = this.current.filter((item) => item.display === robot.display);
+    if (mine.length === 0) return;
+    const links = new Set(robot.links.map((link) => link.name));
+    this.take(this.current.filter((item) => item.display !== robot.display || links.has(item.key)));
   }
+
+  private take(items: readonly SelectedItem[]): void {
+    this.current = items;
+    this.link = null;
+    for (const { display, key } of items) {
+      const link = this.robots.get(display)?.links.find((each) => each.name === key);
+      if (link) {
+        this.link = { display, link };
+        break;
+      }
+    }
+    this.changed.emit(this.link);
+  }
+}
+
+function identity({ display, key }: SelectedItem): string {
+  return `${display} ${key}`;
 }

@@ -1,36 +1,70 @@
 import type { Connection } from "../connection/connection";
-import type { DiagnosticItem, Hello, LinkStory, PropertyValue, RobotScene, ServerMessage } from "../protocol.gen";
+import type { DiagnosticItem, Hello, LinkStory, PropertyValue, RobotScene } from "../protocol.gen";
+import { AngleUnits } from "./angle-unit";
+import { ConfigurationState } from "./configuration";
+import { DisplayDataStore } from "./display-data";
+import { DescriptionState } from "./description";
 import { DisplaysState } from "./displays";
+import { ElementFocus } from "./element-focus";
 import { FrameStore } from "./frames";
+import { InspectState } from "./inspect";
 import { JointsState } from "./joints";
+import { MonitorState } from "./monitor/monitor";
+import { PoseStore } from "./named-poses";
+import type { SceneMenu } from "./scene-menu";
 import { SelectionState } from "./selection";
 import { Signal } from "./signal";
+import { SlowLine } from "./slow-line";
+import { browserStorage } from "./storage";
+import { TimeControlState } from "./time";
+import { ToolsState } from "./tools";
 import { ViewState } from "./view";
-
-const VIEW_CHANGED_INTERVAL_MS = 250;
 
 /** Everything the page knows, kept current from the server's messages. Panels and drawings listen to its parts. */
 export class Session {
+  /** The newest description of each RobotModel display, by display id. */
+  readonly robots = new Map<string, RobotScene>();
   readonly frames = new FrameStore();
   readonly displays = new DisplaysState();
-  readonly joints = new JointsState();
-  readonly selection = new SelectionState();
-  readonly view = new ViewState(this.frames);
+  readonly configuration: ConfigurationState;
+  readonly joints: JointsState;
+  readonly description: DescriptionState;
+  readonly selection = new SelectionState(this.robots);
+  readonly view: ViewState;
+  readonly tools: ToolsState;
+  readonly time: TimeControlState;
+  readonly data: DisplayDataStore;
+  readonly slowLine: SlowLine;
   readonly robotChanged = new Signal<RobotScene>();
   readonly diagnosticsChanged = new Signal();
   /** Answers `ask_story`. */
   readonly storyTold = new Signal<LinkStory>();
   readonly greeted = new Signal<Hello>();
-  /** The newest description of each RobotModel display, by display id. */
-  readonly robots = new Map<string, RobotScene>();
+  /** Something in the scene wants a menu. */
+  readonly sceneMenu = new Signal<SceneMenu>();
+  readonly focus = new ElementFocus(this.selection, this.robots);
+  readonly inspect = new InspectState(browserStorage());
+  readonly poses = new PoseStore(browserStorage());
+  readonly angles = new AngleUnits(browserStorage());
+  readonly monitor: MonitorState;
   diagnostics: readonly DiagnosticItem[] = [];
-  private viewTimer = 0;
-  private viewFromServer = false;
 
   constructor(readonly connection: Connection) {
-    connection.message.on((message) => this.receive(message));
-    connection.transforms.on((transforms) => this.frames.setTransforms(transforms));
-    this.view.changed.on(() => this.announceView());
+    this.configuration = new ConfigurationState(connection);
+    this.view = new ViewState(this.frames, connection);
+    this.tools = new ToolsState(connection);
+    this.time = new TimeControlState(connection);
+    this.data = new DisplayDataStore(connection);
+    this.slowLine = new SlowLine(this.data);
+    this.joints = new JointsState(connection);
+    this.description = new DescriptionState(connection);
+    this.monitor = new MonitorState(connection, browserStorage());
+    this.listen(connection);
+    const followFixedFrame = (): void => {
+      this.frames.fixedFrame = this.displays.fixedFrame;
+    };
+    this.displays.treeChanged.on(followFixedFrame);
+    this.displays.valueChanged.on(followFixedFrame);
   }
 
   /** The user edits a property: shown at once, and told to the server. */
@@ -48,58 +82,26 @@ export class Session {
     return null;
   }
 
-  private receive(message: ServerMessage): void {
-    switch (message.type) {
-      case "hello":
-        this.greeted.emit(message);
-        break;
-      case "tree":
-        this.displays.setTree(message);
-        for (const id of this.robots.keys()) if (!this.displays.find(id)) this.robots.delete(id);
-        break;
-      case "display_properties":
-        this.displays.setRows(message.display, message.properties);
-        break;
-      case "property_changed":
-        this.displays.setValue(message.id, message.value, message.options);
-        break;
-      case "display_status":
-        this.displays.setStatus(message.display, message.level, message.status);
-        break;
-      case "robot_scene":
-        this.robots.set(message.display, message);
-        this.robotChanged.emit(message);
-        this.selection.robotChanged(message);
-        break;
-      case "frame_table":
-        this.frames.setTable(message);
-        break;
-      case "view_state":
-        this.viewFromServer = true;
-        this.view.configure(message.view);
-        this.viewFromServer = false;
-        break;
-      case "joints":
-        this.joints.setControls(message.controls);
-        break;
-      case "joint_positions":
-        this.joints.setPositions(message.positions);
-        break;
-      case "diagnostics":
-        this.diagnostics = message.items;
-        this.diagnosticsChanged.emit();
-        break;
-      case "link_story":
-        this.storyTold.emit(message);
-        break;
-    }
-  }
-
-  private announceView(): void {
-    if (this.viewTimer !== 0 || this.viewFromServer) return;
-    this.viewTimer = window.setTimeout(() => {
-      this.viewTimer = 0;
-      this.connection.send({ type: "view_changed", view: { ...this.view.current } });
-    }, VIEW_CHANGED_INTERVAL_MS);
+  private listen(connection: Connection): void {
+    connection.on("hello", (message) => this.greeted.emit(message));
+    connection.on("tree", (message) => {
+      this.displays.setTree(message);
+      for (const id of this.robots.keys()) if (!this.displays.find(id)) this.robots.delete(id);
+    });
+    connection.on("display_properties", ({ display, properties }) => this.displays.setRows(display, properties));
+    connection.on("property_changed", ({ id, value, options }) => this.displays.setValue(id, value, options));
+    connection.on("display_status", ({ display, level, status }) => this.displays.setStatus(display, level, status));
+    connection.on("robot_scene", (message) => {
+      this.robots.set(message.display, message);
+      this.robotChanged.emit(message);
+      this.selection.robotChanged(message);
+    });
+    connection.on("frame_table", (message) => this.frames.setTable(message));
+    connection.on("diagnostics", ({ items }) => {
+      this.diagnostics = items;
+      this.diagnosticsChanged.emit();
+    });
+    connection.on("link_story", (message) => this.storyTold.emit(message));
+    connection.transforms.on((transforms) => this.frames.setTransforms(transforms));
   }
 }

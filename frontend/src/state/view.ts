@@ -1,94 +1,220 @@
-import type { OrbitView } from "../protocol.gen";
+import type { Property, PropertyValue, SavedView, View, ViewClass } from "../protocol.gen";
+import type { Connection } from "../connection/connection";
 import type { FrameStore } from "./frames";
-import { clampDistance, clampPitch, wrapYaw, ZERO_ORBIT, type Orbit, type Vector } from "./orbit";
 import { Signal } from "./signal";
+import { cameraInFixed, cameraInTarget, FIXED, toTarget, type Camera, type Target } from "./views/camera";
+import { controllerOf } from "./views/catalog";
+import type { Vector } from "./views/vector";
+import type { Drag, ViewController, ViewValues } from "./views/view-controller";
 
 export const FIXED_FRAME = "<Fixed Frame>";
-const SMALLEST_NEAR_CLIP = 0.001;
+const ORBIT = "rviz_default_plugins/Orbit";
+const CURRENT_NAME = "Current View";
+const TARGET_FRAME = "Target Frame";
+const ANNOUNCE_INTERVAL_MS = 250;
 
-/** The current view. The server proposes one at the start; from then on the page owns it. */
+/** The current view and the saved ones. The server proposes one at the start; from then on the page owns its camera. */
 export class ViewState {
   readonly changed = new Signal();
-  private view: OrbitView = {
-    cls: "rviz_default_plugins/Orbit",
-    name: "Current View",
-    near_clip_distance: 0.01,
-    invert_z_axis: false,
-    target_frame: FIXED_FRAME,
-    distance: ZERO_ORBIT.distance,
-    yaw: ZERO_ORBIT.yaw,
-    pitch: ZERO_ORBIT.pitch,
-    focal_point: [...ZERO_ORBIT.focal],
-    focal_shape_size: 0.05,
-    focal_shape_fixed_size: true,
-  };
-  private configured: OrbitView | null = null;
+  /** The saved views, or the classes, are others now. */
+  readonly listsChanged = new Signal();
+  classes: readonly ViewClass[] = [];
+  saved: readonly SavedView[] = [];
+  private view: View = { cls: ORBIT, name: CURRENT_NAME, values: controllerOf(ORBIT).zero() };
+  private configured: View | null = null;
+  private revision: number | null = null;
+  private lastTarget: Target = FIXED;
+  private timer: ReturnType<typeof setTimeout> | undefined;
 
-  constructor(private readonly frames: FrameStore) {}
+  constructor(
+    private readonly frames: FrameStore,
+    private readonly connection: Connection,
+  ) {
+    connection.on("view_classes", ({ classes }) => {
+      this.classes = classes;
+      this.listsChanged.emit();
+    });
+    connection.on("saved_views", ({ views }) => {
+      this.saved = views;
+      this.listsChanged.emit();
+    });
+    connection.on("view_state", ({ view, revision }) => this.configure(view, revision));
+  }
 
-  get current(): Readonly<OrbitView> {
+  get current(): Readonly<View> {
     return this.view;
   }
 
-  get orbit(): Orbit {
-    const { distance, yaw, pitch, focal_point, invert_z_axis } = this.view;
-    const [x = 0, y = 0, z = 0] = focal_point;
-    return { distance, yaw, pitch, focal: [x, y, z], invertZ: invert_z_axis };
+  get values(): ViewValues {
+    return this.view.values;
   }
 
-  /** The view of the configuration file: taken once; a reconnect does not move the user's camera. */
-  configure(view: OrbitView): void {
-    const first = this.configured === null;
-    this.configured = view;
-    if (first) this.update(view);
+  /** The rows of the current view's class. */
+  get properties(): readonly Property[] {
+    return this.propertiesOf(this.view.cls);
   }
 
-  setOrbit(orbit: Orbit): void {
-    this.update({ ...orbit, focal_point: [...orbit.focal], invert_z_axis: orbit.invertZ });
+  get controller(): ViewController {
+    return controllerOf(this.view.cls);
   }
 
-  /** Takes what is given and legal of a view. */
-  update(part: Partial<OrbitView>): void {
-    const next = { ...this.view, ...pick(part, Object.keys(this.view) as (keyof OrbitView)[]) };
-    next.distance = clampDistance(next.distance);
-    next.pitch = clampPitch(next.pitch);
-    next.yaw = wrapYaw(next.yaw);
-    next.near_clip_distance = Math.max(SMALLEST_NEAR_CLIP, next.near_clip_distance);
-    this.view = next;
-    this.changed.emit();
+  /** The frame the camera moves with. One that has no transform any more stays where it was, as in RViz. */
+  get target(): Target {
+    const name = this.view.values[TARGET_FRAME];
+    if (typeof name !== "string" || name === FIXED_FRAME) return FIXED;
+    const row = this.frames.row(name);
+    if (this.frames.has(row)) {
+      const [x = 0, y = 0, z = 0, qx = 0, qy = 0, qz = 0, qw = 1] = this.frames.poses.subarray(row * 7, row * 7 + 7);
+      const yaw = Math.atan2(2 * (qx * qy + qw * qz), qw * qw + qx * qx - qy * qy - qz * qz);
+      this.lastTarget = { position: [x, y, z], yaw: this.controller.followsYaw ? yaw : 0 };
+    }
+    return this.lastTarget;
   }
 
-  /** Follows another frame without moving the eye, as RViz does. */
+  /** The camera in the fixed frame. */
+  get camera(): Camera {
+    return cameraInFixed(this.controller.camera(this.view.values), this.target);
+  }
+
+  propertiesOf(cls: string): readonly Property[] {
+    return this.classes.find((each) => each.cls === cls)?.properties ?? [];
+  }
+
+  /** Takes values, each within the bounds of its property. */
+  update(values: ViewValues): void {
+    this.change({ ...this.view, values: { ...this.view.values, ...this.bounded(this.view.cls, values) } });
+  }
+
+  drag(drag: Drag): void {
+    this.update(this.controller.drag(this.view.values, drag));
+  }
+
+  /** `delta` is 120 a notch, positive away from the user. */
+  wheel(delta: number, shift: boolean): void {
+    this.update(this.controller.wheel(this.view.values, delta, shift));
+  }
+
+  /** Makes a point of the fixed frame the one that is looked at. */
+  lookAt(point: Vector): void {
+    this.update(this.controller.lookAt(this.view.values, toTarget(point, this.target)));
+  }
+
+  /** Another class of view, that looks as the one before does. */
+  setClass(cls: string): void {
+    if (cls === this.view.cls) return;
+    const before = this.view;
+    const inFixed = this.camera;
+    const defaults = this.defaultsOf(cls);
+    const kept = before.values[TARGET_FRAME];
+    this.view = { ...before, cls, values: kept === undefined ? defaults : { ...defaults, [TARGET_FRAME]: kept } };
+    const camera = cameraInTarget(inFixed, this.target);
+    this.update(this.controller.mimic({ cls: before.cls, values: before.values, camera }));
+  }
+
+  /** Follows another frame without moving the eye. */
   setTargetFrame(name: string): void {
-    const before = this.targetPosition();
-    this.view = { ...this.view, target_frame: name };
-    const after = this.targetPosition();
-    const [x = 0, y = 0, z = 0] = this.view.focal_point;
-    this.update({ focal_point: [x + before[0] - after[0], y + before[1] - after[1], z + before[2] - after[2]] });
+    const before = this.target;
+    this.view = { ...this.view, values: { ...this.view.values, [TARGET_FRAME]: name } };
+    this.update(this.controller.retarget(this.view.values, before, this.target));
   }
 
-  /** Position of the target frame in the fixed frame, m; the origin while it is unknown. */
-  targetPosition(): Vector {
-    const row = this.frames.row(this.view.target_frame);
-    if (!this.frames.has(row)) return [0, 0, 0];
-    const { poses } = this.frames;
-    return [poses[row * 7] ?? 0, poses[row * 7 + 1] ?? 0, poses[row * 7 + 2] ?? 0];
+  /** Sets one property as its row in the Views panel does. */
+  set(path: string, value: PropertyValue): void {
+    if (path === TARGET_FRAME) this.setTargetFrame(String(value));
+    else this.update({ [path]: value });
   }
 
   /** RViz's Zero button. */
   zero(): void {
-    this.setOrbit({ ...ZERO_ORBIT, invertZ: this.view.invert_z_axis });
+    this.update(this.controller.zero());
   }
 
   /** Back to the view of the configuration file. */
   reset(): void {
-    if (this.configured) this.update(this.configured);
+    if (this.configured) this.change(copyOf(this.configured));
     else this.zero();
+  }
+
+  // --- saved views -----------------------------------------------------------------------------------------------
+
+  /** Adds the current view to the saved ones. */
+  save(name: string): void {
+    this.connection.send({ type: "save_view", view: { ...copyOf(this.view), name } });
+  }
+
+  /** Looks as a saved view does. */
+  use(id: string): void {
+    const saved = this.saved.find((each) => each.id === id);
+    if (saved) this.change({ ...copyOf(saved.view), name: CURRENT_NAME });
+  }
+
+  rename(id: string, name: string): void {
+    const saved = this.saved.find((each) => each.id === id);
+    if (saved && name.trim() !== "") this.changeSaved(id, { ...copyOf(saved.view), name: name.trim() });
+  }
+
+  setSaved(id: string, path: string, value: PropertyValue): void {
+    const saved = this.saved.find((each) => each.id === id);
+    if (!saved) return;
+    const { cls, values } = saved.view;
+    this.changeSaved(id, { ...saved.view, values: { ...values, ...this.bounded(cls, { [path]: value }) } });
+  }
+
+  remove(id: string): void {
+    this.connection.send({ type: "remove_saved_view", id });
+  }
+
+  // --------------------------------------------------------------------------------------------------------------
+
+  /** The view of a configuration: taken once; a reconnect does not move the user's camera, another file does. */
+  private configure(view: View, revision: number): void {
+    const known = this.revision === revision;
+    this.configured = view;
+    this.revision = revision;
+    if (known) return;
+    this.view = copyOf(view);
+    this.changed.emit();
+  }
+
+  private change(view: View): void {
+    this.view = view;
+    this.changed.emit();
+    this.timer ??= setTimeout(() => {
+      this.timer = undefined;
+      this.connection.send({ type: "view_changed", view: copyOf(this.view) });
+    }, ANNOUNCE_INTERVAL_MS);
+  }
+
+  private changeSaved(id: string, view: View): void {
+    this.connection.send({ type: "change_saved_view", id, view });
+  }
+
+  private defaultsOf(cls: string): ViewValues {
+    return this.classes.find((each) => each.cls === cls)?.defaults ?? controllerOf(cls).zero();
+  }
+
+  private bounded(cls: string, values: ViewValues): ViewValues {
+    const result: Record<string, PropertyValue> = {};
+    for (const [path, value] of Object.entries(values)) {
+      const property = find(this.propertiesOf(cls), path);
+      if (typeof value !== "number") result[path] = value;
+      else if (Number.isFinite(value)) {
+        result[path] = Math.min(Math.max(value, property?.minimum ?? -Infinity), property?.maximum ?? Infinity);
+      }
+    }
+    return result;
   }
 }
 
-function pick<T extends object>(from: Partial<T>, keys: readonly (keyof T)[]): Partial<T> {
-  const result: Partial<T> = {};
-  for (const key of keys) if (from[key] !== undefined) result[key] = from[key];
-  return result;
+function copyOf(view: View): View {
+  return { ...view, values: { ...view.values } };
+}
+
+function find(properties: readonly Property[], id: string): Property | undefined {
+  for (const property of properties) {
+    if (property.id === id) return property;
+    const below = find(property.children, id);
+    if (below) return below;
+  }
+  return undefined;
 }

@@ -1,18 +1,27 @@
+import { details } from "./en/details";
+import { displays } from "./en/displays";
+import { shell } from "./en/shell";
+import { description } from "./en/description";
+import { monitor } from "./en/monitor";
+import { tools } from "./en/tools";
+import { sharing } from "./en/sharing";
+
 /** Every word of the page that does not come from the server. */
 export const en = {
   panels: {
+    ...description.panels,
+    ...tools.panels,
+    ...monitor.panels,
     displays: "Displays",
     scene: "3D View",
     views: "Views",
     joints: "Joints",
     diagnostics: "Diagnostics",
   },
-  titlebar: {
-    panels: "Panels",
-    resetLayout: "Reset layout",
-    language: "ZH",
-    languageHint: "Show this page in Chinese",
-  },
+  shell,
+  sharing,
+  details,
+  displays,
   tree: {
     globalOptions: "Global Options",
     globalStatus: "Global Status",
@@ -24,38 +33,15 @@ export const en = {
     helpHint: "Select a row to read what it means.",
     pickColor: "Pick a colour",
     frames: "Known frames",
+    noNames: "None is known.",
   },
-  views: {
-    current: "Current View",
-    type: "Type",
-    orbit: "Orbit",
-    zero: "Zero",
-    zeroHint: "RViz's starting view: 10 m away, looking at the origin",
-    reset: "Reset",
-    resetHint: "The view of the configuration file (Z)",
-    names: {
-      nearClip: "Near Clip Distance",
-      invertZ: "Invert Z Axis",
-      targetFrame: "Target Frame",
-      distance: "Distance",
-      shapeSize: "Focal Shape Size",
-      shapeFixed: "Focal Shape Fixed Size",
-      yaw: "Yaw",
-      pitch: "Pitch",
-      focalPoint: "Focal Point",
-    },
-    help: {
-      nearClip: "Anything closer to the camera than this is not drawn, m.",
-      invertZ: "Turns the camera upside down, for frames whose z axis points down.",
-      targetFrame: "The frame the camera follows; the focal point is relative to its position.",
-      distance: "Distance from the focal point, m.",
-      shapeSize: "Diameter of the yellow disc at the focal point, m.",
-      shapeFixed: "Keeps the disc that size; otherwise it grows with the distance.",
-      yaw: "Rotation of the camera around z, rad.",
-      pitch: "How far the camera looks down, rad.",
-      focalPoint: "The point the camera turns around, m.",
-    },
-  },
+  views: tools.views,
+  tools: tools.tools,
+  selected: tools.selected,
+  time: tools.time,
+  transformation: tools.transformation,
+  keys: tools.keys,
+  description,
   joints: {
     randomize: "Randomize",
     randomizeHint: "Move every joint to a random position within its limits",
@@ -78,6 +64,20 @@ export const en = {
     show: "Show",
     more: (count: number): string => `and ${count} more`,
   },
+  interactive: {
+    menu: "Right-click: menu.",
+    modes: {
+      menu: "Click: menu.",
+      button: "Click: activate.",
+      move_axis: "Drag: move along the axis.",
+      move_plane: "Drag: move in the plane.",
+      rotate_axis: "Drag: turn about the axis.",
+      move_rotate: "Drag: move and turn.",
+      move_3d: "Drag: move. Shift+drag: nearer or farther.",
+      rotate_3d: "Drag: turn. Shift+drag: turn about the line of sight.",
+      move_rotate_3d: "Drag: move. Shift: nearer or farther. Ctrl: turn. Ctrl+Shift: about the line of sight.",
+    },
+  },
   selection: {
     title: "Selected link",
     frame: "Frame",
@@ -91,7 +91,6 @@ export const en = {
   scene: {
     label: "3D view",
     waiting: "Waiting for a robot description",
-    mouse: "Left: rotate.  Middle: move.  Right or wheel: zoom.  Shift: more.  F: focus.  Z: reset.",
     noWebgl: "This browser gives no WebGL 2, which the 3D view needs.",
   },
   connection: {
@@ -110,7 +109,14 @@ export const en = {
     noRobot: "no robot",
     frames: (count: number): string => `${count} frames drawn`,
   },
+  monitor,
   close: "Close",
+  suggestions: "Suggestions",
+  pictures: {
+    none: "No image",
+    unreadable: "The image cannot be read",
+    noCameraInfo: "No CameraInfo",
+  },
 };
 
 function plural(count: number, noun: string): string {

@@ -1,14 +1,20 @@
+import { details } from "./zh/details";
+import { displays } from "./zh/displays";
+import { shell } from "./zh/shell";
+import { description } from "./zh/description";
 import type { Strings } from "./en";
+import { monitor } from "./zh/monitor";
+import { tools } from "./zh/tools";
+import { sharing } from "./zh/sharing";
 
 /** 简体中文 */
 export const zh: Strings = {
-  panels: { displays: "显示", scene: "三维视图", views: "视角", joints: "关节", diagnostics: "诊断" },
-  titlebar: {
-    panels: "面板",
-    resetLayout: "恢复默认布局",
-    language: "EN",
-    languageHint: "用英文显示本页",
-  },
+  panels: { ...description.panels,
+    ...tools.panels, ...monitor.panels, displays: "显示", scene: "三维视图", views: "视角", joints: "关节", diagnostics: "诊断" },
+  shell,
+  sharing,
+  details,
+  displays,
   tree: {
     globalOptions: "全局选项",
     globalStatus: "全局状态",
@@ -20,38 +26,15 @@ export const zh: Strings = {
     helpHint: "选中一行即可查看它的含义。",
     pickColor: "选择颜色",
     frames: "已知坐标系",
+    noNames: "没有已知的名称。",
   },
-  views: {
-    current: "当前视角",
-    type: "类型",
-    orbit: "轨道（Orbit）",
-    zero: "归零",
-    zeroHint: "RViz 的初始视角：距离 10 米，看向原点",
-    reset: "重置",
-    resetHint: "恢复配置文件中的视角（Z）",
-    names: {
-      nearClip: "近裁剪距离",
-      invertZ: "反转 Z 轴",
-      targetFrame: "目标坐标系",
-      distance: "距离",
-      shapeSize: "焦点标记大小",
-      shapeFixed: "焦点标记固定大小",
-      yaw: "偏航角",
-      pitch: "俯仰角",
-      focalPoint: "焦点",
-    },
-    help: {
-      nearClip: "比这更近的物体不绘制，单位米。",
-      invertZ: "相机上下颠倒，用于 z 轴朝下的坐标系。",
-      targetFrame: "相机跟随的坐标系；焦点相对于它的位置。",
-      distance: "相机到焦点的距离，单位米。",
-      shapeSize: "焦点处黄色圆盘的直径，单位米。",
-      shapeFixed: "圆盘保持此大小；否则随距离变大。",
-      yaw: "相机绕 z 轴的转角，单位弧度。",
-      pitch: "相机向下看的角度，单位弧度。",
-      focalPoint: "相机环绕的点，单位米。",
-    },
-  },
+  views: tools.views,
+  tools: tools.tools,
+  selected: tools.selected,
+  time: tools.time,
+  transformation: tools.transformation,
+  keys: tools.keys,
+  description,
   joints: {
     randomize: "随机",
     randomizeHint: "把每个关节移到限位内的随机位置",
@@ -74,6 +57,20 @@ export const zh: Strings = {
     show: "查看",
     more: (count) => `另有 ${count} 条`,
   },
+  interactive: {
+    menu: "右键：菜单。",
+    modes: {
+      menu: "单击：菜单。",
+      button: "单击：触发。",
+      move_axis: "拖动：沿轴移动。",
+      move_plane: "拖动：在平面内移动。",
+      rotate_axis: "拖动：绕轴旋转。",
+      move_rotate: "拖动：移动并旋转。",
+      move_3d: "拖动：移动。Shift+拖动：拉近或推远。",
+      rotate_3d: "拖动：旋转。Shift+拖动：绕视线旋转。",
+      move_rotate_3d: "拖动：移动。Shift：拉近或推远。Ctrl：旋转。Ctrl+Shift：绕视线旋转。",
+    },
+  },
   selection: {
     title: "选中的连杆",
     frame: "坐标系",
@@ -87,7 +84,6 @@ export const zh: Strings = {
   scene: {
     label: "三维视图",
     waiting: "正在等待机器人描述",
-    mouse: "左键：旋转　中键：平移　右键或滚轮：缩放　Shift：更多　F：聚焦　Z：重置",
     noWebgl: "三维视图需要 WebGL 2，而此浏览器不提供。",
   },
   connection: {
@@ -106,5 +102,12 @@ export const zh: Strings = {
     noRobot: "没有机器人",
     frames: (count) => `已绘制 ${count} 帧`,
   },
+  monitor,
   close: "关闭",
+  suggestions: "建议",
+  pictures: {
+    none: "没有图像",
+    unreadable: "无法读取图像",
+    noCameraInfo: "没有 CameraInfo",
+  },
 };

@@ -2,7 +2,7 @@ import { h } from "../dom";
 import type { PropertyValue } from "../protocol.gen";
 import { strings } from "../strings";
 import { formatColor, parseColor } from "./colors";
-import { FrameEditor } from "./frame-editor";
+import { NameEditor } from "./name-editor";
 import { clamp, formatNumber, parseNumber, stepFor } from "./numbers";
 import { TextEditor } from "./text-editor";
 import type { TreeItem } from "./tree-item";
@@ -31,11 +31,16 @@ export function createEditor(item: TreeItem, current: () => TreeItem, frames: ()
     case "color":
       return new ColorEditor(commit);
     case "frame":
-      return new FrameEditor(commit, frames);
+      return new NameEditor(commit, strings.tree.frames, ({ options }, show) => show(options?.length ? options : frames()));
     case "int":
     case "float":
       return numberEditor(item.kind === "int", current, commit);
+    case "topic":
+      return new NameEditor(commit, strings.displays.topics, (each, show) => each.ask?.(show), true);
     case "string":
+      if (item.options?.length) {
+        return new NameEditor(commit, strings.suggestions, ({ options }, show) => show(options ?? []), true);
+      }
       return new TextEditor({ format: display, parse: (text) => text, commit });
   }
 }

@@ -23,7 +23,15 @@ export interface TreeItem {
   readonly readOnly?: boolean;
   /** Whether the row is open before the user decides. */
   readonly expanded?: boolean;
+  /** The row is open whatever the user decided: something below it was looked for. */
+  readonly open?: boolean;
   readonly children?: () => readonly TreeItem[];
+  /** A double click on the name, or Enter on the row. */
+  readonly activate?: () => void;
+  /** Whether its value is read anew whenever it is shown: it changes with what the page draws. */
+  readonly live?: boolean;
+  /** Asks for the names to choose from, of a `topic`. */
+  readonly ask?: (show: (names: readonly string[]) => void) => void;
   /** Takes an edit; a row without it is read-only. */
   readonly set?: (value: PropertyValue) => void;
 }

@@ -48,6 +48,42 @@ export class TreeView {
     this.refresh();
   }
 
+  /** Whether a row is in view whose value changes with what the page draws. */
+  get showsLive(): boolean {
+    return this.lines.some(({ item }) => item.live);
+  }
+
+  /** Shows the values of such rows as they are now. */
+  showLive(): void {
+    for (const { item } of this.lines) {
+      if (item.live) this.rows.get(item.key)?.editor.show(item);
+    }
+  }
+
+  /** Forgets which of some rows the user opened and closed. */
+  forgetExpansion(of: (key: string) => boolean): void {
+    for (const key of this.expansion.keys()) if (of(key)) this.expansion.delete(key);
+    this.refresh();
+  }
+
+  /** Opens or closes a row and everything below it. */
+  expandAll(item: TreeItem, expanded: boolean): void {
+    this.expansion.set(item.key, expanded);
+    for (const child of item.children?.() ?? []) if (child.children) this.expandAll(child, expanded);
+    this.refresh();
+  }
+
+  /** The key of the row that is selected, if it is there. */
+  get selection(): string | null {
+    return this.selectedKey !== null && this.rows.has(this.selectedKey) ? this.selectedKey : null;
+  }
+
+  /** The row that an event is about. */
+  itemAt(target: EventTarget | null): { item: TreeItem; element: HTMLElement } | null {
+    const row = this.rows.get(keyOf(target) ?? "");
+    return row ? { item: row.item, element: row.element } : null;
+  }
+
   private render(): void {
     this.lines = [];
     this.flatten(this.items(), 0);
@@ -88,7 +124,7 @@ export class TreeView {
   }
 
   private isExpanded(item: TreeItem): boolean {
-    return this.expansion.get(item.key) ?? item.expanded ?? false;
+    return item.open ?? this.expansion.get(item.key) ?? item.expanded ?? false;
   }
 
   private setExpanded(item: TreeItem, expanded: boolean): void {
@@ -122,7 +158,9 @@ export class TreeView {
   private doubleClicked(event: MouseEvent): void {
     const target = event.target as HTMLElement;
     const row = this.rows.get(keyOf(target) ?? "");
-    if (row && target.closest(".row-name") && !target.closest(".twist")) {
+    if (!row || !target.closest(".row-name") || target.closest(".twist")) return;
+    if (row.item.activate) row.item.activate();
+    else {
       this.setExpanded(row.item, !this.isExpanded(row.item));
     }
   }
@@ -159,7 +197,8 @@ export class TreeView {
         break;
       case "Enter":
       case "F2":
-        if (!row.editor.focus()) this.setExpanded(line.item, !line.expanded);
+        if (event.key === "Enter" && row.item.activate) row.item.activate();
+        else if (!row.editor.focus()) this.setExpanded(line.item, !line.expanded);
         break;
       default:
         return;

@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from linkwright.bag.qos import to_bag
-from linkwright.messages.schema_text import schema_of
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path
 from linkwright.messages import type_hash
+from linkwright.messages.schema_text import schema_of
 
 if TYPE_CHECKING:
     from typing_extensions import Self

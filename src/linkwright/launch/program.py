@@ -11,6 +11,7 @@ from linkwright.launch.description import LaunchDescription
 from linkwright.launch.engine.hosted_plan import VIEWER
 from linkwright.launch.engine.log import LaunchLog
 from linkwright.launch.engine.surroundings import process_environment
+from linkwright.launch.engine.viewer_arguments import USAGE, asks_for_help
 from linkwright.launch.ros import Node
 from linkwright.launch.ros.executables import Origin, find_executable
 from linkwright.launch.ros.workspace_environment import workspace_environment
@@ -54,6 +55,9 @@ def run_viewer(arguments: Sequence[str], options: LaunchOptions | None = None) -
     Returns:
         The exit status, see `linkwright.launch.run_launch`.
     """
+    if asks_for_help(arguments):
+        print(USAGE, end="")
+        return 0
     package, executable = VIEWER
     viewer = Node(package=package, executable=executable, arguments=list(arguments))
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,13 +17,21 @@ from linkwright.graph import (
     FrameSnapshot,
     Node,
     TransformBuffer,
+    TransformException,
 )
 from linkwright.messages import TFMessage
+from linkwright.viewer.frame_history import FrameHistory
 from linkwright.viewer.frame_view import FrameView
 from linkwright.viewer.protocol import FrameTable, pack_transforms
 
 _SHORTEST_PAUSE = 0.004
 """Seconds between two looks at the buffer that find nothing new, so that a flood of equal transforms costs little."""
+
+_AHEAD = 0.8
+"""Part of the time between two updates by which one may come too early: the rate holds for many of them.
+
+Transforms that come at the very rate, but at other moments than updates are due, so hardly have to wait.
+"""
 
 _AGE_PERIOD = 0.25
 """Seconds between looks when nothing arrives: frames that are heard of no more must fade."""
@@ -43,6 +52,8 @@ class StreamSettings:
         fade_time: shortest Frame Timeout of the displays, seconds; None when no display shows ages.
         own_frames: frames that robots have links for, which tf may not know.
         watched: whether anybody sees the result.
+        paused: whether frames stay where they are.
+        lookup_ns: the time at which frames are shown, nanoseconds; None for the latest there is.
     """
 
     fixed_frame: Callable[[], str]
@@ -50,6 +61,8 @@ class StreamSettings:
     fade_time: Callable[[], float | None]
     own_frames: Callable[[], frozenset[str]]
     watched: Callable[[], bool]
+    paused: Callable[[], bool] = lambda: False
+    lookup_ns: Callable[[], int | None] = lambda: None
 
 
 class FrameStream:
@@ -64,6 +77,7 @@ class FrameStream:
         on_table: called with a new frame table, before transforms that need it.
         on_transforms: called with each binary frame.
         on_frames: called when frames came or went, or can be placed now or no more.
+        history: where frames were, for a time other than the latest.
     """
 
     def __init__(
@@ -74,6 +88,7 @@ class FrameStream:
         on_table: Callable[[FrameTable], None],
         on_transforms: Callable[[bytes], None],
         on_frames: Callable[[FrameView], None],
+        history: FrameHistory | None = None,
     ) -> None:
         self._node = node
         self._settings = settings
@@ -85,7 +100,7 @@ class FrameStream:
         self._loop = asyncio.get_running_loop()
         self._soon: asyncio.Handle | None = None
         self._ageing: asyncio.Handle | None = None
-        self._sent_at = self._looked_at = float("-inf")
+        self._due = self._looked_at = float("-inf")
         self._stamp_ns = 0
         self._structure: tuple[Any, ...] = ()
         self._table = FrameTable(0, [], [])
@@ -93,6 +108,10 @@ class FrameStream:
         self._ages: NDArray[np.float64] = np.empty(0)
         self._placed = b""
         self._frame = b""
+        self._history = history
+        self._release: Callable[[], None] | None = None
+        self._held: dict[Hashable, tuple[TFMessage, bool]] = {}
+        self._paused_ns: int | None = None
 
     def start(self) -> None:
         """Subscribe, and begin."""
@@ -108,6 +127,31 @@ class FrameStream:
             if handle is not None:
                 handle.cancel()
         self._soon = self._ageing = None
+        if self._release is not None:
+            self._release()
+            self._release = None
+
+    def time_changed(self) -> None:
+        """Time stands still, goes on, or another time is to be shown: look."""
+        if self._settings.paused():
+            self._paused_ns = self._paused_ns or self._clock.now_ns()
+        else:
+            self._paused_ns = None
+            held = list(self._held.values())
+            self._held.clear()
+            for message, static in held:
+                self._take(message, static)
+        self.refresh()
+
+    def forget(self) -> None:
+        """Forget all moving transforms: time begins anew."""
+        self._held.clear()
+        self._buffer.clear()
+        self.refresh()
+
+    def look_soon(self) -> None:
+        """Look as soon as the rate allows."""
+        self._wake()
 
     def robot_changed(self, gone: set[str]) -> None:
         """Forget the frames that a new robot lacks, and look whether it has one that tf does not know."""
@@ -129,6 +173,11 @@ class FrameStream:
 
     def _take(self, message: TFMessage, static: bool) -> None:
         batch = message.batch
+        if self._settings.paused():
+            key = (batch.parents, batch.children, static)
+            self._held.pop(key, None)
+            self._held[key] = (message, static)
+            return
         self._buffer.update(TFMessage(batch=batch), static=static, now_ns=self._clock.now_ns())
         self._stamp_ns = max(self._stamp_ns, batch.stamp_ns)
         self._wake()
@@ -136,7 +185,8 @@ class FrameStream:
     def _wake(self) -> None:
         if self._soon is not None or not self._settings.watched():
             return
-        due = max(self._sent_at + 1.0 / self._settings.rate(), self._looked_at + _SHORTEST_PAUSE)
+        ahead = _AHEAD / self._settings.rate()
+        due = max(self._due - ahead, self._looked_at + _SHORTEST_PAUSE)
         if due <= self._loop.time():
             self._soon = self._loop.call_soon(self._look)
         else:
@@ -151,8 +201,8 @@ class FrameStream:
         self._soon = None
         self._looked_at = self._loop.time()
         fixed_frame = self._settings.fixed_frame()
-        snapshot = self._buffer.snapshot(fixed_frame, self._clock.now_ns())
-        poses, ages = snapshot.poses, snapshot.ages
+        snapshot = self._buffer.snapshot(fixed_frame, self._paused_ns or self._clock.now_ns())
+        poses, ages = self._poses_then(snapshot, fixed_frame), snapshot.ages
         alone = fixed_frame not in snapshot.names and fixed_frame in self._settings.own_frames()
         if alone:
             poses, ages = np.concatenate([poses, _IDENTITY]), np.append(ages, 0.0)
@@ -161,6 +211,26 @@ class FrameStream:
         if changed or self._is_news(rows, ages):
             self._send(rows, ages)
         self._tell_displays(snapshot, rows, fixed_frame, changed)
+
+    def _poses_then(self, snapshot: FrameSnapshot, fixed_frame: str) -> NDArray[np.float64]:
+        """Where frames are at the time to be shown; where nothing is known of that time, where they are now."""
+        stamp_ns = self._settings.lookup_ns()
+        self._follow(stamp_ns is not None)
+        if stamp_ns is None or self._history is None:
+            return snapshot.poses
+        poses: NDArray[np.float64] = snapshot.poses.copy()
+        for row, name in enumerate(snapshot.names):
+            with suppress(TransformException):
+                poses[row] = self._history.pose(fixed_frame, name, stamp_ns)
+        return poses
+
+    def _follow(self, needed: bool) -> None:
+        """Keep the history while another time than the latest is shown."""
+        if needed and self._release is None and self._history is not None:
+            self._release = self._history.use(lambda: None)
+        elif not needed and self._release is not None:
+            self._release()
+            self._release = None
 
     def _compare_structure(self, snapshot: FrameSnapshot, alone: str | None) -> bool:
         structure = (snapshot.revision, alone)
@@ -188,9 +258,19 @@ class FrameStream:
 
     def _send(self, poses: NDArray[np.float32], ages: NDArray[np.float64]) -> None:
         self._poses, self._ages = poses, ages
-        self._sent_at = self._looked_at
+        self._due = self._next_due()
         self._frame = pack_transforms(self._table.revision, self._stamp_ns / 1e9, poses, ages)
         self._on_transforms(self._frame)
+
+    def _next_due(self) -> float:
+        """When the next update may be sent.
+
+        What is sent a little late does not make the next one later: transforms that come at the rate would else wait
+        longer and longer, until one of them is left out.
+        """
+        period = 1.0 / self._settings.rate()
+        in_time = self._looked_at - self._due < period / 2
+        return (self._due if in_time else self._looked_at) + period
 
     def _tell_displays(
         self, snapshot: FrameSnapshot, poses: NDArray[np.float32], fixed_frame: str, changed: bool

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from linkwright.viewer.protocol import StatusRow
+from linkwright.viewer.schema import FIXED_FRAME
+
 
 @dataclass(frozen=True, slots=True)
 class FrameView:
@@ -26,3 +29,10 @@ class FrameView:
         if frame in self.placed:
             return None
         return f"No transform from [{frame}] to [{self.fixed_frame}]"
+
+
+def transform_status(frames: FrameView, frame: str) -> StatusRow:
+    """The Transform row of a display in a frame (or in ``<Fixed Frame>``), in RViz's words."""
+    if frame == FIXED_FRAME or frame in frames.placed:
+        return StatusRow("Transform", "ok", "Transform OK")
+    return StatusRow("Transform", "error", f"Could not transform from [{frame}] to [{frames.fixed_frame}]")

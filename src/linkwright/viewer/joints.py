@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, ClassVar, cast
 
+from linkwright.viewer.audience import Page
+from linkwright.viewer.features import PageFeature
 from linkwright.viewer.protocol import (
     CenterJoints,
     JointControl,
@@ -14,6 +16,7 @@ from linkwright.viewer.protocol import (
     RandomizeJoints,
     ServerMessage,
     SetJoint,
+    SetJoints,
 )
 
 if TYPE_CHECKING:
@@ -23,8 +26,10 @@ _LAG = 0.01
 """Seconds by which positions follow a change, so that the transforms it causes go out first."""
 
 
-class JointBridge:
+class JointBridge(PageFeature):
     """Between the page's Joints panel and the one that moves the joints, once there is one."""
+
+    RECEIVES: ClassVar[tuple[type, ...]] = (SetJoint, SetJoints, RandomizeJoints, CenterJoints)
 
     def __init__(self, publish: Callable[[ServerMessage], None]) -> None:
         self._publish = publish
@@ -41,16 +46,16 @@ class JointBridge:
             self._soon = None
         self._panel = panel
         self._unsubscribe = None if panel is None else panel.subscribe(self._told)
-        for message in self.messages():
+        for message in self.opening():
             self._publish(message)
 
-    def messages(self) -> list[ServerMessage]:
-        """What a page must be told that opens now."""
+    def opening(self) -> list[ServerMessage]:
+        """The sliders, and where they stand."""
         if self._panel is None:
             return [Joints(None)]
         return [self._controls(self._panel), JointPositions(self._panel.positions())]
 
-    def receive(self, message: SetJoint | RandomizeJoints | CenterJoints) -> None:
+    def receive(self, page: Page, message: SetJoint | SetJoints | RandomizeJoints | CenterJoints) -> None:  # noqa: ARG002
         """Do what a page asks for. Joints that are not, or only follow another, are passed over."""
         panel = self._panel
         if panel is None:
@@ -59,8 +64,15 @@ class JointBridge:
             panel.randomize()
         elif isinstance(message, CenterJoints):
             panel.center()
+        elif isinstance(message, SetJoints):
+            for name, position in message.positions.items():
+                panel.set_position(name, position)
         else:
             panel.set_position(message.name, message.position)
+
+    def close(self) -> None:
+        """Let go of the panel."""
+        self.attach(None)
 
     def _told(self, kind: str) -> None:
         if self._panel is not None and kind == "sliders":
@@ -84,6 +96,8 @@ class JointBridge:
                     upper=slider.upper,
                     zero=slider.zero,
                     mimic=slider.mimic,
+                    multiplier=slider.multiplier,
+                    offset=slider.offset,
                 )
                 for slider in panel.sliders()
             ]

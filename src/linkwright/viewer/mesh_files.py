@@ -139,6 +139,12 @@ class MeshFolders:
         """Make these the folders of one display, in place of those it had."""
         self._folders[owner] = folders
 
+    def copy(self) -> MeshFolders:
+        """The folders as they are now, whatever becomes of the displays."""
+        made = MeshFolders()
+        made._folders.update(self._folders)
+        return made
+
     def file(self, key: str, relative: str) -> Path:
         """The real path of a file asked for.
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 
 from linkwright.diagnostics import Diagnostic, Severity
+from linkwright.viewer.former_names import FormerKey
 from linkwright.viewer.protocol import Property, PropertyChanged, PropertyValue
 from linkwright.viewer.schema import PropertySpec, accept, from_text, to_text
-from linkwright.viewer.yaml_tree import Section
+from linkwright.viewer.yaml_tree import Memory, Scalar, Section, ensure_section
 
 Path = tuple[str, ...]
 Schema = tuple[PropertySpec, ...]
@@ -28,6 +30,7 @@ class PropertyStore:
         report: told of a value in the file that cannot be used; its default stands then.
         base: keys from the section to the mapping with the values; made only when a value is set.
         frames: gives the names offered for a ``frame``.
+        former: where RViz 1 kept values, for a section that it wrote.
     """
 
     def __init__(
@@ -38,6 +41,7 @@ class PropertyStore:
         report: Callable[[Diagnostic], None],
         base: Path = (),
         frames: Callable[[], list[str]] = list,
+        former: Mapping[Path, FormerKey] | None = None,
     ) -> None:
         self._owner = owner
         self._section = section
@@ -45,6 +49,8 @@ class PropertyStore:
         self._report = report
         self._base = base
         self._frames = frames
+        self._former = former or {}
+        self._recorded: list[Memory] | None = None
         self._values: dict[Path, PropertyValue] = {}
 
     def get(self, *path: str) -> PropertyValue:
@@ -84,11 +90,44 @@ class PropertyStore:
         taken = accept(spec, value)
         if taken != self._value(path, spec):
             self._values[path] = taken
-            string = spec.kind in ("string", "frame", "enum", "color")
-            self._section.put(
-                (*self._base, *path), to_text(spec, taken), string=string, nested=spec.nested or bool(spec.children)
-            )
+            self._write(path, spec, to_text(spec, taken))
         return taken
+
+    def tell(self, path: Path, value: PropertyValue) -> bool:
+        """Give a property a value that the file does not get, as of one that is read-only; whether that is news.
+
+        Raises:
+            KeyError: when the schema has no such property.
+        """
+        spec = self._spec(path)
+        if self._value(path, spec) == value:
+            return False
+        self._values[path] = value
+        return True
+
+    @contextmanager
+    def recording(self) -> Iterator[list[Memory]]:
+        """Gathers what the file said of whatever is set meanwhile, for `recall`."""
+        memories: list[Memory] = []
+        self._recorded = memories
+        try:
+            yield memories
+        finally:
+            self._recorded = None
+
+    def memories(self, of: Iterable[Memory]) -> list[Memory]:
+        """What the file says now under the keys of other memories."""
+        return [self._place().memory(memory.key) for memory in of]
+
+    def recall(self, memories: Iterable[Memory]) -> list[Path]:
+        """Make the file say what it said; the paths of the values that are others now."""
+        keys = {memory.key for memory in memories}
+        for memory in memories:
+            self._place().recall(memory)
+        old = {path: value for path, value in self._values.items() if self._key(path) in keys and self._is_kept(path)}
+        for path in old:
+            del self._values[path]
+        return [path for path, value in old.items() if self.get(*path) != value]
 
     def find(self, identity: str) -> Path | None:
         """The path of the property with an id, or None."""
@@ -139,12 +178,20 @@ class PropertyStore:
             options=self._frames() if spec.kind == "frame" else list(spec.options),
             minimum=spec.minimum,
             maximum=spec.maximum,
+            read_only=spec.read_only,
             expanded=spec.expanded,
             children=[self._row(child, path) for child in spec.children if self._shown(child)],
+            details=spec.details,
         )
 
     def _shown(self, spec: PropertySpec) -> bool:
-        return spec.when is None or self.get(*spec.when[0]) == spec.when[1]
+        return not spec.hidden and self._condition_holds(spec)
+
+    def _condition_holds(self, spec: PropertySpec) -> bool:
+        if spec.when is None:
+            return True
+        path, value = spec.when
+        return self.get(*path) == value and self._condition_holds(self._spec(path))
 
     def _value(self, path: Path, spec: PropertySpec) -> PropertyValue:
         try:
@@ -154,15 +201,54 @@ class PropertyStore:
             return value
 
     def _from_file(self, path: Path, spec: PropertySpec) -> PropertyValue:
-        scalar = self._section.scalar(*self._base, *path)
+        scalar = None if spec.read_only else self._scalar(path)
         if scalar is None or spec.kind == "group":
             return spec.default
+        if spec.kind in ("enum", "frame") and not scalar.text:
+            return spec.default  # RViz writes this where it had nothing to choose from
         try:
             return from_text(spec, scalar.text)
         except ValueError as error:
             message = f"'{spec.name}': {error}; {spec.default!r} is used"
             self._report(Diagnostic("RVIZ201", message, scalar.span, Severity.WARNING, source=self._section.source))
             return spec.default
+
+    def _scalar(self, path: Path) -> Scalar | None:
+        scalar = self._section.scalar(*self._base, *path)
+        former = self._former.get(path)
+        if scalar is None and former is not None:
+            scalar = self._section.scalar(*self._base, former.key)
+            return scalar and Scalar(former.read(scalar.text), scalar.span)
+        return scalar
+
+    def _write(self, path: Path, spec: PropertySpec, text: str) -> None:
+        former = self._former_key(path)
+        string = spec.kind in ("string", "frame", "enum", "color", "topic")
+        nested = spec.nested or bool(spec.children)
+        if former is not None:
+            path, text, nested = (former.key,), former.write(text), False
+            string = string and text not in ("true", "false")  # of Unreliable, which is a policy today
+        if self._recorded is not None and path[0] not in (memory.key for memory in self._recorded):
+            self._recorded.append(self._place().memory(path[0]))
+        self._section.put((*self._base, *path), text, string=string, nested=nested)
+
+    def _former_key(self, path: Path) -> FormerKey | None:
+        """Where RViz 1 kept a value, unless the file has it where it is kept today."""
+        return self._former.get(path) if self._section.scalar(*self._base, *path) is None else None
+
+    def _place(self) -> Section:
+        return ensure_section(self._section, *self._base) if self._base else self._section
+
+    def _key(self, path: Path) -> str:
+        former = self._former_key(path)
+        return former.key if former else path[0]
+
+    def _is_kept(self, path: Path) -> bool:
+        """Whether there is such a property, and the file has it."""
+        try:
+            return not self._spec(path).read_only
+        except KeyError:
+            return False
 
     def _spec(self, path: Path) -> PropertySpec:
         specs = self._schema()

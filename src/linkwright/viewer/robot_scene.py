@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from linkwright.urdf import Box, Capsule, Collision, Cylinder, Link, Material, Mesh, Robot, Sphere, Visual
 from linkwright.urdf.rotation import quaternion_of
+from linkwright.viewer.inertias import link_inertia
 from linkwright.viewer.mesh_files import IMAGE_TYPES, MESH_TYPES, MeshIndex
 from linkwright.viewer.places import folder_of, place_of
-from linkwright.viewer.protocol import LinkScene, Shape
+from linkwright.viewer.protocol import JointScene, LinkScene, Shape
 
 
 def frame_of(link: str, prefix: str) -> str:
@@ -36,6 +38,23 @@ class SceneBuilder:
         parents = {joint.child: joint.name for joint in robot.joints.values()}
         return [self._link(link, prefix, parents.get(link.name)) for link in robot.links.values()]
 
+    def joints(self, robot: Robot) -> list[JointScene]:
+        """The joints in file order."""
+        return [
+            JointScene(
+                name=joint.name,
+                kind=joint.type,
+                parent=joint.parent,
+                child=joint.child,
+                position=list(joint.origin.xyz),
+                quaternion=list(quaternion_of(joint.origin)),
+                axis=list(joint.axis),
+                lower=_finite(joint.limit.lower) if joint.limit else None,
+                upper=_finite(joint.limit.upper) if joint.limit else None,
+            )
+            for joint in robot.joints.values()
+        ]
+
     def _link(self, link: Link, prefix: str, parent_joint: str | None) -> LinkScene:
         first = link.visuals[0].material if link.visuals else None
         return LinkScene(
@@ -45,6 +64,7 @@ class SceneBuilder:
             visuals=self._shapes(link, link.visuals),
             collisions=self._shapes(link, link.collisions, first),
             place=place_of(link.element),
+            inertia=link_inertia(link.inertial),
         )
 
     def _shapes(self, link: Link, parts: Sequence[Visual | Collision], material: Material | None = None) -> list[Shape]:
@@ -96,3 +116,7 @@ class SceneBuilder:
         problems = self.problems.setdefault(link.name, [])
         if text not in problems:
             problems.append(text)
+
+
+def _finite(number: float) -> float | None:
+    return number if math.isfinite(number) else None

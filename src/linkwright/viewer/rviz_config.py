@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity
-from linkwright.viewer import yaml_tree
-from linkwright.viewer.orbit import read_view, write_view
+from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.viewer import configuration_file, yaml_tree
+from linkwright.viewer.configuration_file import FileForm, FileState
+from linkwright.viewer.display_config import DisplayConfig, displace, place, read_displays
+from linkwright.viewer.former_names import GROUP
 from linkwright.viewer.property_store import PropertyStore
-from linkwright.viewer.protocol import OrbitView
 from linkwright.viewer.schema import PropertySpec
-from linkwright.viewer.yaml_tree import Scalar, Section
+from linkwright.viewer.tools_config import ToolsConfig
+from linkwright.viewer.views_config import ViewsConfig
+from linkwright.viewer.yaml_tree import Entries, Section
+
+__all__ = ["GLOBAL_OPTIONS", "Arrangement", "DisplayConfig", "RvizConfig"]
 
 GLOBAL_OPTIONS = (
     PropertySpec(
@@ -32,9 +38,9 @@ GLOBAL_OPTIONS = (
 )
 
 _MANAGER = "Visualization Manager"
-_GROUP = "Group"
+_OTHER_KEYS = ("Panels", "Toolbars", "Window Geometry")
+"""A file with one of these is a configuration, if one without displays."""
 _OWN_PREFIX = "rviz_default_plugins/"
-_OLD_PREFIX = "rviz/"  # class names of ROS 1
 
 _DEFAULT = """\
 Panels:
@@ -56,7 +62,14 @@ Visualization Manager:
     Frame Rate: 30
   Name: root
   Tools:
+    - Class: rviz_default_plugins/Interact
     - Class: rviz_default_plugins/MoveCamera
+    - Class: rviz_default_plugins/Select
+    - Class: rviz_default_plugins/FocusCamera
+    - Class: rviz_default_plugins/Measure
+    - Class: rviz_default_plugins/SetInitialPose
+    - Class: rviz_default_plugins/SetGoal
+    - Class: rviz_default_plugins/PublishPoint
   Value: true
   Views:
     Current:
@@ -71,52 +84,37 @@ _MODEL_DISPLAYS: tuple[tuple[str, dict[str, str]], ...] = (
 )
 
 
-@dataclass(slots=True)
-class DisplayConfig:
-    """One entry of ``Displays``.
+@dataclass(frozen=True, slots=True)
+class Arrangement:
+    """Which displays there were, in which order and groups: what stood under ``Displays`` of each holder."""
 
-    Attributes:
-        cls: RViz 2's name of its class, also where the file says it as RViz 1 did.
-        name: as shown; one inside of groups carries their names, as in ``Sensors / Laser``.
-        section: its part of the file.
-        groups: the groups around it, outermost first; it is drawn only if they are enabled too.
-    """
-
-    cls: str
-    name: str
-    section: Section
-    groups: tuple[Section, ...] = field(default=())
-
-    @property
-    def enabled(self) -> bool:
-        """Whether it is drawn: its box and those of the groups around it are on."""
-        return all(_enabled(section) for section in (*self.groups, self.section))
-
-    @enabled.setter
-    def enabled(self, value: bool) -> None:
-        for section in (*self.groups, self.section) if value else (self.section,):
-            if _enabled(section) != value:
-                for key in ("Enabled", "Value"):
-                    section.put((key,), "true" if value else "false")
+    displays: dict[DisplayConfig | None, list[DisplayConfig]]
+    memories: dict[DisplayConfig | None, Entries]
 
 
 class RvizConfig:
     """A configuration file.
 
     What this program does not know is kept and written back: keys, their order, Qt's window state, displays of other
-    classes. Missing keys have RViz's defaults and stay missing until they are set.
+    classes. Missing keys have RViz's defaults and stay missing until they are set. A file in which nothing was
+    changed is written back to the letter; from one that was, comments go, as in RViz.
 
     Attributes:
-        path: the file it was read from, or None.
-        displays: the entries of ``Displays``; those inside of groups follow in their place.
+        path: the file it was read from or saved to, or None.
+        document: the whole file.
+        displays: the entries of ``Displays``; groups hold others.
         options: the Global Options.
+        views: the current view and the saved ones.
+        tools: the tools.
         warnings: what the file says that cannot be used.
     """
 
-    def __init__(self, document: Section, path: Path | None = None) -> None:
+    def __init__(self, document: Section, path: Path | None = None, form: FileForm | None = None) -> None:
         self.path = path
         self.warnings: list[Diagnostic] = []
-        self._document = document
+        self.document = document
+        self._form = form or FileForm()
+        self._state: FileState | None = configuration_file.state_of(path) if path else None
         self.options = PropertyStore(
             "global",
             document,
@@ -125,11 +123,11 @@ class RvizConfig:
             base=(_MANAGER, "Global Options"),
         )
         self.options.rows()  # so that all warnings are there from the start
-        self.displays: list[DisplayConfig] = []
-        manager = document.section(_MANAGER)
-        if manager is not None:
-            self._collect(manager, (), "")
-        self._view = read_view(document, self.warnings.append)
+        self.displays: list[DisplayConfig] = read_displays(
+            document.section(_MANAGER) or yaml_tree.new_section(document.source), None, self.warnings.append
+        )
+        self.views = ViewsConfig(document, self.warnings.append)
+        self.tools = ToolsConfig(document, self.warnings.append)
 
     @classmethod
     def load(cls, path: str | Path) -> RvizConfig:
@@ -139,29 +137,23 @@ class RvizConfig:
             LinkwrightError: RVIZ101, it cannot be read; RVIZ102, it is not YAML; RVIZ103, it is no such configuration.
         """
         path = Path(path)
-        try:
-            text = path.read_text(encoding="utf-8-sig")
-        except OSError as error:
-            hint = "name a .rviz file after '-d'" if isinstance(error, FileNotFoundError) else None
-            message = f"cannot read the RViz configuration '{path}': {error.strerror or error}"
-            raise LinkwrightError(Diagnostic("RVIZ101", message, hint=hint)) from None
-        except UnicodeDecodeError:
-            message = f"the RViz configuration '{path}' is not a text in UTF-8"
-            raise LinkwrightError(Diagnostic("RVIZ101", message)) from None
-        return cls.parse(text, str(path), path)
+        text, form = configuration_file.read(path)
+        return cls.parse(text, str(path), path, form)
 
     @classmethod
-    def parse(cls, text: str, name: str = "<rviz>", path: Path | None = None) -> RvizConfig:
+    def parse(
+        cls, text: str, name: str = "<rviz>", path: Path | None = None, form: FileForm | None = None
+    ) -> RvizConfig:
         """Read a text; `name` is what messages call it.
 
         Raises:
             LinkwrightError: RVIZ102, it is not YAML; RVIZ103, it is no such configuration.
         """
         document = yaml_tree.parse(text, name)
-        if document.section(_MANAGER) is None:
+        if document.section(_MANAGER) is None and not set(_OTHER_KEYS) & set(document.keys()):
             message = f"'{name}' is no RViz configuration: it has no '{_MANAGER}'"
             raise LinkwrightError(Diagnostic("RVIZ103", message, document.span(), source=document.source))
-        return cls(document, path)
+        return cls(document, path, form)
 
     @classmethod
     def default(cls) -> RvizConfig:
@@ -177,38 +169,100 @@ class RvizConfig:
             distance: of the eye from the origin, metres.
         """
         config = cls.parse(_DEFAULT, "<model>")
-        manager = config._document.section(_MANAGER)
-        assert manager is not None
         for name, values in _MODEL_DISPLAYS:
-            section = yaml_tree.append_section(manager, "Displays")
-            section.put(("Class",), _OWN_PREFIX + name, string=True)
+            display = config.make(_OWN_PREFIX + name, name)
             for key, value in values.items():
-                section.put((key,), value, string=True, nested=True)
-            section.put(("Enabled",), "true")
-            section.put(("Name",), name, string=True)
-            section.put(("Value",), "true")
-            config.displays.append(DisplayConfig(_OWN_PREFIX + name, name, section))
+                display.section.put((key,), value, string=True, nested=True)
+            config.insert(display)
         config.options.set(("Fixed Frame",), fixed_frame)
-        config.view.distance = distance
-        write_view(config._document, config.view)
+        view = config.views.current
+        view.values["Distance"] = distance
+        config.views.current = view
         return config
 
-    @property
-    def view(self) -> OrbitView:
-        """The current view, as an Orbit."""
-        return self._view
+    def copy(self) -> RvizConfig:
+        """Another one alike, of no file."""
+        return RvizConfig.parse(self.text(), self.document.source.name)
 
-    @view.setter
-    def view(self, view: OrbitView) -> None:
-        write_view(self._document, view)
-        self._view = view
+    # --- displays ----------------------------------------------------------------------------------------------
+
+    def walk(self) -> Iterator[DisplayConfig]:
+        """Every display, each group before what is in it."""
+        for display in self.displays:
+            yield from display.walk()
+
+    def make(self, cls: str, name: str) -> DisplayConfig:
+        """A display that is enabled and has the defaults of its class; `insert` puts it into the file."""
+        section = yaml_tree.new_section(self.document.source)
+        section.put(("Class",), cls, string=True)
+        section.put(("Enabled",), "true")
+        section.put(("Name",), name, string=True)
+        if cls != GROUP:
+            section.put(("Value",), "true")
+        return DisplayConfig(section, None)
+
+    def duplicate(self, display: DisplayConfig) -> DisplayConfig:
+        """A display alike; `insert` puts it into the file."""
+        return DisplayConfig(yaml_tree.copy_section(display.section), None)
+
+    def insert(self, display: DisplayConfig, group: DisplayConfig | None = None, index: int | None = None) -> None:
+        """Put a display into a group, or among the outermost: in front of the one with an index, or last.
+
+        Raises:
+            ValueError: when that place is no group, or inside of the display itself.
+        """
+        if group is not None and (not group.is_group or group in display.walk()):
+            raise ValueError(f"'{display.name}' cannot be put into '{group.name}'")
+        siblings = self.siblings(group)
+        place(display, self._parent(group), siblings, len(siblings) if index is None else index)
+        display.group = group
+
+    def remove(self, display: DisplayConfig) -> None:
+        """Take a display out of the file."""
+        displace(display, self._parent(display.group), self.siblings(display.group))
+
+    def make_group(self, name: str) -> DisplayConfig:
+        """A group that holds nothing; `insert` puts it into the file."""
+        return self.make(GROUP, name)
+
+    def arrangement(self) -> Arrangement:
+        """Which displays there are, for `arrange`."""
+        groups = [None, *(display for display in self.walk() if display.is_group)]
+        return Arrangement(
+            {group: list(self.siblings(group)) for group in groups},
+            {group: yaml_tree.entries(self._parent(group), "Displays") for group in groups},
+        )
+
+    def arrange(self, arrangement: Arrangement) -> None:
+        """Have the displays that there were."""
+        for group, displays in arrangement.displays.items():
+            self.siblings(group)[:] = displays
+            for display in displays:
+                display.group = group
+            yaml_tree.set_entries(self._parent(group), "Displays", arrangement.memories[group])
+
+    def siblings(self, group: DisplayConfig | None) -> list[DisplayConfig]:
+        """What a group holds; the outermost displays for None."""
+        return self.displays if group is None else group.displays
+
+    def _parent(self, group: DisplayConfig | None) -> Section:
+        return group.section if group is not None else self._manager()
+
+    def _manager(self) -> Section:
+        """The section that has ``Displays``; made where it is missing when something is put into it."""
+        return self.document.section(_MANAGER) or yaml_tree.ensure_section(self.document, _MANAGER)
+
+    # --- file --------------------------------------------------------------------------------------------------
 
     def text(self) -> str:
         """The file's text with the values set so far."""
-        return yaml_tree.write(self._document)
+        source = self.document.source
+        if yaml_tree.same(self.document, yaml_tree.parse(source.text, source.name)):
+            return source.text
+        return yaml_tree.write(self.document).replace("\n", self._form.newline)
 
     def save(self, path: str | Path | None = None) -> None:
-        """Write to a file, by default the one it came from.
+        """Write to a file, by default the one it came from, which it is from then on.
 
         Raises:
             ValueError: when it came from none and none is given.
@@ -217,38 +271,11 @@ class RvizConfig:
         target = Path(path) if path is not None else self.path
         if target is None:
             raise ValueError("no file to save to")
-        try:
-            target.write_text(self.text(), encoding="utf-8")
-        except OSError as error:
-            message = f"cannot write the RViz configuration '{target}': {error.strerror or error}"
-            raise LinkwrightError(Diagnostic("RVIZ104", message)) from None
+        configuration_file.write(target, self.text(), self._form)
+        self.path = target
+        self._state = configuration_file.state_of(target)
 
-    def _collect(self, parent: Section, groups: tuple[Section, ...], prefix: str) -> None:
-        for section in parent.sections("Displays"):
-            scalar = section.scalar("Class")
-            if scalar is None:
-                message = "a display without a 'Class' is left out"
-                self.warnings.append(
-                    Diagnostic("RVIZ202", message, section.span(), Severity.WARNING, source=section.source)
-                )
-                continue
-            name = _name(section, scalar)
-            if scalar.text.rpartition("/")[2] == _GROUP:
-                self._collect(section, (*groups, section), f"{prefix}{name} / ")
-            else:
-                self.displays.append(DisplayConfig(_modern(scalar.text), prefix + name, section, groups))
-
-
-def _modern(cls: str) -> str:
-    return _OWN_PREFIX + cls.removeprefix(_OLD_PREFIX) if cls.startswith(_OLD_PREFIX) else cls
-
-
-def _name(section: Section, cls: Scalar) -> str:
-    scalar = section.scalar("Name")
-    return scalar.text if scalar else cls.text.rpartition("/")[2]
-
-
-def _enabled(section: Section) -> bool:
-    """``Enabled``, else ``Value``; RViz's default for both is off."""
-    scalar = section.scalar("Enabled") or section.scalar("Value")
-    return scalar is not None and scalar.text.strip().lower() in ("true", "1", "yes", "on")
+    @property
+    def changed_on_disk(self) -> bool:
+        """Whether another program has changed the file since it was read or saved."""
+        return self.path is not None and configuration_file.state_of(self.path) not in (self._state, None)

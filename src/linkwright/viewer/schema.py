@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import math
 import re
+from contextlib import suppress
 from dataclasses import dataclass
 
-from linkwright.viewer.protocol import PropertyKind, PropertyValue
+from linkwright.viewer.protocol import PropertyKind, PropertyValue, RowDetails
 
 FIXED_FRAME = "<Fixed Frame>"
 """Stands for whatever the Fixed Frame is, where RViz asks for a frame."""
@@ -19,8 +20,12 @@ MAXIMUM_TEXT = 4096
 """Longest string taken from a page, characters."""
 
 _HEX_COLOUR = re.compile(r"#[0-9a-fA-F]{6}")
-_RVIZ_COLOUR = re.compile(r"\s*(\d{1,6})\s*;\s*(\d{1,6})\s*;\s*(\d{1,6})\s*")
-_BOOLEANS = {"true": True, "1": True, "yes": True, "on": True, "false": False, "0": False, "no": False, "off": False}
+_SHORT_COLOUR = re.compile(r"#[0-9a-fA-F]{3}")
+_RVIZ_COLOUR = re.compile(r"([+-]?\d{1,6})\s*;\s*([+-]?\d{1,6})\s*;\s*([+-]?\d{1,6})\s*(;.*)?")
+_YAML_NUMBER = re.compile(r"[+-]?\.(inf|nan)", re.IGNORECASE)
+_INFINITE = 3.4028234663852886e38
+"""What stands for infinity, which pages cannot be told: the largest of RViz's numbers, which are of 32 bits."""
+_BOOLEANS = dict.fromkeys(("true", "1", "yes", "on"), True) | dict.fromkeys(("false", "", "0", "no", "off"), False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,9 +41,13 @@ class PropertySpec:
         minimum: of an ``int`` or ``float``, inclusive.
         maximum: of an ``int`` or ``float``, inclusive.
         children: the rows below it.
-        when: path within the display and value of the property that must hold for this row to be shown.
+        when: path within the display and value of the property that must hold for this row to be shown; the conditions
+            of that property must hold too.
         expanded: whether its children show at the start.
         nested: whether the file keeps its value under ``Value``, because it has parts there.
+        hidden: whether it has a value in the file but no row, as properties that RViz hides.
+        read_only: whether only the program sets it; the file does not have it.
+        details: what the row stands for, if pages show more of it in read-only rows of their own, see `Property`.
     """
 
     name: str
@@ -52,6 +61,9 @@ class PropertySpec:
     when: tuple[tuple[str, ...], PropertyValue] | None = None
     expanded: bool = False
     nested: bool = False
+    hidden: bool = False
+    read_only: bool = False
+    details: RowDetails | None = None
 
 
 def vector(name: str, description: str) -> PropertySpec:
@@ -67,6 +79,8 @@ def accept(spec: PropertySpec, value: object) -> PropertyValue:
     Raises:
         ValueError: when it is none for this property; the text says what is expected.
     """
+    if spec.read_only:
+        raise ValueError("only the program sets it")
     taken = _take(spec, value)
     if taken is None:
         raise ValueError(f"{_EXPECTED[spec.kind].format(options=', '.join(spec.options))}, not {_shown(value)}")
@@ -79,7 +93,7 @@ def from_text(spec: PropertySpec, text: str) -> PropertyValue:
     Raises:
         ValueError: when it stands for none; the text says what is expected.
     """
-    return accept(spec, _converted(spec.kind, text.strip()))
+    return accept(spec, _converted(spec, text.strip()))
 
 
 def to_text(spec: PropertySpec, value: PropertyValue) -> str:
@@ -104,6 +118,7 @@ _EXPECTED = {
     "color": "a colour such as #a0a0a4 is expected",
     "enum": "one of {options} is expected",
     "frame": "the name of a frame is expected",
+    "topic": "the name of a topic is expected",
 }
 
 
@@ -142,18 +157,40 @@ def _number(spec: PropertySpec, value: object) -> int | float | None:
     return int(number) if number.is_integer() and abs(number) < 2**53 else None
 
 
-def _converted(kind: PropertyKind, text: str) -> object:
+def _converted(spec: PropertySpec, text: str) -> object:
+    """The value that Qt makes of a spelling for RViz, or the text itself for `accept` to refuse."""
+    kind = spec.kind
     if kind == "bool":
         return _BOOLEANS.get(text.lower(), text)
     if kind in ("int", "float"):
-        try:
-            return float(text)
-        except ValueError:
-            return text
+        return _spelt_number(spec, text)
     if kind == "color":
-        found = _RVIZ_COLOUR.fullmatch(text)
-        if found:
-            return "#" + "".join(f"{min(int(part), 255):02x}" for part in found.groups())
+        return _spelt_colour(text)
+    return text
+
+
+def _spelt_number(spec: PropertySpec, text: str) -> object:
+    try:
+        number = float(text.replace(".", "", 1) if _YAML_NUMBER.fullmatch(text) else text)
+    except ValueError:
+        return text
+    if math.isnan(number):
+        return spec.default  # RViz writes one when its camera was lost, and would draw nothing with it
+    return number if math.isfinite(number) else math.copysign(_INFINITE, number)
+
+
+def _spelt_colour(text: str) -> str:
+    found = _RVIZ_COLOUR.fullmatch(text)
+    if found:  # a fourth part, as of an alpha, is passed over
+        return "#" + "".join(f"{min(max(int(part), 0), 255):02x}" for part in found.groups()[:3])
+    if _SHORT_COLOUR.fullmatch(text):
+        return "#" + "".join(2 * digit for digit in text[1:])
+    if text.isalpha():
+        from PIL import ImageColor  # slow to import, and names are rare
+
+        with suppress(ValueError):
+            red, green, blue, *_ = ImageColor.getrgb(text)  # knows the names that Qt knows: those of SVG
+            return f"#{red:02x}{green:02x}{blue:02x}"
     return text
 
 

@@ -6,27 +6,36 @@ import asyncio
 import os
 import stat
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
+from urllib.parse import quote
 
 from aiohttp import web
 
 from linkwright.viewer.access import TOKEN_PARAMETER, Gate, security_headers
+from linkwright.viewer.admission import Admission
 from linkwright.viewer.listening import url_of
+from linkwright.viewer.managers import own_displays
 from linkwright.viewer.mesh_files import CONTENT_TYPES, FileRefusedError, MeshFolders
+from linkwright.viewer.send_queue import MOST_UNSENT, keep_short
 
 if TYPE_CHECKING:
     import socket
     from collections.abc import Awaitable, Callable
 
     from linkwright.viewer.audience import Audience
+    from linkwright.viewer.export.feature import ExportedFiles
 
 PAGE_FOLDER = Path(__file__).parent / "page"
 """Where ``frontend/`` is built to."""
 
-MAXIMUM_MESSAGE = 64 * 1024
-"""Longest message taken from a page, bytes; a longer one ends the connection (1009)."""
+MAXIMUM_MESSAGE = 1024 * 1024
+"""Longest message taken from a page, bytes: a configuration file. A longer one ends the connection (1009)."""
 
 _HEARTBEAT = 15.0
+_IDLE = 30.0
+"""Seconds that a connection may wait for its next request."""
+
+_BACKLOG = 128
 _GOODBYE = 0.5
 """Seconds a page has to answer a closing handshake, and a request to end."""
 
@@ -63,15 +72,26 @@ class WebServer:
         gate: who may come in.
         audience: takes the WebSockets.
         meshes: the folders that may be read.
+        exported: files that pages asked for.
         page_folder: the built page.
     """
 
-    def __init__(self, gate: Gate, audience: Audience, meshes: MeshFolders, page_folder: Path = PAGE_FOLDER) -> None:
+    def __init__(
+        self,
+        gate: Gate,
+        audience: Audience,
+        meshes: MeshFolders,
+        exported: ExportedFiles,
+        page_folder: Path = PAGE_FOLDER,
+    ) -> None:
         self._gate = gate
         self._audience = audience
         self._meshes = meshes
+        self._exported = exported
         self._page_folder = page_folder
         self._runner: web.AppRunner | None = None
+        self._listening: asyncio.Server | None = None
+        self._admission: Admission | None = None
 
     async def start(self, listener: socket.socket) -> str:
         """Serve on a listening socket; the address to open, token included."""
@@ -80,14 +100,22 @@ class WebServer:
         application.router.add_get("/", self._index)
         application.router.add_get("/ws", self._socket, allow_head=False)
         application.router.add_get("/mesh/{key}/{path:.+}", self._mesh)
+        application.router.add_get("/export/{key}/{name}", self._export, allow_head=False)
         application.router.add_get("/{path:.+}", self._page_file)
-        self._runner = web.AppRunner(application, handle_signals=False, access_log=None, shutdown_timeout=_GOODBYE)
+        self._runner = web.AppRunner(
+            application, handle_signals=False, access_log=None, shutdown_timeout=_GOODBYE, keepalive_timeout=_IDLE
+        )
         await self._runner.setup()
-        await web.SockSite(self._runner, listener).start()
+        loop = asyncio.get_running_loop()
+        self._admission = Admission(cast("web.Server", self._runner.server))
+        self._listening = await loop.create_server(self._admission, sock=listener, backlog=_BACKLOG)
         return f"{url_of(listener)}?{TOKEN_PARAMETER}={self._gate.token}"
 
     async def close(self) -> None:
         """Say goodbye to the pages and stop."""
+        if self._listening is not None:
+            self._listening.close()
+            self._listening = None
         await self._audience.close()
         if self._runner is not None:
             await self._runner.cleanup()
@@ -102,7 +130,11 @@ class WebServer:
         refusal = self._gate.refusal(request.headers, request.cookies, request.query)
         if refusal is not None:
             status, reason = refusal
-            return web.Response(status=status, text=reason[0].upper() + reason[1:] + ".\n")
+            response = web.Response(status=status, text=reason[0].upper() + reason[1:] + ".\n")
+            response.force_close()
+            return response
+        if self._admission is not None:
+            self._admission.admit(request.protocol)
         return await handler(request)
 
     async def _add_headers(self, request: web.Request, response: web.StreamResponse) -> None:
@@ -128,7 +160,14 @@ class WebServer:
             raise web.HTTPNotFound(text="There is no such page.\n")
         hashed = parts[0] == "assets"  # Vite names these by their content
         cache = "private, max-age=31536000, immutable" if hashed else "no-cache"
-        return await _file_response(request, self._page_folder / path, content_type, cache)
+        file = self._page_folder / path
+        packed = file.with_name(f"{file.name}.gz")
+        if not (hashed and _takes_gzip(request) and packed.is_file()):
+            return await _file_response(request, file, content_type, cache)
+        # A quarter of the bytes: over a slow line the page is there in seconds instead of tens of them.
+        response = await _file_response(request, packed, content_type, cache)
+        response.headers.update({"Content-Encoding": "gzip", "Vary": "Accept-Encoding"})
+        return response
 
     async def _mesh(self, request: web.Request) -> web.StreamResponse:
         key, relative = request.match_info["key"], request.match_info["path"]
@@ -138,17 +177,38 @@ class WebServer:
             return web.Response(status=error.status, text=f"Refused: {error}.\n")
         return await _file_response(request, path, CONTENT_TYPES[path.suffix.lower()], "private, no-cache")
 
+    async def _export(self, request: web.Request) -> web.StreamResponse:
+        file = self._exported.take(request.match_info["key"])
+        if file is None:
+            raise web.HTTPNotFound(text="There is no such file; it can be fetched once.\n")
+        attached = f"attachment; filename*=UTF-8''{quote(file.name)}"
+        return web.Response(
+            body=file.data, headers={"Content-Type": file.content_type, "Content-Disposition": attached}
+        )
+
     async def _socket(self, request: web.Request) -> web.StreamResponse:
         if self._audience.is_full:
             return web.Response(status=503, text="Too many pages are open.\n")
         socket = web.WebSocketResponse(
-            heartbeat=_HEARTBEAT, timeout=_GOODBYE, compress=False, max_msg_size=MAXIMUM_MESSAGE
+            heartbeat=_HEARTBEAT,
+            timeout=_GOODBYE,
+            compress=False,
+            max_msg_size=MAXIMUM_MESSAGE,
+            writer_limit=MOST_UNSENT,
         )
         if not socket.can_prepare(request):
             return web.Response(status=400, text="This address is for the page's WebSocket.\n")
-        await socket.prepare(request)
-        await self._audience.attend(socket)
+        with self._audience.expecting():
+            await socket.prepare(request)
+        if request.transport is not None:
+            keep_short(request.transport)
+        await self._audience.attend(socket, own_displays(request.query))
         return socket
+
+
+def _takes_gzip(request: web.Request) -> bool:
+    offered = request.headers.get("Accept-Encoding", "").split(",")
+    return any(each.strip().lower() == "gzip" for each in offered)
 
 
 async def _file_response(request: web.Request, path: Path, content_type: str, cache: str) -> web.Response:

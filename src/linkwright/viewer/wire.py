@@ -10,8 +10,9 @@ import typing
 from functools import cache
 from typing import Any, Literal, Union
 
-from linkwright.viewer import protocol
 from linkwright.viewer.protocol import PageMessage, ServerMessage
+
+_PLAIN_TYPES = frozenset((str, float, int, bool, type(None)))
 
 
 class BadMessageError(ValueError):
@@ -24,13 +25,9 @@ def encode(message: ServerMessage) -> str:
 
 
 def redundancy_key(message: ServerMessage) -> str:
-    """Messages with one key make those before them needless."""
-    kind = message.type
-    if isinstance(message, protocol.PropertyChanged):
-        return f"{kind} {message.id}"
-    if isinstance(message, (protocol.DisplayProperties, protocol.DisplayStatus, protocol.RobotScene)):
-        return f"{kind} {message.display}"
-    return kind
+    """Messages with one key make those before them needless: of each class, or of each thing its `NEWEST_OF` names."""
+    parts = (str(getattr(message, name)) for name in getattr(message, "NEWEST_OF", ()))
+    return "\n".join((message.type, *parts))
 
 
 def decode(text: str) -> PageMessage:
@@ -59,7 +56,7 @@ def _page_messages() -> dict[str, Any]:
 
 @cache
 def _hints(cls: Any) -> dict[str, Any]:
-    return typing.get_type_hints(cls, vars(protocol))
+    return typing.get_type_hints(cls)
 
 
 @cache
@@ -68,14 +65,19 @@ def _fields(cls: Any) -> tuple[str, ...]:
 
 
 def _plain(value: Any) -> Any:
-    if isinstance(value, (str, int, float, bool)) or value is None:
+    """As JSON can have it. The rows of a large robot are a hundred thousand values: most take the shortest way."""
+    kind: Any = type(value)
+    if kind in _PLAIN_TYPES:
         return value
-    if isinstance(value, list):
-        return [_plain(item) for item in value]
-    if isinstance(value, dict):
+    if kind is list:
+        return [item if type(item) in _PLAIN_TYPES else _plain(item) for item in value]
+    if kind is dict:
         return {key: _plain(item) for key, item in value.items()}
-    cls: Any = type(value)
-    return {name: _plain(getattr(value, name)) for name in _fields(cls)}
+    if isinstance(value, (str, int, float)):
+        return value  # of classes derived from these
+    return {
+        name: item if type(item := getattr(value, name)) in _PLAIN_TYPES else _plain(item) for name in _fields(kind)
+    }
 
 
 def _read(expected: Any, value: Any, where: str) -> Any:
@@ -89,9 +91,15 @@ def _read(expected: Any, value: Any, where: str) -> Any:
     elif origin is list:
         if isinstance(value, list):
             return [_read(arguments[0], item, f"{where}[]") for item in value]
+    elif origin is dict:
+        if isinstance(value, dict):
+            return {key: _read(arguments[1], item, f"{where}[]") for key, item in value.items()}
     elif origin in (Union, types.UnionType):
         for argument in arguments:
-            if _is_plain(argument, value):
+            if dataclasses.is_dataclass(argument):
+                if isinstance(value, dict):
+                    return _read_object(argument, value, where)
+            elif _is_plain(argument, value):
                 return value
     elif _is_plain(expected, value):
         return float(value) if expected is float else value

@@ -6,6 +6,7 @@ spelling of every scalar survive, and every value knows its line.
 
 from __future__ import annotations
 
+from bisect import bisect
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -13,13 +14,16 @@ from typing import Any
 import yaml
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText, Span
+from linkwright.viewer import yaml_layout
 
 _Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _Resolver: Any = yaml.resolver.Resolver
-_Dumper: Any = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
 
 MAXIMUM_DEPTH = 100
 """Deepest nesting read. PyYAML builds nodes by recursion, without a bound of its own."""
+
+MAXIMUM_NODES = 1_000_000
+"""Most keys and values of a document after its aliases were written out: a few lines of YAML can stand for billions."""
 
 _STRING = "tag:yaml.org,2002:str"
 _NULL = "tag:yaml.org,2002:null"
@@ -35,6 +39,14 @@ class Scalar:
     span: Span
 
 
+@dataclass(frozen=True, slots=True)
+class Memory:
+    """What stood under a key; None where there was no such key."""
+
+    key: str
+    value: yaml.Node | None
+
+
 class Section:
     """A mapping of the file.
 
@@ -46,18 +58,25 @@ class Section:
         self.node = node
         self.source = source
 
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Section) and self.node is other.node
+
+    def __hash__(self) -> int:
+        return id(self.node)
+
     def keys(self) -> list[str]:
         """The keys, in the order of the file."""
         return [key.value for key, _ in self.node.value if isinstance(key, yaml.ScalarNode)]
 
     def scalar(self, *path: str) -> Scalar | None:
         """The scalar at a path; None where there is none or it is null."""
-        node = self._find(path)
-        if isinstance(node, yaml.MappingNode):
-            node = _child(node, "Value")
-        if not isinstance(node, yaml.ScalarNode) or node.tag == _NULL:
-            return None
-        return Scalar(node.value, self.span(node))
+        node = self._scalar_node(path)
+        return None if node is None else Scalar(node.value, self.span(node))
+
+    def text(self, *path: str) -> str | None:
+        """The text of the scalar at a path, for what is asked often: it does not say where it stands."""
+        node = self._scalar_node(path)
+        return None if node is None else str(node.value)
 
     def section(self, *path: str) -> Section | None:
         """The mapping at a path, or None."""
@@ -85,19 +104,36 @@ class Section:
         parent = self.node
         for key in path[:-1]:
             parent = _child_mapping(parent, key)
-        if nested or isinstance(_child(parent, path[-1]), yaml.MappingNode):
+        there = _child(parent, path[-1])
+        # A plain value stays one where its parts would fit beside it: so did RViz 1 write topics.
+        plain = isinstance(there, yaml.ScalarNode) and there.tag != _NULL
+        if isinstance(there, yaml.MappingNode) or (nested and not plain):
             parent, last = _child_mapping(parent, path[-1]), "Value"
         else:
             last = path[-1]
         _set(parent, last, yaml.ScalarNode(tag, text))
 
+    def memory(self, key: str) -> Memory:
+        """What stands under a key now, for `recall`."""
+        there = _child(self.node, key)
+        return Memory(key, None if there is None else _copy(there))
+
+    def recall(self, memory: Memory) -> None:
+        """Make what stands under a key what it was; a key that came since goes."""
+        if memory.value is not None:
+            _set(self.node, memory.key, _copy(memory.value))
+            return
+        self.node.value[:] = [pair for pair in self.node.value if pair[0].value != memory.key]
+
     def span(self, node: yaml.Node | None = None) -> Span:
         """Where a node of this file begins and ends; the mapping itself by default."""
-        node = node or self.node
-        start, end = node.start_mark, node.end_mark
-        if start is None or end is None:
-            return self.source.span(0, 0)
-        return Span(self.source.name, start.line + 1, start.column + 1, end.line + 1, end.column + 1)
+        return _span(node or self.node, self.source)
+
+    def _scalar_node(self, path: tuple[str, ...]) -> yaml.ScalarNode | None:
+        node = self._find(path)
+        if isinstance(node, yaml.MappingNode):
+            node = _child(node, "Value")
+        return node if isinstance(node, yaml.ScalarNode) and node.tag != _NULL else None
 
     def _find(self, path: tuple[str, ...]) -> yaml.Node | None:
         node: yaml.Node | None = self.node
@@ -117,36 +153,88 @@ def parse(text: str, name: str) -> Section:
     source = SourceText(name, text)
     try:
         _check_depth(text, source)
-        root = yaml.compose(text, Loader=_Loader)
+        # RViz reads the first document and no more.
+        root = next(yaml.compose_all(text, Loader=_Loader), None)
     except yaml.YAMLError as error:
         raise LinkwrightError(_not_yaml(error, source)) from None
     if not isinstance(root, yaml.MappingNode):
         message = f"'{name}' is empty" if root is None else f"'{name}' holds no keys and values"
         hint = "an RViz configuration begins with 'Panels:' and 'Visualization Manager:'"
         raise LinkwrightError(Diagnostic("RVIZ103", message, source.span(0, 0), hint=hint, source=source))
+    if "*" in text:
+        _write_out_aliases(root, source)
     return Section(root, source)
 
 
 def write(section: Section) -> str:
-    """The document as text; keys in their order, scalars spelt as they were read."""
-    text: str = yaml.serialize(section.node, Dumper=_Dumper, width=2**30, allow_unicode=True)
-    return text
+    """The document as text: keys in their order, scalars spelt as they were read, laid out as the source is."""
+    return yaml_layout.write(section.node, section.source.text)
 
 
-def empty(name: str) -> Section:
-    """A document without keys."""
-    return Section(yaml.MappingNode(_MAPPING, [], flow_style=False), SourceText(name, ""))
+def same(one: Section, other: Section) -> bool:
+    """Whether two documents would be written alike."""
+    return yaml_layout.plain(one.node) == yaml_layout.plain(other.node)
 
 
-def append_section(section: Section, key: str) -> Section:
-    """A new mapping at the end of the sequence under a key, which is made where it is missing."""
-    sequence = _child(section.node, key)
+def new_section(source: SourceText) -> Section:
+    """An empty mapping that is nowhere in a document yet."""
+    return Section(yaml.MappingNode(_MAPPING, [], flow_style=False), source)
+
+
+def copy_section(section: Section) -> Section:
+    """A copy that is nowhere in a document yet."""
+    node = _copy(section.node)
+    assert isinstance(node, yaml.MappingNode)
+    return Section(node, section.source)
+
+
+def insert_section(parent: Section, key: str, section: Section, before: Section | None = None) -> None:
+    """Put a mapping into the sequence under a key, which is made where it is missing.
+
+    Args:
+        parent: has the key.
+        key: of the sequence.
+        section: what is put there.
+        before: the item it goes in front of; None or one that is not there for the end.
+    """
+    sequence = _child(parent.node, key)
     if not isinstance(sequence, yaml.SequenceNode):
         sequence = yaml.SequenceNode(_SEQUENCE, [], flow_style=False)
-        _set(section.node, key, sequence)
-    item = yaml.MappingNode(_MAPPING, [], flow_style=False)
-    sequence.value.append(item)
-    return Section(item, section.source)
+        _set(parent.node, key, sequence)
+    elif sequence.flow_style and not sequence.value:
+        sequence.flow_style = False
+    items = sequence.value
+    at = next((index for index, item in enumerate(items) if before is not None and item is before.node), len(items))
+    items.insert(at, section.node)
+
+
+def remove_section(parent: Section, key: str, section: Section) -> None:
+    """Take a mapping out of the sequence under a key."""
+    sequence = _child(parent.node, key)
+    if isinstance(sequence, yaml.SequenceNode):
+        sequence.value[:] = [item for item in sequence.value if item is not section.node]
+
+
+Entries = list[yaml.Node] | None
+"""The items of a sequence, which are not copied; None where there is no sequence."""
+
+
+def entries(parent: Section, key: str) -> Entries:
+    """What the sequence under a key holds now, for `set_entries`."""
+    sequence = _child(parent.node, key)
+    return list(sequence.value) if isinstance(sequence, yaml.SequenceNode) else None
+
+
+def set_entries(parent: Section, key: str, entries: Entries) -> None:
+    """Have the sequence under a key hold what it held."""
+    if entries is None:
+        parent.recall(Memory(key, None))
+        return
+    sequence = _child(parent.node, key)
+    if not isinstance(sequence, yaml.SequenceNode):
+        sequence = yaml.SequenceNode(_SEQUENCE, [], flow_style=False)
+        _set(parent.node, key, sequence)
+    sequence.value[:] = entries
 
 
 def ensure_section(section: Section, *path: str) -> Section:
@@ -155,6 +243,26 @@ def ensure_section(section: Section, *path: str) -> Section:
     for key in path:
         node = _child_mapping(node, key)
     return Section(node, section.source)
+
+
+def _copy(node: yaml.Node, *, deep: bool = True) -> yaml.Node:
+    """A node alike; `copy` knows no marks of libyaml."""
+    if isinstance(node, yaml.ScalarNode):
+        return yaml.ScalarNode(node.tag, node.value, node.start_mark, node.end_mark, node.style)
+    assert isinstance(node, yaml.CollectionNode)
+    value = list(node.value)
+    if deep and isinstance(node, yaml.SequenceNode):
+        value = [_copy(item) for item in value]
+    elif deep:
+        value = [(_copy(key), _copy(each)) for key, each in value]
+    return type(node)(node.tag, value, node.start_mark, node.end_mark, node.flow_style)
+
+
+def _span(node: yaml.Node, source: SourceText) -> Span:
+    start, end = node.start_mark, node.end_mark
+    if start is None or end is None:
+        return source.span(0, 0)
+    return Span(source.name, start.line + 1, start.column + 1, end.line + 1, end.column + 1)
 
 
 def _child(node: yaml.MappingNode, key: str) -> yaml.Node | None:
@@ -184,7 +292,10 @@ def _set(node: yaml.MappingNode, key: str, value: yaml.Node) -> None:
         if isinstance(name, yaml.ScalarNode) and name.value == key:
             node.value[index] = (name, value)
             return
-    node.value.append((yaml.ScalarNode(_STRING, key), value))
+    names = [name.value for name, _ in node.value if isinstance(name, yaml.ScalarNode)]
+    ordered = len(names) == len(node.value) and names == sorted(names)
+    at = bisect(names, key) if ordered else len(names)  # RViz writes most of its keys in the order of the alphabet
+    node.value.insert(at, (yaml.ScalarNode(_STRING, key), value))
 
 
 def _check_depth(text: str, source: SourceText) -> None:
@@ -199,6 +310,30 @@ def _check_depth(text: str, source: SourceText) -> None:
                 raise LinkwrightError(Diagnostic("RVIZ102", message, span, source=source))
         elif isinstance(event, yaml.CollectionEndEvent):
             depth -= 1
+
+
+def _write_out_aliases(root: yaml.Node, source: SourceText) -> None:
+    """Give each alias a copy of what it stands for, so that an edit of one place is no edit of another."""
+    seen: set[int] = set()
+    count = 0
+
+    def visit(node: yaml.Node, above: tuple[int, ...]) -> yaml.Node:
+        nonlocal count
+        count += 1
+        if id(node) in above or count > MAXIMUM_NODES:
+            message = "an alias stands for itself" if id(node) in above else f"more than {MAXIMUM_NODES} values"
+            raise LinkwrightError(Diagnostic("RVIZ102", message, _span(node, source), source=source))
+        if id(node) in seen:
+            node = _copy(node, deep=False)
+        seen.add(id(node))
+        below = (*above, id(node))
+        if isinstance(node, yaml.SequenceNode):
+            node.value[:] = [visit(item, below) for item in node.value]
+        elif isinstance(node, yaml.MappingNode):
+            node.value[:] = [(visit(key, below), visit(value, below)) for key, value in node.value]
+        return node
+
+    visit(root, ())
 
 
 def _not_yaml(error: yaml.YAMLError, source: SourceText) -> Diagnostic:

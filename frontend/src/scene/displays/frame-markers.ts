@@ -1,39 +1,33 @@
 import type { Object3D } from "three";
-import { CopyBatch } from "../objects/copy-batch";
-import { arrowHeadGeometry, arrowShaftGeometry, axesGeometry } from "../objects/geometries";
+import { ArrowBatch } from "../objects/arrow-batch";
+import { AxesBatch } from "../objects/axes-batch";
 
 const AXIS_LENGTH = 0.2;
 const AXIS_RADIUS = 0.02;
 
-/** Axes, arrow shafts and arrow heads of all frames, as round as there is time for. */
+/** Axes and arrows of all frames, as round as there is time for. */
 export class FrameMarkers {
-  axes: CopyBatch;
-  shafts: CopyBatch;
-  heads: CopyBatch;
+  readonly axes: AxesBatch;
+  arrows: ArrowBatch;
 
   constructor(
     private readonly parent: Object3D,
     private segments: number,
   ) {
-    [this.axes, this.shafts, this.heads] = this.make();
+    this.axes = new AxesBatch(parent, AXIS_LENGTH, AXIS_RADIUS, segments);
+    this.arrows = new ArrowBatch(parent, segments);
   }
 
   refine(segments: number): void {
     if (segments === this.segments) return;
-    this.dispose();
     this.segments = segments;
-    [this.axes, this.shafts, this.heads] = this.make();
+    this.axes.setShape(AXIS_LENGTH, AXIS_RADIUS, segments);
+    this.arrows.dispose();
+    this.arrows = new ArrowBatch(this.parent, segments);
   }
 
   dispose(): void {
-    for (const batch of [this.axes, this.shafts, this.heads]) batch.dispose();
-  }
-
-  private make(): [CopyBatch, CopyBatch, CopyBatch] {
-    return [
-      new CopyBatch(this.parent, axesGeometry(AXIS_LENGTH, AXIS_RADIUS, this.segments)),
-      new CopyBatch(this.parent, arrowShaftGeometry(this.segments)),
-      new CopyBatch(this.parent, arrowHeadGeometry(this.segments)),
-    ];
+    this.axes.dispose();
+    this.arrows.dispose();
   }
 }

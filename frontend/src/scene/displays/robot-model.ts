@@ -1,7 +1,9 @@
-import { Group, type Object3D, type Raycaster } from "three";
+import { Group, Matrix4, Vector3, type Object3D, type Raycaster } from "three";
 import type { RobotScene } from "../../protocol.gen";
+import { framePose } from "../pose";
 import { RobotDrawing } from "../robot/robot-drawing";
-import type { Drawing, DrawingContext, Hit } from "./drawing";
+import type { Described, Hit, SelectionBox } from "../picking";
+import type { Drawing, DrawingContext } from "./drawing";
 
 /** A new robot takes the place of the old one when its meshes are there, or after this long without them. */
 const SWAP_WITHIN_MS = 300;
@@ -12,7 +14,8 @@ export class RobotModelDrawing implements Drawing {
   private shown: RobotDrawing | null = null;
   private next: RobotDrawing | null = null;
   private styleIsOld = true;
-  private readonly forget: () => void;
+  private contrast: boolean;
+  private readonly forget: readonly (() => void)[];
 
   constructor(private readonly context: DrawingContext) {
     const { session, display } = context;
@@ -20,7 +23,8 @@ export class RobotModelDrawing implements Drawing {
     const take = (robot: RobotScene | undefined): void => {
       if (robot?.display === display.id) this.take(robot);
     };
-    this.forget = session.robotChanged.on(take);
+    this.contrast = session.inspect.current.contrast;
+    this.forget = [session.robotChanged.on(take), session.inspect.changed.on(() => this.inspectChanged())];
     take(session.robots.get(display.id));
   }
 
@@ -34,7 +38,7 @@ export class RobotModelDrawing implements Drawing {
   }
 
   update(): void {
-    if (this.styleIsOld) this.shown?.style(this.context.display.rows);
+    if (this.styleIsOld) this.shown?.style(this.context.display.rows, this.contrast);
     this.styleIsOld = false;
     this.shown?.place(this.context.session.frames);
   }
@@ -47,14 +51,43 @@ export class RobotModelDrawing implements Drawing {
     return this.shown?.pick(ray) ?? null;
   }
 
+  pickBox(box: SelectionBox): readonly string[] {
+    return this.shown?.pickBox(box) ?? [];
+  }
+
+  describe(link: string): Described | null {
+    return this.shown?.describe(link) ?? null;
+  }
+
+  inspect(): object {
+    return this.shown?.tell() ?? {};
+  }
+
+  /** A link that draws nothing is where its frame is. */
+  placeOf(name: string): Vector3 | null {
+    const { session, display } = this.context;
+    const link = session.robots.get(display.id)?.links.find((each) => each.name === name);
+    const pose = new Matrix4();
+    if (!link || !framePose(session.frames, session.frames.row(link.frame), pose)) return null;
+    return new Vector3().setFromMatrixPosition(pose);
+  }
+
   objectsOf(link: string): readonly Object3D[] {
     return this.shown?.objectsOf(link) ?? [];
   }
 
   dispose(): void {
-    this.forget();
+    for (const forget of this.forget) forget();
     this.next?.dispose();
     this.shown?.dispose();
+  }
+
+  private inspectChanged(): void {
+    const { contrast } = this.context.session.inspect.current;
+    if (contrast === this.contrast) return;
+    this.contrast = contrast;
+    this.styleIsOld = true;
+    this.context.invalidate();
   }
 
   private take(scene: RobotScene): void {

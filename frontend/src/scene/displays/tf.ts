@@ -1,20 +1,24 @@
-import { Group, Matrix4, Quaternion, Vector3 } from "three";
-import { FrameFilter } from "./frame-filter";
+import { Box3, Group, Matrix4, Vector3, type Raycaster } from "three";
+import { describedPose } from "../described-pose";
+import { alongX } from "../objects/arrow-batch";
 import { LabelBatch } from "../objects/label-batch";
+import type { Described, Hit, SelectionBox } from "../picking";
 import { framePose } from "../pose";
 import type { Drawing, DrawingContext } from "./drawing";
 import { fadeForAge, type Fade } from "./fade";
+import { FrameFilter } from "./frame-filter";
 import { FrameMarkers } from "./frame-markers";
 
-const SHAFT_RADIUS = 0.01;
-const HEAD_RADIUS = 0.04;
+const SHAFT_DIAMETER = 0.01;
+const HEAD_DIAMETER = 0.04;
+const SHAFT_COLOR = 0xcccc4d;
+const HEAD_COLOR = 0xff1a99;
 const HEAD_LENGTH = 0.1;
 const NAME_HEIGHT = 0.1;
 /** A frame this close to its parent gets no arrow, m. */
 const SHORTEST_ARROW = 0.001;
 /** Steps in which fading is drawn: a new frame for each, none in between. */
 const FADE_STEPS = 32;
-const ALONG_Z = new Vector3(0, 0, 1);
 
 /** From this many frames on they are drawn with fewer corners. */
 const MANY_FRAMES = 120;
@@ -30,6 +34,9 @@ export class TfDrawing implements Drawing {
   private filter = new FrameFilter("", "");
   private hidden = new Set<string>();
   private ageing = "";
+  private named = 0;
+  /** The frames that have axes, in the order of the copies. */
+  private withAxes: string[] = [];
 
   constructor(private readonly context: DrawingContext) {
     this.root.add(this.names.root);
@@ -57,11 +64,17 @@ export class TfDrawing implements Drawing {
     this.markers.refine(visible.length > MANY_FRAMES ? COARSE_SEGMENTS : FINE_SEGMENTS);
     const { axes } = this.markers;
     axes.begin(visible.length);
+    this.named = 0;
+    this.withAxes = [];
     this.names.begin(showNames ? visible.reduce((sum, [row]) => sum + (frames.names[row]?.length ?? 0), 0) : 0);
     for (const [row, fade] of visible) {
       if (!framePose(frames, row, pose)) continue;
-      if (showAxes) axes.add(pose.clone().multiply(size), fade.grey, fade.alpha);
+      if (showAxes) {
+        axes.add(pose.clone().multiply(size), fade.grey, fade.alpha);
+        this.withAxes.push(frames.names[row] ?? "");
+      }
       if (!showNames) continue;
+      this.named += 1;
       this.names.add(
         frames.names[row] ?? "",
         at.setFromMatrixPosition(pose),
@@ -76,6 +89,46 @@ export class TfDrawing implements Drawing {
     this.ageing = this.ageKey();
   }
 
+  /** Frames are taken by their axes, as in RViz. */
+  pick(ray: Raycaster): Hit | null {
+    const hit = this.markers.axes.pick(ray);
+    const key = hit && this.withAxes[hit.copy];
+    return hit && typeof key === "string" ? { key, distance: hit.distance, point: hit.point } : null;
+  }
+
+  pickBox(box: SelectionBox): readonly string[] {
+    return this.withAxes.filter((name) => {
+      const place = this.placeOf(name);
+      return place !== null && box.hasPoint(place.x, place.y, place.z);
+    });
+  }
+
+  placeOf(name: string): Vector3 | null {
+    const pose = new Matrix4();
+    const { frames } = this.context.session;
+    return framePose(frames, frames.row(name), pose) ? new Vector3().setFromMatrixPosition(pose) : null;
+  }
+
+  /** A frame as RViz's Selection panel shows it. */
+  describe(name: string): Described | null {
+    const { frames } = this.context.session;
+    const row = frames.row(name);
+    const pose = new Matrix4();
+    if (!framePose(frames, row, pose)) return null;
+    const parent = frames.names[frames.parents[row] ?? -1] ?? "";
+    return { name: `Frame ${name}`, children: [{ name: "Parent", value: parent }, ...describedPose(pose)] };
+  }
+
+  /** How many of each are drawn, and their bounds in the fixed frame. */
+  inspect(): object {
+    const box = new Box3();
+    this.markers.axes.expandBox(box);
+    this.markers.arrows.expandBox(box);
+    const bounds = box.isEmpty() ? null : { min: box.min.toArray(), max: box.max.toArray() };
+    const { axes, arrows } = this.markers;
+    return { axes: axes.size, arrows: arrows.size, names: this.named, bounds };
+  }
+
   dispose(): void {
     for (const forget of this.forget) forget();
     this.markers.dispose();
@@ -83,34 +136,28 @@ export class TfDrawing implements Drawing {
   }
 
   private drawArrows(visible: readonly (readonly [number, Fade])[], scale: number): void {
-    const { poses, parents } = this.context.session.frames;
-    const { shafts, heads } = this.markers;
-    const [from, to, along] = [new Vector3(), new Vector3(), new Vector3()];
-    const turn = new Quaternion();
-    const matrix = new Matrix4();
-    shafts.begin(visible.length);
-    heads.begin(visible.length);
-    for (const [row, fade] of visible) {
-      const parent = parents[row] ?? -1;
-      if (!this.context.session.frames.has(parent)) continue;
-      from.fromArray(poses, row * 7);
-      to.fromArray(poses, parent * 7);
-      const distance = along.subVectors(to, from).length();
+    const { frames } = this.context.session;
+    const { arrows } = this.markers;
+    const [from, along] = [new Vector3(), new Vector3()];
+    const pose = new Matrix4();
+    arrows.begin(visible.length);
+    for (const [row, { grey, alpha }] of visible) {
+      const parent = frames.parents[row] ?? -1;
+      if (!frames.has(parent)) continue;
+      from.fromArray(frames.poses, row * 7);
+      along.fromArray(frames.poses, parent * 7).sub(from);
+      const distance = along.length();
       if (distance < SHORTEST_ARROW) continue;
-      turn.setFromUnitVectors(ALONG_Z, along.divideScalar(distance));
-      const head = distance < HEAD_LENGTH * scale ? HEAD_LENGTH * scale * distance : HEAD_LENGTH * scale;
-      const shaft = distance - head;
-      matrix.compose(from, turn, new Vector3(SHAFT_RADIUS * scale, SHAFT_RADIUS * scale, shaft));
-      shafts.add(matrix, fade.grey, fade.alpha);
-      matrix.compose(
-        from.addScaledVector(along, shaft),
-        turn,
-        new Vector3(HEAD_RADIUS * scale, HEAD_RADIUS * scale, head),
-      );
-      heads.add(matrix, fade.grey, fade.alpha);
+      const headLength = distance < HEAD_LENGTH * scale ? HEAD_LENGTH * scale * distance : HEAD_LENGTH * scale;
+      const shape = {
+        shaftLength: distance - headLength,
+        shaftDiameter: SHAFT_DIAMETER * scale,
+        headLength,
+        headDiameter: HEAD_DIAMETER * scale,
+      };
+      arrows.add(alongX(from, along, pose), shape, { color: SHAFT_COLOR, headColor: HEAD_COLOR, alpha, grey });
     }
-    shafts.end();
-    heads.end();
+    arrows.end();
   }
 
   private visibleFrames(): (readonly [number, Fade])[] {

@@ -1,3 +1,4 @@
+import { SERVED, type MeshFiles } from "./mesh-files";
 import type { MeshTemplate } from "./mesh-template";
 
 interface Shelf {
@@ -10,6 +11,8 @@ interface Shelf {
 export class MeshLibrary {
   private readonly shelves = new Map<string, Shelf>();
   private readonly loading = new Map<string, Promise<MeshTemplate>>();
+
+  constructor(readonly files: MeshFiles = SERVED) {}
 
   /**
    * The mesh at `url`. Asks the server every time whether the file is still the same: a robot is loaded anew when its
@@ -29,13 +32,13 @@ export class MeshLibrary {
   }
 
   private async fetch(url: string, format: string): Promise<MeshTemplate> {
-    const response = await fetch(url, { cache: "no-cache", credentials: "same-origin" });
+    const response = await this.files.fetch(url);
     if (!response.ok) throw new Error(await refusal(response));
     const version = response.headers.get("ETag") ?? response.headers.get("Last-Modified");
     const shelf = this.shelves.get(url);
     if (shelf && version !== null && shelf.version === version) return shelf.template;
     const { readMesh } = await import("./formats");
-    const template = await readMesh(await response.arrayBuffer(), format, new URL(url, document.baseURI).href);
+    const template = await readMesh(await response.arrayBuffer(), format, new URL(url, document.baseURI).href, this.files);
     // What is still being drawn of the old one goes back to the GPU by itself.
     for (const part of shelf?.template.parts ?? []) part.geometry.dispose();
     this.shelves.set(url, { version, template });

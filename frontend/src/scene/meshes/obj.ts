@@ -1,19 +1,20 @@
 import { LoaderUtils } from "three";
 import { MTLLoader } from "three/addons/loaders/MTLLoader.js";
 import { OBJLoader } from "three/addons/loaders/OBJLoader.js";
+import type { MeshFiles } from "./mesh-files";
 import { flatten, type MeshTemplate } from "./mesh-template";
 import { TextureWait } from "./texture-wait";
 
 /** Wavefront OBJ with its MTL files and their textures. */
-export async function readObj(data: ArrayBuffer, url: string): Promise<MeshTemplate> {
+export async function readObj(data: ArrayBuffer, url: string, files: MeshFiles): Promise<MeshTemplate> {
   const text = new TextDecoder().decode(data);
   const folder = LoaderUtils.extractUrlBase(url);
-  const wait = new TextureWait();
+  const wait = new TextureWait(files);
   const loader = new OBJLoader(wait.manager);
   const problems: string[] = [];
   const known = new Set<string>();
   for (const name of materialFiles(text)) {
-    const response = await fetch(folder + name.split("/").map(encodeURIComponent).join("/"));
+    const response = await files.fetch(folder + name.split("/").map(encodeURIComponent).join("/"));
     if (!response.ok) {
       problems.push(`could not load material file '${name}'`);
       continue;

@@ -1,4 +1,5 @@
 import { LoadingManager } from "three";
+import type { MeshFiles } from "./mesh-files";
 
 /** A loading manager that knows when the textures a loader started have come, and which did not. */
 export class TextureWait {
@@ -7,8 +8,9 @@ export class TextureWait {
   private pending = 0;
   private wake: (() => void) | null = null;
 
-  constructor() {
+  constructor(files: MeshFiles) {
     const manager = new LoadingManager();
+    manager.setURLModifier((url) => files.address(url));
     const { itemStart, itemEnd, itemError } = manager;
     manager.itemStart = (url): void => {
       this.pending += 1;

@@ -1,26 +1,43 @@
 import {
+  Box3,
   BufferAttribute,
   BufferGeometry,
   DataTexture,
   FloatType,
+  Matrix4,
   Mesh,
   RGBAFormat,
-  type Matrix4,
   type Object3D,
+  type Raycaster,
   type ShaderMaterial,
+  type Vector3,
 } from "three";
 import { slotMaterial, SLOTS_PER_ROW, TEXELS_PER_SLOT } from "./slot-material";
 
 const FLOATS_PER_SLOT = TEXELS_PER_SLOT * 4;
+const WHITE = 0xffffff;
+/** After everything but labels. */
+const OVERLAY_ORDER = 5;
+
+/** Which copy a ray met, and where in the fixed frame, m. */
+export interface CopyHit {
+  copy: number;
+  distance: number;
+  point: Vector3;
+}
 
 /**
- * Many copies of one shape in one draw call, each with its own matrix, grey and alpha.
+ * Many copies of one shape in one draw call, each with its own matrix, colour, grey and alpha.
+ *
+ * Use: `begin(most)`, then `add` for each copy, then `end`; what was there before is gone. The shape must have an index,
+ * normals and colours (`paint` of geometries.ts), which each copy's colour is multiplied with.
  *
  * The copies' vertices stand in one buffer and each finds its matrix in a texture. GPU instancing would be shorter, but
  * software renderers take some 50 microseconds for every instance: 500 frames would draw at 6 frames a second.
  */
 export class CopyBatch {
-  private readonly mesh: Mesh<BufferGeometry, ShaderMaterial>;
+  private readonly mesh: CopyMesh;
+  private readonly probe: Mesh;
   private readonly slots: { value: DataTexture };
   private capacity = 0;
   private count = 0;
@@ -29,14 +46,27 @@ export class CopyBatch {
   constructor(
     parent: Object3D,
     private readonly shape: BufferGeometry,
+    /** Drawn over everything; for shapes that do not hide parts of themselves. */
+    private readonly isOverlay = false,
   ) {
     this.slots = { value: slotTexture(0) };
-    this.mesh = new Mesh(new BufferGeometry(), slotMaterial(this.slots));
+    this.mesh = new CopyMesh(new BufferGeometry(), slotMaterial(this.slots), (box) => this.expandBox(box));
+    if (isOverlay) {
+      this.mesh.material.depthTest = this.mesh.material.depthWrite = false;
+      this.mesh.material.transparent = true; // opaque things are drawn before, whatever their order
+      this.mesh.renderOrder = OVERLAY_ORDER;
+    }
     this.mesh.visible = false;
     // The copies are all over the place: a bounding sphere of them costs more than drawing them.
     this.mesh.frustumCulled = false;
     this.mesh.matrixAutoUpdate = false;
+    this.probe = new Mesh(shape);
     parent.add(this.mesh);
+  }
+
+  /** Copies drawn now. */
+  get size(): number {
+    return this.count;
   }
 
   /** Starts over; at most `expected` copies will follow. */
@@ -51,7 +81,8 @@ export class CopyBatch {
     this.slots.value = slotTexture(this.capacity / SLOTS_PER_ROW);
   }
 
-  add(matrix: Matrix4, grey: number, alpha: number): void {
+  /** `matrix` in the parent's frame; `grey` 1 is all grey; `color` is 0xrrggbb. */
+  add(matrix: Matrix4, grey = 0, alpha = 1, color = WHITE): void {
     const data = this.slots.value.image.data as Float32Array;
     const at = this.count * FLOATS_PER_SLOT;
     const m = matrix.elements;
@@ -60,6 +91,7 @@ export class CopyBatch {
     }
     data[at + 12] = grey;
     data[at + 13] = alpha;
+    data[at + 14] = color;
     this.seeThrough ||= alpha < 1;
     this.count += 1;
   }
@@ -67,12 +99,35 @@ export class CopyBatch {
   end(): void {
     const { material, geometry } = this.mesh;
     this.mesh.visible = this.count > 0;
+    this.mesh.boundingBox = null;
     geometry.setDrawRange(0, this.count * (this.shape.index?.count ?? 0));
-    this.slots.value.needsUpdate = true;
-    if (material.transparent === this.seeThrough) return;
+    if (this.count > 0) this.slots.value.needsUpdate = true;
+    if (this.isOverlay || material.transparent === this.seeThrough) return;
     material.transparent = this.seeThrough;
     material.depthWrite = !this.seeThrough;
     material.needsUpdate = true;
+  }
+
+  /** Makes `box` hold all copies, in the parent's frame. */
+  expandBox(box: Box3): void {
+    if (!this.shape.boundingBox) this.shape.computeBoundingBox();
+    const shape = this.shape.boundingBox ?? new Box3();
+    const matrix = new Matrix4();
+    for (let copy = 0; copy < this.count; copy++) box.union(shape.clone().applyMatrix4(this.matrixOf(copy, matrix)));
+  }
+
+  /** The number of the nearest copy under a ray. */
+  pick(ray: Raycaster): CopyHit | null {
+    let best: CopyHit | null = null;
+    const { matrixWorld } = this.mesh;
+    for (let copy = 0; copy < this.count; copy++) {
+      this.matrixOf(copy, this.probe.matrixWorld).premultiply(matrixWorld);
+      const [hit] = ray.intersectObject(this.probe, false);
+      if (hit && (best === null || hit.distance < best.distance)) {
+        best = { copy, distance: hit.distance, point: hit.point };
+      }
+    }
+    return best;
   }
 
   dispose(): void {
@@ -81,6 +136,30 @@ export class CopyBatch {
     this.mesh.material.dispose();
     this.slots.value.dispose();
     this.shape.dispose();
+  }
+
+  private matrixOf(copy: number, matrix: Matrix4): Matrix4 {
+    const data = this.slots.value.image.data as Float32Array;
+    const rows = data.subarray(copy * FLOATS_PER_SLOT, copy * FLOATS_PER_SLOT + 12);
+    return matrix.fromArray([...rows, 0, 0, 0, 1]).transpose();
+  }
+}
+
+/** A mesh whose bounds are those of its copies, wherever three.js asks for them. */
+class CopyMesh extends Mesh<BufferGeometry, ShaderMaterial> {
+  boundingBox: Box3 | null = null;
+
+  constructor(
+    geometry: BufferGeometry,
+    material: ShaderMaterial,
+    private readonly expandBox: (box: Box3) => void,
+  ) {
+    super(geometry, material);
+  }
+
+  computeBoundingBox(): void {
+    this.boundingBox = new Box3();
+    this.expandBox(this.boundingBox);
   }
 }
 

@@ -27,36 +27,51 @@ export function capsule(length: number): BufferGeometry {
   return geometry;
 }
 
-/** Three cylinders along x, y and z in red, green and blue, as RViz's Axes. Metres. */
+/**
+ * Three cylinders along x, y and z in red, green and blue, as RViz's Axes. Metres. What RViz calls the radius it draws as
+ * the thickness of the arms, so that axes of length 1 and radius 0.1 are ten times as long as they are thick.
+ */
 export function axesGeometry(length: number, radius: number, segments: number): BufferGeometry {
-  const arm = (): BufferGeometry => mergeGeometries([tube(radius, length, segments), disc(radius, length, segments)]);
+  const arm = (): BufferGeometry => rodGeometry(segments).scale(length, radius, radius);
   return mergeGeometries([
-    paint(arm().rotateY(Math.PI / 2), 1, 0, 0),
-    paint(arm().rotateX(-Math.PI / 2), 0, 1, 0),
-    paint(arm(), 0, 0, 1),
+    paint(arm(), 1, 0, 0),
+    paint(arm().rotateZ(Math.PI / 2), 0, 1, 0),
+    paint(arm().rotateY(-Math.PI / 2), 0, 0, 1),
   ]);
 }
 
-/** RViz's arrow from a frame to its parent: from the origin one metre along z, radius one; its ends are never seen. */
-export function arrowShaftGeometry(segments: number): BufferGeometry {
-  return paint(tube(1, 1, segments), 0.8, 0.8, 0.3);
-}
-
-/** Base at the origin, tip one metre along z, radius one. */
-export function arrowHeadGeometry(segments: number): BufferGeometry {
-  return paint(new ConeGeometry(1, 1, segments).rotateX(Math.PI / 2).translate(0, 0, 0.5), 1, 0.1, 0.6);
-}
-
-function tube(radius: number, length: number, segments: number): BufferGeometry {
+/** A white rod from the origin one metre along x, with a diameter of one metre, closed at one end: the other is hidden. */
+export function rodGeometry(segments: number, closedAt: "origin" | "end" = "end"): BufferGeometry {
   const open = true;
-  return new CylinderGeometry(radius, radius, length, segments, 1, open).rotateX(Math.PI / 2).translate(0, 0, length / 2);
+  const tube = new CylinderGeometry(0.5, 0.5, 1, segments, 1, open).rotateZ(-Math.PI / 2).translate(0.5, 0, 0);
+  const disc = new CircleGeometry(0.5, segments).rotateY(Math.PI / 2);
+  if (closedAt === "end") disc.translate(1, 0, 0);
+  else disc.rotateZ(Math.PI);
+  return paint(mergeGeometries([tube, disc]), 1, 1, 1);
 }
 
-function disc(radius: number, z: number, segments: number): BufferGeometry {
-  return new CircleGeometry(radius, segments).translate(0, 0, z);
+/** A white cone with its base of one metre diameter at the origin and its tip one metre along x. */
+export function coneGeometry(segments: number): BufferGeometry {
+  return paint(new ConeGeometry(0.5, 1, segments).rotateZ(-Math.PI / 2).translate(0.5, 0, 0), 1, 1, 1);
 }
 
-function paint(geometry: BufferGeometry, r: number, g: number, b: number): BufferGeometry {
+/** A white sphere with a diameter of one metre. */
+export function ballGeometry(segments: number): BufferGeometry {
+  return paint(new SphereGeometry(0.5, segments, Math.ceil(segments / 2)).rotateX(Math.PI / 2), 1, 1, 1);
+}
+
+/** A white cylinder along z, one metre long and one metre in diameter, closed. */
+export function canGeometry(segments: number): BufferGeometry {
+  return paint(new CylinderGeometry(0.5, 0.5, 1, segments).rotateX(Math.PI / 2), 1, 1, 1);
+}
+
+/** A white cube of one metre. */
+export function cubeGeometry(): BufferGeometry {
+  return paint(new BoxGeometry(1, 1, 1), 1, 1, 1);
+}
+
+/** Gives every vertex the same colour, 0 to 1. */
+export function paint(geometry: BufferGeometry, r: number, g: number, b: number): BufferGeometry {
   const count = geometry.getAttribute("position").count;
   const colors = new Float32Array(count * 3);
   for (let i = 0; i < count; i++) colors.set([r, g, b], i * 3);

@@ -1,7 +1,7 @@
 import { ShaderMaterial, type Texture } from "three";
 import { AMBIENT } from "../light";
 
-/** Texels of a slot: three rows of the matrix, then grey and alpha. */
+/** Texels of a slot: three rows of the matrix, then grey, alpha and colour. */
 export const TEXELS_PER_SLOT = 4;
 export const SLOTS_PER_ROW = 64;
 
@@ -14,16 +14,18 @@ const VERTEX = /* glsl */ `
     int index = int(slot + 0.5);
     return texelFetch(slots, ivec2((index % ${SLOTS_PER_ROW}) * ${TEXELS_PER_SLOT} + part, index / ${SLOTS_PER_ROW}), 0);
   }
+  vec3 unpacked(float rgb) {
+    return mod(floor(vec3(rgb / 65536.0, rgb / 256.0, rgb)), 256.0) / 255.0;
+  }
   void main() {
-    vec4 row0 = texel(0), row1 = texel(1), row2 = texel(2);
-    vec2 fade = texel(3).xy;
+    vec4 row0 = texel(0), row1 = texel(1), row2 = texel(2), look = texel(3);
     mat3 turn = transpose(mat3(row0.xyz, row1.xyz, row2.xyz));
     vec3 across = normal / vec3(dot(turn[0], turn[0]), dot(turn[1], turn[1]), dot(turn[2], turn[2]));
-    float facing = max(0.0, normalize(mat3(viewMatrix) * turn * across).z);
+    float facing = max(0.0, normalize(mat3(modelViewMatrix) * turn * across).z);
     float light = ${AMBIENT.toFixed(2)} + ${(1 - AMBIENT).toFixed(2)} * facing;
-    vColor = vec4(mix(color, vec3(0.7), fade.x) * light, fade.y);
+    vColor = vec4(mix(color * unpacked(look.z), vec3(0.7), look.x) * light, look.y);
     vec3 at = turn * position + vec3(row0.w, row1.w, row2.w);
-    gl_Position = projectionMatrix * viewMatrix * vec4(at, 1.0);
+    gl_Position = projectionMatrix * modelViewMatrix * vec4(at, 1.0);
   }
 `;
 const FRAGMENT = /* glsl */ `
@@ -32,8 +34,8 @@ const FRAGMENT = /* glsl */ `
 `;
 
 /**
- * For copies that read their matrix, grey and alpha from a texture. Lit as everything else by the light at the camera,
- * but at the vertices: small things do not show the difference, software renderers do.
+ * For copies that read their matrix, colour, grey and alpha from a texture. Lit as everything else by the light at the
+ * camera, but at the vertices: small things do not show the difference, software renderers do.
  */
 export function slotMaterial(slots: { value: Texture }): ShaderMaterial {
   return new ShaderMaterial({ vertexShader: VERTEX, fragmentShader: FRAGMENT, uniforms: { slots } });

@@ -1,70 +1,92 @@
 import {
+  BufferAttribute,
+  BufferGeometry,
   Color,
   DoubleSide,
-  InstancedBufferAttribute,
-  InstancedBufferGeometry,
-  Float32BufferAttribute,
   Mesh,
   ShaderMaterial,
+  type Box3,
   type ColorRepresentation,
 } from "three";
+import { ribbons, stripsOf } from "./ribbons";
 
 const VERTEX = /* glsl */ `
-  attribute vec3 start;
-  attribute vec3 end;
+  attribute vec3 direction;
+  attribute float side;
+  #ifdef COLORED
+    attribute vec4 rgba;
+  #endif
   uniform float width;
+  varying vec4 vColor;
   void main() {
-    vec3 from = (modelViewMatrix * vec4(start, 1.0)).xyz;
-    vec3 to = (modelViewMatrix * vec4(end, 1.0)).xyz;
-    vec3 at = mix(from, to, position.x);
-    vec3 side = normalize(cross(to - from, at));
-    gl_Position = projectionMatrix * vec4(at + side * position.y * width, 1.0);
+    #ifdef COLORED
+      vColor = rgba;
+    #else
+      vColor = vec4(1.0);
+    #endif
+    vec4 at = modelViewMatrix * vec4(position, 1.0);
+    vec3 sight = isOrthographic ? vec3(0.0, 0.0, -1.0) : at.xyz;
+    vec3 across = cross(mat3(modelViewMatrix) * direction, sight);
+    at.xyz += normalize(across) * side * width;
+    gl_Position = projectionMatrix * at;
   }
 `;
 const FRAGMENT = /* glsl */ `
-  uniform vec3 color;
-  uniform float opacity;
-  void main() { gl_FragColor = vec4(color, opacity); }
+  uniform vec4 color;
+  varying vec4 vColor;
+  void main() { gl_FragColor = color * vColor; }
 `;
 
-/** Line segments with a width in metres that turn towards the camera: RViz's billboard lines. */
+/**
+ * Lines with a width in metres that turn towards the camera: RViz's billboard lines. One draw call, unlit; no GPU
+ * instancing, see `CopyBatch`.
+ */
 export class WideLines {
-  readonly root: Mesh<InstancedBufferGeometry, ShaderMaterial>;
+  readonly root: Mesh<BufferGeometry, ShaderMaterial>;
+  private opacity = 1;
 
   constructor() {
-    const uniforms = { width: { value: 0.01 }, color: { value: new Color() }, opacity: { value: 1 } };
+    const uniforms = { width: { value: 0.01 }, color: { value: [1, 1, 1, 1] } };
     this.root = new Mesh(
-      quads(),
+      new BufferGeometry(),
       new ShaderMaterial({ vertexShader: VERTEX, fragmentShader: FRAGMENT, uniforms, side: DoubleSide }),
     );
     this.root.frustumCulled = false;
+    this.root.visible = false;
   }
 
-  /** `segments`: x y z of both ends of each segment, one after the other. */
-  setSegments(segments: Float32Array): void {
-    const count = segments.length / 6;
-    const [starts, ends] = [new Float32Array(count * 3), new Float32Array(count * 3)];
-    for (let i = 0; i < count; i++) {
-      starts.set(segments.subarray(i * 6, i * 6 + 3), i * 3);
-      ends.set(segments.subarray(i * 6 + 3, i * 6 + 6), i * 3);
-    }
-    // A geometry remembers the first number of instances it was drawn with: more of them need a new one.
+  /** Segments between pairs of points: x y z of both ends of each; `colors` r g b a of both ends, 0 to 1. */
+  setSegments(segments: Float32Array, colors: Float32Array | null = null): void {
+    this.setStrips(stripsOf(segments), colors && stripsOf(colors, 4));
+  }
+
+  /** Lines through the points of each strip; `colors` r g b a of each point, 0 to 1, multiplied with the style's. */
+  setStrips(strips: readonly Float32Array[], colors: readonly Float32Array[] | null = null): void {
+    const made = ribbons(strips, colors);
+    const geometry = new BufferGeometry().setIndex(new BufferAttribute(made.indices, 1));
+    geometry.setAttribute("position", new BufferAttribute(made.positions, 3));
+    geometry.setAttribute("direction", new BufferAttribute(made.directions, 3));
+    geometry.setAttribute("side", new BufferAttribute(made.sides, 1));
+    if (made.colors) geometry.setAttribute("rgba", new BufferAttribute(made.colors, 4));
     this.root.geometry.dispose();
-    this.root.geometry = quads();
-    this.root.geometry.setAttribute("start", new InstancedBufferAttribute(starts, 3));
-    this.root.geometry.setAttribute("end", new InstancedBufferAttribute(ends, 3));
-    this.root.geometry.instanceCount = count;
-    this.root.visible = count > 0;
+    this.root.geometry = geometry;
+    this.root.visible = made.indices.length > 0;
+    this.settle();
   }
 
+  /** `width` in metres. */
   setStyle(color: ColorRepresentation, opacity: number, width: number): void {
+    const { r, g, b } = new Color(color);
     const { uniforms } = this.root.material;
-    uniforms["color"] = { value: new Color(color) };
-    uniforms["opacity"] = { value: opacity };
+    uniforms["color"] = { value: [r, g, b, opacity] };
     uniforms["width"] = { value: width };
-    this.root.material.transparent = opacity < 1;
-    this.root.material.depthWrite = opacity >= 1;
-    this.root.material.needsUpdate = true;
+    this.opacity = opacity;
+    this.settle();
+  }
+
+  /** Makes `box` hold the middle of all lines, in the parent's frame. */
+  expandBox(box: Box3): void {
+    if (this.root.visible) box.expandByObject(this.root);
   }
 
   dispose(): void {
@@ -72,11 +94,15 @@ export class WideLines {
     this.root.geometry.dispose();
     this.root.material.dispose();
   }
-}
 
-function quads(): InstancedBufferGeometry {
-  const geometry = new InstancedBufferGeometry();
-  geometry.setAttribute("position", new Float32BufferAttribute([0, -0.5, 0, 1, -0.5, 0, 1, 0.5, 0, 0, 0.5, 0], 3));
-  geometry.setIndex([0, 1, 2, 0, 2, 3]);
-  return geometry;
+  private settle(): void {
+    const { material, geometry } = this.root;
+    const colors = geometry.attributes["rgba"];
+    let transparent = this.opacity < 1;
+    for (let i = 0; !transparent && colors && i < colors.count; i++) transparent = colors.getW(i) < 1;
+    material.defines = colors ? { COLORED: "" } : {};
+    material.transparent = transparent;
+    material.depthWrite = !transparent;
+    material.needsUpdate = true;
+  }
 }

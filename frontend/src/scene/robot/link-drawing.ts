@@ -1,11 +1,10 @@
-import { Group, Mesh, MeshLambertMaterial, type Object3D } from "three";
+import { Group, type Matrix4, type Mesh, type Object3D } from "three";
 import type { LinkScene } from "../../protocol.gen";
 import type { FrameStore } from "../../state/frames";
 import type { MaterialPool } from "../materials";
-import { axesGeometry } from "../objects/geometries";
 import { framePose } from "../pose";
 import { LinkTrail } from "./link-trail";
-import { ShapeDrawing } from "./shape-drawing";
+import { ShapeDrawing, type ShapeTold } from "./shape-drawing";
 
 /** How a link is to be drawn: the display's properties and the link's own, together. */
 export interface LinkStyle {
@@ -14,12 +13,15 @@ export interface LinkStyle {
   collision: boolean;
   /** Robot's times link's. */
   alpha: number;
-  axes: boolean;
   trail: boolean;
+  /** Collisions over pale visuals, whether the display draws them or not. */
+  contrast: boolean;
 }
 
-const AXES_LENGTH = 0.1;
-const AXES_RADIUS = 0.01;
+/** In contrast: what is left of the visuals' alpha, and the collisions' colour and alpha. */
+const PALE = 0.3;
+const COLLISION_COLOR = [1, 0.55, 0.1] as const;
+const COLLISION_ALPHA = 0.55;
 
 /** One link: its visuals and collisions in the frame of its name. */
 export class LinkDrawing {
@@ -28,9 +30,8 @@ export class LinkDrawing {
   readonly collisions: readonly ShapeDrawing[];
   private readonly visualGroup = new Group();
   private readonly collisionGroup = new Group();
-  private axes: Mesh | null = null;
   private trail: LinkTrail | null = null;
-  private style: LinkStyle = { enabled: true, visual: true, collision: false, alpha: 1, axes: false, trail: false };
+  private style: LinkStyle = { enabled: true, visual: true, collision: false, alpha: 1, trail: false, contrast: false };
   private posed = false;
   private lost = false;
 
@@ -58,6 +59,11 @@ export class LinkDrawing {
     return this.visuals.filter((each) => each.drawn).length;
   }
 
+  /** Where it is drawn; null before it had a transform. */
+  get pose(): Matrix4 | null {
+    return this.posed ? this.root.matrix : null;
+  }
+
   /** The meshes that can be seen now. */
   get visibleMeshes(): Mesh[] {
     if (!this.root.visible) return [];
@@ -70,15 +76,19 @@ export class LinkDrawing {
 
   setStyle(style: LinkStyle): void {
     this.style = style;
-    this.visualGroup.visible = style.visual && style.enabled;
-    this.collisionGroup.visible = style.collision && style.enabled;
-    this.showAxes(style.axes && style.enabled);
+    this.visualGroup.visible = (style.visual || style.contrast) && style.enabled;
+    this.collisionGroup.visible = (style.collision || style.contrast) && style.enabled;
     this.showTrail(style.trail && style.enabled);
     this.paint();
   }
 
   paint(): void {
-    for (const each of [...this.visuals, ...this.collisions]) each.paint(this.pool, this.style.alpha, this.lost);
+    const { alpha, contrast } = this.style;
+    for (const each of this.visuals) each.paint(this.pool, contrast ? alpha * PALE : alpha, this.lost);
+    for (const each of this.collisions) {
+      if (contrast) each.paint(this.pool, alpha * COLLISION_ALPHA, this.lost, COLLISION_COLOR);
+      else each.paint(this.pool, alpha, this.lost);
+    }
   }
 
   /** Moves to the frame's pose. Without a transform RViz leaves a link where it was, in white. */
@@ -94,23 +104,20 @@ export class LinkDrawing {
     }
   }
 
-  dispose(): void {
-    this.root.removeFromParent();
-    this.showAxes(false);
-    this.showTrail(false);
-    for (const each of [...this.visuals, ...this.collisions]) each.dispose();
+  /** What is drawn, for tests. */
+  tell(): { visuals: ShapeTold[]; collisions: ShapeTold[]; trail: boolean } {
+    const { visible } = this.root;
+    return {
+      visuals: visible && this.visualGroup.visible ? this.visuals.map((each) => each.tell()) : [],
+      collisions: visible && this.collisionGroup.visible ? this.collisions.map((each) => each.tell()) : [],
+      trail: this.trail !== null,
+    };
   }
 
-  private showAxes(show: boolean): void {
-    if (show === (this.axes !== null)) return;
-    if (this.axes) {
-      this.axes.removeFromParent();
-      this.axes.geometry.dispose();
-      this.axes = null;
-      return;
-    }
-    this.axes = new Mesh(axesGeometry(AXES_LENGTH, AXES_RADIUS, 12), new MeshLambertMaterial({ vertexColors: true }));
-    this.root.add(this.axes);
+  dispose(): void {
+    this.root.removeFromParent();
+    this.showTrail(false);
+    for (const each of [...this.visuals, ...this.collisions]) each.dispose();
   }
 
   private showTrail(show: boolean): void {

@@ -15,7 +15,6 @@ export class LinkTrail {
   constructor(world: Object3D) {
     world.add(this.ribbon.root);
     this.ribbon.setStyle(COLOR, 1, WIDTH);
-    this.ribbon.setSegments(new Float32Array(0));
   }
 
   follow(pose: Matrix4): void {
@@ -25,12 +24,7 @@ export class LinkTrail {
     if (!head || !neck || head.distanceTo(neck) >= LENGTH / ELEMENTS) this.points.unshift(at);
     else this.points[0] = at;
     this.points.length = Math.min(this.points.length, ELEMENTS);
-    const segments = new Float32Array(Math.max(0, this.points.length - 1) * 6);
-    this.points.forEach((point, i) => {
-      if (i > 0) segments.set(point.toArray(), i * 6 - 3);
-      if (i < this.points.length - 1) segments.set(point.toArray(), i * 6);
-    });
-    this.ribbon.setSegments(segments);
+    this.ribbon.setStrips([new Float32Array(this.points.flatMap((point) => point.toArray()))]);
   }
 
   dispose(): void {

@@ -1,11 +1,13 @@
 import { Group, type Object3D, type Raycaster } from "three";
 import type { RobotScene } from "../../protocol.gen";
-import type { PropertyNode, PropertyRows } from "../../state/properties";
+import type { PropertyRows } from "../../state/properties";
 import type { FrameStore } from "../../state/frames";
-import type { Hit } from "../displays/drawing";
+import type { Described, Hit, SelectionBox } from "../picking";
+import { describedPose } from "../described-pose";
 import { MaterialPool } from "../materials";
 import type { MeshLibrary } from "../meshes/mesh-library";
 import { LinkDrawing } from "./link-drawing";
+import { RobotExtras } from "./robot-extras";
 import type { ShapeDrawing } from "./shape-drawing";
 
 /** Told once for each mesh of each link: `error` is null when all of it is drawn. */
@@ -18,12 +20,14 @@ export class RobotDrawing {
   readonly settled: Promise<void>;
   private readonly pool = new MaterialPool();
   private readonly links: ReadonlyMap<string, LinkDrawing>;
+  private readonly extras: RobotExtras;
   private readonly linkOf = new Map<number, string>();
   private loading: number;
 
   constructor(scene: RobotScene, meshes: MeshLibrary, report: MeshReport, changed: () => void) {
     this.links = new Map(scene.links.map((link) => [link.name, new LinkDrawing(link, this.pool, this.root)]));
     for (const link of this.links.values()) this.root.add(link.root);
+    this.extras = new RobotExtras(scene, this.root);
     const loads: Promise<void>[] = [];
     for (const link of this.links.values()) {
       for (const shape of [...link.visuals, ...link.collisions]) {
@@ -45,12 +49,15 @@ export class RobotDrawing {
     return count;
   }
 
-  style(rows: PropertyRows): void {
-    this.pool.renew(() => this.styleLinks(rows));
+  /** `contrast` draws collisions over pale visuals. */
+  style(rows: PropertyRows, contrast: boolean): void {
+    this.pool.renew(() => this.styleLinks(rows, contrast));
+    this.extras.style(rows);
   }
 
   place(frames: FrameStore): void {
     for (const link of this.links.values()) link.place(frames);
+    this.extras.place((name) => this.links.get(name)?.pose ?? null);
   }
 
   pick(ray: Raycaster): Hit | null {
@@ -62,7 +69,24 @@ export class RobotDrawing {
     });
     const [nearest] = ray.intersectObjects(targets, false);
     const link = nearest && this.linkOf.get(nearest.object.id);
-    return nearest && link !== undefined ? { link, distance: nearest.distance } : null;
+    return nearest && link !== undefined ? { key: link, distance: nearest.distance, point: nearest.point } : null;
+  }
+
+  pickBox(box: SelectionBox): string[] {
+    const inside = [...this.links.values()].filter((link) => link.visibleMeshes.some((mesh) => box.hasObject(mesh)));
+    return inside.map((link) => link.link.name);
+  }
+
+  /** A link as RViz's Selection panel shows it. */
+  describe(name: string): Described | null {
+    const link = this.links.get(name);
+    return link ? { name: `Link ${name}`, children: describedPose(link.root.matrix) } : null;
+  }
+
+  /** What is drawn, for tests: the shapes of each link, and what stands beside them. */
+  tell(): object {
+    const links = [...this.links.values()].map((link) => [link.link.name, link.tell()] as const);
+    return { ...this.extras.counts, links: Object.fromEntries(links) };
   }
 
   objectsOf(link: string): readonly Object3D[] {
@@ -71,12 +95,13 @@ export class RobotDrawing {
 
   dispose(): void {
     for (const link of this.links.values()) link.dispose();
+    this.extras.dispose();
     this.root.removeFromParent();
     this.pool.dispose();
   }
 
-  private styleLinks(rows: PropertyRows): void {
-    const own = linkRows(rows.find("Links"));
+  private styleLinks(rows: PropertyRows, contrast: boolean): void {
+    const own = new Map(rows.find("Links")?.children.map((row) => [row.name, row]));
     const alpha = rows.number(1, "Alpha");
     const visual = rows.bool(true, "Visual Enabled");
     const collision = rows.bool(false, "Collision Enabled");
@@ -89,8 +114,8 @@ export class RobotDrawing {
         collision,
         enabled: row?.value !== false,
         alpha: alpha * (typeof linkAlpha === "number" ? linkAlpha : 1),
-        axes: child("Show Axes") === true,
         trail: child("Show Trail") === true,
+        contrast,
       });
     }
   }
@@ -114,13 +139,4 @@ export class RobotDrawing {
     if (kind === "mesh" && url !== null) report(link.link.name, url, error);
     changed();
   }
-}
-
-/** The rows of links, however the tree below Links is arranged: only links have a trail. */
-function linkRows(top: PropertyNode | undefined): Map<string, PropertyNode> {
-  const result = new Map<string, PropertyNode>();
-  for (const node of top?.walk() ?? []) {
-    if (node.children.some((child) => child.name === "Show Trail")) result.set(node.name, node);
-  }
-  return result;
 }

@@ -1,4 +1,4 @@
-import { Group, Mesh, type BufferGeometry, type Material, type Texture } from "three";
+import { Box3, Group, Mesh, type BufferGeometry, type Material, type MeshLambertMaterial, type Texture } from "three";
 import type { Shape } from "../../protocol.gen";
 import { errorMaterial, loadTexture, RVIZ_RED, type Look, type MaterialPool } from "../materials";
 import type { MeshLibrary } from "../meshes/mesh-library";
@@ -9,6 +9,13 @@ import { capsule, unitBox, unitCylinder, unitSphere } from "../objects/geometrie
 interface Part {
   mesh: Mesh;
   own: readonly (OwnMaterial | null)[];
+}
+
+/** See `ShapeDrawing.tell`. */
+export interface ShapeTold {
+  kind: string;
+  bounds: { min: number[]; max: number[] } | null;
+  materials: { color: string; opacity: number; textured: boolean }[];
 }
 
 /** One visual or collision of a link. */
@@ -49,20 +56,45 @@ export class ShapeDrawing {
     const problem = this.problem;
     if (texture === null) return problem;
     try {
-      this.texture = await loadTexture(texture);
+      this.texture = await loadTexture(library.files.address(texture));
       return problem;
     } catch {
       return `could not load texture '${decodeURIComponent(texture.split("/").pop() ?? texture)}'`;
     }
   }
 
-  /** Paints with the robot's and the link's alpha multiplied in; `lost` is RViz's white of links without transform. */
-  paint(pool: MaterialPool, alpha: number, lost: boolean): void {
+  /**
+   * Paints with the robot's and the link's alpha multiplied in; `lost` is RViz's white of links without transform.
+   *
+   * @param instead a colour that takes the place of all others, r g b from 0 to 1.
+   */
+  paint(pool: MaterialPool, alpha: number, lost: boolean, instead: readonly [number, number, number] | null = null): void {
     for (const { mesh, own } of this.parts) {
-      const materials = own.map((each) => (lost ? errorMaterial : pool.get(this.look(each, alpha))));
+      const look = (each: OwnMaterial | null): Look =>
+        instead ? { color: [...instead], map: null, vertexColors: false, alpha, doubleSided: true } : this.look(each, alpha);
+      const materials = own.map((each) => (lost ? errorMaterial : pool.get(look(each))));
       const [only = errorMaterial] = materials;
       mesh.material = materials.length === 1 ? only : materials;
     }
+  }
+
+  /** What is drawn, for tests: bounds in the fixed frame, and colour, opacity and texture of each material. */
+  tell(): ShapeTold {
+    const box = new Box3();
+    for (const { mesh } of this.parts) {
+      mesh.updateWorldMatrix(true, false);
+      box.expandByObject(mesh, true);
+    }
+    const materials = this.parts.flatMap(({ mesh }) => mesh.material) as unknown as MeshLambertMaterial[];
+    return {
+      kind: this.shape.kind,
+      bounds: box.isEmpty() ? null : { min: box.min.toArray(), max: box.max.toArray() },
+      materials: materials.map(({ color, opacity, map }) => ({
+        color: `#${color.getHexString()}`,
+        opacity,
+        textured: map !== null,
+      })),
+    };
   }
 
   dispose(): void {
@@ -113,13 +145,14 @@ export class ShapeDrawing {
 
   /**
    * RViz's rule: a part with a material of its own keeps it; any other takes the URDF's. Without one, a shape or STL is
-   * RViz's red and another mesh the grey that RViz's mesh reader puts in.
+   * RViz's red and another mesh the grey that RViz's mesh reader puts in. How opaque a part is says the URDF alone:
+   * RViz does not read it from mesh files, where exporters often write it wrongly.
    */
   private look(own: OwnMaterial | null, alpha: number): Look {
     const doubleSided = this.shape.kind === "mesh";
     if (own) {
       const { color, map, vertexColors } = own;
-      return { color, map, vertexColors, alpha: alpha * own.opacity, doubleSided };
+      return { color, map, vertexColors, alpha: alpha * (this.shape.color?.[3] ?? 1), doubleSided };
     }
     const grey = doubleSided && !this.shape.format?.startsWith("stl");
     const bare: readonly number[] = grey ? [UNCOLOURED_GREY, UNCOLOURED_GREY, UNCOLOURED_GREY] : RVIZ_RED;

@@ -11,6 +11,8 @@ from linkwright.launch.engine.log import output_destinations
 
 if TYPE_CHECKING:
     from linkwright.launch.actions.execute import ExecuteLocal
+    from linkwright.nodes import NodeOptions
+    from linkwright.urdf import DescriptionLibrary
     from linkwright.viewer import RvizConfig
 
 VIEWER = ("rviz2", "rviz2")
@@ -55,6 +57,19 @@ class HostedPlan:
     def is_viewer(self) -> bool:
         """Whether it is RViz, for which our viewer stands in."""
         return is_viewer(self.package, self.executable)
+
+    def node_options(self, library: DescriptionLibrary) -> NodeOptions:
+        """How to start it; `library` is the readings of robot descriptions that the process shares."""
+        from linkwright.nodes import NodeOptions
+
+        return NodeOptions(
+            name=self.node_name,
+            namespace=self.namespace,
+            parameters=dict(self.parameters),
+            remappings=self.remappings,
+            arguments=self.arguments,
+            library=library,
+        )
 
     @property
     def details(self) -> dict[str, Any]:

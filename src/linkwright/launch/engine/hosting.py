@@ -146,19 +146,12 @@ class NodeHost:
     # --- nodes ----------------------------------------------------------------------------------------------
 
     def _start_node(self, plan: HostedPlan) -> None:
-        from linkwright.nodes import EXECUTABLES, NodeOptions
+        from linkwright.nodes import EXECUTABLES
         from linkwright.nodes.component_container import ComponentContainer
 
         session = self._session
         session.log.say(plan.process_name, "started in the launcher's process")
-        options = NodeOptions(
-            name=plan.node_name,
-            namespace=plan.namespace,
-            parameters=dict(plan.parameters),
-            remappings=plan.remappings,
-            arguments=plan.arguments,
-            library=session.descriptions.library,
-        )
+        options = plan.node_options(session.descriptions.library)
         try:
             with self._speak_as(plan.process_name):
                 running = EXECUTABLES[(plan.package, plan.executable)](self.graph, options)

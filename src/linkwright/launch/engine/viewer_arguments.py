@@ -23,6 +23,27 @@ _WITHOUT_MEANING_HERE = {
     "--force-x11": 0,
 }
 
+USAGE = """\
+usage: rviz2 [-d FILE] [-f FRAME] [--ros-args ...]
+
+Shows what RViz would show, in the browser.
+
+  -h, --help                   show this and end
+  -d, --display-config FILE    the .rviz file to open
+  -f, --fixed-frame FRAME      the Fixed Frame, instead of the file's
+  --ros-args ...               names, remappings and parameters of the node
+
+RViz's -s, -l, --stereo, --fullscreen and --force-x11 are taken and have no meaning here.
+"""
+
+
+def asks_for_help(arguments: Sequence[str]) -> bool:
+    """Whether the command line asks for `USAGE`."""
+    own = list(arguments)
+    if "--ros-args" in own:
+        own = own[: own.index("--ros-args")]
+    return "-h" in own or "--help" in own
+
 
 def read_viewer_config(arguments: Sequence[str]) -> tuple[RvizConfig, list[Diagnostic]]:
     """The configuration that the arguments ask for, and what is to be said of them.

@@ -75,9 +75,7 @@ class ViewerHost:
             host=session.options.host,
             port=session.options.port,
             title=session.options.title,
-            name=plan.node_name or plan.executable,
-            namespace=plan.namespace,
-            remappings=plan.remappings,
+            options=plan.node_options(session.descriptions.library),
         )
         await viewer.start()
         self._viewers[plan.process_name] = plan, viewer

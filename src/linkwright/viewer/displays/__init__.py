@@ -1,7 +1,7 @@
 """The displays of the Displays panel, one file each."""
 
 from linkwright.viewer.displays.base import Stage, ViewerDisplay, worst
-from linkwright.viewer.displays.catalogue import make_display
+from linkwright.viewer.displays.catalogue import display_classes, has_display, make_display
 from linkwright.viewer.displays.grid import GridDisplay
 from linkwright.viewer.displays.robot_model import RobotModelDisplay
 from linkwright.viewer.displays.tf import TfDisplay
@@ -14,6 +14,8 @@ __all__ = [
     "TfDisplay",
     "UnsupportedDisplay",
     "ViewerDisplay",
+    "display_classes",
+    "has_display",
     "make_display",
     "worst",
 ]

@@ -9,15 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError
-from linkwright.graph import (
-    DurabilityPolicy,
-    HistoryPolicy,
-    Node,
-    QoSProfile,
-    ReliabilityPolicy,
-)
+from linkwright.graph import DurabilityPolicy, Node
 from linkwright.messages import String
 from linkwright.urdf import DescriptionLibrary
+from linkwright.viewer.displays.topic_properties import qos_of, topic_spec
 from linkwright.viewer.property_store import PropertyStore
 from linkwright.viewer.schema import PropertySpec
 from linkwright.workspace import PackageFinder
@@ -25,8 +20,6 @@ from linkwright.workspace import PackageFinder
 SOURCE = "Description Source"
 FILE = "Description File"
 TOPIC = "Description Topic"
-
-_SYSTEM_DEFAULT = "System Default"
 
 DESCRIPTION_SPECS = (
     PropertySpec(SOURCE, "enum", "Topic", "Where the description comes from.", options=("Topic", "File")),
@@ -37,37 +30,15 @@ DESCRIPTION_SPECS = (
         "A URDF or xacro file: a path or a package:// address.",
         when=((SOURCE,), "File"),
     ),
-    PropertySpec(
+    topic_spec(
         TOPIC,
-        "string",
         "/robot_description",
         "The topic that carries the description, as std_msgs/msg/String.",
+        depth=1,
+        durability="Transient Local",
+        durability_help="Whether a description published before counts too. It always does here: most files say "
+        "Volatile, and then it would be chance whether the robot is seen.",
         when=((SOURCE,), "Topic"),
-        children=(
-            PropertySpec("Depth", "int", 1, "How many messages may wait.", minimum=1, maximum=1000),
-            PropertySpec(
-                "History Policy",
-                "enum",
-                "Keep Last",
-                "Whether only the last messages wait, or all.",
-                options=("Keep Last", "Keep All", _SYSTEM_DEFAULT),
-            ),
-            PropertySpec(
-                "Reliability Policy",
-                "enum",
-                "Reliable",
-                "Whether every message must arrive.",
-                options=("Reliable", "Best Effort", _SYSTEM_DEFAULT),
-            ),
-            PropertySpec(
-                "Durability Policy",
-                "enum",
-                "Transient Local",
-                "Whether a description published before counts too. It always does here: most files say Volatile, "
-                "and then it would be chance whether the robot is seen.",
-                options=("Volatile", "Transient Local", _SYSTEM_DEFAULT),
-            ),
-        ),
     ),
 )
 
@@ -122,28 +93,17 @@ class DescriptionSource:
     def _subscribe(self, topic: str) -> str | None:
         if not topic:
             return "Error subscribing: Empty topic name"
-        durabilities = [DurabilityPolicy.TRANSIENT_LOCAL]
-        if self._properties.text(TOPIC, "Durability Policy") != "Transient Local":
-            durabilities.append(DurabilityPolicy.VOLATILE)  # for publishers that offer no more
+        asked = qos_of(self._properties, TOPIC)
+        # Lasting first; and what the file asks for besides, for publishers that offer no more.
+        profiles = [qos_of(self._properties, TOPIC, lasting=True)]
+        if asked.durability is not DurabilityPolicy.TRANSIENT_LOCAL:
+            profiles.append(asked)
         try:
-            for durability in durabilities:
-                self._subscriptions.append(
-                    self._node.create_subscription(String, topic, self._received, self._qos(durability))
-                )
+            for profile in profiles:
+                self._subscriptions.append(self._node.create_subscription(String, topic, self._received, profile))
         except LinkwrightError as error:
             return f"Error subscribing: {error.diagnostics[0].message}"
         return None
-
-    def _qos(self, durability: DurabilityPolicy) -> QoSProfile:
-        get = self._properties.text
-        best_effort = get(TOPIC, "Reliability Policy") == "Best Effort"
-        keep_all = get(TOPIC, "History Policy") == "Keep All"
-        return QoSProfile(
-            depth=int(self._properties.number(TOPIC, "Depth")),
-            reliability=ReliabilityPolicy.BEST_EFFORT if best_effort else ReliabilityPolicy.RELIABLE,
-            durability=durability,
-            history=HistoryPolicy.KEEP_ALL if keep_all else HistoryPolicy.KEEP_LAST,
-        )
 
     def _received(self, message: String) -> None:
         self._on_text(message.data)
@@ -164,5 +124,5 @@ class DescriptionSource:
             self._on_refusal(error.diagnostics)
             return
         text = str(expansion)
-        self._library.remember(text, expansion.document, expansion.story)
+        self._library.remember(text, expansion.document, expansion.story, expansion.dependencies)
         self._on_text(text)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from linkwright.viewer.displays.base import ViewerDisplay
+from linkwright.viewer.displays.look_properties import alpha, line_style, line_width
+from linkwright.viewer.frame_view import transform_status
 from linkwright.viewer.property_store import Path
-from linkwright.viewer.protocol import StatusRow
 from linkwright.viewer.schema import FIXED_FRAME, PropertySpec, vector
 
 
@@ -24,25 +25,9 @@ class GridDisplay(ViewerDisplay):
             maximum=100,
         ),
         PropertySpec("Cell Size", "float", 1.0, "Side of a cell, in metres.", minimum=0.0001),
-        PropertySpec(
-            "Line Style",
-            "enum",
-            "Lines",
-            "Lines are one pixel wide; billboards have a width in metres.",
-            options=("Lines", "Billboards"),
-            children=(
-                PropertySpec(
-                    "Line Width",
-                    "float",
-                    0.03,
-                    "Width of the lines, in metres.",
-                    minimum=0.001,
-                    when=(("Line Style",), "Billboards"),
-                ),
-            ),
-        ),
+        line_style(line_width()),
         PropertySpec("Color", "color", "#a0a0a4", "Colour of the lines."),
-        PropertySpec("Alpha", "float", 0.5, "Opacity of the lines: 0 is invisible.", minimum=0.0, maximum=1.0),
+        alpha("Opacity of the lines: 0 is invisible.", 0.5),
         PropertySpec("Plane", "enum", "XY", "The plane the grid lies in.", options=("XY", "XZ", "YZ")),
         vector("Offset", "Where the grid's middle is in the reference frame, in metres."),
     )
@@ -58,10 +43,4 @@ class GridDisplay(ViewerDisplay):
 
     def frames_changed(self) -> None:
         """Say whether the reference frame can be placed."""
-        frames = self.stage.frames
-        frame = self.properties.text("Reference Frame")
-        if frame == FIXED_FRAME or frame in frames.placed:
-            self.set_status([StatusRow("Transform", "ok", "Transform OK")])
-        else:
-            text = f"Could not transform from [{frame}] to [{frames.fixed_frame}]"
-            self.set_status([StatusRow("Transform", "error", text)])
+        self.set_status([transform_status(self.stage.frames, self.properties.text("Reference Frame"))])

@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, translated
-from linkwright.urdf import Link, Robot
+from linkwright.urdf import Robot
 from linkwright.viewer.displays.base import Stage, ViewerDisplay
 from linkwright.viewer.displays.description_source import DESCRIPTION_SPECS, DescriptionSource
+from linkwright.viewer.displays.look_properties import alpha
+from linkwright.viewer.displays.robot_rows import ALL, JOINTS, LINKS, NO_ROWS, STYLE, RobotRows
 from linkwright.viewer.mesh_files import MeshIndex
 from linkwright.viewer.property_store import Path, Schema
-from linkwright.viewer.protocol import LinkStory, MeshStatus, RobotScene, ServerMessage, StatusRow
+from linkwright.viewer.protocol import LinkStory, MeshStatus, PropertyChanged, RobotScene, ServerMessage, StatusRow
 from linkwright.viewer.robot_scene import SceneBuilder
 from linkwright.viewer.rviz_config import DisplayConfig
 from linkwright.viewer.schema import PropertySpec
@@ -18,20 +20,24 @@ from linkwright.viewer.schema import PropertySpec
 _STATIC = (
     PropertySpec("Visual Enabled", "bool", True, "Draw what the robot looks like."),
     PropertySpec("Collision Enabled", "bool", False, "Draw the shapes that contacts are worked out with."),
+    PropertySpec(
+        "Mass Properties",
+        "group",
+        description="What masses look like.",
+        children=(
+            PropertySpec("Mass", "bool", False, "Draw each link's mass as a ball of lead at its centre of mass."),
+            PropertySpec("Inertia", "bool", False, "Draw each link's inertia as a box of the same inertia."),
+        ),
+    ),
     PropertySpec("Update Interval", "float", 0.0, "Seconds between updates; 0 for every frame.", minimum=0.0),
-    PropertySpec("Alpha", "float", 1.0, "Opacity of all links: 0 is invisible.", minimum=0.0, maximum=1.0),
+    alpha("Opacity of all links: 0 is invisible."),
     *DESCRIPTION_SPECS,
     PropertySpec("TF Prefix", "string", "", "What stands before a slash and the link's name in the name of its frame."),
 )
 _SOURCE_NAMES = frozenset(spec.name for spec in DESCRIPTION_SPECS)
-_ALL = ("Links", "All Links Enabled")
-_ALL_SPEC = PropertySpec(_ALL[1], "bool", True, "Set the boxes of all links.")
-_LINK_EXTRAS = (
-    PropertySpec("Show Trail", "bool", False, "Draw the way that the link went."),
-    PropertySpec("Show Axes", "bool", False, "Draw the axes of the link's frame."),
-)
-_LINK_ALPHA = PropertySpec("Alpha", "float", 1.0, "Opacity of this link.", minimum=0.0, maximum=1.0)
 _MOST_FINDINGS = 5
+_MANY_BOXES = 20
+"""More boxes than these are told together, as all rows anew."""
 
 
 class RobotModelDisplay(ViewerDisplay):
@@ -44,7 +50,8 @@ class RobotModelDisplay(ViewerDisplay):
     CLASS = "rviz_default_plugins/RobotModel"
 
     def __init__(self, stage: Stage, identity: str, config: DisplayConfig) -> None:
-        self._links_spec = PropertySpec("Links", "group", children=(_ALL_SPEC,))
+        self._rows: RobotRows | None = None
+        self._robot_specs: Schema = NO_ROWS
         super().__init__(stage, identity, config)
         self.robot: Robot | None = None
         self.scene = RobotScene(display=identity, revision=0, name="", links=[])
@@ -56,9 +63,19 @@ class RobotModelDisplay(ViewerDisplay):
         self._file_problems: dict[str, list[str]] = {}
         self._page_problems: dict[tuple[str, str], str] = {}
 
+    @property
+    def text(self) -> str:
+        """The description that the robot was read from."""
+        return self._text
+
+    @property
+    def file_problems(self) -> dict[str, list[str]]:
+        """What is wrong with the files that links name."""
+        return self._file_problems
+
     def schema(self) -> Schema:
-        """The fixed properties, and rows for each link."""
-        return (*_STATIC, self._links_spec)
+        """The fixed properties, and rows for each link and joint."""
+        return (*_STATIC, *self._robot_specs)
 
     def start(self) -> None:
         """Follow the source of the description."""
@@ -84,12 +101,8 @@ class RobotModelDisplay(ViewerDisplay):
             self.start()
         elif path == ("TF Prefix",) and self.robot is not None:
             self._show_robot(self.robot)
-        elif path == _ALL:
-            value = self.properties.flag(*_ALL)
-            for spec in self._links_spec.children[1:]:
-                if spec.kind == "bool":
-                    self.properties.set(("Links", spec.name), value)
-            self.publish_properties()
+        elif self._rows is not None and path[0] in (LINKS, JOINTS):
+            self._box_changed(self._rows, path)
 
     def frames_changed(self) -> None:
         """Say which links can be placed."""
@@ -99,7 +112,7 @@ class RobotModelDisplay(ViewerDisplay):
         """The robot."""
         return [self.scene]
 
-    def mesh_status(self, status: MeshStatus) -> None:
+    def receive(self, status: MeshStatus) -> None:
         """Take what a page says about a mesh of this robot; what it says of others is stale and passed over."""
         link = next((link for link in self.scene.links if link.name == status.link), None)
         if link is None or not any(shape.url == status.url for shape in (*link.visuals, *link.collisions)):
@@ -164,19 +177,56 @@ class RobotModelDisplay(ViewerDisplay):
         self._file_problems = builder.problems
         self._page_problems.clear()
         self.robot = robot
-        if self.scene.name != robot.name or self.scene.links != links:
-            self.scene = RobotScene(self.id, self.scene.revision + 1, robot.name, links)
+        joints = builder.joints(robot)
+        if (self.scene.name, self.scene.links, self.scene.joints) != (robot.name, links, joints):
+            self.scene = RobotScene(self.id, self.scene.revision + 1, robot.name, links, joints)
             self.stage.publish(self.scene)
-        self._list_links(robot)
+        self._list_rows(robot)
         self.stage.robot_changed(before - {link.frame for link in links})
         self._show_status()
 
-    def _list_links(self, robot: Robot) -> None:
-        rows = tuple(_link_spec(robot.links[name]) for name in sorted(robot.links))
-        spec = PropertySpec("Links", "group", description="The links of the robot.", children=(_ALL_SPEC, *rows))
-        if spec != self._links_spec:
-            self._links_spec = spec
+    def recalled(self) -> None:
+        """Arrange the rows as they were, and have the boxes of joints follow again."""
+        if self._rows is not None:
+            self._robot_specs = self._rows.specs(self.properties.text(*STYLE))
+            self._derive_boxes(self._rows)
+
+    # --- rows of links and joints ------------------------------------------------------------------------------
+
+    def _list_rows(self, robot: Robot) -> None:
+        self._rows = RobotRows(robot)
+        specs = self._rows.specs(self.properties.text(*STYLE))
+        news = specs != self._robot_specs
+        self._robot_specs = specs
+        if self._derive_boxes(self._rows) or news:
             self.publish_properties()
+
+    def _box_changed(self, rows: RobotRows, path: Path) -> None:
+        """Set the boxes that follow from one, as RViz does, and those of joints and of all that follow from these."""
+        style = self.properties.text(*STYLE)
+        followers: list[Path] = []
+        if path == STYLE:
+            self._robot_specs = rows.specs(style)
+        elif path == ALL:
+            followers = rows.boxes
+        elif path[0] == JOINTS and len(path) == 2:
+            followers = rows.boxes_of(path[1], style)
+        elif path not in rows.boxes:
+            return
+        value = self.properties.get(*path)
+        changed = [each for each in followers if self.properties.get(*each) != value]
+        for each in changed:
+            self.properties.set(each, value)
+        changed += self._derive_boxes(rows)
+        if path == STYLE or len(changed) > _MANY_BOXES:
+            self.publish_properties()
+            return
+        for each in changed:
+            self.stage.publish(PropertyChanged(self.property_id(each), self.properties.get(*each)))
+
+    def _derive_boxes(self, rows: RobotRows) -> list[Path]:
+        derived = rows.derived(self.properties.text(*STYLE), lambda path: self.properties.flag(*path))
+        return [path for path, value in derived.items() if self.properties.tell(path, value)]
 
     def _log_new_problems(self, problems: dict[str, list[str]]) -> None:
         for link, texts in problems.items():
@@ -197,9 +247,3 @@ class RobotModelDisplay(ViewerDisplay):
         if problems:
             return StatusRow(name, "error", "; ".join(problems))
         return StatusRow(name, "ok", "Transform OK")
-
-
-def _link_spec(link: Link) -> PropertySpec:
-    if not link.visuals and not link.collisions:
-        return PropertySpec(link.name, "group", description="A link without shapes.", children=_LINK_EXTRAS)
-    return PropertySpec(link.name, "bool", True, "Draw the shapes of this link.", children=(_LINK_ALPHA, *_LINK_EXTRAS))

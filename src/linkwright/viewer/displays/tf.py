@@ -6,7 +6,7 @@ import re
 
 from linkwright.viewer.displays.base import ViewerDisplay
 from linkwright.viewer.property_store import Path, Schema
-from linkwright.viewer.protocol import StatusRow
+from linkwright.viewer.protocol import PropertyChanged, StatusRow
 from linkwright.viewer.schema import PropertySpec
 
 _STATIC = (
@@ -38,7 +38,7 @@ _DEEPEST = 60
 class TfDisplay(ViewerDisplay):
     """Axes, names and arrows of the frames that tf knows.
 
-    RViz's read-only rows of a frame (parent, position, orientation) are the page's own: it has the poses.
+    RViz's read-only rows of a frame (parent, position, orientation) are the page's own, see `Property`.
     """
 
     CLASS = "rviz_default_plugins/TF"
@@ -63,9 +63,12 @@ class TfDisplay(ViewerDisplay):
             self.frames_changed()
         elif path == _ALL:
             value = self.properties.flag(*_ALL)
-            for name in self._shown:
+            for name in self._boxes():
                 self.properties.set(("Frames", name), value)
             self.publish_properties()
+        elif path[0] == "Frames" and not self.properties.flag(*path) and self.properties.flag(*_ALL):
+            self.properties.set(_ALL, False)
+            self.stage.publish(PropertyChanged(self.property_id(_ALL), False))
 
     def frames_changed(self) -> None:
         """List the frames anew, and say which of them can be placed."""
@@ -98,9 +101,12 @@ class TfDisplay(ViewerDisplay):
                 patterns.append(None)
         return _FrameFilter(*patterns)
 
+    def _boxes(self) -> list[str]:
+        return [name for name in self._shown if name != _ALL[1]]
+
     def _frames_spec(self) -> PropertySpec:
         boxes = tuple(
-            PropertySpec(name, "bool", True, "Draw this frame.", nested=True) for name in self._shown if name != _ALL[1]
+            PropertySpec(name, "bool", True, "Draw this frame.", nested=True, details="frame") for name in self._boxes()
         )
         every = PropertySpec(_ALL[1], "bool", True, "Set the boxes of all frames.")
         return PropertySpec("Frames", "group", description="The frames that tf knows.", children=(every, *boxes))

@@ -1,0 +1,207 @@
+"""What a viewer is measured with that shows data: ``python -m benchmarks.data_scenes NAME`` publishes and shows it.
+
+The program prints the page's address as `linkwright` does, and ends with Ctrl-C. The messages are made before, so that
+what the process costs is what sending them through the viewer costs.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import signal
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from benchmarks.robots import tree_robot
+from linkwright.graph import DESCRIPTION_QOS, TF_QOS, Graph
+from linkwright.messages import String, TFMessage, TransformBatch, get_message
+from linkwright.urdf import DescriptionLibrary
+from linkwright.viewer import RvizConfig, Viewer
+from linkwright.workspace import PackageFinder
+
+TOPIC = "/data"
+FRAME = "link_0"
+KINDS = 8
+"""Different messages that are sent in turns, so that each shows something new."""
+
+_FILE = """\
+Visualization Manager:
+  Displays:
+    - Class: rviz_default_plugins/{cls}
+      Enabled: true
+      Name: Data
+      Topic: {{Value: {topic}}}
+{others}
+  Global Options: {{Fixed Frame: {frame}, Frame Rate: 30}}
+  Views:
+    Current: {{Class: rviz_default_plugins/Orbit, Distance: 12, Pitch: 0.6, Yaw: 0.8}}
+"""
+_ROBOT = """\
+    - Class: rviz_default_plugins/RobotModel
+      Description Topic: {Value: /robot_description}
+      Enabled: true
+      Name: RobotModel
+    - Class: rviz_default_plugins/TF
+      Enabled: true
+      Name: TF
+"""
+
+
+@dataclass(frozen=True)
+class Scene:
+    """One display of data at a steady rate, beside a robot whose links all move.
+
+    Attributes:
+        display: class of the display.
+        messages: makes what is published in turns.
+        rate: messages a second.
+        links: of the robot; 0 for none.
+        frame_rate: transforms a second, for each link.
+    """
+
+    display: str
+    messages: Callable[[], list[Any]]
+    rate: float
+    links: int = 0
+    frame_rate: float = 30.0
+
+    @property
+    def config(self) -> RvizConfig:
+        """The .rviz file."""
+        others = _ROBOT if self.links else ""
+        return RvizConfig.parse(_FILE.format(cls=self.display, topic=TOPIC, others=others, frame=FRAME))
+
+
+def clouds(points: int = 100_000) -> list[Any]:
+    """Clouds like a lidar's: points of a wavy floor, each with an intensity."""
+    chance = np.random.default_rng(1)
+    made = []
+    for turn in range(KINDS):
+        array = np.zeros(points, dtype=[("x", "f4"), ("y", "f4"), ("z", "f4"), ("intensity", "f4")])
+        array["x"], array["y"] = chance.uniform(-5, 5, points), chance.uniform(-5, 5, points)
+        array["z"] = 0.3 * np.sin(array["x"] + turn) * np.cos(array["y"])
+        array["intensity"] = array["z"]
+        message = _stamped("sensor_msgs/msg/PointCloud2", height=1, width=points, point_step=16, is_dense=True)
+        field = get_message("sensor_msgs/msg/PointField")
+        message.fields = [
+            field(name=name, offset=4 * at, datatype=field.FLOAT32, count=1)
+            for at, name in enumerate(("x", "y", "z", "intensity"))
+        ]
+        message.row_step, message.data = 16 * points, array.tobytes()
+        made.append(message)
+    return made
+
+
+def markers(count: int = 1000) -> list[Any]:
+    """Arrays of cubes that all move."""
+    marker, color = get_message("visualization_msgs/msg/Marker"), get_message("std_msgs/msg/ColorRGBA")
+    made = []
+    for turn in range(KINDS):
+        array = get_message("visualization_msgs/msg/MarkerArray")()
+        for number in range(count):
+            each = marker(ns="bench", id=number, type=marker.CUBE, color=color(r=1.0, g=number / count, b=0.2, a=1.0))
+            each.header.frame_id = FRAME
+            each.pose.position.x, each.pose.position.y = number % 32 * 0.3 - 5, number // 32 * 0.3 - 5
+            each.pose.position.z = float(np.sin(number + turn))
+            each.pose.orientation.w = 1.0
+            each.scale.x = each.scale.y = each.scale.z = 0.1
+            array.markers.append(each)
+        made.append(array)
+    return made
+
+
+def images(width: int = 640, height: int = 480) -> list[Any]:
+    """Pictures of a camera that pans over a textured wall."""
+    chance = np.random.default_rng(2)
+    rough = chance.uniform(0, 255, (height // 8, width // 8, 3))
+    wall = np.kron(rough, np.ones((8, 8, 1))) + chance.normal(0, 6, (height, width, 3))
+    pixels = np.clip(wall, 0, 255).astype(np.uint8)
+    made = []
+    for turn in range(KINDS):
+        message = _stamped("sensor_msgs/msg/Image", width=width, height=height, encoding="rgb8", step=3 * width)
+        message.data = np.roll(pixels, 8 * turn, axis=1).tobytes()
+        made.append(message)
+    return made
+
+
+def scans(beams: int = 720) -> list[Any]:
+    """Scans of a room that is not quite round."""
+    angles = np.linspace(-np.pi, np.pi, beams, endpoint=False)
+    made = []
+    for turn in range(KINDS):
+        message = _stamped("sensor_msgs/msg/LaserScan", angle_min=-np.pi, angle_max=np.pi, range_max=30.0)
+        message.angle_increment = 2 * np.pi / beams
+        message.ranges = (4 + np.sin(3 * angles + 0.2 * turn)).astype(np.float32).tolist()
+        made.append(message)
+    return made
+
+
+SCENES = {
+    "points": Scene("PointCloud2", clouds, rate=10),
+    "markers": Scene("MarkerArray", markers, rate=10),
+    "image": Scene("Image", images, rate=30),
+    "scan": Scene("LaserScan", scans, rate=10, links=500),
+}
+
+
+def _stamped(name: str, **values: Any) -> Any:
+    message = get_message(name)(**values)
+    message.header.frame_id = FRAME
+    return message
+
+
+class Frames:
+    """Publishes a tree of moving frames, all in one message."""
+
+    def __init__(self, graph: Graph, links: int) -> None:
+        self._tf = graph.create_node("publisher").create_publisher(TFMessage, "/tf", TF_QOS)
+        self._parents = tuple(f"link_{number // 2}" for number in range(1, links))
+        self._children = tuple(f"link_{number}" for number in range(1, links))
+        self._poses = np.tile([0.1, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0], (links - 1, 1))
+
+    def publish(self, turn: int) -> None:
+        """Publish where they are in a turn."""
+        poses = self._poses.copy()
+        poses[:, 2] = 0.01 * turn
+        self._tf.publish(TFMessage(batch=TransformBatch(self._parents, self._children, time.time_ns(), poses)))
+
+
+async def at_rate(rate: float, act: Callable[[int], object], seconds: float = float("inf")) -> None:
+    """Call with 0, 1, 2, ... so often a second."""
+    start, turn = time.perf_counter(), 0
+    while turn < seconds * rate:
+        act(turn)
+        turn += 1
+        await asyncio.sleep(max(0.0, start + turn / rate - time.perf_counter()))
+
+
+async def show(scene: Scene) -> None:
+    """Publish and show until Ctrl-C."""
+    graph, library = Graph(on_log=lambda _: None), DescriptionLibrary()
+    viewer = Viewer(graph, library=library, finder=PackageFinder(), config=scene.config, port=0)
+    await viewer.start()
+    node = graph.create_node("sensor")
+    messages = scene.messages()
+    publisher = node.create_publisher(type(messages[0]), TOPIC, 10)
+    tasks = [at_rate(scene.rate, lambda turn: publisher.publish(messages[turn % len(messages)]))]
+    if scene.links:
+        node.create_publisher(String, "robot_description", DESCRIPTION_QOS).publish(String(tree_robot(scene.links)))
+        tasks.append(at_rate(scene.frame_rate, Frames(graph, scene.links).publish))
+    ended = asyncio.Event()
+    asyncio.get_running_loop().add_signal_handler(signal.SIGINT, ended.set)
+    running = [asyncio.ensure_future(task) for task in tasks]
+    print(f"Viewer: {viewer.url}", flush=True)
+    await ended.wait()
+    for each in running:
+        each.cancel()
+    await asyncio.gather(*running, return_exceptions=True)
+    await viewer.close()
+    await graph.close()
+
+
+if __name__ == "__main__":
+    asyncio.run(show(SCENES[sys.argv[1]]))

@@ -1,0 +1,143 @@
+"""What is asked of an opened page: how soon it shows something, how often it draws, how old is what it shows."""
+
+from __future__ import annotations
+
+import statistics
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from playwright.sync_api import Page
+
+_SLIDER = """
+async ([row, value]) => {
+  const slider = document.querySelector(`[data-joint="${row}"] input[type=range]`);
+  const orientation = () => JSON.stringify(window.linkwright.frames.left_wheel_link.orientation);
+  const before = orientation();
+  const begin = performance.now();
+  const until = async (happened) => {
+    while (!happened()) {
+      if (performance.now() - begin > 5000) throw new Error("nothing happened");
+      await new Promise((next) => setTimeout(next, 1));
+    }
+    return performance.now() - begin;
+  };
+  slider.value = String(value);
+  slider.dispatchEvent(new Event("input", { bubbles: true }));
+  const known = await until(() => orientation() !== before);
+  const frames = window.linkwright.framesDrawn;
+  return [known, await until(() => window.linkwright.framesDrawn > frames)];
+}
+"""
+
+_SAVED = """
+async ([link, z]) => {
+  const limit = performance.now() + 5000;
+  while (Math.abs((window.linkwright.frames[link]?.position[2] ?? NaN) - z) > 1e-6 || Number.isNaN(z)) {
+    if (performance.now() > limit) return null;
+    await new Promise((next) => setTimeout(next, 1));
+  }
+  return performance.timeOrigin + performance.now();
+}
+"""
+
+_WATCH_WHEEL = """
+() => {
+  window.turns = [];
+  addEventListener("wheel", async (event) => {
+    const frames = window.linkwright.framesDrawn;
+    while (window.linkwright.framesDrawn === frames) await new Promise((next) => setTimeout(next, 0));
+    window.turns.push(performance.now() - event.timeStamp);
+  }, { capture: true, passive: true });
+}
+"""
+
+_DRAWN = "() => window.linkwright.framesDrawn"
+
+
+def slider_latency(page: Page, moves: int) -> tuple[list[float], list[float]]:
+    """Milliseconds from a slider's input event to the new transform in the page, and to the frame drawn with it."""
+    known, drawn = [], []
+    for number in range(moves):
+        page.wait_for_timeout(37 + 13 * (number % 7))
+        value = -1 + 2 * ((number * 7) % moves) / moves
+        first, second = page.evaluate(_SLIDER, ["left_wheel_joint", value])
+        known.append(first)
+        drawn.append(second)
+    return known, drawn
+
+
+def save_latency(page: Page, model: Path, saves: int) -> list[float]:
+    """Milliseconds from the end of a file's writing to the changed frame in the page."""
+    text = model.read_text(encoding="utf-8")
+    times = []
+    for number in range(saves):
+        page.wait_for_timeout(150)
+        z = -0.05 - 0.001 * (number + 1)
+        model.write_text(text.replace("0 0.19 -0.05", f"0 0.19 {z:.4f}"), encoding="utf-8")
+        begin = time.time() * 1000
+        end = page.evaluate(_SAVED, ["left_wheel_link", z])
+        times.append(end - begin)
+    return times
+
+
+def wheel_latency(page: Page, turns: int) -> list[float]:
+    """Milliseconds from the browser's getting a turn of the mouse wheel to the frame drawn after it."""
+    page.evaluate(_WATCH_WHEEL)
+    page.mouse.move(640, 400)
+    for number in range(turns):
+        page.mouse.wheel(0, 20 if number % 2 else -20)
+        page.wait_for_timeout(97 + 13 * (number % 7))
+    times: list[float] = page.evaluate("() => window.turns")
+    return times
+
+
+def frames_drawn(page: Page) -> int:
+    """How many frames the page has drawn."""
+    count: int = page.evaluate(_DRAWN)
+    return count
+
+
+def images_shown(page: Page) -> int:
+    """How many images the first display has shown, in a panel of its own."""
+    count: int = page.evaluate("() => window.linkwright.displays[0].drawn.images")
+    return count
+
+
+def rate_of(counted: Callable[[Page], int], page: Page, seconds: float) -> float:
+    """How much more there is of something that is counted, each second."""
+    before, begin = counted(page), time.perf_counter()
+    time.sleep(seconds)
+    return (counted(page) - before) / (time.perf_counter() - begin)
+
+
+def transform_age(pages: list[Page], times: int) -> float:
+    """Milliseconds since the transforms came to be that pages have, in the median of the oldest among them."""
+    oldest = []
+    for number in range(times):
+        time.sleep(0.1 + 0.013 * (number % 7))
+        oldest.append(max(page.evaluate("() => Date.now() - 1000 * window.linkwright.stamp") for page in pages))
+    return statistics.median(oldest)
+
+
+def open_every_panel(page: Page) -> int:
+    """Open all panels that there are; how many had been closed."""
+    count = 0
+    while True:
+        page.get_by_role("button", name="Panels").click()
+        closed = page.locator('[role=menuitemcheckbox][aria-checked="false"]')
+        if closed.count() == 0:
+            page.keyboard.press("Escape")
+            return count
+        closed.first.click()
+        count += 1
+
+
+def scripts_loaded(page: Page) -> float:
+    """KiB of scripts and styles that the page had fetched when it drew first."""
+    size: float = page.evaluate(
+        "() => performance.getEntriesByType('resource')"
+        ".filter((each) => /[.](js|css)$/.test(new URL(each.name).pathname))"
+        ".reduce((sum, each) => sum + each.decodedBodySize, 0) / 1024"
+    )
+    return size

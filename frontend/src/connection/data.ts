@@ -1,0 +1,68 @@
+import { DATA_KIND, type DataContent } from "../protocol.gen";
+
+const HEADER_BYTES = 16;
+const ALIGNMENT = 8;
+
+/** What a display draws of the messages it took: one binary frame. */
+export interface DisplayData {
+  display: string;
+  /** Which of several contents of the display this is; it replaces the one before with the same key. */
+  key: string;
+  /** The frame that the content is in; empty for the fixed frame. */
+  frame: string;
+  /** Time of the content, seconds. */
+  stamp: number;
+  /** Pose of `frame` in the fixed frame when the content was true, m and xyzw; null: follow the frame. */
+  pose: number[] | null;
+  content: DataContent;
+}
+
+/** Reads what `pack_data` of `viewer/protocol/data.py` wrote; null when the bytes are something else. */
+export function unpackData(buffer: ArrayBuffer): DisplayData | null {
+  if (buffer.byteLength < HEADER_BYTES) return null;
+  const header = new DataView(buffer);
+  if (header.getUint32(0, true) !== DATA_KIND) return null;
+  const length = header.getUint32(4, true);
+  const text = new TextDecoder().decode(new Uint8Array(buffer, HEADER_BYTES, length));
+  const start = Math.ceil((HEADER_BYTES + length) / ALIGNMENT) * ALIGNMENT;
+  return restored(JSON.parse(text), (reference) => view(buffer, start, reference)) as DisplayData;
+}
+
+type Reference = readonly ["f4" | "u1" | "i4", number, number];
+
+type Restore = (reference: Reference) => ArrayBufferView;
+
+/**
+ * Puts the arrays where references to them are. A frame may hold thousands of markers: the reviver of `JSON.parse`
+ * would look at each of their numbers.
+ */
+function restored(value: unknown, restore: Restore): unknown {
+  if (typeof value !== "object" || value === null) return value;
+  if (Array.isArray(value)) {
+    // Lists hold things of one kind.
+    if (typeof value[0] === "object") value.forEach((each, index) => (value[index] = restored(each, restore)));
+    return value;
+  }
+  if (isArray(value)) return restore(value.$);
+  const object = value as Record<string, unknown>;
+  for (const name in object) {
+    const each = object[name];
+    if (typeof each === "object") object[name] = restored(each, restore);
+  }
+  return value;
+}
+
+function isArray(value: object): value is { $: Reference } {
+  return "$" in value;
+}
+
+function view(buffer: ArrayBuffer, start: number, [type, offset, count]: Reference): ArrayBufferView {
+  switch (type) {
+    case "f4":
+      return new Float32Array(buffer, start + offset, count);
+    case "i4":
+      return new Int32Array(buffer, start + offset, count);
+    case "u1":
+      return new Uint8Array(buffer, start + offset, count);
+  }
+}

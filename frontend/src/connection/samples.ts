@@ -1,0 +1,33 @@
+import { SAMPLES_KIND } from "../protocol.gen";
+
+const HEADER_BYTES = 16;
+const SERIES_BYTES = 8;
+
+/** New samples of one series of the plots. */
+export interface SeriesSamples {
+  /** The id that the page gave the series. */
+  id: number;
+  /** When each was received, seconds since the epoch. */
+  received: Float64Array;
+  /** The stamp of each header, seconds; NaN where there is none. */
+  stamps: Float64Array;
+  values: Float64Array;
+}
+
+/** Reads what `pack_samples` of `viewer/protocol/plots.py` wrote; null when the bytes are something else. */
+export function unpackSamples(buffer: ArrayBuffer): SeriesSamples[] | null {
+  if (buffer.byteLength < HEADER_BYTES) return null;
+  const view = new DataView(buffer);
+  if (view.getUint32(0, true) !== SAMPLES_KIND) return null;
+  const series: SeriesSamples[] = [];
+  let at = HEADER_BYTES;
+  for (let index = view.getUint32(4, true); index > 0; index--) {
+    const id = view.getUint32(at, true);
+    const count = view.getUint32(at + 4, true);
+    const start = at + SERIES_BYTES;
+    const part = (row: number): Float64Array => new Float64Array(buffer, start + row * count * 8, count);
+    series.push({ id, received: part(0), stamps: part(1), values: part(2) });
+    at = start + 3 * count * 8;
+  }
+  return series;
+}

@@ -1,0 +1,87 @@
+import "../styles/theme.css";
+import "../styles/controls.css";
+import "../styles/scene.css";
+import "../styles/panels.css";
+import "../styles/description.css";
+import "./export.css";
+import { h } from "../dom";
+import { publishInspection } from "../inspection";
+import { OrientationSign } from "../panels/orientation-sign";
+import { SelectionCard } from "../panels/selection-card";
+import { Controls } from "../scene/controls";
+import { Keyboard } from "../scene/keyboard";
+import { Stage } from "../scene/stage";
+import { Toolbox } from "../scene/tools/toolbox";
+import { ThemeState } from "../shell/theme";
+import { Session } from "../state/session";
+import { browserStorage } from "../state/storage";
+import { language, strings } from "../strings";
+import { RecordedConnection } from "./recorded-connection";
+import { RecordedFiles } from "./recorded-files";
+import { readRecording } from "./recording";
+import { Sidebar } from "./sidebar";
+import { lookFrom } from "./views";
+
+/** Images of displays have panels of their own; an exported page has none. */
+const NO_PANELS = { offer: () => undefined, withdraw: () => undefined, retitle: () => undefined };
+
+function start(app: HTMLElement, recorded: HTMLElement): void {
+  document.documentElement.lang = language === "zh" ? "zh-CN" : "en";
+  const theme = new ThemeState(document.documentElement, browserStorage(), matchMedia("(prefers-color-scheme: light)"));
+  const recording = readRecording(recorded);
+  const { display } = recording;
+  const connection = new RecordedConnection(recording);
+  const session = new Session(connection);
+  connection.open();
+  const begin = { ...session.view.current };
+
+  const container = h("div", { class: "canvas-box", role: "region", aria: { label: strings.scene.label } });
+  const overlay = h("div", { class: "overlay" }, new SelectionCard(session).element, new OrientationSign(session).element);
+  const scene = h("main", { class: "scene-box" }, container, overlay);
+  app.append(scene);
+  const stage = makeStage(container, session, new RecordedFiles(recording.files));
+  const fit = (): void => {
+    if (stage) lookFrom("iso", session, stage, display);
+  };
+  const actions = {
+    lookFrom: (side: Parameters<typeof lookFrom>[0]): void => {
+      if (stage) lookFrom(side, session, stage, display);
+    },
+    reset: (): void => {
+      connection.reset();
+      session.view.setClass(begin.cls);
+      session.view.update(begin.values);
+      if (recording.fit) fit();
+    },
+  };
+  app.append(new Sidebar(session, display, recording.program, theme, actions).element);
+  const toolbox = stage && new Toolbox(stage, session);
+  if (stage && toolbox) {
+    const controls = new Controls(stage, session.view, (event) => toolbox.current.pointer(event));
+    new Keyboard(session, stage, toolbox, controls);
+    if (recording.fit) onceReady(stage, fit);
+  }
+  publishInspection(session, stage, toolbox, {});
+}
+
+/** Runs `work` after the first frame with all of the robot. */
+function onceReady(stage: Stage, work: () => void): void {
+  const stop = stage.loop.drawn.on(() => {
+    if (!stage.ready) return;
+    stop();
+    work();
+  });
+}
+
+function makeStage(container: HTMLElement, session: Session, files: RecordedFiles): Stage | null {
+  try {
+    return new Stage(container, session, NO_PANELS, files);
+  } catch (error) {
+    console.error(error);
+    container.append(h("p", { class: "no-webgl" }, strings.scene.noWebgl));
+    return null;
+  }
+}
+
+const [app, recorded] = [document.getElementById("app"), document.getElementById("recorded")];
+if (app && recorded) start(app, recorded);

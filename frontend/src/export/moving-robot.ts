@@ -1,0 +1,125 @@
+import { Matrix4, Quaternion, Vector3 } from "three";
+import type { Transforms } from "../connection/transforms";
+import type { FrameTable, JointControl, JointScene, RobotScene } from "../protocol.gen";
+
+type Positions = Readonly<Record<string, number>>;
+
+const MOST_FOLLOWED = 64;
+
+/** A frame below another: where it stands in it, and the joint that moves it. */
+interface Frame {
+  readonly parent: number;
+  readonly fixed: Matrix4;
+  readonly joint: JointScene | null;
+}
+
+/**
+ * The frames of an exported page. Those of the robot follow its joints; all others stay where they were in their
+ * parents.
+ */
+export class MovingRobot {
+  private readonly frames: Frame[];
+  private readonly order: readonly number[];
+  private readonly anchor: { row: number; pose: Matrix4 };
+
+  constructor(
+    private readonly table: FrameTable,
+    recorded: Transforms,
+    robot: RobotScene,
+    private readonly controls: readonly JointControl[],
+  ) {
+    const poses = table.names.map((_, row) => poseAt(recorded.poses, row));
+    const frameOf = new Map(robot.links.map(({ name, frame }) => [name, frame]));
+    const joints = new Map(robot.joints.map((joint) => [frameOf.get(joint.child), joint]));
+    this.frames = table.names.map((name, row) => {
+      const parent = table.parents[row] ?? -1;
+      const own = poses[row] ?? null;
+      const above = poses[parent] ?? null;
+      const joint = joints.get(name) ?? null;
+      const moves = joint !== null && joint.kind !== "floating" && frameOf.get(joint.parent) === table.names[parent];
+      const fixed = own && above ? above.clone().invert().multiply(own) : (own?.clone() ?? new Matrix4());
+      return { parent, fixed, joint: moves ? joint : null };
+    });
+    this.order = parentsFirst(this.frames);
+    // The fixed frame stays where it is, wherever in the tree it is: of the frames with a pose, the one at the origin.
+    const row = Math.max(0, poses.findIndex((pose) => pose !== null && isIdentity(pose)));
+    this.anchor = { row, pose: poses[row]?.clone() ?? new Matrix4() };
+  }
+
+  /** Where all frames are for positions of joints, rad or m. */
+  transforms(positions: Positions): Transforms {
+    const poses = this.frames.map(() => new Matrix4());
+    for (const row of this.order) {
+      const { parent, fixed, joint } = this.frames[row] as Frame;
+      const local = joint ? jointPose(joint, this.position(joint.name, positions)) : fixed;
+      const above = poses[parent];
+      poses[row]?.copy(local);
+      if (above) poses[row]?.premultiply(above);
+    }
+    const shift = this.anchor.pose.clone().multiply((poses[this.anchor.row] ?? new Matrix4()).clone().invert());
+    const numbers = new Float32Array(poses.length * 7);
+    const [at, turn, scale] = [new Vector3(), new Quaternion(), new Vector3()];
+    poses.forEach((pose, row) => {
+      pose.premultiply(shift).decompose(at, turn, scale);
+      numbers.set([...at.toArray(), ...turn.toArray()], row * 7);
+    });
+    return { revision: this.table.revision, stamp: 0, poses: numbers, ages: new Float32Array(poses.length) };
+  }
+
+  /** Of a joint, be it one that follows another. */
+  position(name: string, positions: Positions): number {
+    let [factor, offset, at] = [1, 0, name];
+    for (let i = 0; i < MOST_FOLLOWED; i++) {
+      const control = this.controls.find((each) => each.name === at);
+      if (!control || control.mimic === null) break;
+      offset += factor * control.offset;
+      factor *= control.multiplier;
+      at = control.mimic;
+    }
+    return (positions[at] ?? 0) * factor + offset;
+  }
+}
+
+/** The pose of a joint's child link in its parent link. */
+export function jointPose(joint: JointScene, position: number): Matrix4 {
+  const origin = new Matrix4().compose(
+    new Vector3().fromArray(joint.position),
+    new Quaternion().fromArray(joint.quaternion),
+    new Vector3(1, 1, 1),
+  );
+  const axis = new Vector3().fromArray(joint.axis);
+  if (axis.lengthSq() === 0) return origin;
+  axis.normalize();
+  if (joint.kind === "prismatic") return origin.multiply(new Matrix4().makeTranslation(axis.multiplyScalar(position)));
+  if (joint.kind !== "revolute" && joint.kind !== "continuous") return origin;
+  return origin.multiply(new Matrix4().makeRotationAxis(axis, position));
+}
+
+function poseAt(poses: Float32Array, row: number): Matrix4 | null {
+  const numbers = [...poses.subarray(row * 7, row * 7 + 7)];
+  if (numbers.length < 7 || numbers.some(Number.isNaN)) return null;
+  return new Matrix4().compose(
+    new Vector3().fromArray(numbers),
+    new Quaternion().fromArray(numbers, 3),
+    new Vector3(1, 1, 1),
+  );
+}
+
+function isIdentity(pose: Matrix4): boolean {
+  const identity = new Matrix4();
+  return pose.elements.every((element, i) => Math.abs(element - (identity.elements[i] ?? 0)) < 1e-6);
+}
+
+function parentsFirst(frames: readonly Frame[]): number[] {
+  const order: number[] = [];
+  const seen = new Set<number>();
+  const visit = (row: number): void => {
+    if (seen.has(row)) return;
+    seen.add(row);
+    const parent = frames[row]?.parent ?? -1;
+    if (parent >= 0) visit(parent);
+    order.push(row);
+  };
+  frames.forEach((_, row) => visit(row));
+  return order;
+}

@@ -1,0 +1,74 @@
+import { Connection } from "../connection/connection";
+import type { FrameTable, JointControl, PageMessage } from "../protocol.gen";
+import { unpackTransforms } from "../connection/transforms";
+import { MovingRobot } from "./moving-robot";
+import { bytesOf, type Recording } from "./recording";
+
+/** Takes the server's place in an exported page: tells what was recorded, and moves the robot's joints. */
+export class RecordedConnection extends Connection {
+  private controls: readonly JointControl[] = [];
+  private robot: MovingRobot | null = null;
+  private positions: Record<string, number> = {};
+  private start: Readonly<Record<string, number>> = {};
+
+  constructor(private readonly recording: Recording) {
+    super("");
+  }
+
+  override open(): void {
+    const { messages, frames } = this.recording;
+    this.become("connected");
+    for (const message of messages) {
+      this.message.emit(message);
+      if (message.type === "joints") this.controls = message.controls ?? [];
+      if (message.type === "joint_positions") this.positions = { ...message.positions };
+      if (message.type === "frame_table") this.prepare(message);
+    }
+    this.start = { ...this.positions };
+    for (const frame of frames) this.receiveBytes(bytesOf(frame).buffer);
+    this.moved();
+  }
+
+  /** Moves joints; what else the page asks for needs a server, and its own edits it shows by itself. */
+  override send(message: PageMessage): void {
+    const { controls } = this;
+    if (message.type === "set_joint") this.move({ [message.name]: message.position });
+    else if (message.type === "set_joints") this.move(message.positions);
+    else if (message.type === "center_joints") this.move(Object.fromEntries(controls.map(({ name, zero }) => [name, zero])));
+    else if (message.type === "randomize_joints") this.move(Object.fromEntries(controls.map((each) => [each.name, anywhere(each)])));
+  }
+
+  /** Puts the joints where they were when the robot was exported. */
+  reset(): void {
+    this.positions = { ...this.start };
+    this.moved();
+  }
+
+  private prepare(table: FrameTable): void {
+    const { messages, frames, display } = this.recording;
+    const robot = messages.find((message) => message.type === "robot_scene" && message.display === display);
+    const recorded = frames.map((frame) => unpackTransforms(bytesOf(frame).buffer)).find((each) => each !== null);
+    if (robot?.type !== "robot_scene" || !recorded) return;
+    this.robot = new MovingRobot(table, recorded, robot, this.controls);
+  }
+
+  private move(positions: Readonly<Record<string, number>>): void {
+    for (const { name, mimic, lower, upper } of this.controls) {
+      const wanted = positions[name];
+      if (wanted !== undefined && mimic === null) this.positions[name] = Math.min(upper, Math.max(lower, wanted));
+    }
+    this.moved();
+  }
+
+  private moved(): void {
+    const { robot, positions } = this;
+    if (!robot) return;
+    for (const { name, mimic } of this.controls) if (mimic !== null) positions[name] = robot.position(name, positions);
+    this.transforms.emit(robot.transforms(positions));
+    this.message.emit({ type: "joint_positions", positions: { ...positions } });
+  }
+}
+
+function anywhere({ lower, upper }: JointControl): number {
+  return lower + Math.random() * (upper - lower);
+}

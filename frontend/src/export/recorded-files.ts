@@ -1,0 +1,45 @@
+import type { MeshFiles } from "../scene/meshes/mesh-files";
+import { bytesOf } from "./recording";
+
+const TYPES: Readonly<Record<string, string>> = {
+  png: "image/png",
+  jpg: "image/jpeg",
+  jpeg: "image/jpeg",
+  bmp: "image/bmp",
+  gif: "image/gif",
+  webp: "image/webp",
+};
+
+/** Meshes and textures that are part of the page. */
+export class RecordedFiles implements MeshFiles {
+  private readonly blobs = new Map<string, string>();
+
+  constructor(private readonly files: Readonly<Record<string, string>>) {}
+
+  fetch(url: string): Promise<Response> {
+    const path = pathOf(url);
+    const file = this.files[path];
+    if (file === undefined) return Promise.resolve(new Response("no such file", { status: 404 }));
+    return Promise.resolve(new Response(bytesOf(file), { headers: { ETag: path } }));
+  }
+
+  address(url: string): string {
+    const path = pathOf(url);
+    const file = this.files[path];
+    if (file === undefined) return url;
+    let blob = this.blobs.get(path);
+    if (blob === undefined) {
+      const type = TYPES[path.slice(path.lastIndexOf(".") + 1).toLowerCase()] ?? "application/octet-stream";
+      blob = URL.createObjectURL(new Blob([bytesOf(file)], { type }));
+      this.blobs.set(path, blob);
+    }
+    return blob;
+  }
+}
+
+/** `/mesh/...` of an address, wherever the page itself was opened from. */
+function pathOf(url: string): string {
+  const [path = ""] = url.split("?");
+  const at = path.indexOf("/mesh/");
+  return at < 0 ? path : path.slice(at);
+}

@@ -1,0 +1,24 @@
+import type { ServerMessage } from "../protocol.gen";
+
+/** What the server told when the robot was exported; `viewer/export/html.py` writes it. */
+export interface Recording {
+  /** Name and version of the program. */
+  program: string;
+  /** The RobotModel display whose joints can be moved. */
+  display: string;
+  /** The camera is to be put where all of the robot is seen. */
+  fit: boolean;
+  messages: ServerMessage[];
+  /** Binary frames, base64. */
+  frames: string[];
+  /** Meshes and textures by the path of their address, base64. */
+  files: Record<string, string>;
+}
+
+export function readRecording(element: HTMLElement): Recording {
+  return JSON.parse(element.textContent) as Recording;
+}
+
+export function bytesOf(base64: string): Uint8Array<ArrayBuffer> {
+  return Uint8Array.from(atob(base64), (character) => character.charCodeAt(0));
+}

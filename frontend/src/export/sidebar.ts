@@ -1,0 +1,117 @@
+import { button, h } from "../dom";
+import { icon } from "../icons";
+import { tickBox } from "../panels/controls";
+import { JointRow } from "../panels/joint-row";
+import { UnitSwitch } from "../panels/unit-switch";
+import type { View } from "../protocol.gen";
+import type { ThemeState } from "../shell/theme";
+import type { DisplayState } from "../state/displays";
+import type { Session } from "../state/session";
+import { chooseLanguage, language, strings } from "../strings";
+import type { Side } from "./views";
+
+const SIDES: readonly Side[] = ["iso", "front", "left", "top"];
+
+/** What the sidebar has the page do. */
+export interface SidebarActions {
+  lookFrom(side: Side): void;
+  reset(): void;
+}
+
+/** Beside the robot of an exported page: what is shown, views, and a slider for each joint. */
+export class Sidebar {
+  readonly element: HTMLElement;
+
+  constructor(
+    private readonly session: Session,
+    private readonly display: string,
+    program: string,
+    theme: ThemeState,
+    private readonly actions: SidebarActions,
+  ) {
+    const words = strings.sharing.exported;
+    const name = session.robots.get(display)?.name ?? "";
+    const languages = button(
+      strings.shell.languageHint,
+      () => chooseLanguage(language === "en" ? "zh" : "en"),
+      "tool",
+      icon("language"),
+      strings.shell.language,
+    );
+    const themes = button(
+      strings.shell.theme,
+      () => theme.choose(theme.theme === "light" ? "dark" : "light"),
+      "tool bare",
+      icon("light"),
+    );
+    this.element = h(
+      "aside",
+      { class: "sidebar", aria: { label: words.sidebar } },
+      h("header", {}, h("h1", {}, name), themes, languages),
+      h("section", { aria: { label: words.shown } }, h("h2", {}, words.shown), h("div", { class: "shown" }, ...this.boxes())),
+      h("section", { aria: { label: words.views } }, h("h2", {}, words.views), h("div", { class: "sides" }, ...this.views())),
+      this.joints(),
+      h("footer", {}, words.made(program)),
+    );
+  }
+
+  private boxes(): HTMLElement[] {
+    const words = strings.sharing.exported;
+    const { displays } = this.session.displays;
+    const robot = displays.find(({ id }) => id === this.display);
+    const boxes = robot ? [this.rowBox(robot, "Visual Enabled", words.visual), this.rowBox(robot, "Collision Enabled", words.collision)] : [];
+    const others = displays.filter(({ id, isGroup, supported }) => id !== this.display && !isGroup && supported);
+    return [...boxes, ...others.map((each) => this.displayBox(each))].filter((box) => box !== null);
+  }
+
+  private rowBox(robot: DisplayState, row: string, label: string): HTMLElement | null {
+    const node = robot.rows.find(row);
+    if (!node) return null;
+    const tick = tickBox(label, label, (ticked) => this.session.setProperty(node.id, ticked));
+    tick.box.checked = node.value === true;
+    return tick;
+  }
+
+  private displayBox(display: DisplayState): HTMLElement {
+    const tick = tickBox(display.name, display.name, (ticked) => this.session.setProperty(display.enabledId, ticked));
+    tick.box.checked = display.checked;
+    return tick;
+  }
+
+  private views(): HTMLElement[] {
+    const words = strings.sharing.exported;
+    const sides = SIDES.map((side) => button(words.sides[side], () => this.actions.lookFrom(side), "tool", words.sides[side]));
+    const recall = ({ cls, values }: View): void => {
+      this.session.view.setClass(cls);
+      this.session.view.update(values);
+    };
+    const saved = this.session.view.saved.map(({ view }) => button(view.name, () => recall(view), "tool", view.name));
+    const reset = button(words.startHint, () => this.actions.reset(), "tool", icon("reset"), words.start);
+    return [...sides, ...saved, reset];
+  }
+
+  private joints(): HTMLElement {
+    const { joints, angles, connection } = this.session;
+    const words = strings.joints;
+    const rows = (joints.controls ?? []).map(
+      (joint) => new JointRow(joint, angles, (position) => joints.move({ [joint.name]: position })),
+    );
+    const update = (): void => {
+      for (const row of rows) row.setPosition(joints.positions[row.joint.name] ?? 0);
+    };
+    joints.positionsChanged.on(update);
+    angles.changed.on(() => rows.forEach((row) => row.showUnit()));
+    update();
+    const bar = h(
+      "div",
+      { class: "toolbar" },
+      button(words.randomizeHint, () => connection.send({ type: "randomize_joints" }), "tool", icon("shuffle"), words.randomize),
+      button(words.centerHint, () => connection.send({ type: "center_joints" }), "tool", icon("center"), words.center),
+      h("span", { class: "spacer" }),
+      new UnitSwitch(angles).element,
+    );
+    const none = h("p", { class: "empty" }, words.none);
+    const content = rows.length > 0 ? [bar, h("div", { class: "joints" }, ...rows.map((row) => row.element))] : [none];
+    return h("section", { class: "joint-section", aria: { label: strings.sharing.exported.joints } }, h("h2", {}, strings.sharing.exported.joints), ...content);
+  }
+}

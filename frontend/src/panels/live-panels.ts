@@ -1,0 +1,27 @@
+import type { MonitorState } from "../state/monitor/monitor";
+import { LogPanel } from "./log-panel";
+import { NodeGraphPanel } from "./node-graph-panel";
+import type { Panel, PanelId } from "./panel";
+import { ParametersPanel } from "./parameters-panel";
+import { PlotPanel } from "./plot-panel";
+import { TeleopPanel } from "./teleop-panel";
+import { TopicsPanel } from "./topics-panel";
+
+export const LIVE_PANELS = ["plot", "topics", "graph", "parameters", "log", "teleop"] as const satisfies readonly PanelId[];
+
+/** The panels that show what runs; `open` brings one to the front. */
+export function livePanels(monitor: MonitorState, open: (id: PanelId) => void): Panel[] {
+  const { plots, topics } = monitor;
+  const plot = (topic: string, path: string): void => {
+    open("plot");
+    plots.addSeries(plots.plots[0] ?? plots.addPlot(), { topic, path });
+  };
+  return [
+    new PlotPanel(plots, topics),
+    new TopicsPanel(topics, plot),
+    new NodeGraphPanel(monitor.graph),
+    new ParametersPanel(monitor.parameters),
+    new LogPanel(monitor.log),
+    new TeleopPanel(monitor.teleop),
+  ];
+}

@@ -1,0 +1,123 @@
+const SMALLEST = 0.05;
+const LARGEST = 4;
+const WHEEL_NOTCH = 480;
+const STEP_PX = 60;
+const STEP = 1.25;
+/** A press that moves less than this is a click. */
+const CLICK_SLOP = 4;
+
+/** Moves and scales a picture with mouse, touch pad, fingers and keys: what is under the pointer stays there. */
+export class PanZoom {
+  private x = 0;
+  private y = 0;
+  private zoom = 1;
+  private travelled = 0;
+  private readonly pointers = new Map<number, { x: number; y: number }>();
+
+  /** @param changed called with the transform for the picture, px. */
+  constructor(
+    private readonly element: HTMLElement,
+    private readonly changed: (x: number, y: number, scale: number) => void,
+    private readonly fit: () => void,
+  ) {
+    element.addEventListener("wheel", (event) => this.wheeled(event), { passive: false });
+    element.addEventListener("pointerdown", (event) => this.pressed(event));
+    element.addEventListener("pointermove", (event) => this.moved(event));
+    for (const end of ["pointerup", "pointercancel"] as const) {
+      element.addEventListener(end, (event) => this.pointers.delete(event.pointerId));
+    }
+    element.addEventListener("dblclick", () => fit());
+    element.addEventListener("keydown", (event) => this.keyed(event));
+  }
+
+  get scale(): number {
+    return this.zoom;
+  }
+
+  /** Whether the pointer went too far since it was pressed for it to be a click. */
+  get dragged(): boolean {
+    return this.travelled >= CLICK_SLOP;
+  }
+
+  set(x: number, y: number, scale: number): void {
+    [this.x, this.y, this.zoom] = [x, y, Math.min(Math.max(scale, SMALLEST), LARGEST)];
+    this.changed(this.x, this.y, this.zoom);
+  }
+
+  /** Shows a picture of this size as large as it fits, but not larger than it is, with a margin. */
+  show(width: number, height: number, margin = 16): void {
+    const { clientWidth, clientHeight } = this.element;
+    const fits = Math.min((clientWidth - 2 * margin) / width, (clientHeight - 2 * margin) / height);
+    const scale = Math.min(1, Math.max(SMALLEST, fits));
+    this.set((clientWidth - width * scale) / 2, Math.max(margin, (clientHeight - height * scale) / 2), scale);
+  }
+
+  /** Moves a point of the picture into sight: to the middle, if it is outside. */
+  reveal(x: number, y: number, margin = 40): void {
+    const { clientWidth, clientHeight } = this.element;
+    const [at, below] = [this.x + x * this.zoom, this.y + y * this.zoom];
+    const inside = at > margin && at < clientWidth - margin && below > margin && below < clientHeight - margin;
+    if (!inside) this.set(clientWidth / 2 - x * this.zoom, clientHeight / 2 - y * this.zoom, this.zoom);
+  }
+
+  zoomBy(factor: number, x = this.element.clientWidth / 2, y = this.element.clientHeight / 2): void {
+    const zoom = Math.min(Math.max(this.zoom * factor, SMALLEST), LARGEST);
+    const real = zoom / this.zoom;
+    this.set(x - (x - this.x) * real, y - (y - this.y) * real, zoom);
+  }
+
+  private wheeled(event: WheelEvent): void {
+    event.preventDefault();
+    const box = this.element.getBoundingClientRect();
+    const lines = event.deltaMode === WheelEvent.DOM_DELTA_LINE ? 40 : 1;
+    this.zoomBy(2 ** ((-event.deltaY * lines) / WHEEL_NOTCH), event.clientX - box.left, event.clientY - box.top);
+  }
+
+  private pressed(event: PointerEvent): void {
+    this.pointers.set(event.pointerId, { x: event.clientX, y: event.clientY });
+    this.travelled = this.pointers.size > 1 ? CLICK_SLOP : 0;
+  }
+
+  private moved(event: PointerEvent): void {
+    const last = this.pointers.get(event.pointerId);
+    if (!last) return;
+    const spread = this.spread();
+    const [dx, dy] = [event.clientX - last.x, event.clientY - last.y];
+    last.x = event.clientX;
+    last.y = event.clientY;
+    this.travelled += Math.hypot(dx, dy);
+    if (this.dragged) this.element.setPointerCapture(event.pointerId);
+    const count = this.pointers.size;
+    this.set(this.x + dx / count, this.y + dy / count, this.zoom);
+    if (count > 1 && spread > 0) {
+      const box = this.element.getBoundingClientRect();
+      this.zoomBy(this.spread() / spread, event.clientX - box.left, event.clientY - box.top);
+    }
+  }
+
+  /** Distance between the first two fingers, px. */
+  private spread(): number {
+    const [a, b] = [...this.pointers.values()];
+    return a && b ? Math.hypot(a.x - b.x, a.y - b.y) : 0;
+  }
+
+  private keyed(event: KeyboardEvent): void {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    const move = (dx: number, dy: number): void => this.set(this.x + dx, this.y + dy, this.zoom);
+    const keys: Readonly<Record<string, () => void>> = {
+      ArrowLeft: () => move(STEP_PX, 0),
+      ArrowRight: () => move(-STEP_PX, 0),
+      ArrowUp: () => move(0, STEP_PX),
+      ArrowDown: () => move(0, -STEP_PX),
+      "+": () => this.zoomBy(STEP),
+      "=": () => this.zoomBy(STEP),
+      "-": () => this.zoomBy(1 / STEP),
+      "0": this.fit,
+    };
+    const act = keys[event.key];
+    if (!act) return;
+    act();
+    event.preventDefault();
+    event.stopPropagation();
+  }
+}

@@ -1,0 +1,30 @@
+import { button, h } from "../dom";
+import type { AngleUnit, AngleUnits } from "../state/angle-unit";
+import { strings } from "../strings";
+
+/** Radians or degrees, for all panels that show angles. */
+export class UnitSwitch {
+  readonly element = h("div", {
+    class: "segmented",
+    title: strings.joints.unitHint,
+    role: "group",
+    aria: { label: strings.joints.unitHint },
+  });
+
+  constructor(private readonly angles: AngleUnits) {
+    angles.changed.on(() => this.show());
+    this.show();
+  }
+
+  private show(): void {
+    const words = strings.joints;
+    this.element.replaceChildren(this.choice("rad", words.radians), this.choice("deg", words.degrees));
+  }
+
+  private choice(unit: AngleUnit, label: string): HTMLElement {
+    const on = unit === this.angles.current;
+    const element = button(label, () => (this.angles.current = unit), on ? "on" : "", label);
+    element.setAttribute("aria-pressed", String(on));
+    return element;
+  }
+}

@@ -1,0 +1,70 @@
+import { coalesced, h } from "../dom";
+
+/** Rows beyond those in sight that are kept ready. */
+const SPARE = 8;
+
+/** A list of any length of which only the rows in sight are in the page; all rows are of one height. */
+export class VirtualList<T> {
+  readonly element = h("div", { class: "virtual-list", tabIndex: 0 });
+  /** Whether the end stays in sight when rows are added. */
+  following = true;
+  private readonly rows = h("div", { class: "virtual-rows" });
+  private readonly space = h("div", { class: "virtual-space" }, this.rows);
+  private items: readonly T[] = [];
+  private first = -1;
+  private last = -1;
+  private readonly draw = coalesced(() => this.fill());
+
+  constructor(
+    private readonly rowHeight: number,
+    private readonly makeRow: (item: T, index: number) => HTMLElement,
+    private readonly followingChanged: () => void,
+  ) {
+    this.element.append(this.space);
+    this.element.addEventListener("scroll", () => this.scrolled());
+    new ResizeObserver(() => this.draw()).observe(this.element);
+  }
+
+  /** How many rows are in the page. */
+  get drawnRows(): number {
+    return this.rows.childElementCount;
+  }
+
+  show(items: readonly T[]): void {
+    this.items = items;
+    this.first = -1;
+    this.draw();
+  }
+
+  /** Goes to the end and stays there. */
+  follow(): void {
+    this.following = true;
+    this.followingChanged();
+    this.draw();
+  }
+
+  private scrolled(): void {
+    const { scrollTop, clientHeight, scrollHeight } = this.element;
+    const atEnd = scrollTop + clientHeight >= scrollHeight - this.rowHeight;
+    if (atEnd !== this.following) {
+      this.following = atEnd;
+      this.followingChanged();
+    }
+    this.fill();
+  }
+
+  private fill(): void {
+    const { element, items, rowHeight } = this;
+    const height = element.clientHeight;
+    if (height === 0) return;
+    const whole = `${items.length * rowHeight}px`;
+    if (this.space.style.height !== whole) this.space.style.height = whole;
+    if (this.following) element.scrollTop = items.length * rowHeight;
+    const first = Math.max(0, Math.floor(element.scrollTop / rowHeight) - SPARE);
+    const last = Math.min(items.length, Math.ceil((element.scrollTop + height) / rowHeight) + SPARE);
+    if (first === this.first && last === this.last) return;
+    [this.first, this.last] = [first, last];
+    this.rows.style.transform = `translateY(${first * rowHeight}px)`;
+    this.rows.replaceChildren(...items.slice(first, last).map((item, index) => this.makeRow(item, first + index)));
+  }
+}

@@ -1,0 +1,71 @@
+import { h } from "../dom";
+
+/** Rows drawn beyond both ends of what is seen, so that scrolling shows no gaps. */
+const OVERSCAN = 12;
+
+/** A list of any length of which only the rows in sight are elements. All rows have one height. */
+export class VirtualRows {
+  readonly element: HTMLElement;
+  /** Holds the rows; as high as all of them. */
+  readonly body = h("div", { class: "virtual-body" });
+  private count = 0;
+  private first = 0;
+  private rows: HTMLElement[] = [];
+
+  /**
+   * @param rowHeight px.
+   * @param render makes the row of an index.
+   */
+  constructor(
+    className: string,
+    readonly rowHeight: number,
+    private readonly render: (index: number) => HTMLElement,
+  ) {
+    this.element = h("div", { class: `virtual ${className}`, tabIndex: 0 }, this.body);
+    this.element.addEventListener("scroll", () => this.draw(false), { passive: true });
+    new ResizeObserver(() => this.draw(false)).observe(this.element);
+  }
+
+  get length(): number {
+    return this.count;
+  }
+
+  /** The rows are others, or look other than before. */
+  refresh(count = this.count): void {
+    this.count = count;
+    this.body.style.height = `${count * this.rowHeight}px`;
+    this.draw(true);
+  }
+
+  /** The row of an index, if it is drawn now. */
+  rowAt(index: number): HTMLElement | undefined {
+    return this.rows[index - this.first];
+  }
+
+  /** Scrolls a row into sight, if it is not; one far away comes to a third of the height. */
+  reveal(index: number): void {
+    const { element, rowHeight } = this;
+    const top = index * rowHeight;
+    if (top >= element.scrollTop && top + rowHeight <= element.scrollTop + element.clientHeight) return;
+    element.scrollTop = Math.max(0, top - element.clientHeight / 3);
+    this.draw(false);
+  }
+
+  private draw(anew: boolean): void {
+    const { scrollTop, clientHeight } = this.element;
+    const first = Math.max(0, Math.floor(scrollTop / this.rowHeight) - OVERSCAN);
+    const end = Math.min(this.count, Math.ceil((scrollTop + clientHeight) / this.rowHeight) + OVERSCAN);
+    if (!anew && first === this.first && end === this.first + this.rows.length) return;
+    const old = anew ? [] : this.rows;
+    const before = this.first;
+    this.rows = Array.from({ length: Math.max(0, end - first) }, (_, i) => old[first + i - before] ?? this.make(first + i));
+    this.first = first;
+    this.body.replaceChildren(...this.rows);
+  }
+
+  private make(index: number): HTMLElement {
+    const row = this.render(index);
+    row.style.top = `${index * this.rowHeight}px`;
+    return row;
+  }
+}

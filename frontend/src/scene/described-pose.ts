@@ -1,0 +1,19 @@
+import { Quaternion, Vector3, type Matrix4 } from "three";
+import type { Described } from "./picking";
+
+/** The rows `Position` and `Orientation` of RViz's Selection panel. */
+export function describedPose(pose: Matrix4): Described[] {
+  const [position, orientation] = [new Vector3(), new Quaternion()];
+  pose.decompose(position, orientation, new Vector3());
+  const { x, y, z } = position;
+  return [
+    describedNumbers("Position", { X: x, Y: y, Z: z }),
+    describedNumbers("Orientation", { X: orientation.x, Y: orientation.y, Z: orientation.z, W: orientation.w }),
+  ];
+}
+
+/** A row with a row for each number below it, and all of them in its own value. */
+export function describedNumbers(name: string, numbers: Readonly<Record<string, number>>): Described {
+  const children = Object.entries(numbers).map(([key, value]) => ({ name: key, value: String(Number(value.toPrecision(6))) }));
+  return { name, value: children.map(({ value }) => value).join("; "), children };
+}

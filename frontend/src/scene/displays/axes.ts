@@ -1,0 +1,48 @@
+import { Box3, Group, Mesh, MeshLambertMaterial } from "three";
+import { FIXED_FRAME } from "../../state/view";
+import { axesGeometry } from "../objects/geometries";
+import { framePose } from "../pose";
+import type { Drawing, DrawingContext } from "./drawing";
+
+const SEGMENTS = 24;
+
+/** rviz_default_plugins/Axes */
+export class AxesDrawing implements Drawing {
+  readonly root = new Group();
+  private readonly mesh = new Mesh(undefined, new MeshLambertMaterial({ vertexColors: true }));
+  private frame = "";
+
+  constructor(private readonly context: DrawingContext) {
+    this.root.matrixAutoUpdate = false;
+    this.root.add(this.mesh);
+    this.propertiesChanged();
+  }
+
+  propertiesChanged(): void {
+    const { rows } = this.context.display;
+    this.mesh.geometry.dispose();
+    this.mesh.geometry = axesGeometry(rows.number(1, "Length"), rows.number(0.1, "Radius"), SEGMENTS);
+    this.frame = rows.text(FIXED_FRAME, "Reference Frame");
+  }
+
+  update(): void {
+    const { frames, displays } = this.context.session;
+    const fixed = this.frame === FIXED_FRAME || this.frame === displays.fixedFrame;
+    if (fixed) this.root.matrix.identity();
+    this.mesh.visible = fixed || framePose(frames, frames.row(this.frame), this.root.matrix);
+    this.root.matrixWorldNeedsUpdate = true;
+  }
+
+  /** Bounds in the fixed frame, null without a transform. */
+  inspect(): object {
+    if (!this.mesh.visible) return { bounds: null };
+    this.mesh.updateWorldMatrix(true, false);
+    const { min, max } = new Box3().setFromObject(this.mesh);
+    return { bounds: { min: min.toArray(), max: max.toArray() } };
+  }
+
+  dispose(): void {
+    this.mesh.geometry.dispose();
+    this.mesh.material.dispose();
+  }
+}

@@ -1,0 +1,137 @@
+import { Camera, Group, Matrix4 } from "three";
+import type { DisplayData } from "../../connection/data";
+import type { CameraModel } from "../../protocol.gen";
+import { strings } from "../../strings";
+import { cameraInImageFrame, imageZoom, projection } from "../pictures/camera-projection";
+import { OwnPanel } from "../pictures/own-panel";
+import { PictureCanvas } from "../pictures/picture-canvas";
+import { ScenePicture } from "../pictures/scene-picture";
+import { seenThrough } from "../pictures/seen-through";
+import { dataPose } from "../pose";
+import type { Drawing, DrawingContext, DrawnScene } from "./drawing";
+
+/** rviz_default_plugins/Camera: the scene as a camera sees it and the camera's image, in a panel of its own. */
+export class CameraDrawing implements Drawing {
+  readonly root = new Group();
+  private readonly picture = new PictureCanvas();
+  private readonly scene = new ScenePicture();
+  private readonly canvas = document.createElement("canvas");
+  private readonly panel: OwnPanel;
+  private readonly camera = new Camera();
+  private data: DisplayData | null = null;
+  private model: CameraModel | null = null;
+  private nextAt = 0;
+  private later = 0;
+  private readonly resizing: ResizeObserver;
+
+  constructor(private readonly context: DrawingContext) {
+    this.camera.matrixAutoUpdate = false;
+    this.panel = new OwnPanel(context, "camera", this.canvas);
+    this.panel.say(strings.pictures.none);
+    this.panel.match();
+    this.resizing = new ResizeObserver(() => this.context.invalidate());
+    this.resizing.observe(this.panel.element);
+  }
+
+  propertiesChanged(): void {
+    this.panel.match();
+  }
+
+  dataChanged(data: DisplayData): void {
+    const { content } = data;
+    if (content.kind !== "image_frame") return;
+    this.data = data;
+    this.model = content.camera;
+    this.picture.take(content, (shown) => {
+      if (!shown) this.panel.say(strings.pictures.unreadable);
+      else this.panel.say(this.model ? "" : strings.pictures.noCameraInfo);
+      this.context.invalidate();
+    });
+  }
+
+  dataForgotten(): void {
+    this.data = this.model = null;
+    this.picture.clear();
+    this.canvas.width = this.canvas.height = 0;
+    this.panel.say(strings.pictures.none);
+  }
+
+  update(): void {
+    // It has no place in the scene; `drawn` draws it.
+  }
+
+  drawn(scene: DrawnScene): void {
+    const { data, model } = this;
+    const { element } = this.panel;
+    if (!data || !model || !this.panel.isSeen || !this.isTurn()) return;
+    const started = performance.now();
+    if (!dataPose(this.context.session.frames, data, this.camera.matrix)) return;
+    const { rows } = this.context.display;
+    const [width, height] = [element.clientWidth, element.clientHeight];
+    const zoom = imageZoom(model, rows.number(1, "Zoom Factor"), width, height);
+    this.camera.matrix.multiply(cameraInImageFrame(model));
+    this.camera.matrixWorldNeedsUpdate = true;
+    this.camera.projectionMatrix.copy(projection(model, zoom, rows.number(100, "Far Plane Distance")));
+    this.camera.projectionMatrixInverse.copy(this.camera.projectionMatrix).invert();
+    scene.showing(
+      (display) => seenThrough(rows, display),
+      () => this.scene.draw(scene.renderer, scene.scene, this.camera, width, height),
+    );
+    this.compose(scene, zoom, width, height);
+    const now = performance.now();
+    this.nextAt = now + (now - started);
+  }
+
+  inspect(): object {
+    const context = this.canvas.getContext("2d");
+    const { width, height } = this.canvas;
+    const at = (x: number, y: number): number[] =>
+      width > 0 && context ? [...context.getImageData(Math.floor(x * width), Math.floor(y * height), 1, 1).data] : [];
+    return {
+      width,
+      height,
+      image: [this.picture.canvas.width, this.picture.canvas.height],
+      middle: at(0.5, 0.5),
+      position: new Matrix4().copy(this.camera.matrix).elements.slice(12, 15),
+    };
+  }
+
+  dispose(): void {
+    this.resizing.disconnect();
+    clearTimeout(this.later);
+    this.panel.close();
+    this.scene.dispose();
+  }
+
+  /** Drawing the scene twice takes its time: at most half of it, and what was left out is drawn later. */
+  private isTurn(): boolean {
+    const wait = this.nextAt - performance.now();
+    if (wait <= 0) return true;
+    clearTimeout(this.later);
+    this.later = window.setTimeout(this.context.invalidate, wait);
+    return false;
+  }
+
+  /** Image, scene, image. */
+  private compose(scene: DrawnScene, zoom: readonly [number, number], width: number, height: number): void {
+    const { rows } = this.context.display;
+    const where = rows.text("background and overlay", "Image Rendering");
+    if (this.canvas.width !== width) this.canvas.width = width;
+    if (this.canvas.height !== height) this.canvas.height = height;
+    const context = this.canvas.getContext("2d");
+    if (!context) return;
+    const [w, h] = [width * zoom[0], height * zoom[1]];
+    const image = (alpha: number): void => {
+      if (this.picture.isEmpty) return;
+      context.globalAlpha = alpha;
+      context.imageSmoothingEnabled = false;
+      context.drawImage(this.picture.canvas, (width - w) / 2, (height - h) / 2, w, h);
+      context.globalAlpha = 1;
+    };
+    context.fillStyle = scene.background;
+    context.fillRect(0, 0, width, height);
+    if (where !== "overlay") image(1);
+    context.drawImage(this.scene.canvas, 0, 0);
+    if (where !== "background") image(rows.number(0.5, "Overlay Alpha"));
+  }
+}

@@ -1,0 +1,34 @@
+import type { PointFields } from "../../protocol.gen";
+import type { Described } from "../picking";
+
+const DIGITS = 6;
+
+/** What RViz's Selection panel shows of a point: its place in the message's frame, then its other fields, numbered. */
+export function described(
+  index: number,
+  cloud: string,
+  position: Float32Array,
+  fields: PointFields["fields"] | null,
+): Described {
+  const coordinates = [...position].map((each) => String(Number(each.toPrecision(DIGITS))));
+  const children: Described[] = [
+    {
+      name: "Position",
+      value: coordinates.join("; "),
+      children: ["X", "Y", "Z"].map((name, axis) => ({ name, value: coordinates[axis] ?? "" })),
+    },
+  ];
+  Object.entries(fields ?? {}).forEach(([name, value], number) => {
+    const row = `${number + coordinates.length}: ${name}`;
+    if (typeof value === "number") {
+      children.push({ name: row, value: String(Number(value.toPrecision(DIGITS))) });
+    } else if (value.startsWith("#")) {
+      const parts = [1, 3, 5, 7].map((start) => parseInt(value.slice(start, start + 2), 16));
+      children.push({ name: row, value: parts.slice(0, 3).join("; ") });
+      children.push({ name: "alpha", value: String(Number(((parts[3] ?? 0) / 255).toPrecision(DIGITS))) });
+    } else {
+      children.push({ name: row, value });
+    }
+  });
+  return { name: cloud === "" ? `Point ${index}` : `Point ${index} [cloud ${cloud}]`, children };
+}

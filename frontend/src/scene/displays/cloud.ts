@@ -1,0 +1,211 @@
+import { Group, Matrix4, Vector3, type Raycaster } from "three";
+import type { DisplayData } from "../../connection/data";
+import { nearestPoint } from "../objects/nearest-point";
+import { PointBatch } from "../objects/point-batch";
+import type { PointLook, PointStyle } from "../objects/point-material";
+import { WireBoxes } from "../objects/wire-boxes";
+import type { Described, Hit, SelectionBox } from "../picking";
+import { dataPose } from "../pose";
+import { described } from "./cloud-description";
+import type { Drawing, DrawingContext } from "./drawing";
+import { PointFieldStore } from "./point-fields";
+
+/** What a pointer covers around it, as a part of half the scene's height: some 4 pixels of a scene of usual size. */
+const POINTER = 0.012;
+/** Of a rectangle that holds more points than these only so many are selected. */
+const MOST_SELECTED = 1000;
+/** Side of the mark of a selected point of the style Points, m. */
+const SMALLEST_MARK = 0.004;
+
+/** The points of one message. */
+interface Cloud {
+  data: DisplayData;
+  batch: PointBatch;
+  perDepth: number;
+  /** Every how manieth point was sent. */
+  step: number;
+}
+
+/**
+ * rviz_default_plugins/PointCloud2, LaserScan, DepthCloud, FluidPressure, Illuminance, RelativeHumidity, Temperature.
+ * Messages that are still shown because of the Decay Time are batches of their own.
+ */
+export class CloudDrawing implements Drawing {
+  readonly root = new Group();
+  private readonly clouds = new Map<string, Cloud>();
+  private readonly fields: PointFieldStore;
+  private readonly marks = new WireBoxes();
+  private selected: ReadonlySet<string> = new Set();
+
+  constructor(private readonly context: DrawingContext) {
+    this.fields = new PointFieldStore(context);
+    this.root.add(this.marks.root);
+  }
+
+  propertiesChanged(): void {
+    for (const cloud of this.clouds.values()) cloud.batch.setLook(this.look(cloud));
+    this.mark();
+  }
+
+  dataChanged(data: DisplayData): void {
+    const { content } = data;
+    if (content.kind !== "cloud_points") return;
+    let cloud = this.clouds.get(data.key);
+    if (cloud) {
+      cloud.data = data;
+      cloud.perDepth = content.pixel;
+      cloud.step = content.step;
+      cloud.batch.setLook(this.look(cloud));
+    } else {
+      const look = this.look({ perDepth: content.pixel });
+      cloud = { data, batch: new PointBatch(look), perDepth: content.pixel, step: content.step };
+      cloud.batch.root.matrixAutoUpdate = false;
+      this.clouds.set(data.key, cloud);
+      this.root.add(cloud.batch.root);
+    }
+    cloud.batch.setPoints(content.positions, content.colours, content.translucent);
+    this.fields.forget(data.key);
+    if (this.selected.size > 0) this.mark();
+  }
+
+  dataForgotten(key: string | null): void {
+    for (const [each, { batch }] of this.clouds) {
+      if (key !== null && each !== key) continue;
+      batch.dispose();
+      this.clouds.delete(each);
+      this.fields.forget(each);
+    }
+    this.mark();
+  }
+
+  update(): void {
+    const { frames } = this.context.session;
+    for (const { batch, data } of this.clouds.values()) {
+      batch.root.visible = dataPose(frames, data, batch.root.matrix);
+      batch.root.matrixWorldNeedsUpdate = true;
+    }
+  }
+
+  pick(ray: Raycaster): Hit | null {
+    const [origin, direction] = [new Vector3(), new Vector3()];
+    const inverse = new Matrix4();
+    // Half the height of what is seen, m: a metre away, or anywhere where the view is parallel.
+    const { elements } = this.context.camera().projectionMatrix;
+    const pointer = POINTER / elements[5];
+    const parallel = elements[15] === 1;
+    let best: Hit | null = null;
+    for (const [key, cloud] of this.clouds) {
+      inverse.copy(cloud.batch.root.matrix).invert();
+      origin.copy(ray.ray.origin).applyMatrix4(inverse);
+      direction.copy(ray.ray.direction).transformDirection(inverse);
+      const { style, size } = this.look(cloud);
+      const radius = (style === "Points" ? 0 : size[0] / 2) + (parallel ? pointer : 0);
+      const { positions } = cloud.batch;
+      const found = nearestPoint(positions, origin.toArray(), direction.toArray(), radius, parallel ? 0 : pointer);
+      if (!found || (best && best.distance <= found.distance)) continue;
+      const point = new Vector3().fromArray(positions, found.index * 3).applyMatrix4(cloud.batch.root.matrix);
+      best = { key: `${key}:${found.index}`, distance: found.distance, point };
+    }
+    if (best && !this.context.display.rows.bool(true, "Selectable")) best.isGround = true;
+    return best;
+  }
+
+  pickBox(box: SelectionBox): readonly string[] {
+    const found: string[] = [];
+    if (!this.context.display.rows.bool(true, "Selectable")) return found;
+    const at = new Vector3();
+    for (const [key, { batch }] of this.clouds) {
+      for (let i = 0; i < batch.count && found.length < MOST_SELECTED; i++) {
+        at.fromArray(batch.positions, i * 3).applyMatrix4(batch.root.matrix);
+        if (box.hasPoint(at.x, at.y, at.z)) found.push(`${key}:${i}`);
+      }
+    }
+    return found;
+  }
+
+  describe(key: string): Described | null {
+    const found = this.find(key);
+    if (!found) return null;
+    const { cloud, cloudKey, index } = found;
+    const position = cloud.batch.positions.subarray(index * 3, index * 3 + 3);
+    // Of a cloud thinned for a slow line the server counts all points.
+    const number = index * cloud.step;
+    return described(number, cloudKey, position, this.fields.of(cloudKey, number));
+  }
+
+  placeOf(key: string): Vector3 | null {
+    const found = this.find(key);
+    if (!found) return null;
+    const { positions, root } = found.cloud.batch;
+    return new Vector3().fromArray(positions, found.index * 3).applyMatrix4(root.matrix);
+  }
+
+  highlight(keys: ReadonlySet<string>): void {
+    this.selected = keys;
+    this.mark();
+  }
+
+  inspect(): object {
+    this.update();
+    const clouds = [...this.clouds.values()];
+    const corners = bounds(clouds);
+    const [first] = clouds;
+    return {
+      messages: clouds.length,
+      points: clouds.reduce((sum, { batch }) => sum + batch.count, 0),
+      bounds: corners,
+      step: first?.step ?? 1,
+      firstColor: first ? [...first.batch.colors.subarray(0, 4)] : [],
+      style: this.look({ perDepth: 0 }).style,
+    };
+  }
+
+  dispose(): void {
+    this.dataForgotten(null);
+    this.fields.dispose();
+    this.marks.dispose();
+  }
+
+  private look({ perDepth }: { perDepth: number }): PointLook {
+    const { rows } = this.context.display;
+    const size = rows.number(0.01, "Size (m)");
+    return {
+      style: rows.text("Flat Squares", "Style") as PointStyle,
+      size: [size, size, size],
+      pixels: rows.number(3, "Size (Pixels)"),
+      perDepth,
+      color: rows.text("#ffffff", "Color"),
+      alpha: rows.number(1, "Alpha"),
+    };
+  }
+
+  private find(key: string): { cloud: Cloud; cloudKey: string; index: number } | null {
+    const at = key.lastIndexOf(":");
+    const [cloudKey, index] = [key.slice(0, at), Number(key.slice(at + 1))];
+    const cloud = this.clouds.get(cloudKey);
+    return cloud && index < cloud.batch.count ? { cloud, cloudKey, index } : null;
+  }
+
+  /** Boxes around the selected points. */
+  private mark(): void {
+    const middles = [...this.selected].flatMap((key) => this.placeOf(key)?.toArray() ?? []);
+    const { style, size } = this.look({ perDepth: 0 });
+    this.marks.set(middles, style === "Points" ? SMALLEST_MARK : size[0]);
+    this.context.invalidate();
+  }
+}
+
+/** Least and largest corner of all points in the fixed frame, m; null without any. */
+function bounds(clouds: readonly Cloud[]): [number[], number[]] | null {
+  const least = new Vector3(Infinity, Infinity, Infinity);
+  const largest = least.clone().negate();
+  const at = new Vector3();
+  for (const { batch } of clouds) {
+    for (let i = 0; i < batch.count; i++) {
+      at.fromArray(batch.positions, i * 3).applyMatrix4(batch.root.matrix);
+      least.min(at);
+      largest.max(at);
+    }
+  }
+  return least.x === Infinity ? null : [least.toArray(), largest.toArray()];
+}

@@ -1,0 +1,90 @@
+import { Box3, Group, Matrix4 } from "three";
+import type { DisplayData } from "../../connection/data";
+import type { DataContent } from "../../protocol.gen";
+import { dataPose } from "../pose";
+import type { Drawing, DrawingContext } from "./drawing";
+
+type Kind = DataContent["kind"];
+type ContentOf<K extends Kind> = Extract<DataContent, { kind: K }>;
+
+/** A content with its key, its frame and where that is in the fixed frame. */
+export interface Placed<C> {
+  key: string;
+  frame: string;
+  content: C;
+  pose: Matrix4;
+}
+
+/**
+ * What displays have in common that draw contents of one kind, each in its frame. A subclass makes its objects in
+ * `arrange`, which comes before a frame in which a content, a property or the place of a content is another.
+ */
+export abstract class ContentDrawing<K extends Kind> implements Drawing {
+  readonly root = new Group();
+  private readonly contents = new Map<string, DisplayData>();
+  private stale = true;
+
+  constructor(
+    protected readonly context: DrawingContext,
+    private readonly kind: K,
+  ) {}
+
+  dataChanged(data: DisplayData): void {
+    if (data.content.kind !== this.kind) return;
+    // The newest comes last.
+    this.contents.delete(data.key);
+    this.contents.set(data.key, data);
+    this.stale = true;
+  }
+
+  dataForgotten(key: string | null): void {
+    if (key === null) this.contents.clear();
+    else this.contents.delete(key);
+    this.stale = true;
+  }
+
+  propertiesChanged(): void {
+    this.stale = true;
+  }
+
+  update(): void {
+    const follows = [...this.contents.values()].some((data) => data.pose === null && data.frame !== "");
+    if (!this.stale && !follows) return;
+    this.stale = false;
+    this.arrange();
+  }
+
+  /** Tells of everything drawn; the bounds are in the fixed frame, null of nothing. */
+  inspect(): object {
+    const box = new Box3();
+    this.expandBox(box);
+    const bounds = box.isEmpty() ? null : { min: box.min.toArray(), max: box.max.toArray() };
+    return { contents: this.contents.size, bounds, ...this.told() };
+  }
+
+  abstract dispose(): void;
+  protected abstract arrange(): void;
+  protected abstract expandBox(box: Box3): void;
+
+  /** What else `inspect` tells. */
+  protected told(): object {
+    return {};
+  }
+
+  /** The newest content. */
+  protected get latest(): ContentOf<K> | null {
+    const last = [...this.contents.values()].at(-1);
+    return last ? (last.content as ContentOf<K>) : null;
+  }
+
+  /** The contents whose frame has a place, with it; the matrix is another one each time. */
+  protected placed(): Placed<ContentOf<K>>[] {
+    const result: Placed<ContentOf<K>>[] = [];
+    for (const data of this.contents.values()) {
+      const pose = new Matrix4();
+      if (!dataPose(this.context.session.frames, data, pose)) continue;
+      result.push({ key: data.key, frame: data.frame, content: data.content as ContentOf<K>, pose });
+    }
+    return result;
+  }
+}

@@ -1,0 +1,102 @@
+import { Matrix4, Vector3, type Box3 } from "three";
+import { alongX, ArrowBatch } from "../objects/arrow-batch";
+import { WideLines } from "../objects/wide-lines";
+import { ContentDrawing } from "./content-drawing";
+import type { DrawingContext } from "./drawing";
+import { poseAt } from "./styles";
+
+/** Radius of a ring without effort, m, and part of the limit that every ring shows beyond its effort. */
+const LEAST = 0.05;
+/** A ring is this many parts of 32; where it is open stands its arrow head. */
+const POINTS = 30;
+const PARTS = 32;
+
+/** rviz_default_plugins/Effort: rings about the joints, larger and redder the nearer they are to their limit. */
+export class EffortDrawing extends ContentDrawing<"effort_rings"> {
+  private readonly rings = new WideLines();
+  private readonly heads = new ArrowBatch(this.root);
+
+  constructor(context: DrawingContext) {
+    super(context, "effort_rings");
+    this.root.add(this.rings.root);
+  }
+
+  /** The last effort of a joint and its limit, N m; null for one that is not drawn. */
+  effortOf(joint: string): { effort: number; limit: number } | null {
+    const content = this.latest;
+    const i = content?.joints.indexOf(joint) ?? -1;
+    return content && i >= 0 ? { effort: content.efforts[i] ?? 0, limit: content.limits[i] ?? 0 } : null;
+  }
+
+  dispose(): void {
+    this.rings.dispose();
+    this.heads.dispose();
+  }
+
+  protected override told(): object {
+    return { rings: this.heads.size, joints: this.latest?.joints ?? [], efforts: [...(this.latest?.efforts ?? [])] };
+  }
+
+  protected expandBox(box: Box3): void {
+    this.rings.expandBox(box);
+    this.heads.expandBox(box);
+  }
+
+  protected arrange(): void {
+    const { rows } = this.context.display;
+    const [scale, width, alpha] = [rows.number(1, "Scale"), rows.number(0.02, "Width"), rows.number(1, "Alpha")];
+    const head = { shaftLength: 0, shaftDiameter: 2 * width, headLength: 2 * width, headDiameter: 4 * width };
+    const contents = this.placed();
+    const strips: Float32Array[] = [];
+    const colors: Float32Array[] = [];
+    const [pose, arrow] = [new Matrix4(), new Matrix4()];
+    this.heads.begin(contents.reduce((sum, { content }) => sum + content.joints.length, 0));
+    for (const { content } of contents) {
+      content.joints.forEach((joint, i) => {
+        if (!rows.bool(true, "Joints", joint)) return;
+        const effort = content.efforts[i] ?? 0;
+        const part = usedPart(effort, content.limits[i] ?? 0) + LEAST;
+        const radius = LEAST + (part * scale) / 2;
+        const [r, g, b] = rainbow(part);
+        poseAt(content.poses, i, pose);
+        strips.push(ring(pose, radius, Math.sign(effort)));
+        colors.push(new Float32Array(Array.from({ length: POINTS }, () => [r, g, b, 1]).flat()));
+        alongX(new Vector3(0, radius, 0), new Vector3(effort > 0 ? -1 : 1, 0, 0), arrow);
+        const color = (Math.round(r * 255) << 16) | (Math.round(g * 255) << 8) | Math.round(b * 255);
+        this.heads.add(arrow.premultiply(pose), head, { color, alpha });
+      });
+    }
+    this.heads.end();
+    this.rings.setStrips(strips, colors);
+    this.rings.setStyle(0xffffff, alpha, width);
+  }
+}
+
+/** How much of its limit an effort uses, at most 1; of a joint without limit the effort itself. */
+function usedPart(effort: number, limit: number): number {
+  return limit === 0 ? Math.abs(effort) : Math.min(Math.abs(effort) / limit, 1);
+}
+
+function ring(pose: Matrix4, radius: number, direction: number): Float32Array {
+  const strip = new Float32Array(POINTS * 3);
+  const point = new Vector3();
+  for (let i = 0; i < POINTS; i++) {
+    const angle = (i * 2 * Math.PI) / PARTS;
+    const x = radius * Math.sin(angle);
+    point.set(direction < 0 ? -x : x, radius * Math.cos(angle), 0).applyMatrix4(pose).toArray(strip, i * 3);
+  }
+  return strip;
+}
+
+/** RViz's colours of efforts: from violet for 0 by blue, green and yellow to red for 1. */
+export function rainbow(value: number): [number, number, number] {
+  const hue = Math.min(1, Math.max(0, value)) * 5 + 1;
+  const sector = Math.floor(hue);
+  const within = hue - sector;
+  const n = sector % 2 === 0 ? within : 1 - within;
+  if (sector <= 1) return [n, 0, 1];
+  if (sector === 2) return [0, n, 1];
+  if (sector === 3) return [0, 1, n];
+  if (sector === 4) return [n, 1, 0];
+  return [1, n, 0];
+}

@@ -1,0 +1,78 @@
+import { Group, Vector3, type Raycaster } from "three";
+import type { DisplayData } from "../../connection/data";
+import { nearestPoint } from "../objects/nearest-point";
+import { PointBatch } from "../objects/point-batch";
+import type { PointLook } from "../objects/point-material";
+import type { Hit } from "../picking";
+import { dataPose } from "../pose";
+import type { Drawing, DrawingContext } from "./drawing";
+
+/** rviz_default_plugins/GridCells: flat cells in the plane of their frame. */
+export class GridCellsDrawing implements Drawing {
+  readonly root = new Group();
+  private data: DisplayData | null = null;
+  private sides: readonly [number, number] = [0, 0];
+  private readonly batch: PointBatch;
+
+  constructor(private readonly context: DrawingContext) {
+    this.batch = new PointBatch(this.look());
+    this.root.matrixAutoUpdate = false;
+    this.root.add(this.batch.root);
+  }
+
+  propertiesChanged(): void {
+    this.batch.setLook(this.look());
+  }
+
+  dataChanged(data: DisplayData): void {
+    const { content } = data;
+    if (content.kind !== "cell_grid") return;
+    this.data = data;
+    this.sides = [content.width, content.height];
+    this.batch.setLook(this.look());
+    this.batch.setPoints(content.positions, new Uint8Array(0), false);
+  }
+
+  dataForgotten(): void {
+    this.data = null;
+    this.batch.setPoints(new Float32Array(0), new Uint8Array(0), false);
+  }
+
+  update(): void {
+    if (!this.data) return;
+    dataPose(this.context.session.frames, this.data, this.root.matrix);
+    this.root.matrixWorldNeedsUpdate = true;
+  }
+
+  pick({ ray }: Raycaster): Hit | null {
+    const inverse = this.root.matrix.clone().invert();
+    const origin = ray.origin.clone().applyMatrix4(inverse).toArray();
+    const direction = ray.direction.clone().transformDirection(inverse).toArray();
+    const found = nearestPoint(this.batch.positions, origin, direction, Math.max(...this.sides) / 2, 0);
+    if (!found) return null;
+    const point = new Vector3().fromArray(this.batch.positions, found.index * 3).applyMatrix4(this.root.matrix);
+    return { key: "", distance: found.distance, point, isGround: true };
+  }
+
+  inspect(): object {
+    this.update();
+    const first = new Vector3().fromArray(this.batch.positions).applyMatrix4(this.root.matrix);
+    return { cells: this.batch.count, sides: [...this.sides], first: this.batch.count > 0 ? first.toArray() : null };
+  }
+
+  dispose(): void {
+    this.batch.dispose();
+  }
+
+  private look(): PointLook {
+    const { rows } = this.context.display;
+    return {
+      style: "Tiles",
+      size: [this.sides[0], this.sides[1], 0],
+      pixels: 1,
+      perDepth: 0,
+      color: rows.text("#19ff00", "Color"),
+      alpha: rows.number(1, "Alpha"),
+    };
+  }
+}

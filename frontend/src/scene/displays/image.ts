@@ -1,0 +1,58 @@
+import { Group } from "three";
+import type { DisplayData } from "../../connection/data";
+import type { ImageFrame } from "../../protocol.gen";
+import { strings } from "../../strings";
+import { OwnPanel } from "../pictures/own-panel";
+import { PictureCanvas } from "../pictures/picture-canvas";
+import type { Drawing, DrawingContext } from "./drawing";
+
+/** rviz_default_plugins/Image: nothing in the scene, a panel of its own with the image. */
+export class ImageDrawing implements Drawing {
+  readonly root = new Group();
+  readonly isElsewhere = true;
+  private readonly picture = new PictureCanvas();
+  private readonly panel: OwnPanel;
+  private frame: ImageFrame | null = null;
+
+  constructor(context: DrawingContext) {
+    this.panel = new OwnPanel(context, "image", this.picture.canvas);
+    this.panel.say(strings.pictures.none);
+    this.panel.match();
+  }
+
+  propertiesChanged(): void {
+    this.panel.match();
+  }
+
+  dataChanged({ content }: DisplayData): void {
+    if (content.kind !== "image_frame") return;
+    this.frame = content;
+    this.picture.take(content, (shown) => this.panel.say(shown ? "" : strings.pictures.unreadable));
+  }
+
+  dataForgotten(): void {
+    this.frame = null;
+    this.picture.clear();
+    this.panel.say(strings.pictures.none);
+  }
+
+  update(): void {
+    // It has no place in the scene.
+  }
+
+  inspect(): object {
+    const { canvas } = this.picture;
+    const [x, y] = [Math.floor(canvas.width / 2), Math.floor(canvas.height / 2)];
+    return {
+      images: this.picture.count,
+      width: this.frame?.width || canvas.width,
+      height: this.frame?.height || canvas.height,
+      middle: this.picture.colorAt(x, y),
+      corner: this.picture.colorAt(0, 0),
+    };
+  }
+
+  dispose(): void {
+    this.panel.close();
+  }
+}

@@ -1,0 +1,212 @@
+import { Box3, Group, Quaternion, type Object3D, type Raycaster } from "three";
+import type { DisplayData } from "../../connection/data";
+import type { MarkerMenuEntry } from "../../protocol.gen";
+import type { MenuChoice } from "../../state/scene-menu";
+import { strings } from "../../strings";
+import type { ControlHandle } from "../interactive/control-handle";
+import { MarkerHandle } from "../interactive/marker-handle";
+import type { Described, Hit, Interaction, ScenePointer } from "../picking";
+import type { Drawing, DrawingContext } from "./drawing";
+
+/** Poses told to the server while something is dragged, at most one in so many milliseconds. */
+const FEEDBACK_MS = 33;
+
+/** rviz_default_plugins/InteractiveMarkers */
+export class InteractiveMarkersDrawing implements Drawing {
+  readonly root = new Group();
+  private readonly markers = new Map<string, MarkerHandle>();
+  private interaction: Interaction = { enabled: false, hideOthers: false };
+  private told = 0;
+
+  constructor(private readonly context: DrawingContext) {}
+
+  propertiesChanged(): void {
+    // Read anew in update().
+  }
+
+  dataChanged(data: DisplayData): void {
+    const { content } = data;
+    if (content.kind === "interactive_marker_moved") {
+      this.markers.get(content.name)?.move(data, content.pose);
+    } else if (content.kind === "interactive_marker") {
+      this.forget(content.name);
+      const marker = new MarkerHandle(content, data, this.context.meshes, this.context.invalidate);
+      this.markers.set(content.name, marker);
+      this.root.add(marker.root);
+    }
+  }
+
+  dataForgotten(key: string | null): void {
+    if (key === null) for (const name of [...this.markers.keys()]) this.forget(name);
+    else if (key.startsWith(MARKER_KEY)) this.forget(key.slice(MARKER_KEY.length));
+  }
+
+  update(): void {
+    const { session, camera, display } = this.context;
+    const held = [...this.markers.values()].some((marker) => marker.isHeld);
+    for (const marker of this.markers.values()) {
+      const others = held && this.interaction.hideOthers && !marker.isHeld;
+      marker.update(session.frames, camera(), {
+        descriptions: display.rows.bool(true, "Show Descriptions"),
+        axes: display.rows.bool(false, "Show Axes"),
+        interactive: this.interaction.enabled && !others,
+      });
+    }
+  }
+
+  settled(): boolean {
+    return [...this.markers.values()].every((marker) => marker.settled);
+  }
+
+  pick(ray: Raycaster): Hit | null {
+    let best: Hit | null = null;
+    for (const [name, marker] of this.markers) {
+      const hit = marker.root.visible ? marker.hit(ray) : null;
+      if (hit && (best === null || hit.distance < best.distance)) {
+        best = { key: `${hit.control}/${name}`, distance: hit.distance, point: hit.point };
+      }
+    }
+    return best;
+  }
+
+  describe(key: string): Described | null {
+    const found = this.find(key);
+    if (!found) return null;
+    const [x = 0, y = 0, z = 0, ...turn] = found.marker.values;
+    const text = (values: readonly number[]): string => values.map((each) => each.toFixed(4)).join("; ");
+    return {
+      name: `Interactive Marker ${found.marker.shape.name}`,
+      children: [
+        { name: "Position", value: text([x, y, z]) },
+        { name: "Orientation", value: text(new Quaternion().fromArray(turn).toArray()) },
+        { name: "Control", value: found.control.control.name },
+      ],
+    };
+  }
+
+  objectsOf(key: string): readonly Object3D[] {
+    const found = this.find(key);
+    return found ? [found.control.root] : [];
+  }
+
+  interactionChanged(interaction: Interaction): void {
+    this.interaction = { ...interaction };
+    this.context.invalidate();
+  }
+
+  pointer(event: ScenePointer): boolean {
+    const found = event.hit && this.find(event.hit.key);
+    if (!event.hit || !found) return false;
+    const { marker, control } = found;
+    const { invalidate, camera } = this.context;
+    switch (event.type) {
+      case "enter":
+      case "leave":
+        control.highlighted = event.type === "enter";
+        event.setCursor(event.type === "enter" ? "grab" : "");
+        event.setHint(event.type === "enter" ? hintOf(control, marker.shape.menu.length > 0) : "");
+        invalidate();
+        return true;
+      case "down":
+        return this.pressed(event, event.hit, marker, control);
+      case "move":
+        if (marker.follow(event, camera())) {
+          this.tell(marker, control);
+          invalidate();
+        }
+        return true;
+      case "up":
+        this.released(event, marker, control);
+        return true;
+      case "wheel":
+        return marker.isHeld;
+    }
+  }
+
+  inspect(): object {
+    return Object.fromEntries(
+      [...this.markers].map(([name, marker]) => {
+        const box = new Box3().setFromObject(marker.root);
+        return [name, { pose: marker.values, controls: marker.controls.length, bounds: [box.min.toArray(), box.max.toArray()] }];
+      }),
+    );
+  }
+
+  dispose(): void {
+    this.dataForgotten(null);
+  }
+
+  private pressed(event: ScenePointer, hit: Hit, marker: MarkerHandle, control: ControlHandle): boolean {
+    const { menu } = marker.shape;
+    if (menu.length > 0 && (event.button === "right" || control.control.mode === "menu")) {
+      this.context.session.sceneMenu.emit({ x: event.x, y: event.y, choices: this.choices(marker, control, menu, 0) });
+      return true;
+    }
+    if (event.button !== "left") return false;
+    marker.grab(control, hit.point);
+    this.send(marker, control, "mouse_down");
+    event.setCursor("grabbing");
+    return true;
+  }
+
+  private released(event: ScenePointer, marker: MarkerHandle, control: ControlHandle): void {
+    if (!marker.isHeld) return;
+    marker.letGo();
+    if (control.control.mode === "button") this.send(marker, control, "button_click");
+    else if (control.control.mode !== "none") this.send(marker, control, "pose_update");
+    this.send(marker, control, "mouse_up");
+    event.setCursor("grab");
+    this.context.invalidate();
+  }
+
+  private choices(
+    marker: MarkerHandle,
+    control: ControlHandle,
+    menu: readonly MarkerMenuEntry[],
+    parent: number,
+  ): MenuChoice[] {
+    return menu
+      .filter((entry) => entry.parent === parent && entry.id !== parent)
+      .map((entry) => {
+        const below = this.choices(marker, control, menu, entry.id);
+        const run = (): void => {
+          this.context.session.connection.send(marker.feedback(control, "menu_select", entry.id));
+        };
+        return { label: entry.title, ...(below.length > 0 ? { choices: below } : { run }) };
+      });
+  }
+
+  private tell(marker: MarkerHandle, control: ControlHandle): void {
+    const now = performance.now();
+    if (now - this.told < FEEDBACK_MS) return;
+    this.told = now;
+    this.send(marker, control, "pose_update");
+  }
+
+  private send(marker: MarkerHandle, control: ControlHandle, event: Parameters<MarkerHandle["feedback"]>[1]): void {
+    this.context.session.connection.send(marker.feedback(control, event));
+  }
+
+  private forget(name: string): void {
+    this.markers.get(name)?.dispose();
+    this.markers.delete(name);
+  }
+
+  private find(key: string): { marker: MarkerHandle; control: ControlHandle } | null {
+    const slash = key.indexOf("/");
+    const marker = this.markers.get(key.slice(slash + 1));
+    const control = marker?.controls[Number(key.slice(0, slash))];
+    return marker && control ? { marker, control } : null;
+  }
+}
+
+const MARKER_KEY = "marker ";
+
+function hintOf(control: ControlHandle, menu: boolean): string {
+  const words = strings.interactive;
+  const { mode, description } = control.control;
+  const own = mode === "none" ? "" : words.modes[mode];
+  return [description, own, menu && mode !== "menu" ? words.menu : ""]
+    .filter((part) => part !== "")
+    .join(" ");
+}

@@ -1,0 +1,37 @@
+export type MapScheme = "map" | "costmap" | "raw";
+
+const UNKNOWN = [0x70, 0x89, 0x86, 255] as const;
+
+/**
+ * RViz's colours of the bytes of an occupancy grid: 256 times red, green, blue, alpha. `threshold` is the least value
+ * that counts as occupied, or null for the shades in between.
+ */
+export function mapPalette(scheme: MapScheme, threshold: number | null): Uint8Array {
+  const palette = new Uint8Array(256 * 4);
+  for (let value = 0; value < 256; value++) palette.set(colorOf(scheme, value, threshold), value * 4);
+  return palette;
+}
+
+type Rgba = readonly [number, number, number, number];
+
+function colorOf(scheme: MapScheme, value: number, threshold: number | null): Rgba {
+  if (scheme === "raw") return grey(threshold === null ? value : value < threshold ? 0 : 255);
+  if (value === 255) return UNKNOWN;
+  // Values that a grid must not have: more than 100 green, less than -1 from red to yellow.
+  if (value >= 128) return [255, Math.floor((255 * (value - 128)) / 126), 0, 255];
+  if (value > 100) return [0, 255, 0, 255];
+  if (threshold !== null) {
+    if (scheme === "map") return grey(value < threshold ? 255 : 0);
+    return value < threshold ? [0, 0, 255, 255] : [255, 0, 0, 255];
+  }
+  if (scheme === "map") return grey(255 - Math.floor((255 * value) / 100));
+  if (value === 0) return [0, 0, 0, 0];
+  if (value === 99) return [0, 255, 255, 255];
+  if (value === 100) return [255, 0, 255, 255];
+  const heat = Math.floor((255 * value) / 100);
+  return [heat, 0, 255 - heat, 255];
+}
+
+function grey(value: number): Rgba {
+  return [value, value, value, 255];
+}

@@ -1,0 +1,93 @@
+import { Group, Matrix4, Plane, Quaternion, Vector3, type Raycaster } from "three";
+import type { DisplayData } from "../../connection/data";
+import type { OccupancyMap } from "../../protocol.gen";
+import { CellPlane } from "../objects/cell-plane";
+import type { Hit } from "../picking";
+import { dataPose } from "../pose";
+import type { Drawing, DrawingContext } from "./drawing";
+import { mapPalette, type MapScheme } from "./map-palette";
+
+/** Maps are drawn before other things one sees through, costmaps over maps. */
+const ORDERS: Readonly<Record<MapScheme, number>> = { map: -3, raw: -2, costmap: -1 };
+
+/** rviz_default_plugins/Map */
+export class MapDrawing implements Drawing {
+  readonly root = new Group();
+  private readonly plane = new CellPlane();
+  private readonly origin = new Matrix4();
+  private data: DisplayData | null = null;
+  private map: OccupancyMap | null = null;
+  private palette: Uint8Array = new Uint8Array(0);
+
+  constructor(private readonly context: DrawingContext) {
+    this.root.matrixAutoUpdate = false;
+    this.root.add(this.plane.root);
+    this.propertiesChanged();
+  }
+
+  propertiesChanged(): void {
+    const { rows } = this.context.display;
+    const scheme = rows.text("map", "Color Scheme") as MapScheme;
+    const binary = rows.bool(false, "Binary representation");
+    this.palette = mapPalette(scheme, binary ? rows.number(100, "Binary threshold") : null);
+    this.plane.setLook({
+      palette: this.palette,
+      alpha: rows.number(0.7, "Alpha"),
+      seeThrough: scheme !== "map",
+      behind: rows.bool(false, "Draw Behind"),
+      order: ORDERS[scheme],
+    });
+  }
+
+  dataChanged(data: DisplayData): void {
+    const { content } = data;
+    if (content.kind !== "occupancy_map") return;
+    this.data = data;
+    this.map = content;
+    this.plane.setCells(content.cells, content.width, content.height, content.resolution);
+    const [x = 0, y = 0, z = 0, qx = 0, qy = 0, qz = 0, qw = 1] = content.origin;
+    this.origin.compose(new Vector3(x, y, z), new Quaternion(qx, qy, qz, qw).normalize(), new Vector3(1, 1, 1));
+  }
+
+  dataForgotten(): void {
+    this.data = this.map = null;
+    this.plane.clear();
+  }
+
+  update(): void {
+    if (!this.data) return;
+    this.plane.root.visible = dataPose(this.context.session.frames, this.data, this.root.matrix);
+    this.root.matrix.multiply(this.origin);
+    this.root.matrixWorldNeedsUpdate = true;
+  }
+
+  pick({ ray }: Raycaster): Hit | null {
+    if (!this.map || !this.plane.root.visible) return null;
+    const ground = new Plane(new Vector3(0, 0, 1), 0).applyMatrix4(this.root.matrix);
+    const point = ray.intersectPlane(ground, new Vector3());
+    if (!point) return null;
+    const { x, y } = point.clone().applyMatrix4(this.root.matrix.clone().invert());
+    const { width, height, resolution } = this.map;
+    if (x < 0 || y < 0 || x > width * resolution || y > height * resolution) return null;
+    return { key: "", distance: point.distanceTo(ray.origin), point, isGround: true };
+  }
+
+  inspect(): object {
+    this.update();
+    if (!this.map) return { cells: 0 };
+    const { width, height, resolution, cells } = this.map;
+    const corner = new Vector3().setFromMatrixPosition(this.root.matrix).toArray();
+    const far = new Vector3(width * resolution, height * resolution, 0).applyMatrix4(this.root.matrix).toArray();
+    const counts: Record<number, number> = {};
+    for (const value of cells) counts[value] = (counts[value] ?? 0) + 1;
+    const colors = Object.keys(counts).map((value) => [
+      Number(value),
+      [...this.palette.subarray(Number(value) * 4, Number(value) * 4 + 4)],
+    ]);
+    return { cells: cells.length, width, height, bounds: [corner, far], counts, colors: Object.fromEntries(colors) as object };
+  }
+
+  dispose(): void {
+    this.plane.dispose();
+  }
+}

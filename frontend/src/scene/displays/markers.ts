@@ -1,0 +1,194 @@
+import { Box3, Group, Matrix4, Quaternion, Vector3, type Object3D, type Raycaster } from "three";
+import type { DisplayData } from "../../connection/data";
+import type { MarkerShape } from "../../protocol.gen";
+import { makeMarkerObject, type MarkerObject } from "../markers/marker-object";
+import { isSolid, SolidMarkers, surfacesOf } from "../markers/solid-markers";
+import type { Described, Hit, SelectionBox } from "../picking";
+import { framePose } from "../pose";
+import type { Drawing, DrawingContext } from "./drawing";
+
+interface Shown {
+  marker: MarkerShape;
+  /** Of the marker in its frame, or in the fixed frame. */
+  pose: Matrix4;
+  object: MarkerObject | null;
+}
+
+/** rviz_default_plugins/Marker and MarkerArray */
+export class MarkersDrawing implements Drawing {
+  readonly root = new Group();
+  private readonly solids = new SolidMarkers(this.root);
+  private readonly shown = new Map<string, Shown>();
+  private hidden = new Set<string>();
+  private solidsStale = false;
+  /** Markers that are drawn with others in one call have objects for their outlines, which nothing else draws. */
+  private readonly outlined = new Map<string, readonly Object3D[]>();
+
+  constructor(private readonly context: DrawingContext) {
+    this.propertiesChanged();
+  }
+
+  propertiesChanged(): void {
+    const boxes = this.context.display.rows.find("Namespaces")?.children ?? [];
+    this.hidden = new Set(boxes.filter((row) => row.value === false).map((row) => row.name));
+    this.solidsStale = true;
+  }
+
+  dataChanged({ content }: DisplayData): void {
+    if (content.kind !== "markers_changed") return;
+    if (content.everything) this.dataForgotten();
+    for (const id of content.gone) this.remove(id);
+    for (const marker of content.markers) this.show(marker);
+    this.solidsStale = true;
+  }
+
+  dataForgotten(): void {
+    for (const id of [...this.shown.keys()]) this.remove(id);
+    this.solidsStale = true;
+  }
+
+  update(): void {
+    this.forgetOutlines();
+    const pose = new Matrix4();
+    let moved = this.solidsStale;
+    for (const { marker, object, pose: own } of this.shown.values()) {
+      if (!object) {
+        moved ||= marker.frame !== "";
+        continue;
+      }
+      const placed = this.place(marker, own, pose);
+      object.root.visible = placed && !this.hidden.has(marker.namespace);
+      if (placed) pose.decompose(object.root.position, object.root.quaternion, new Vector3());
+    }
+    if (moved) this.arrangeSolids();
+  }
+
+  settled(): boolean {
+    return [...this.shown.values()].every(({ object }) => object?.settled ?? true);
+  }
+
+  pick(ray: Raycaster): Hit | null {
+    let best: Hit | null = null;
+    for (const [key, { marker }] of this.shown) {
+      if (this.hidden.has(marker.namespace)) continue;
+      const [hit] = ray.intersectObjects(this.surfacesOf(key), true);
+      if (hit && (best === null || hit.distance < best.distance)) {
+        best = { key, distance: hit.distance, point: hit.point };
+      }
+    }
+    return best;
+  }
+
+  pickBox(box: SelectionBox): readonly string[] {
+    return [...this.shown.keys()].filter((key) => this.surfacesOf(key).some((object) => box.hasObject(object)));
+  }
+
+  describe(key: string): Described | null {
+    const marker = this.shown.get(key)?.marker;
+    if (!marker) return null;
+    const [x = 0, y = 0, z = 0, qx = 0, qy = 0, qz = 0, qw = 1] = marker.pose;
+    const text = (...values: number[]): string => values.map((each) => String(Number(each.toFixed(4)))).join("; ");
+    return {
+      name: `Marker ${marker.id}`,
+      children: [
+        { name: "Position", value: text(x, y, z) },
+        { name: "Orientation", value: text(qx, qy, qz, qw) },
+        { name: "Scale", value: text(...marker.scale) },
+        { name: "Color", value: text(...marker.color) },
+      ],
+    };
+  }
+
+  objectsOf(key: string): readonly Object3D[] {
+    const object = this.shown.get(key)?.object;
+    if (object) return [object.root];
+    let outlined = this.outlined.get(key);
+    if (!outlined) {
+      outlined = this.surfacesOf(key);
+      for (const each of outlined) {
+        each.layers.disableAll();
+        this.root.add(each);
+      }
+      this.outlined.set(key, outlined);
+    }
+    return outlined;
+  }
+
+  inspect(): object {
+    const box = new Box3();
+    this.solids.expandBox(box);
+    for (const { object } of this.shown.values()) if (object?.root.visible === true) box.expandByObject(object.root);
+    const shapes: Record<string, string> = {};
+    for (const [id, { marker }] of this.shown) if (!this.hidden.has(marker.namespace)) shapes[id] = marker.shape;
+    return { markers: shapes, bounds: box.isEmpty() ? null : [box.min.toArray(), box.max.toArray()] };
+  }
+
+  dispose(): void {
+    this.dataForgotten();
+    this.solids.dispose();
+  }
+
+  private forgetOutlines(): void {
+    for (const each of [...this.outlined.values()].flat()) each.removeFromParent();
+    this.outlined.clear();
+  }
+
+  /** What a ray meets. */
+  private surfacesOf(key: string): Object3D[] {
+    const shown = this.shown.get(key);
+    if (!shown) return [];
+    if (shown.object) return [shown.object.root];
+    const pose = new Matrix4();
+    return this.place(shown.marker, shown.pose, pose) ? surfacesOf(shown.marker, pose) : [];
+  }
+
+  private show(marker: MarkerShape): void {
+    this.remove(marker.id);
+    const [x = 0, y = 0, z = 0, qx = 0, qy = 0, qz = 0, qw = 1] = marker.pose;
+    const pose = new Matrix4().compose(new Vector3(x, y, z), new Quaternion(qx, qy, qz, qw), new Vector3(1, 1, 1));
+    const object = isSolid(marker.shape) ? null : this.makeObject(marker);
+    this.shown.set(marker.id, { marker, pose, object });
+  }
+
+  private makeObject(marker: MarkerShape): MarkerObject {
+    const { meshes, invalidate, session, display } = this.context;
+    const object = makeMarkerObject(marker, meshes, (problem) => {
+      const url = marker.mesh?.url ?? marker.texture ?? "";
+      session.connection.send({ type: "mesh_status", display: display.id, link: marker.id, url, error: problem });
+      invalidate();
+    });
+    this.root.add(object.root);
+    return object;
+  }
+
+  private remove(id: string): void {
+    const shown = this.shown.get(id);
+    shown?.object?.root.removeFromParent();
+    shown?.object?.dispose();
+    this.shown.delete(id);
+  }
+
+  /** Writes the marker's pose in the fixed frame; false where its frame has no transform. */
+  private place(marker: MarkerShape, own: Matrix4, pose: Matrix4): boolean {
+    if (marker.frame === "") {
+      pose.copy(own);
+      return true;
+    }
+    const { frames, displays } = this.context.session;
+    if (marker.frame === displays.fixedFrame) pose.identity();
+    else if (!framePose(frames, frames.row(marker.frame), pose)) return false;
+    pose.multiply(own);
+    return true;
+  }
+
+  private arrangeSolids(): void {
+    this.solidsStale = false;
+    this.solids.begin();
+    for (const { marker, object, pose: own } of this.shown.values()) {
+      if (object || this.hidden.has(marker.namespace)) continue;
+      const pose = new Matrix4();
+      if (this.place(marker, own, pose)) this.solids.add(marker, pose);
+    }
+    this.solids.end();
+  }
+}

@@ -1,0 +1,83 @@
+import { Matrix4, Vector3, type Box3 } from "three";
+import { ArrowBatch } from "../objects/arrow-batch";
+import { AxesBatch } from "../objects/axes-batch";
+import { ThinLines } from "../objects/thin-lines";
+import { WideLines } from "../objects/wide-lines";
+import { ContentDrawing } from "./content-drawing";
+import type { DrawingContext } from "./drawing";
+import { colorOf, poseAt } from "./styles";
+
+const SEGMENTS = 10;
+
+/** rviz_default_plugins/Path: lines through the poses of each path, and the poses themselves. */
+export class PathDrawing extends ContentDrawing<"pose_marks"> {
+  private readonly thin = new ThinLines();
+  private readonly wide = new WideLines();
+  private readonly arrows = new ArrowBatch(this.root, SEGMENTS);
+  private readonly axes = new AxesBatch(this.root);
+  private points = 0;
+
+  constructor(context: DrawingContext) {
+    super(context, "pose_marks");
+    this.root.add(this.thin.root, this.wide.root);
+  }
+
+  dispose(): void {
+    for (const part of [this.thin, this.wide, this.arrows, this.axes]) part.dispose();
+  }
+
+  protected override told(): object {
+    return { points: this.points, arrows: this.arrows.size, axes: this.axes.size, wide: this.wide.root.visible };
+  }
+
+  protected expandBox(box: Box3): void {
+    for (const part of [this.thin, this.wide, this.arrows, this.axes]) part.expandBox(box);
+  }
+
+  protected arrange(): void {
+    const { rows } = this.context.display;
+    const offset = new Vector3(...rows.vector("Offset"));
+    const paths = this.placed().map(({ content, pose }) => {
+      const matrices = Array.from({ length: content.poses.length / 7 }, (_, i) => {
+        const matrix = poseAt(content.poses, i, new Matrix4()).premultiply(pose);
+        return matrix.setPosition(new Vector3().setFromMatrixPosition(matrix).add(offset));
+      });
+      return matrices;
+    });
+    const strips = paths.map((path) => {
+      const points = new Float32Array(path.length * 3);
+      path.forEach((matrix, i) => points.set(matrix.elements.slice(12, 15), i * 3));
+      return points;
+    });
+    this.points = strips.reduce((sum, strip) => sum + strip.length / 3, 0);
+    const wide = rows.text("Lines", "Line Style") === "Billboards";
+    const color = colorOf(rows, "#19ff00", "Color");
+    const alpha = rows.number(1, "Alpha");
+    this.thin.setStrips(wide ? [] : strips);
+    this.thin.setStyle(color, alpha);
+    this.wide.setStrips(wide ? strips : []);
+    this.wide.setStyle(color, alpha, rows.number(0.03, "Line Width"));
+    this.drawPoses(paths.flat());
+  }
+
+  private drawPoses(poses: readonly Matrix4[]): void {
+    const { rows } = this.context.display;
+    const style = rows.text("None", "Pose Style");
+    const color = colorOf(rows, "#ff55ff", "Pose Color");
+    const shape = {
+      shaftLength: rows.number(0.1, "Shaft Length"),
+      shaftDiameter: rows.number(0.1, "Shaft Diameter"),
+      headLength: rows.number(0.2, "Head Length"),
+      headDiameter: rows.number(0.3, "Head Diameter"),
+    };
+    this.axes.setShape(rows.number(0.3, "Length"), rows.number(0.03, "Radius"), SEGMENTS);
+    this.arrows.begin(style === "Arrows" ? poses.length : 0);
+    this.axes.begin(style === "Axes" ? poses.length : 0);
+    for (const pose of poses) {
+      if (style === "Arrows") this.arrows.add(pose, shape, { color });
+      else if (style === "Axes") this.axes.add(pose);
+    }
+    this.arrows.end();
+    this.axes.end();
+  }
+}

@@ -1,0 +1,35 @@
+import type { PointFields } from "../../protocol.gen";
+import type { DrawingContext } from "./drawing";
+
+/** The fields of selected points, asked of the server when they are wanted. */
+export class PointFieldStore {
+  private readonly known = new Map<string, PointFields["fields"] | null>();
+  private readonly forgetAnswers: () => void;
+
+  constructor(private readonly context: DrawingContext) {
+    this.forgetAnswers = context.session.connection.on("point_fields", (answer) => {
+      if (answer.display !== context.display.id) return;
+      this.known.set(`${answer.key}:${answer.index}`, answer.fields);
+      context.session.selection.changed.emit(context.session.selection.selected);
+    });
+  }
+
+  /** The fields of a point by name; null until the answer came. */
+  of(cloud: string, index: number): PointFields["fields"] | null {
+    const key = `${cloud}:${index}`;
+    const fields = this.known.get(key);
+    if (fields !== undefined) return fields;
+    this.known.set(key, null);
+    this.context.session.connection.send({ type: "ask_point", display: this.context.display.id, key: cloud, index });
+    return null;
+  }
+
+  /** The points under a key are other ones now. */
+  forget(cloud: string): void {
+    for (const key of this.known.keys()) if (key.startsWith(`${cloud}:`)) this.known.delete(key);
+  }
+
+  dispose(): void {
+    this.forgetAnswers();
+  }
+}

@@ -1,0 +1,47 @@
+import { Matrix4, type Box3 } from "three";
+import { CopyBatch } from "../objects/copy-batch";
+import { ballGeometry } from "../objects/geometries";
+import { ContentDrawing } from "./content-drawing";
+import type { DrawingContext } from "./drawing";
+import { colorOf } from "./styles";
+
+const SEGMENTS = 16;
+
+/** rviz_default_plugins/PointStamped: balls where the points were; what RViz calls their radius it draws as their size. */
+export class PointStampedDrawing extends ContentDrawing<"point_marks"> {
+  private readonly balls = new CopyBatch(this.root, ballGeometry(SEGMENTS));
+
+  constructor(context: DrawingContext) {
+    super(context, "point_marks");
+  }
+
+  dispose(): void {
+    this.balls.dispose();
+  }
+
+  protected override told(): object {
+    return { points: this.balls.size };
+  }
+
+  protected expandBox(box: Box3): void {
+    this.balls.expandBox(box);
+  }
+
+  protected arrange(): void {
+    const { rows } = this.context.display;
+    const size = rows.number(0.2, "Radius");
+    const alpha = rows.number(1, "Alpha");
+    const color = colorOf(rows, "#cc29cc", "Color");
+    const contents = this.placed();
+    const matrix = new Matrix4();
+    this.balls.begin(contents.reduce((sum, { content }) => sum + content.positions.length / 3, 0));
+    for (const { content, pose } of contents) {
+      for (let i = 0; i < content.positions.length; i += 3) {
+        const [x = 0, y = 0, z = 0] = content.positions.subarray(i, i + 3);
+        matrix.makeScale(size, size, size).setPosition(x, y, z).premultiply(pose);
+        this.balls.add(matrix, 0, alpha, color);
+      }
+    }
+    this.balls.end();
+  }
+}

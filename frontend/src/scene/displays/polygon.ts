@@ -1,0 +1,40 @@
+import { Vector3, type Box3 } from "three";
+import { ThinLines } from "../objects/thin-lines";
+import { ContentDrawing } from "./content-drawing";
+import type { DrawingContext } from "./drawing";
+import { colorOf } from "./styles";
+
+/** rviz_default_plugins/Polygon: a closed line. */
+export class PolygonDrawing extends ContentDrawing<"polygon_line"> {
+  private readonly lines = new ThinLines();
+  private corners = 0;
+
+  constructor(context: DrawingContext) {
+    super(context, "polygon_line");
+    this.root.add(this.lines.root);
+  }
+
+  dispose(): void {
+    this.lines.dispose();
+  }
+
+  protected override told(): object {
+    return { corners: this.corners };
+  }
+
+  protected expandBox(box: Box3): void {
+    this.lines.expandBox(box);
+  }
+
+  protected arrange(): void {
+    const { rows } = this.context.display;
+    const strips = this.placed().map(({ content, pose }) => {
+      const closed = new Float32Array([...content.points, ...content.points.subarray(0, 3)]);
+      for (let i = 0; i < closed.length; i += 3) new Vector3().fromArray(closed, i).applyMatrix4(pose).toArray(closed, i);
+      return closed;
+    });
+    this.corners = strips.reduce((sum, strip) => sum + Math.max(0, strip.length / 3 - 1), 0);
+    this.lines.setStrips(strips);
+    this.lines.setStyle(colorOf(rows, "#19ff00", "Color"), rows.number(1, "Alpha"));
+  }
+}

@@ -1,0 +1,88 @@
+import { Matrix4, Vector3, type Box3 } from "three";
+import { ArrowBatch } from "../objects/arrow-batch";
+import { AxesBatch } from "../objects/axes-batch";
+import { ThinLines } from "../objects/thin-lines";
+import { ContentDrawing } from "./content-drawing";
+import type { DrawingContext } from "./drawing";
+import { colorOf, poseAt } from "./styles";
+
+/** An arrow of three lines, one metre long: back, tip, tip, one barb, tip, the other. */
+const FLAT_ARROW = [
+  [0, 0],
+  [1, 0],
+  [1, 0],
+  [0.75, 0.2],
+  [1, 0],
+  [0.75, -0.2],
+] as const;
+/** Thousands of poses are particles: few corners will do. */
+const SEGMENTS = 8;
+
+/** rviz_default_plugins/PoseArray */
+export class PoseArrayDrawing extends ContentDrawing<"pose_marks"> {
+  private readonly lines = new ThinLines();
+  private readonly arrows = new ArrowBatch(this.root, SEGMENTS);
+  private readonly axes = new AxesBatch(this.root);
+
+  constructor(context: DrawingContext) {
+    super(context, "pose_marks");
+    this.root.add(this.lines.root);
+  }
+
+  dispose(): void {
+    for (const part of [this.lines, this.arrows, this.axes]) part.dispose();
+  }
+
+  protected override told(): object {
+    return { arrows: this.arrows.size, axes: this.axes.size };
+  }
+
+  protected expandBox(box: Box3): void {
+    for (const part of [this.lines, this.arrows, this.axes]) part.expandBox(box);
+  }
+
+  protected arrange(): void {
+    const { rows } = this.context.display;
+    const shape = rows.text("Arrow (Flat)", "Shape");
+    const [placed] = this.placed();
+    const poses: Float32Array = placed?.content.poses ?? new Float32Array(0);
+    const frame = placed?.pose ?? new Matrix4();
+    const count = poses.length / 7;
+    const color = colorOf(rows, "#ff1900", "Color");
+    const alpha = rows.number(1, "Alpha");
+    const solid = {
+      shaftLength: rows.number(0.23, "Shaft Length"),
+      shaftDiameter: rows.number(0.01, "Shaft Radius"),
+      headLength: rows.number(0.07, "Head Length"),
+      headDiameter: rows.number(0.03, "Head Radius"),
+    };
+    const matrix = new Matrix4();
+    this.axes.setShape(rows.number(0.3, "Axes Length"), rows.number(0.01, "Axes Radius"), SEGMENTS);
+    this.arrows.begin(shape === "Arrow (3D)" ? count : 0);
+    this.axes.begin(shape === "Axes" ? count : 0);
+    for (let i = 0; i < count; i++) {
+      poseAt(poses, i, matrix).premultiply(frame);
+      if (shape === "Arrow (3D)") this.arrows.add(matrix, solid, { color, alpha });
+      else if (shape === "Axes") this.axes.add(matrix);
+    }
+    this.arrows.end();
+    this.axes.end();
+    this.lines.setStyle(color, alpha);
+    const length = rows.number(0.3, "Arrow Length");
+    this.lines.setSegments(shape === "Arrow (Flat)" ? flatArrows(poses, frame, length) : new Float32Array(0));
+  }
+}
+
+function flatArrows(poses: Float32Array, frame: Matrix4, length: number): Float32Array {
+  const count = poses.length / 7;
+  const result = new Float32Array(count * FLAT_ARROW.length * 3);
+  const [matrix, point] = [new Matrix4(), new Vector3()];
+  for (let i = 0; i < count; i++) {
+    poseAt(poses, i, matrix).premultiply(frame);
+    FLAT_ARROW.forEach(([x, y], corner) => {
+      point.set(x * length, y * length, 0).applyMatrix4(matrix);
+      point.toArray(result, (i * FLAT_ARROW.length + corner) * 3);
+    });
+  }
+  return result;
+}

@@ -1,0 +1,108 @@
+import { Matrix4, Vector3, type Box3, type Raycaster } from "three";
+import type { PoseMarks } from "../../protocol.gen";
+import { describedNumbers } from "../described-pose";
+import { ArrowBatch } from "../objects/arrow-batch";
+import { AxesBatch } from "../objects/axes-batch";
+import { CovarianceBatch } from "../objects/covariance-batch";
+import type { Described, Hit, SelectionBox } from "../picking";
+import { ContentDrawing, type Placed } from "./content-drawing";
+import type { DrawingContext } from "./drawing";
+import { colorOf, covarianceStyle, poseArrow, poseAt } from "./styles";
+
+/** rviz_default_plugins/Pose, PoseWithCovariance and Odometry: poses as arrows or axes, and how uncertain they are. */
+export class PosesDrawing extends ContentDrawing<"pose_marks"> {
+  private readonly arrows = new ArrowBatch(this.root);
+  private readonly axes = new AxesBatch(this.root);
+  private readonly covariances = new CovarianceBatch(this.root);
+
+  private drawnContents: readonly Placed<PoseMarks>[] = [];
+
+  constructor(context: DrawingContext) {
+    super(context, "pose_marks");
+  }
+
+  pick(ray: Raycaster): Hit | null {
+    const hit = this.arrows.pick(ray) ?? this.axes.pick(ray);
+    const found = hit && this.drawnContents[hit.copy];
+    return hit && found ? { key: found.key, distance: hit.distance, point: hit.point } : null;
+  }
+
+  pickBox(box: SelectionBox): readonly string[] {
+    return this.drawnContents.flatMap((each) => {
+      const place = placeOf(each);
+      return box.hasPoint(place.x, place.y, place.z) ? [each.key] : [];
+    });
+  }
+
+  placeOf(key: string): Vector3 | null {
+    const found = this.drawnContents.find((each) => each.key === key);
+    return found ? placeOf(found) : null;
+  }
+
+  /** A pose as RViz's Selection panel shows it: in the frame it was given in. */
+  describe(key: string): Described | null {
+    const found = this.drawnContents.find((each) => each.key === key);
+    if (!found) return null;
+    const [x = 0, y = 0, z = 0, qx = 0, qy = 0, qz = 0, qw = 0] = found.content.poses;
+    const children = [
+      { name: "Frame", value: found.frame },
+      describedNumbers("Position", { X: x, Y: y, Z: z }),
+      describedNumbers("Orientation", { X: qx, Y: qy, Z: qz, W: qw }),
+    ];
+    const { covariances } = found.content;
+    if (covariances.length > 0) {
+      const variance = (i: number): number => covariances[i * 7] ?? 0;
+      children.push(describedNumbers("Covariance Position", { X: variance(0), Y: variance(1), Z: variance(2) }));
+      children.push(describedNumbers("Covariance Orientation", { X: variance(3), Y: variance(4), Z: variance(5) }));
+    }
+    return { name: `Pose ${this.context.display.name}`, children };
+  }
+
+  dispose(): void {
+    for (const batch of [this.arrows, this.axes, this.covariances]) batch.dispose();
+  }
+
+  protected override told(): object {
+    return { arrows: this.arrows.size, axes: this.axes.size };
+  }
+
+  protected expandBox(box: Box3): void {
+    for (const batch of [this.arrows, this.axes, this.covariances]) batch.expandBox(box);
+  }
+
+  protected arrange(): void {
+    const { rows } = this.context.display;
+    // Odometry has the sizes below Shape.
+    const below = rows.find("Shape")?.children.length ? ["Shape"] : [];
+    const asArrows = rows.text("Arrow", "Shape") === "Arrow";
+    const shape = poseArrow(rows, below);
+    const look = { color: colorOf(rows, "#ff1900", ...below, "Color"), alpha: rows.number(1, ...below, "Alpha") };
+    const style = covarianceStyle(rows);
+    const contents = this.placed();
+    this.drawnContents = contents;
+    const count = contents.reduce((sum, { content }) => sum + content.poses.length / 7, 0);
+    const matrix = new Matrix4();
+    this.axes.setShape(rows.number(1, ...below, "Axes Length"), rows.number(0.1, ...below, "Axes Radius"));
+    this.arrows.begin(asArrows ? count : 0);
+    this.axes.begin(asArrows ? 0 : count);
+    this.covariances.begin(style ? count : 0);
+    for (const { content, pose } of contents) {
+      const { poses, covariances } = content;
+      for (let i = 0; i < poses.length / 7; i++) {
+        poseAt(poses, i, matrix).premultiply(pose);
+        if (asArrows) this.arrows.add(matrix, shape, look);
+        else this.axes.add(matrix);
+        const covariance = covariances.subarray(i * 36, i * 36 + 36);
+        if (style && covariance.length > 0) {
+          this.covariances.add(pose, poses.subarray(i * 7, i * 7 + 7), covariance, style);
+        }
+      }
+    }
+    for (const batch of [this.arrows, this.axes, this.covariances]) batch.end();
+  }
+}
+
+/** Where the one pose of a content is. */
+function placeOf({ content, pose }: Placed<PoseMarks>): Vector3 {
+  return new Vector3().setFromMatrixPosition(poseAt(content.poses, 0, new Matrix4()).premultiply(pose));
+}

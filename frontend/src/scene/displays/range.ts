@@ -1,0 +1,47 @@
+import { Matrix4, type Box3 } from "three";
+import { CopyBatch } from "../objects/copy-batch";
+import { coneGeometry } from "../objects/geometries";
+import { ContentDrawing } from "./content-drawing";
+import type { DrawingContext } from "./drawing";
+import { colorOf } from "./styles";
+
+const SEGMENTS = 32;
+
+/** rviz_default_plugins/Range: cones with their tip at the sensor. */
+export class RangeDrawing extends ContentDrawing<"range_cone"> {
+  private readonly cones = new CopyBatch(this.root, coneGeometry(SEGMENTS));
+
+  constructor(context: DrawingContext) {
+    super(context, "range_cone");
+  }
+
+  dispose(): void {
+    this.cones.dispose();
+  }
+
+  protected override told(): object {
+    return { cones: this.cones.size };
+  }
+
+  protected expandBox(box: Box3): void {
+    this.cones.expandBox(box);
+  }
+
+  protected arrange(): void {
+    const { rows } = this.context.display;
+    const color = colorOf(rows, "#ffffff", "Color");
+    const alpha = rows.number(0.5, "Alpha");
+    const contents = this.placed();
+    const [shape, size] = [new Matrix4(), new Matrix4()];
+    this.cones.begin(contents.length);
+    for (const { content, pose } of contents) {
+      const { range, field_of_view } = content;
+      if (range <= 0) continue;
+      const width = 2 * range * Math.tan(field_of_view / 2);
+      // The batch's cone has its base at the origin and its tip along x: turned round, the tip is at the sensor.
+      shape.makeTranslation(range, 0, 0).multiply(size.makeScale(-range, -width, width));
+      this.cones.add(shape.premultiply(pose), 0, alpha, color);
+    }
+    this.cones.end();
+  }
+}

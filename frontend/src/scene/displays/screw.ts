@@ -1,0 +1,96 @@
+import { Matrix4, Vector3, type Box3 } from "three";
+import { alongX, ArrowBatch } from "../objects/arrow-batch";
+import { WideLines } from "../objects/wide-lines";
+import { ContentDrawing } from "./content-drawing";
+import type { DrawingContext } from "./drawing";
+import { colorOf } from "./styles";
+
+/** RViz's arrow of one metre and unit width, in which it draws vectors scaled to their length. */
+const ARROW = { shaftLength: 1, shaftDiameter: 0.1, headLength: 0.3, headDiameter: 0.2 };
+/** The circle about an angular vector: parts of 32, open where its arrow head is. */
+const CIRCLE = { from: 4, to: 32, parts: 32 };
+const CIRCLE_WIDTH = 0.05;
+const CIRCLE_HEAD = 0.1;
+
+/** rviz_default_plugins/TwistStamped, AccelStamped and Wrench: an arrow for each vector, and a circle for the angular. */
+export class ScrewDrawing extends ContentDrawing<"screw"> {
+  private readonly arrows = new ArrowBatch(this.root);
+  private readonly circles = new WideLines();
+
+  constructor(context: DrawingContext) {
+    super(context, "screw");
+    this.root.add(this.circles.root);
+  }
+
+  dispose(): void {
+    this.arrows.dispose();
+    this.circles.dispose();
+  }
+
+  protected override told(): object {
+    return { arrows: this.arrows.size };
+  }
+
+  protected expandBox(box: Box3): void {
+    this.arrows.expandBox(box);
+    this.circles.expandBox(box);
+  }
+
+  protected arrange(): void {
+    const { rows } = this.context.display;
+    const [linear, angular] = rows.find("Force Color") ? ["Force", "Torque"] : ["Linear", "Angular"];
+    const alpha = rows.number(1, "Alpha");
+    const width = rows.number(0.5, "Arrow Width");
+    const least = rows.bool(true, "Hide Small Values") ? width : 0;
+    const color = colorOf(rows, "#cc3333", `${linear} Color`);
+    const turning = colorOf(rows, "#cccc33", `${angular} Color`);
+    const scale = (name: string): number => rows.number(2, `${name} Arrow Scale`);
+    const contents = this.placed();
+    const circles: Float32Array[] = [];
+    const direction = new Vector3();
+    this.arrows.begin(contents.length * 3);
+    for (const { content, pose } of contents) {
+      const length = direction.fromArray(content.linear).length() * scale(linear);
+      if (length > least) this.addVector(pose, direction, length, width, { color, alpha });
+      const turn = direction.fromArray(content.angular).length() * scale(angular);
+      if (turn <= least) continue;
+      this.addVector(pose, direction, turn, width, { color: turning, alpha });
+      circles.push(this.addCircle(pose, direction, turn, width, { color: turning, alpha }));
+    }
+    this.arrows.end();
+    this.circles.setStrips(circles);
+    this.circles.setStyle(turning, alpha, width * CIRCLE_WIDTH);
+  }
+
+  private addVector(pose: Matrix4, direction: Vector3, length: number, width: number, look: Look): void {
+    const matrix = alongX(new Vector3(), direction, new Matrix4()).premultiply(pose);
+    this.arrows.add(matrix.multiply(new Matrix4().makeScale(length, width, width)), ARROW, look);
+  }
+
+  /** The points of a circle about the middle of the vector; its arrow head is added to the arrows. */
+  private addCircle(pose: Matrix4, direction: Vector3, length: number, width: number, look: Look): Float32Array {
+    // The vector is x here, so that the circle turns from y to z.
+    const matrix = alongX(new Vector3(), direction, new Matrix4()).premultiply(pose);
+    const radius = length / 4;
+    const point = new Vector3();
+    const strip = new Float32Array((CIRCLE.to - CIRCLE.from + 1) * 3);
+    for (let i = CIRCLE.from; i <= CIRCLE.to; i++) {
+      const angle = (i * 2 * Math.PI) / CIRCLE.parts;
+      point.set(length / 2, radius * Math.cos(angle), radius * Math.sin(angle));
+      point.applyMatrix4(matrix).toArray(strip, (i - CIRCLE.from) * 3);
+    }
+    const head = new Matrix4().makeBasis(new Vector3(0, 0, 1), new Vector3(1, 0, 0), new Vector3(0, 1, 0));
+    const size = width * CIRCLE_HEAD;
+    this.arrows.add(
+      head.setPosition(length / 2, radius, 0).premultiply(matrix),
+      { shaftLength: 0, shaftDiameter: size, headLength: size, headDiameter: 2 * size },
+      look,
+    );
+    return strip;
+  }
+}
+
+interface Look {
+  color: number;
+  alpha: number;
+}

@@ -1,0 +1,47 @@
+import type { Object3D } from "three";
+import type { Session } from "../state/session";
+import { Outline } from "./outline";
+import type { Viewport } from "./viewport";
+
+const COLOR = 0xff9d3c;
+const LAYER = 2;
+const FILL = 0.55;
+const LASTS_MS = 1600;
+/** New meshes may take a moment; the flash waits for a part of its time. */
+const FULL_MS = 600;
+
+/** Lets the links that an edit changed, or that its joints moved, light up for a moment. */
+export class Flash {
+  private readonly outline: Outline;
+  private links: { display: string; names: ReadonlySet<string>; startMs: number }[] = [];
+
+  /** @param objectsOf what draws a link of a display. */
+  constructor(
+    viewport: Viewport,
+    session: Session,
+    private readonly objectsOf: (display: string, link: string) => readonly Object3D[],
+    private readonly invalidate: () => void,
+  ) {
+    this.outline = new Outline(viewport, { color: COLOR, layer: LAYER, fill: FILL });
+    session.description.edited.on(({ display, links, joints }) => {
+      const moved = joints.map((name) => session.focus.linkOf({ display, kind: "joint", name }));
+      const names = new Set([...links, ...moved.filter((name) => name !== undefined)]);
+      this.links.push({ display, names, startMs: performance.now() });
+      invalidate();
+    });
+  }
+
+  /** Draws over the frame that was just rendered, and asks for the next one while it lasts. */
+  render(): void {
+    if (this.links.length === 0) return;
+    const now = performance.now();
+    this.links = this.links.filter(({ startMs }) => now - startMs < LASTS_MS);
+    const objects = this.links.flatMap(({ display, names }) => [...names].flatMap((name) => this.objectsOf(display, name)));
+    const newest = Math.max(...this.links.map(({ startMs }) => startMs));
+    this.outline.strength = Math.min(1, Math.max(0, (LASTS_MS - (now - newest)) / (LASTS_MS - FULL_MS)));
+    this.outline.set(objects);
+    this.outline.render();
+    this.outline.set([]);
+    this.invalidate();
+  }
+}

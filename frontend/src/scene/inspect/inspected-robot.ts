@@ -1,0 +1,51 @@
+import { Matrix4, Quaternion, Vector3 } from "three";
+import type { JointDetails } from "../../protocol.gen";
+import type { DescriptionModel } from "../../state/description-model";
+import type { FrameStore } from "../../state/frames";
+import { framePose } from "../pose";
+
+/** A robot whose invisible parts are drawn. */
+export interface InspectedRobot {
+  readonly model: DescriptionModel;
+  readonly frames: FrameStore;
+  /** Length that marks are made with, m: some part of the robot's size. */
+  readonly unit: number;
+  /** Links whose mass or inertia is implausible. */
+  readonly implausible: ReadonlySet<string>;
+  /** Positions of joints that are known from elsewhere than transforms, rad or m. */
+  readonly positions: Readonly<Record<string, number>>;
+}
+
+/** Writes the pose of a link in the fixed frame; false where it has none. */
+export function linkPose({ model, frames }: InspectedRobot, link: string, matrix: Matrix4): boolean {
+  return framePose(frames, frames.row(model.links.get(link)?.frame ?? ""), matrix);
+}
+
+const origin = new Matrix4();
+const child = new Matrix4();
+const at = new Vector3();
+const turn = new Quaternion();
+const scale = new Vector3();
+
+/**
+ * Writes the frame of a joint at its zero position into `matrix`, in the fixed frame.
+ *
+ * @returns where the joint stands, rad or m, as the transforms say it; null where they do not.
+ */
+export function jointPose(robot: InspectedRobot, joint: JointDetails, matrix: Matrix4): number | null {
+  if (!linkPose(robot, joint.parent, matrix)) return null;
+  const [x = 0, y = 0, z = 0] = joint.xyz;
+  const [qx = 0, qy = 0, qz = 0, qw = 1] = joint.quaternion;
+  matrix.multiply(origin.compose(at.set(x, y, z), turn.set(qx, qy, qz, qw), ONE));
+  if (!linkPose(robot, joint.child, child)) return null;
+  child.premultiply(origin.copy(matrix).invert()).decompose(at, turn, scale);
+  const [ax = 0, ay = 0, az = 0] = joint.axis;
+  if (joint.kind === "prismatic") return at.x * ax + at.y * ay + at.z * az;
+  const angle = 2 * Math.atan2(turn.x * ax + turn.y * ay + turn.z * az, turn.w);
+  const known = robot.positions[joint.name];
+  // Transforms tell angles but for whole turns.
+  if (known !== undefined) return known;
+  return Math.atan2(Math.sin(angle), Math.cos(angle));
+}
+
+const ONE = new Vector3(1, 1, 1);

@@ -1,0 +1,134 @@
+import { Matrix4, Vector3, type Object3D } from "three";
+import type { JointDetails } from "../../protocol.gen";
+import { jointPose, type InspectedRobot } from "./inspected-robot";
+import { VertexStream } from "./vertex-stream";
+
+const AXIS = 0xff9d3c;
+const RANGE = 0x35d0c0;
+const CURRENT = 0xfff04d;
+const BEYOND = 0xff4d42;
+const FAN_ALPHA = 0.16;
+/** Lengths in units of the robot's mark size. */
+const RADIUS = 0.5;
+const AXIS_REACH = 0.65;
+const END = 0.09;
+/** rad between two points of an arc. */
+const STEP = Math.PI / 32;
+/** How far a position may be beyond a limit and still count as at it. */
+const TOLERANCE = 1e-4;
+
+/** The axes of joints with arcs or rails from limit to limit, and where the joints stand. */
+export class JointMarks {
+  private readonly fans: VertexStream;
+  private readonly lines: VertexStream;
+  private shown: { name: string; position: number | null; lower: number | null; upper: number | null }[] = [];
+
+  constructor(parent: Object3D) {
+    this.fans = new VertexStream(parent, "triangles");
+    this.lines = new VertexStream(parent, "lines");
+  }
+
+  update(robots: readonly InspectedRobot[], wanted: boolean): void {
+    this.fans.begin();
+    this.lines.begin();
+    this.shown = [];
+    for (const robot of wanted ? robots : []) {
+      for (const joint of robot.model.joints.values()) this.mark(robot, joint);
+    }
+    this.fans.end();
+    this.lines.end();
+  }
+
+  inspect(): object {
+    return { joints: this.shown.map((each) => ({ ...each })), vertices: this.lines.size };
+  }
+
+  private mark(robot: InspectedRobot, joint: JointDetails): void {
+    const moves = joint.kind === "revolute" || joint.kind === "continuous" || joint.kind === "prismatic";
+    const axis = new Vector3().fromArray(joint.axis);
+    if (!moves || axis.lengthSq() === 0) return;
+    const pose = new Matrix4();
+    const position = jointPose(robot, joint, pose);
+    if (position === null && !robot.frames.has(robot.frames.row(joint.parent))) return;
+    const { name, lower, upper } = joint;
+    this.shown.push({ name, position, lower, upper });
+    const reach = AXIS_REACH * robot.unit;
+    if (joint.kind === "prismatic") this.rail(pose, axis, joint, position, robot.unit);
+    else {
+      this.lines.setLook(AXIS);
+      this.lines.add(...[-reach, reach].map((along) => axis.clone().multiplyScalar(along).applyMatrix4(pose)));
+      this.arc(pose, axis, joint, position, robot.unit);
+    }
+  }
+
+  /** An arc from limit to limit around the axis, a circle without limits, and a hand at the position. */
+  private arc(pose: Matrix4, axis: Vector3, joint: JointDetails, position: number | null, unit: number): void {
+    const [u, v] = across(axis);
+    const point = (angle: number, radius: number): Vector3 =>
+      new Vector3()
+        .addScaledVector(u, radius * Math.cos(angle))
+        .addScaledVector(v, radius * Math.sin(angle))
+        .applyMatrix4(pose);
+    const radius = RADIUS * unit;
+    const limited = joint.lower !== null && joint.upper !== null;
+    const from = limited ? (joint.lower ?? 0) : 0;
+    // Limits of several turns overlap; once round says as much.
+    const to = limited ? Math.min(joint.upper ?? 0, from + 2 * Math.PI) : 2 * Math.PI;
+    const center = new Vector3().setFromMatrixPosition(pose);
+    const steps = Math.max(1, Math.ceil((to - from) / STEP));
+    this.lines.setLook(RANGE);
+    this.fans.setLook(RANGE, FAN_ALPHA);
+    let last = point(from, radius);
+    for (let i = 1; i <= steps; i++) {
+      const next = point(from + ((to - from) * i) / steps, radius);
+      this.lines.add(last, next);
+      if (limited) this.fans.add(center, last, next);
+      last = next;
+    }
+    if (limited) for (const end of [joint.lower ?? 0, joint.upper ?? 0]) this.lines.add(center, point(end, radius * 1.12));
+    if (position === null) return;
+    this.lines.setLook(isBeyond(joint, position) ? BEYOND : CURRENT);
+    this.lines.add(center, point(position, radius * 1.2));
+    this.fans.setLook(isBeyond(joint, position) ? BEYOND : CURRENT, 0.95);
+    this.fans.add(point(position, radius), point(position - 0.07, radius * 1.2), point(position + 0.07, radius * 1.2));
+  }
+
+  /** A rail from limit to limit along the axis with stops at its ends, and a bead at the position. */
+  private rail(pose: Matrix4, axis: Vector3, joint: JointDetails, position: number | null, unit: number): void {
+    const [u, v] = across(axis);
+    const point = (along: number, x = 0, y = 0): Vector3 =>
+      axis.clone().multiplyScalar(along).addScaledVector(u, x).addScaledVector(v, y).applyMatrix4(pose);
+    const { lower, upper } = joint;
+    const end = END * unit;
+    if (lower !== null && upper !== null) {
+      this.lines.setLook(RANGE);
+      this.lines.add(point(lower), point(upper));
+      for (const stop of [lower, upper]) {
+        this.lines.add(point(stop, -end), point(stop, end), point(stop, 0, -end), point(stop, 0, end));
+      }
+    }
+    const reach = AXIS_REACH * unit;
+    this.lines.setLook(AXIS, 0.8);
+    this.lines.add(point((lower ?? 0) - reach / 2), point(lower ?? 0), point(upper ?? 0), point((upper ?? 0) + reach / 2));
+    if (position === null) return;
+    this.fans.setLook(isBeyond(joint, position) ? BEYOND : CURRENT, 0.95);
+    const ring = [point(position, end), point(position, 0, end), point(position, -end), point(position, 0, -end)];
+    const [ahead, behind] = [point(position + end), point(position - end)];
+    ring.forEach((corner, i) => {
+      const next = ring[(i + 1) % 4] ?? corner;
+      this.fans.add(ahead, corner, next, behind, corner, next);
+    });
+  }
+}
+
+/** Two directions across an axis: angle 0 is along the first. The axis that is farthest from it stays in the plane. */
+export function across(axis: Vector3): [Vector3, Vector3] {
+  const parts = axis.toArray().map(Math.abs);
+  const helper = new Vector3().setComponent(parts.indexOf(Math.min(...parts)), 1);
+  const u = helper.addScaledVector(axis, -helper.dot(axis)).normalize();
+  return [u, new Vector3().crossVectors(axis, u)];
+}
+
+function isBeyond({ lower, upper }: JointDetails, position: number): boolean {
+  return (lower !== null && position < lower - TOLERANCE) || (upper !== null && position > upper + TOLERANCE);
+}

@@ -1,0 +1,161 @@
+import { BufferAttribute, Matrix4, Quaternion, Vector3, type BufferGeometry, type Object3D } from "three";
+import type { LinkInertia } from "../../protocol.gen";
+import { CopyBatch } from "../objects/copy-batch";
+import { ballGeometry, cubeGeometry } from "../objects/geometries";
+import { LabelBatch } from "../objects/label-batch";
+import { linkPose, type InspectedRobot } from "./inspected-robot";
+import { VertexStream } from "./vertex-stream";
+
+const PLAUSIBLE = 0x4da3ff;
+const IMPLAUSIBLE = 0xff4d42;
+const TOTAL = 0xffd23c;
+const BOX_ALPHA = 0.3;
+/** Diameters of marks in units of the robot's mark size. */
+const BALL = 0.16;
+const TOTAL_BALL = 0.3;
+const LABEL = 0.2;
+/** An ellipsoid with the inertia of a box has semi-axes of this part of the box's edges: m/5 (b² + c²) = m/12 (B² + C²). */
+const ELLIPSOID = Math.sqrt(5 / 12);
+/** Corners of a cube of one metre that its edges join. */
+const EDGES = cubeEdges();
+
+/** Which marks are wanted. */
+export interface MassMarkChoice {
+  centers: boolean;
+  boxes: boolean;
+  ellipsoids: boolean;
+}
+
+/** Centres of mass as balls in black and white, inertias as boxes and ellipsoids; what is implausible is red. */
+export class MassMarks {
+  private readonly balls: CopyBatch;
+  private readonly boxes: CopyBatch;
+  private readonly ellipsoids: CopyBatch;
+  private readonly edges: VertexStream;
+  private readonly labels = new LabelBatch();
+  /** Of the whole robots, in the fixed frame. */
+  private totals: Vector3[] = [];
+
+  constructor(parent: Object3D) {
+    this.boxes = new CopyBatch(parent, cubeGeometry(), true);
+    this.ellipsoids = new CopyBatch(parent, ballGeometry(24), true);
+    this.edges = new VertexStream(parent, "lines");
+    this.balls = new CopyBatch(parent, quartered(ballGeometry(16)), true);
+    parent.add(this.labels.root);
+  }
+
+  update(robots: readonly InspectedRobot[], choice: MassMarkChoice): void {
+    const links = robots.reduce((sum, { model }) => sum + model.links.size, 0);
+    const some = choice.centers || choice.boxes || choice.ellipsoids;
+    const names = robots.flatMap((robot) => [...robot.implausible]).reduce((sum, name) => sum + name.length + 2, 0);
+    this.boxes.begin(choice.boxes ? links : 0);
+    this.ellipsoids.begin(choice.ellipsoids ? links : 0);
+    this.balls.begin(choice.centers ? links + robots.length : 0);
+    this.labels.begin(some ? names : 0);
+    this.edges.begin();
+    this.totals = [];
+    if (some) for (const robot of robots) this.mark(robot, choice);
+    for (const batch of [this.boxes, this.ellipsoids, this.balls, this.edges, this.labels]) batch.end();
+  }
+
+  inspect(): object {
+    return {
+      centers: this.balls.size,
+      boxes: this.boxes.size,
+      ellipsoids: this.ellipsoids.size,
+      totals: this.totals.map((total) => total.toArray()),
+    };
+  }
+
+  private mark(robot: InspectedRobot, choice: MassMarkChoice): void {
+    const pose = new Matrix4();
+    const [sum, center] = [new Vector3(), new Vector3()];
+    let mass = 0;
+    for (const link of robot.model.links.values()) {
+      if (!linkPose(robot, link.name, pose)) continue;
+      const implausible = robot.implausible.has(link.name);
+      const { inertia } = link;
+      center.fromArray(inertia?.center ?? [0, 0, 0]).applyMatrix4(pose);
+      if (implausible) this.labels.add(`! ${link.name}`, center, LABEL * robot.unit, 0, 1);
+      if (!inertia) continue;
+      this.markLink(inertia, pose, center, implausible ? IMPLAUSIBLE : PLAUSIBLE, robot.unit, choice);
+      sum.addScaledVector(center, inertia.mass);
+      mass += inertia.mass;
+    }
+    if (!(mass > 0) || !choice.centers) return;
+    const total = sum.divideScalar(mass);
+    this.totals.push(total);
+    this.balls.add(sized(pose.identity().setPosition(total), TOTAL_BALL * robot.unit), 0, 1, TOTAL);
+  }
+
+  private markLink(
+    inertia: LinkInertia,
+    pose: Matrix4,
+    center: Vector3,
+    color: number,
+    unit: number,
+    choice: MassMarkChoice,
+  ): void {
+    if (choice.centers && inertia.mass !== 0) {
+      const look = color === PLAUSIBLE ? 0xffffff : color;
+      this.balls.add(sized(pose.clone().setPosition(center), BALL * unit), 0, 1, look);
+    }
+    const [a = 0, b = 0, c = 0] = inertia.box;
+    if (inertia.box.length === 0) return;
+    const [qx = 0, qy = 0, qz = 0, qw = 1] = inertia.quaternion;
+    const size = new Vector3(a, b, c);
+    const axes = new Matrix4().compose(center, new Quaternion(), ONE);
+    axes.multiply(new Matrix4().extractRotation(pose)).multiply(turned(qx, qy, qz, qw));
+    if (choice.boxes) {
+      const box = axes.clone().scale(size);
+      this.boxes.add(box, 0, BOX_ALPHA, color);
+      this.edges.setLook(color);
+      this.edges.add(...EDGES.map((corner) => corner.clone().applyMatrix4(box)));
+    }
+    // Its diameters are twice the semi-axes; the ball that is scaled has a diameter of one.
+    if (choice.ellipsoids) this.ellipsoids.add(axes.scale(size.multiplyScalar(2 * ELLIPSOID)), 0, BOX_ALPHA, color);
+  }
+}
+
+const ONE = new Vector3(1, 1, 1);
+
+function sized(pose: Matrix4, size: number): Matrix4 {
+  return pose.scale(new Vector3(size, size, size));
+}
+
+function turned(x: number, y: number, z: number, w: number): Matrix4 {
+  return new Matrix4().makeRotationFromQuaternion(new Quaternion(x, y, z, w));
+}
+
+/** Paints a ball as centres of mass are drawn on paper: quarters in black and white. */
+function quartered(ball: BufferGeometry): BufferGeometry {
+  const flat = ball.toNonIndexed();
+  const [positions, colors] = [flat.getAttribute("position"), flat.getAttribute("color")];
+  for (let i = 0; i < positions.count; i += 3) {
+    const middle = [0, 1, 2].map((axis) => [0, 1, 2].reduce((sum, j) => sum + positions.getComponent(i + j, axis), 0));
+    const dark = middle.filter((part) => part < 0).length % 2 === 1;
+    const grey = dark ? 0.12 : 1;
+    for (let j = 0; j < 3; j++) colors.setXYZ(i + j, grey, grey, grey);
+  }
+  const index = Uint32Array.from({ length: positions.count }, (_, i) => i);
+  return flat.setIndex(new BufferAttribute(index, 1));
+}
+
+function cubeEdges(): Vector3[] {
+  const corners: Vector3[] = [];
+  for (const axis of [0, 1, 2]) {
+    for (const [u, v] of [
+      [-0.5, -0.5],
+      [-0.5, 0.5],
+      [0.5, -0.5],
+      [0.5, 0.5],
+    ] as const) {
+      for (const along of [-0.5, 0.5]) {
+        const corner = new Vector3();
+        corner.setComponent(axis, along).setComponent((axis + 1) % 3, u).setComponent((axis + 2) % 3, v);
+        corners.push(corner);
+      }
+    }
+  }
+  return corners;
+}

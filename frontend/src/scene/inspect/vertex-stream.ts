@@ -1,0 +1,95 @@
+import {
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  DoubleSide,
+  DynamicDrawUsage,
+  LineBasicMaterial,
+  LineSegments,
+  Mesh,
+  MeshBasicMaterial,
+  type Object3D,
+  type Vector3,
+} from "three";
+
+const FIRST_CAPACITY = 256;
+/** After the robot, before labels. */
+const RENDER_ORDER = 6;
+
+/** Lines or triangles that are other ones in every frame, unlit and drawn over everything, in one draw call. */
+export class VertexStream {
+  private readonly object: LineSegments | Mesh;
+  private positions = new Float32Array(FIRST_CAPACITY * 3);
+  private colors = new Float32Array(FIRST_CAPACITY * 4);
+  private count = 0;
+  private readonly color = new Color();
+  private alpha = 1;
+
+  constructor(parent: Object3D, kind: "lines" | "triangles") {
+    const look = { vertexColors: true, transparent: true, depthTest: false, depthWrite: false };
+    this.object =
+      kind === "lines"
+        ? new LineSegments(new BufferGeometry(), new LineBasicMaterial(look))
+        : new Mesh(new BufferGeometry(), new MeshBasicMaterial({ ...look, side: DoubleSide }));
+    this.object.frustumCulled = false;
+    this.object.matrixAutoUpdate = false;
+    this.object.visible = false;
+    this.object.renderOrder = RENDER_ORDER;
+    this.allocate();
+    parent.add(this.object);
+  }
+
+  /** Vertices drawn now. */
+  get size(): number {
+    return this.count;
+  }
+
+  begin(): void {
+    this.count = 0;
+  }
+
+  /** How the vertices after this look; `color` is 0xrrggbb. */
+  setLook(color: number, alpha = 1): void {
+    this.color.setHex(color);
+    this.alpha = alpha;
+  }
+
+  add(...vertices: readonly Vector3[]): void {
+    for (const vertex of vertices) {
+      if (this.count * 3 === this.positions.length) this.grow();
+      vertex.toArray(this.positions, this.count * 3);
+      this.color.toArray(this.colors, this.count * 4);
+      this.colors[this.count * 4 + 3] = this.alpha;
+      this.count += 1;
+    }
+  }
+
+  end(): void {
+    const { geometry } = this.object;
+    this.object.visible = this.count > 0;
+    geometry.setDrawRange(0, this.count);
+    for (const name of ["position", "color"]) {
+      const attribute = geometry.getAttribute(name) as BufferAttribute;
+      attribute.clearUpdateRanges();
+      attribute.addUpdateRange(0, this.count * attribute.itemSize);
+      attribute.needsUpdate = true;
+    }
+  }
+
+  private grow(): void {
+    const [positions, colors] = [this.positions, this.colors];
+    this.positions = new Float32Array(positions.length * 2);
+    this.colors = new Float32Array(colors.length * 2);
+    this.positions.set(positions);
+    this.colors.set(colors);
+    this.allocate();
+  }
+
+  private allocate(): void {
+    // A buffer on the GPU keeps its size: a larger one needs a geometry of its own.
+    this.object.geometry.dispose();
+    this.object.geometry = new BufferGeometry()
+      .setAttribute("position", new BufferAttribute(this.positions, 3).setUsage(DynamicDrawUsage))
+      .setAttribute("color", new BufferAttribute(this.colors, 4).setUsage(DynamicDrawUsage));
+  }
+}

@@ -1,0 +1,136 @@
+import {
+  Color,
+  Group,
+  Matrix4,
+  Quaternion,
+  Vector3,
+  type Camera,
+  type Intersection,
+  type Material,
+  type Mesh,
+  type Object3D,
+  type Raycaster,
+} from "three";
+import type { InteractiveControl, MarkerShape } from "../../protocol.gen";
+import { makeMarkerObject, type MarkerObject } from "../markers/marker-object";
+import { isSolid, SolidMarkers, surfacesOf } from "../markers/solid-markers";
+import type { MeshLibrary } from "../meshes/mesh-library";
+
+/** What the mouse is over is this much brighter. */
+const BRIGHTER = 1.4;
+const LIGHTER = 0.15;
+
+/** One control of an interactive marker: its markers, and how it is turned. */
+export class ControlHandle {
+  /** In the marker's reference frame. */
+  readonly root = new Group();
+  /** Turned by the user about its own axis since it came, rad; only `fixed` controls keep that. */
+  rotation = 0;
+  private readonly solids = new SolidMarkers(this.root);
+  private readonly objects: MarkerObject[] = [];
+  private readonly own: Quaternion;
+  private readonly framed = new Quaternion();
+  private bright = false;
+
+  constructor(
+    readonly control: InteractiveControl,
+    meshes: MeshLibrary,
+    changed: () => void,
+  ) {
+    const [x = 0, y = 0, z = 0, w = 1] = control.orientation;
+    this.own = new Quaternion(x, y, z, w);
+    for (const marker of control.markers) {
+      if (isSolid(marker.shape)) continue;
+      const object = makeMarkerObject(marker, meshes, changed);
+      const pose = poseOf(marker);
+      pose.decompose(object.root.position, object.root.quaternion, new Vector3());
+      this.objects.push(object);
+      this.root.add(object.root);
+    }
+    this.arrangeSolids();
+  }
+
+  /** Whether it is more than something to look at. */
+  get isActive(): boolean {
+    return this.control.mode !== "none";
+  }
+
+  get settled(): boolean {
+    return this.objects.every((object) => object.settled);
+  }
+
+  /** With its axis as x, in the reference frame. */
+  get orientation(): Quaternion {
+    return this.framed.clone().multiply(this.own);
+  }
+
+  set highlighted(bright: boolean) {
+    if (bright === this.bright) return;
+    this.bright = bright;
+    this.arrangeSolids();
+    for (const { root } of this.objects) root.traverse((object) => brighten(object, bright));
+  }
+
+  /** Puts it where its marker is; `camera` and `reference` (of the marker's frame) turn what faces the viewer. */
+  place(position: Vector3, orientation: Quaternion, camera: Camera, reference: Matrix4): void {
+    this.root.position.copy(position);
+    const mode = this.control.orientation_mode;
+    if (mode === "inherit") this.framed.copy(orientation);
+    else if (mode === "fixed") {
+      this.framed.setFromAxisAngle(new Vector3(1, 0, 0).applyQuaternion(this.own), this.rotation);
+    } else this.framed.copy(facing(this.own, camera, reference));
+    const independent = mode === "view_facing" && this.control.independent_orientation;
+    this.root.quaternion.copy(independent ? orientation : this.framed);
+  }
+
+  /** Where a ray of the world meets its markers. */
+  hit(ray: Raycaster): Intersection | null {
+    this.root.updateWorldMatrix(true, true);
+    const objects: Object3D[] = this.objects.map((object) => object.root);
+    for (const marker of this.control.markers) {
+      if (isSolid(marker.shape)) objects.push(...surfacesOf(marker, poseOf(marker).premultiply(this.root.matrixWorld)));
+    }
+    return ray.intersectObjects(objects, true)[0] ?? null;
+  }
+
+  dispose(): void {
+    this.root.removeFromParent();
+    this.solids.dispose();
+    for (const object of this.objects) object.dispose();
+  }
+
+  private arrangeSolids(): void {
+    this.solids.begin();
+    for (const marker of this.control.markers) {
+      if (!isSolid(marker.shape)) continue;
+      const lit = marker.color.map((each, i) => (i < 3 ? Math.min(1, each * BRIGHTER + LIGHTER) : each));
+      this.solids.add({ ...marker, color: this.bright ? lit : marker.color }, poseOf(marker));
+    }
+    this.solids.end();
+  }
+}
+
+function poseOf({ pose }: MarkerShape): Matrix4 {
+  const [x = 0, y = 0, z = 0, qx = 0, qy = 0, qz = 0, qw = 1] = pose;
+  return new Matrix4().compose(new Vector3(x, y, z), new Quaternion(qx, qy, qz, qw), new Vector3(1, 1, 1));
+}
+
+function brighten(object: Object3D, bright: boolean): void {
+  const material = (object as Partial<Mesh>).material;
+  const materials: readonly Material[] = material ? [material].flat() : [];
+  for (const each of materials) {
+    if ("color" in each && each.color instanceof Color) each.color.multiplyScalar(bright ? BRIGHTER : 1 / BRIGHTER);
+  }
+}
+
+/** Turns the control's axis along the line of sight and its z up, as RViz does with controls that face the viewer. */
+function facing(own: Quaternion, camera: Camera, reference: Matrix4): Quaternion {
+  const view = new Quaternion().setFromRotationMatrix(camera.matrixWorld);
+  const forward = new Vector3(0, 0, -1).applyQuaternion(view);
+  const up = new Vector3(0, 1, 0).applyQuaternion(view);
+  const toView = new Quaternion().setFromUnitVectors(new Vector3(1, 0, 0).applyQuaternion(own), forward);
+  const z = new Vector3(0, 0, 1).applyQuaternion(own).applyQuaternion(toView);
+  const upright = new Quaternion().setFromUnitVectors(z.projectOnPlane(forward).normalize(), up);
+  const frame = new Quaternion().setFromRotationMatrix(reference);
+  return frame.invert().multiply(upright.multiply(toView));
+}

@@ -1,0 +1,179 @@
+import { Plane, Quaternion, Ray, Vector3 } from "three";
+import type { InteractiveControl } from "../../protocol.gen";
+
+/** Where an interactive marker is in its reference frame. */
+export interface MarkerPose {
+  position: Vector3;
+  orientation: Quaternion;
+}
+
+/** What a movement of the mouse is worked out from; everything in the marker's reference frame. */
+export interface DragEvent {
+  /** From the eye through the pointer. */
+  ray: Ray;
+  /** Pixels since the last event. */
+  dx: number;
+  dy: number;
+  shift: boolean;
+  ctrl: boolean;
+  /** The camera's axes, unit length. */
+  right: Vector3;
+  up: Vector3;
+  forward: Vector3;
+}
+
+const PIXELS_PER_TURN = 300;
+/** Metres along the line of sight for each pixel, for each metre between the eye and the marker. */
+const DEPTH_PER_PIXEL = 0.002;
+/** A plane that is seen this close to its edge cannot be pointed at. */
+const SHALLOWEST = 0.05;
+
+/** One control of an interactive marker being dragged, with the rules of RViz's InteractiveMarkerControl. */
+export class Drag {
+  private readonly start: MarkerPose;
+  private readonly grabbed: Vector3;
+  /** Of the control, at the beginning: move along it, turn about it. */
+  private readonly axis: Vector3;
+  private readonly pose: MarkerPose;
+
+  /**
+   * `grab` is where the control was taken, `orientation` the control's, with the x axis as its axis; both in the
+   * reference frame.
+   */
+  constructor(
+    private readonly mode: InteractiveControl["mode"],
+    start: MarkerPose,
+    grab: Vector3,
+    orientation: Quaternion,
+  ) {
+    this.start = copyOf(start);
+    this.pose = copyOf(start);
+    this.grabbed = grab.clone();
+    this.axis = new Vector3(1, 0, 0).applyQuaternion(orientation).normalize();
+  }
+
+  /** The marker's pose after a movement of the mouse; null where it cannot be said. */
+  moved(event: DragEvent): MarkerPose | null {
+    const done = this.move(event);
+    return done ? copyOf(this.pose) : null;
+  }
+
+  private move(event: DragEvent): boolean {
+    switch (this.mode) {
+      case "move_axis":
+        return this.moveAlongAxis(event.ray);
+      case "move_plane":
+        return this.moveInPlane(event.ray, this.axis);
+      case "rotate_axis":
+        return this.turnAboutAxis(event.ray);
+      case "move_rotate":
+        return this.moveAndTurn(event.ray);
+      case "move_3d":
+        return this.moveFreely(event);
+      case "rotate_3d":
+        return this.turnFreely(event);
+      case "move_rotate_3d":
+        return event.ctrl ? this.turnFreely(event) : this.moveFreely(event);
+      case "none":
+      case "menu":
+      case "button":
+        return false;
+    }
+  }
+
+  private moveAlongAxis(ray: Ray): boolean {
+    const along = alongAxis(ray, this.grabbed, this.axis);
+    if (along === null) return false;
+    this.pose.position.copy(this.start.position).addScaledVector(this.axis, along);
+    return true;
+  }
+
+  private moveInPlane(ray: Ray, normal: Vector3): boolean {
+    const at = onPlane(ray, this.grabbed, normal);
+    if (!at) return false;
+    this.pose.position.copy(at).sub(this.grabbed).add(this.start.position);
+    return true;
+  }
+
+  private turnAboutAxis(ray: Ray): boolean {
+    const center = this.foot(this.start.position);
+    const at = onPlane(ray, center, this.axis);
+    if (!at) return false;
+    const turn = turnBetween(this.grabbed.clone().sub(center), at.sub(center), this.axis);
+    this.pose.orientation.copy(turn).multiply(this.start.orientation);
+    return true;
+  }
+
+  /** As a cart on a string: what was grabbed goes where the mouse is, and the marker turns and follows. */
+  private moveAndTurn(ray: Ray): boolean {
+    const center = this.foot(this.pose.position);
+    const at = onPlane(ray, center, this.axis);
+    if (!at) return false;
+    const arm = this.grabbed.clone().sub(center);
+    const reach = at.clone().sub(center);
+    const distance = reach.length();
+    if (distance === 0) return false;
+    this.pose.orientation.premultiply(turnBetween(arm, reach, this.axis));
+    this.pose.position.addScaledVector(reach, (distance - arm.length()) / distance);
+    this.grabbed.copy(at);
+    return true;
+  }
+
+  private moveFreely(event: DragEvent): boolean {
+    if (!event.shift) return this.moveInPlane(event.ray, event.forward);
+    const distance = event.ray.origin.distanceTo(this.pose.position);
+    const step = -dominant(-event.dx, event.dy) * DEPTH_PER_PIXEL * distance;
+    for (const point of [this.pose.position, this.start.position, this.grabbed]) {
+      point.addScaledVector(event.ray.direction, step);
+    }
+    return true;
+  }
+
+  private turnFreely(event: DragEvent): boolean {
+    const angle = (pixels: number): number => (pixels / PIXELS_PER_TURN) * 2 * Math.PI;
+    const turn = new Quaternion();
+    if (event.shift) turn.setFromAxisAngle(event.forward, angle(dominant(event.dx, event.dy)));
+    else {
+      turn.setFromAxisAngle(event.up, angle(event.dx));
+      turn.multiply(new Quaternion().setFromAxisAngle(event.right, angle(event.dy)));
+    }
+    this.pose.orientation.premultiply(turn);
+    return true;
+  }
+
+  /** The point of the axis through `origin` that is nearest to what was grabbed. */
+  private foot(origin: Vector3): Vector3 {
+    const along = this.grabbed.clone().sub(origin).dot(this.axis);
+    return origin.clone().addScaledVector(this.axis, along);
+  }
+}
+
+function copyOf(pose: MarkerPose): MarkerPose {
+  return { position: pose.position.clone(), orientation: pose.orientation.clone() };
+}
+
+/** How far along the axis through `origin` the ray passes nearest to it; null where they are parallel. */
+export function alongAxis(ray: Ray, origin: Vector3, axis: Vector3): number | null {
+  const between = origin.clone().sub(ray.origin);
+  const slant = axis.dot(ray.direction);
+  const sine2 = 1 - slant * slant;
+  if (sine2 < 1e-6) return null;
+  return (slant * between.dot(ray.direction) - between.dot(axis)) / sine2;
+}
+
+function onPlane(ray: Ray, point: Vector3, normal: Vector3): Vector3 | null {
+  if (Math.abs(normal.dot(ray.direction)) < SHALLOWEST) return null;
+  return ray.intersectPlane(new Plane().setFromNormalAndCoplanarPoint(normal, point), new Vector3());
+}
+
+/** The turn about `axis` that takes the direction `from` to `to`. */
+export function turnBetween(from: Vector3, to: Vector3, axis: Vector3): Quaternion {
+  const [a, b] = [from, to].map((each) => each.clone().projectOnPlane(axis));
+  if (!a || !b) return new Quaternion();
+  const angle = Math.atan2(axis.dot(a.clone().cross(b)), a.dot(b));
+  return new Quaternion().setFromAxisAngle(axis, angle);
+}
+
+function dominant(a: number, b: number): number {
+  return Math.abs(a) > Math.abs(b) ? a : b;
+}

@@ -1,0 +1,172 @@
+import { Group, Matrix4, Quaternion, Ray, Vector3, type Camera, type Raycaster, type Sprite } from "three";
+import type { DisplayData } from "../../connection/data";
+import type { InteractiveMarkerShape, MarkerFeedback } from "../../protocol.gen";
+import type { FrameStore } from "../../state/frames";
+import { textSprite } from "../markers/text-sprite";
+import type { MeshLibrary } from "../meshes/mesh-library";
+import { AxesBatch } from "../objects/axes-batch";
+import type { ScenePointer } from "../picking";
+import { dataPose } from "../pose";
+import { ControlHandle } from "./control-handle";
+import { Drag, type MarkerPose } from "./dragging";
+
+const AXES_LENGTH = 1;
+const AXES_RADIUS = 0.05;
+/** Of a description's letters and its height above the marker, in parts of the marker's scale. */
+const TITLE_HEIGHT = 0.15;
+const TITLE_ABOVE = 1.4;
+
+/** What the display's boxes say. */
+export interface MarkerOptions {
+  descriptions: boolean;
+  axes: boolean;
+  /** The Interact tool is in hand: controls that are not always visible show. */
+  interactive: boolean;
+}
+
+/** One interactive marker: its controls, its title, and what is done to it with the mouse. */
+export class MarkerHandle {
+  readonly root = new Group();
+  readonly controls: readonly ControlHandle[];
+  private readonly frame = new Group();
+  private readonly axes: AxesBatch;
+  private readonly title: Sprite | null;
+  private readonly pose: MarkerPose = { position: new Vector3(), orientation: new Quaternion() };
+  private drag: { drag: Drag; control: ControlHandle } | null = null;
+  private grabbed: Vector3 | null = null;
+
+  constructor(
+    readonly shape: InteractiveMarkerShape,
+    private data: DisplayData,
+    meshes: MeshLibrary,
+    changed: () => void,
+  ) {
+    this.root.add(this.frame);
+    this.frame.matrixAutoUpdate = false;
+    this.controls = shape.controls.map((control) => new ControlHandle(control, meshes, changed));
+    for (const control of this.controls) this.frame.add(control.root);
+    this.axes = new AxesBatch(this.frame, AXES_LENGTH * shape.scale, AXES_RADIUS * shape.scale);
+    const letters = TITLE_HEIGHT * shape.scale;
+    this.title = shape.description === "" ? null : textSprite(shape.description, letters, [1, 1, 1, 1]);
+    if (this.title) this.frame.add(this.title);
+    this.setPose(shape.pose);
+  }
+
+  get isHeld(): boolean {
+    return this.drag !== null;
+  }
+
+  get settled(): boolean {
+    return this.controls.every((control) => control.settled);
+  }
+
+  /** The pose in the marker's frame, as messages have it. */
+  get values(): number[] {
+    const { position, orientation } = this.pose;
+    return [...position.toArray(), ...orientation.toArray()];
+  }
+
+  /** The server moves it; what is held is the user's. */
+  move(data: DisplayData, pose: readonly number[]): void {
+    this.data = data;
+    if (!this.drag) this.setPose(pose);
+  }
+
+  /** Puts everything where it is now; false where its frame has no transform. */
+  update(frames: FrameStore, camera: Camera, options: MarkerOptions): boolean {
+    const placed = dataPose(frames, this.data, this.frame.matrix);
+    this.root.visible = placed;
+    if (!placed) return false;
+    this.frame.matrixWorldNeedsUpdate = true;
+    const { position, orientation } = this.pose;
+    for (const control of this.controls) {
+      control.place(position, orientation, camera, this.frame.matrix);
+      control.root.visible = control.control.always_visible || options.interactive;
+    }
+    this.axes.begin(1);
+    if (options.axes) this.axes.add(new Matrix4().compose(position, orientation, new Vector3(1, 1, 1)));
+    this.axes.end();
+    if (this.title) {
+      this.title.visible = options.descriptions;
+      this.title.position.copy(position).add(new Vector3(0, 0, TITLE_ABOVE * this.shape.scale));
+    }
+    return true;
+  }
+
+  /** The nearest control that a ray of the world meets. */
+  hit(ray: Raycaster): { control: number; distance: number; point: Vector3 } | null {
+    let best: { control: number; distance: number; point: Vector3 } | null = null;
+    this.controls.forEach((control, number) => {
+      const found = control.isActive && control.root.visible ? control.hit(ray) : null;
+      if (found && (best === null || found.distance < best.distance)) {
+        best = { control: number, distance: found.distance, point: found.point };
+      }
+    });
+    return best;
+  }
+
+  /** Takes a control in hand at a point of the world. */
+  grab(control: ControlHandle, point: Vector3): void {
+    const at = point.clone().applyMatrix4(this.inverse());
+    this.grabbed = at;
+    this.drag = { drag: new Drag(control.control.mode, this.pose, at, control.orientation), control };
+  }
+
+  /** Follows the mouse; true when the marker moved. */
+  follow(event: ScenePointer, camera: Camera): boolean {
+    if (!this.drag) return false;
+    const inverse = this.inverse();
+    const ray = event.ray.ray.clone().applyMatrix4(inverse);
+    const turn = new Quaternion().setFromRotationMatrix(inverse.clone().multiply(camera.matrixWorld));
+    const moved = this.drag.drag.moved({
+      ray: new Ray(ray.origin, ray.direction.normalize()),
+      dx: event.dx,
+      dy: event.dy,
+      shift: event.shift,
+      ctrl: event.ctrl,
+      right: new Vector3(1, 0, 0).applyQuaternion(turn),
+      up: new Vector3(0, 1, 0).applyQuaternion(turn),
+      forward: new Vector3(0, 0, -1).applyQuaternion(turn),
+    });
+    if (!moved) return false;
+    this.pose.position.copy(moved.position);
+    this.pose.orientation.copy(moved.orientation);
+    return true;
+  }
+
+  letGo(): void {
+    this.drag = null;
+  }
+
+  /** What a message to the server says of a control. */
+  feedback(control: ControlHandle, event: MarkerFeedback["event"], menuEntry = 0): MarkerFeedback {
+    return {
+      type: "marker_feedback",
+      display: this.data.display,
+      marker: this.shape.name,
+      control: control.control.name,
+      event,
+      pose: this.values,
+      menu_entry: menuEntry,
+      mouse_point: this.grabbed?.toArray() ?? [],
+    };
+  }
+
+  dispose(): void {
+    this.root.removeFromParent();
+    for (const control of this.controls) control.dispose();
+    this.axes.dispose();
+    this.title?.material.map?.dispose();
+    this.title?.material.dispose();
+  }
+
+  private inverse(): Matrix4 {
+    return this.frame.matrix.clone().invert();
+  }
+
+  private setPose(pose: readonly number[]): void {
+    const [x = 0, y = 0, z = 0, qx = 0, qy = 0, qz = 0, qw = 1] = pose;
+    this.pose.position.set(x, y, z);
+    this.pose.orientation.set(qx, qy, qz, qw).normalize();
+  }
+}

@@ -1,0 +1,155 @@
+import { Matrix4, Vector3, type Ray } from "three";
+import type { JointDetails } from "../protocol.gen";
+import type { DescriptionModel } from "../state/description-model";
+import type { Session } from "../state/session";
+import { framePose } from "./pose";
+import type { Stage } from "./stage";
+import type { ToolEvent } from "./tools/tool";
+
+/** An angle is looked for this far to both sides of the last one, rad, in this many steps. */
+const REACH = Math.PI / 2;
+const STEPS = 48;
+const REFINEMENTS = 24;
+/** The tools whose left button links may be dragged with. */
+const TOOLS = ["rviz_default_plugins/Interact", "rviz_default_plugins/MoveCamera"];
+
+/** What is held: a joint's axis and the point of its link that was grabbed, in the fixed frame as they were then. */
+interface Hold {
+  readonly joint: JointDetails;
+  readonly axis: Vector3;
+  readonly origin: Vector3;
+  readonly grabbed: Vector3;
+  readonly start: number;
+  moved: number;
+}
+
+/** Drags links: with Alt, or while hands are on, a link that is pulled moves the nearest joint above it that can be moved. */
+export class JointDrag {
+  private hold: Hold | null = null;
+  private isHolding = false;
+  private isHovering = false;
+
+  constructor(
+    private readonly stage: Stage,
+    private readonly session: Session,
+  ) {}
+
+  /** What is done to the joints by an event of the mouse; false for one that the tool in hand should have. */
+  pointer(event: ToolEvent): boolean {
+    if (this.hold) {
+      if (event.type === "move" && event.left) this.pull(this.hold, event);
+      else if (event.type === "up" && !event.left) this.letGo();
+      return true;
+    }
+    const { joints, tools } = this.session;
+    const wanted = joints.controls !== null && (event.alt || joints.handsOn) && event.type !== "leave";
+    if (!wanted || (tools.current && !TOOLS.includes(tools.current.cls))) {
+      this.stopHovering();
+      return false;
+    }
+    this.askForAxes();
+    if (event.type === "down" && event.button === "left" && !event.shift) return this.grab(event);
+    if (event.type === "move" && !event.left && !event.middle && !event.right) return this.hover(event);
+    return false;
+  }
+
+  /** Where joints turn is part of the description, which is not kept for those who never drag. */
+  private askForAxes(): void {
+    if (!this.isHolding) this.session.description.hold();
+    this.isHolding = true;
+  }
+
+  private hover(event: ToolEvent): boolean {
+    const found = this.find(event);
+    this.isHovering = found !== null;
+    this.session.focus.setHovered(found && { display: found.model.display, kind: "joint", name: found.joint.name });
+    this.stage.viewport.canvas.style.cursor = found ? "grab" : "default";
+    return found !== null;
+  }
+
+  private grab(event: ToolEvent): boolean {
+    const found = this.find(event);
+    if (!found) return false;
+    const { model, joint, point } = found;
+    const { frames, joints } = this.session;
+    const pose = new Matrix4();
+    if (!framePose(frames, frames.row(model.links.get(joint.child)?.frame ?? ""), pose)) return false;
+    // A joint's axis is the same in its own frame and in that of the link it moves.
+    const axis = new Vector3().fromArray(joint.axis).transformDirection(pose);
+    const origin = new Vector3().setFromMatrixPosition(pose);
+    this.hold = { joint, axis, origin, grabbed: point, start: joints.positions[joint.name] ?? 0, moved: 0 };
+    this.stage.viewport.canvas.style.cursor = "grabbing";
+    return true;
+  }
+
+  private pull(hold: Hold, event: ToolEvent): void {
+    const { ray } = this.stage.picker.rayAt(event.x, event.y);
+    const { joint, axis, origin, grabbed } = hold;
+    hold.moved =
+      joint.kind === "prismatic" ? slideTowards(ray, axis, grabbed) : turnTowards(ray, axis, origin, grabbed, hold.moved);
+    const target = this.session.joints.leader(joint.name, hold.start + hold.moved);
+    if (!target) return;
+    const { control, position } = target;
+    this.session.joints.move({ [control.name]: Math.min(Math.max(position, control.lower), control.upper) });
+  }
+
+  private letGo(): void {
+    this.hold = null;
+    this.isHovering = true;
+    this.stopHovering();
+  }
+
+  private stopHovering(): void {
+    if (!this.isHovering) return;
+    this.isHovering = false;
+    this.session.focus.setHovered(null);
+    this.stage.viewport.canvas.style.cursor = "default";
+  }
+
+  /** The joint that a link under the pointer hangs from and that can be moved. */
+  private find(event: ToolEvent): { model: DescriptionModel; joint: JointDetails; point: Vector3 } | null {
+    const found = this.stage.picker.at(event.x, event.y);
+    const model = found && this.session.description.of(found.display);
+    if (!model) return null;
+    for (let joint = model.jointAbove(found.hit.key); joint; joint = model.jointAbove(joint.parent)) {
+      if (this.session.joints.leader(joint.name, 0)) return { model, joint, point: found.hit.point.clone() };
+    }
+    return null;
+  }
+}
+
+/** How far a point must slide along an axis to come closest to a ray, m; 0 when they are parallel. */
+export function slideTowards(ray: Ray, axis: Vector3, grabbed: Vector3): number {
+  const between = grabbed.clone().sub(ray.origin);
+  const cosine = axis.dot(ray.direction);
+  const across = 1 - cosine * cosine;
+  if (across < 1e-6) return 0;
+  return (cosine * between.dot(ray.direction) - between.dot(axis)) / across;
+}
+
+/**
+ * By which angle a point must turn about an axis to come closest to a ray, rad.
+ *
+ * It is looked for around the angle before, so that the point goes on over whole turns, and stays on its side of the
+ * circle when the circle is seen from its edge, where both sides are equally close.
+ */
+export function turnTowards(ray: Ray, axis: Vector3, origin: Vector3, grabbed: Vector3, before: number): number {
+  const arm = grabbed.clone().sub(origin);
+  const point = new Vector3();
+  const distance = (angle: number): number =>
+    ray.distanceSqToPoint(point.copy(arm).applyAxisAngle(axis, angle).add(origin));
+  let best = before;
+  let least = distance(before);
+  for (let i = -STEPS; i <= STEPS; i++) {
+    const angle = before + (REACH * i) / STEPS;
+    const here = distance(angle);
+    if (here < least) [best, least] = [angle, here];
+  }
+  for (let i = 0, step = REACH / STEPS; i < REFINEMENTS; i++, step /= 2) {
+    for (const angle of [best - step, best + step]) {
+      const here = distance(angle);
+      if (here < least) [best, least] = [angle, here];
+    }
+  }
+  return best;
+}

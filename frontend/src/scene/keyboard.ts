@@ -1,0 +1,66 @@
+import type { Session } from "../state/session";
+import type { Controls } from "./controls";
+import type { Stage } from "./stage";
+import { TOOLS } from "./tools/catalog";
+import type { Toolbox } from "./tools/toolbox";
+
+/** Where a letter is text, or chooses among things. */
+const TAKES_LETTERS = "input:not([type=checkbox]):not([type=range]):not([type=button]), textarea, select, [contenteditable], [role=menu], [role=listbox], dialog";
+
+/** RViz's keys for tools and views: they work wherever no text is being typed. */
+export class Keyboard {
+  constructor(
+    private readonly session: Session,
+    private readonly stage: Stage,
+    private readonly toolbox: Toolbox,
+    private readonly controls: Controls,
+  ) {
+    document.addEventListener("keydown", (event) => {
+      if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey) return;
+      if (event.target instanceof Element && event.target.closest(TAKES_LETTERS)) return;
+      if (this.pressed(event.key.length === 1 ? event.key.toLowerCase() : event.key, event.shiftKey)) event.preventDefault();
+    });
+  }
+
+  private pressed(key: string, shift: boolean): boolean {
+    const { session, toolbox } = this;
+    const { tools } = session;
+    if (key === "Escape") return this.escape();
+    const tool = tools.tools.find((each) => each.supported && TOOLS.get(each.cls)?.key === key);
+    if (tool && (tool === tools.current || toolbox.current.grabsKeys !== true)) {
+      tools.toggle(tool);
+      return true;
+    }
+    if (toolbox.current.key?.(key) === true && (tool || key === "f")) return true;
+    switch (key) {
+      case "f":
+        this.focus();
+        return true;
+      case "z":
+        if (shift) session.view.reset();
+        else session.view.zero();
+        return true;
+      case "r":
+        session.time.reset();
+        return true;
+      default:
+        return false;
+    }
+  }
+
+  /** The default tool; when it is in hand already, nothing is selected any more. */
+  private escape(): boolean {
+    const { tools, selection } = this.session;
+    if (tools.current !== tools.default) tools.choose(tools.default);
+    else selection.select(null);
+    return true;
+  }
+
+  /** Looks at what is under the pointer; where nothing is, at what is selected. */
+  private focus(): void {
+    const { place } = this.controls;
+    const point = place && this.stage.picker.pointAt(place.x, place.y);
+    if (point) this.session.view.lookAt(point);
+    else this.stage.focusSelected();
+  }
+}

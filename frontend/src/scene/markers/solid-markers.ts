@@ -1,0 +1,212 @@
+import { Color, Matrix4, Mesh, Vector3, type Box3, type BufferGeometry, type Object3D } from "three";
+import type { MarkerShape } from "../../protocol.gen";
+import { alongX, ArrowBatch, type ArrowShape } from "../objects/arrow-batch";
+import { CopyBatch } from "../objects/copy-batch";
+import { paint, unitBox, unitCylinder, unitSphere } from "../objects/geometries";
+
+/** An arrow marker without points has these proportions, times its scale. */
+const ARROW: ArrowShape = { shaftLength: 0.77, shaftDiameter: 1, headLength: 0.23, headDiameter: 2 };
+/** Part of an arrow between points that is head when the marker does not say. */
+const HEAD = 0.23;
+const STRIP_HEAD = 0.25;
+const OPAQUE_FROM = 0.9998;
+
+/** Shapes of size one; spheres and cylinders have a radius of one. */
+const SHAPES: Readonly<Record<string, { geometry: BufferGeometry; half: readonly [boolean, boolean, boolean] }>> = {
+  cube: { geometry: unitBox, half: [false, false, false] },
+  sphere: { geometry: unitSphere, half: [true, true, true] },
+  cylinder: { geometry: unitCylinder, half: [true, true, false] },
+};
+
+const SOLID: ReadonlySet<MarkerShape["shape"]> = new Set<MarkerShape["shape"]>([
+  "arrow",
+  "arrow_strip",
+  "cube",
+  "cylinder",
+  "sphere",
+  "cube_list",
+  "sphere_list",
+]);
+
+/** Whether markers of this shape are drawn by `SolidMarkers`. */
+export function isSolid(kind: MarkerShape["shape"]): boolean {
+  return SOLID.has(kind);
+}
+
+/** One kind of shape, those that are seen through apart from the others, for only these write no depth. */
+class Solids {
+  private readonly batches: { opaque: CopyBatch; clear: CopyBatch };
+  private readonly copies: { matrix: Matrix4; alpha: number; color: number }[] = [];
+
+  constructor(parent: Object3D, geometry: BufferGeometry) {
+    const make = (): CopyBatch => new CopyBatch(parent, paint(geometry.clone(), 1, 1, 1));
+    this.batches = { opaque: make(), clear: make() };
+  }
+
+  begin(): void {
+    this.copies.length = 0;
+  }
+
+  add(matrix: Matrix4, color: number, alpha: number): void {
+    this.copies.push({ matrix, color, alpha });
+  }
+
+  end(): void {
+    const { opaque, clear } = this.batches;
+    opaque.begin(this.copies.length);
+    clear.begin(this.copies.length);
+    for (const { matrix, alpha, color } of this.copies) {
+      if (alpha < OPAQUE_FROM) clear.add(matrix, 0, alpha, color);
+      else opaque.add(matrix, 0, 1, color);
+    }
+    opaque.end();
+    clear.end();
+  }
+
+  expandBox(box: Box3): void {
+    this.batches.opaque.expandBox(box);
+    this.batches.clear.expandBox(box);
+  }
+
+  dispose(): void {
+    this.batches.opaque.dispose();
+    this.batches.clear.dispose();
+  }
+}
+
+interface Arrow {
+  pose: Matrix4;
+  shape: ArrowShape;
+  color: number;
+  alpha: number;
+}
+
+/** Markers made of cubes, spheres, cylinders and arrows: all of them in a few draw calls. */
+export class SolidMarkers {
+  private readonly solids: Record<"cube" | "sphere" | "cylinder", Solids>;
+  private readonly opaqueArrows: ArrowBatch;
+  private readonly clearArrows: ArrowBatch;
+  private readonly arrows: Arrow[] = [];
+
+  constructor(parent: Object3D) {
+    this.solids = {
+      cube: new Solids(parent, unitBox),
+      sphere: new Solids(parent, unitSphere),
+      cylinder: new Solids(parent, unitCylinder),
+    };
+    this.opaqueArrows = new ArrowBatch(parent);
+    this.clearArrows = new ArrowBatch(parent);
+  }
+
+  begin(): void {
+    for (const solids of Object.values(this.solids)) solids.begin();
+    this.arrows.length = 0;
+  }
+
+  /** `pose` of the marker in the parent's frame; it is kept, so it must not change. */
+  add(marker: MarkerShape, pose: Matrix4): void {
+    const { shape } = marker;
+    if (shape === "arrow" || shape === "arrow_strip") this.arrows.push(...arrowsOf(marker, pose));
+    else if (shape === "cube" || shape === "sphere" || shape === "cylinder") {
+      this.solids[shape].add(sized(pose, marker), ...look(marker.color, 0));
+    } else this.addList(marker, pose);
+  }
+
+  end(): void {
+    for (const solids of Object.values(this.solids)) solids.end();
+    const clear = this.arrows.filter((arrow) => arrow.alpha < OPAQUE_FROM);
+    const opaque = this.arrows.filter((arrow) => arrow.alpha >= OPAQUE_FROM);
+    for (const [batch, arrows] of [[this.opaqueArrows, opaque], [this.clearArrows, clear]] as const) {
+      batch.begin(arrows.length);
+      for (const { pose, shape, color, alpha } of arrows) batch.add(pose, shape, { color, alpha });
+      batch.end();
+    }
+  }
+
+  expandBox(box: Box3): void {
+    for (const solids of Object.values(this.solids)) solids.expandBox(box);
+    this.opaqueArrows.expandBox(box);
+    this.clearArrows.expandBox(box);
+  }
+
+  dispose(): void {
+    for (const solids of Object.values(this.solids)) solids.dispose();
+    this.opaqueArrows.dispose();
+    this.clearArrows.dispose();
+  }
+
+  private addList(marker: MarkerShape, pose: Matrix4): void {
+    const solids = this.solids[marker.shape === "cube_list" ? "cube" : "sphere"];
+    const { points, colors, color } = marker;
+    const own = colors.length / 4 === points.length / 3;
+    const shape = sized(new Matrix4(), marker);
+    const at = new Matrix4();
+    for (let i = 0; i < points.length / 3; i++) {
+      at.makeTranslation(points[i * 3] ?? 0, points[i * 3 + 1] ?? 0, points[i * 3 + 2] ?? 0);
+      const matrix = new Matrix4().multiplyMatrices(pose, at).multiply(shape);
+      solids.add(matrix, ...(own ? look(colors, i * 4) : look(color, 0)));
+    }
+  }
+}
+
+/** Objects with the surface of a marker, for picking and outlining; they are in no scene. */
+export function surfacesOf(marker: MarkerShape, pose: Matrix4): Mesh[] {
+  const made = (geometry: BufferGeometry, matrix: Matrix4): Mesh => {
+    const mesh = new Mesh(geometry);
+    mesh.matrixAutoUpdate = false;
+    mesh.matrix.copy(matrix);
+    mesh.matrixWorld.copy(matrix);
+    return mesh;
+  };
+  if (marker.shape === "arrow" || marker.shape === "arrow_strip") {
+    return arrowsOf(marker, pose).map(({ pose: at, shape }) => {
+      const length = shape.shaftLength + shape.headLength;
+      const width = Math.max(shape.shaftDiameter, shape.headDiameter);
+      const box = new Matrix4().makeScale(length, width, width).setPosition(length / 2, 0, 0);
+      return made(unitBox, box.premultiply(at));
+    });
+  }
+  const list = marker.shape === "cube_list" || marker.shape === "sphere_list";
+  const geometry = SHAPES[list ? marker.shape.slice(0, -"_list".length) : marker.shape]?.geometry ?? unitBox;
+  if (!list) return [made(geometry, sized(pose, marker))];
+  const shape = sized(new Matrix4(), marker);
+  const meshes: Mesh[] = [];
+  for (let i = 0; i < marker.points.length; i += 3) {
+    const [x = 0, y = 0, z = 0] = marker.points.subarray(i, i + 3);
+    meshes.push(made(geometry, new Matrix4().makeTranslation(x, y, z).premultiply(pose).multiply(shape)));
+  }
+  return meshes;
+}
+
+function sized(pose: Matrix4, marker: MarkerShape): Matrix4 {
+  const name = marker.shape.replace("_list", "");
+  const half = SHAPES[name]?.half ?? [false, false, false];
+  const [x = 1, y = 1, z = 1] = marker.scale.map((each, axis) => (half[axis] === true ? each / 2 : each));
+  return pose.clone().multiply(new Matrix4().makeScale(x, y, z));
+}
+
+function look(colors: ArrayLike<number>, at: number): [number, number] {
+  const color = new Color(colors[at] ?? 0, colors[at + 1] ?? 0, colors[at + 2] ?? 0);
+  return [color.getHex(), colors[at + 3] ?? 1];
+}
+
+function arrowsOf(marker: MarkerShape, pose: Matrix4): Arrow[] {
+  const [color, alpha] = look(marker.color, 0);
+  const { points, scale } = marker;
+  if (marker.shape === "arrow" && points.length === 0) {
+    const [x = 1, y = 1, z = 1] = scale;
+    return [{ pose: pose.clone().multiply(new Matrix4().makeScale(x, y, z)), shape: ARROW, color, alpha }];
+  }
+  const [shaftDiameter = 0, headDiameter = 0, head = 0] = scale;
+  const part = marker.shape === "arrow" ? HEAD : STRIP_HEAD;
+  const arrows: Arrow[] = [];
+  for (let i = 0; i + 5 < points.length; i += 3) {
+    const from = new Vector3().fromArray(points, i);
+    const way = new Vector3().fromArray(points, i + 3).sub(from);
+    const length = way.length();
+    const headLength = head === 0 ? part * length : Math.max(0, Math.min(head, length));
+    const shape = { shaftLength: length - headLength, shaftDiameter, headLength, headDiameter };
+    arrows.push({ pose: alongX(from, way, new Matrix4()).premultiply(pose), shape, color, alpha });
+  }
+  return arrows;
+}

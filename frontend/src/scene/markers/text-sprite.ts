@@ -1,0 +1,37 @@
+import { CanvasTexture, LinearFilter, NoColorSpace, Sprite, SpriteMaterial } from "three";
+
+const FONT_PX = 48;
+const LINE_PX = 58;
+const PADDING_PX = 4;
+/** Longer texts would make textures that no GPU takes. */
+const WIDEST_PX = 4096;
+
+/** A text that faces the camera, its middle at the origin; `height` of a capital letter's line in metres. */
+export function textSprite(text: string, height: number, color: readonly number[]): Sprite {
+  const [r = 1, g = 1, b = 1, a = 1] = color;
+  const lines = text.split("\n");
+  const canvas = document.createElement("canvas");
+  const context = canvas.getContext("2d");
+  const font = `${FONT_PX}px "Liberation Sans", Arial, "Noto Sans CJK SC", sans-serif`;
+  if (context) context.font = font;
+  const width = Math.max(1, ...lines.map((line) => context?.measureText(line).width ?? 1));
+  canvas.width = Math.min(WIDEST_PX, Math.ceil(width) + 2 * PADDING_PX);
+  canvas.height = Math.min(WIDEST_PX, lines.length * LINE_PX + 2 * PADDING_PX);
+  if (context) {
+    context.font = font;
+    context.fillStyle = "#fff";
+    context.textBaseline = "middle";
+    context.textAlign = "center";
+    lines.forEach((line, row) => context.fillText(line, canvas.width / 2, PADDING_PX + (row + 0.5) * LINE_PX));
+  }
+  const map = new CanvasTexture(canvas);
+  map.colorSpace = NoColorSpace;
+  map.minFilter = LinearFilter;
+  map.generateMipmaps = false;
+  const material = new SpriteMaterial({ map, transparent: true, opacity: a, depthWrite: false });
+  material.color.setRGB(r, g, b);
+  const sprite = new Sprite(material);
+  const scale = height / FONT_PX;
+  sprite.scale.set(canvas.width * scale, canvas.height * scale, 1);
+  return sprite;
+}

@@ -1,0 +1,94 @@
+import { Matrix4, Quaternion, Vector3, type Box3, type Object3D, type Raycaster } from "three";
+import { CopyBatch, type CopyHit } from "./copy-batch";
+import { coneGeometry, rodGeometry } from "./geometries";
+
+/** RViz's arrow: a shaft and behind it a head, metres. */
+export interface ArrowShape {
+  shaftLength: number;
+  shaftDiameter: number;
+  headLength: number;
+  headDiameter: number;
+}
+
+/** Colours as 0xrrggbb; the head has the shaft's unless it is given its own. */
+export interface ArrowLook {
+  color: number;
+  headColor?: number;
+  alpha?: number;
+  /** 1 is all grey. */
+  grey?: number;
+}
+
+const ALONG_X = new Vector3(1, 0, 0);
+const ONE = new Vector3(1, 1, 1);
+
+/** Any number of arrows in two draw calls. They point along x, as the poses that RViz draws as arrows. */
+export class ArrowBatch {
+  private readonly shafts: CopyBatch;
+  private readonly heads: CopyBatch;
+  /** The numbers of the arrows that have a shaft. */
+  private shafted: number[] = [];
+  private readonly matrix = new Matrix4();
+  private readonly step = new Matrix4();
+
+  constructor(parent: Object3D, segments = 20) {
+    this.shafts = new CopyBatch(parent, rodGeometry(segments, "origin"));
+    this.heads = new CopyBatch(parent, coneGeometry(segments));
+  }
+
+  /** Arrows drawn now. */
+  get size(): number {
+    return this.heads.size;
+  }
+
+  /** Starts over; at most `expected` arrows will follow. */
+  begin(expected: number): void {
+    this.shafted = [];
+    this.shafts.begin(expected);
+    this.heads.begin(expected);
+  }
+
+  /** An arrow from the origin of `pose` along its x. */
+  add(pose: Matrix4, shape: ArrowShape, look: ArrowLook): void {
+    const { shaftLength, shaftDiameter, headLength, headDiameter } = shape;
+    const { color, headColor = color, alpha = 1, grey = 0 } = look;
+    if (shaftLength > 0) {
+      this.shafted.push(this.size);
+      this.step.makeScale(shaftLength, shaftDiameter, shaftDiameter);
+      this.shafts.add(this.matrix.multiplyMatrices(pose, this.step), grey, alpha, color);
+    }
+    this.step.makeScale(headLength, headDiameter, headDiameter).setPosition(shaftLength, 0, 0);
+    this.heads.add(this.matrix.multiplyMatrices(pose, this.step), grey, alpha, headColor);
+  }
+
+  end(): void {
+    this.shafts.end();
+    this.heads.end();
+  }
+
+  expandBox(box: Box3): void {
+    this.shafts.expandBox(box);
+    this.heads.expandBox(box);
+  }
+
+  /** The number of the nearest arrow under a ray. */
+  pick(ray: Raycaster): CopyHit | null {
+    const [shaft, head] = [this.shafts.pick(ray), this.heads.pick(ray)];
+    if (!shaft || (head && head.distance <= shaft.distance)) return head;
+    return { ...shaft, copy: this.shafted[shaft.copy] ?? 0 };
+  }
+
+  dispose(): void {
+    this.shafts.dispose();
+    this.heads.dispose();
+  }
+}
+
+const turn = new Quaternion();
+const unit = new Vector3();
+
+/** Writes into `pose` a pose at `origin` whose x points along `direction`; it does so for a direction of any length. */
+export function alongX(origin: Vector3, direction: Vector3, pose: Matrix4): Matrix4 {
+  turn.setFromUnitVectors(ALONG_X, unit.copy(direction).normalize());
+  return pose.compose(origin, turn, ONE);
+}

@@ -1,0 +1,61 @@
+import type { Box3, Matrix4, Object3D, Raycaster } from "three";
+import { CopyBatch, type CopyHit } from "./copy-batch";
+import { axesGeometry } from "./geometries";
+
+/** Any number of axes of one size in one draw call: x red, y green, z blue. */
+export class AxesBatch {
+  private copies: CopyBatch;
+  private made = "";
+
+  constructor(
+    private readonly parent: Object3D,
+    length = 1,
+    radius = 0.1,
+    segments = 12,
+  ) {
+    this.copies = this.make(length, radius, segments);
+  }
+
+  /** Axes drawn now. */
+  get size(): number {
+    return this.copies.size;
+  }
+
+  /** Changes the size, metres; radius as RViz means it, see `axesGeometry`. Before `begin`. */
+  setShape(length: number, radius: number, segments = 12): void {
+    if (this.made === [length, radius, segments].join()) return;
+    this.copies.dispose();
+    this.copies = this.make(length, radius, segments);
+  }
+
+  /** Starts over; at most `expected` axes will follow. */
+  begin(expected: number): void {
+    this.copies.begin(expected);
+  }
+
+  add(pose: Matrix4, grey = 0, alpha = 1): void {
+    this.copies.add(pose, grey, alpha);
+  }
+
+  end(): void {
+    this.copies.end();
+  }
+
+  expandBox(box: Box3): void {
+    this.copies.expandBox(box);
+  }
+
+  /** The number of the nearest axes under a ray. */
+  pick(ray: Raycaster): CopyHit | null {
+    return this.copies.pick(ray);
+  }
+
+  dispose(): void {
+    this.copies.dispose();
+  }
+
+  private make(length: number, radius: number, segments: number): CopyBatch {
+    this.made = [length, radius, segments].join();
+    return new CopyBatch(this.parent, axesGeometry(length, radius, segments));
+  }
+}

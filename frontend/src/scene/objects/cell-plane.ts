@@ -1,0 +1,158 @@
+import {
+  ClampToEdgeWrapping,
+  CustomBlending,
+  DataTexture,
+  DoubleSide,
+  Group,
+  Mesh,
+  NearestFilter,
+  OneMinusSrcAlphaFactor,
+  PlaneGeometry,
+  RedFormat,
+  ShaderMaterial,
+} from "three";
+
+/** Cells along a side of a part; every graphics library takes textures of that size. */
+const PART = 4096;
+
+const VERTEX = /* glsl */ `
+  varying vec2 vUv;
+  void main() {
+    vUv = uv;
+    gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+  }
+`;
+const FRAGMENT = /* glsl */ `
+  uniform sampler2D cells;
+  uniform sampler2D palette;
+  uniform float alpha;
+  varying vec2 vUv;
+  void main() {
+    int value = int(texture2D(cells, vUv).r * 255.0 + 0.5);
+    vec4 color = texelFetch(palette, ivec2(value, 0), 0);
+    if (color.a == 0.0) discard;
+    gl_FragColor = vec4(color.rgb, color.a * alpha);
+  }
+`;
+
+/** How cells are drawn. */
+export interface CellLook {
+  /** 256 times red, green, blue and alpha: the colours of the bytes. */
+  palette: Uint8Array;
+  alpha: number;
+  /** Some colours of the palette let something through. */
+  seeThrough: boolean;
+  /** Before everything else, which is then drawn over it wherever it is. */
+  behind: boolean;
+  /** Among planes at one place, the higher one covers. */
+  order: number;
+}
+
+/** A plane of square cells along x and y, from the origin on, each a byte that a palette colours. */
+export class CellPlane {
+  readonly root = new Group();
+  private parts: Mesh<PlaneGeometry, ShaderMaterial>[] = [];
+  private readonly palette = { value: texture(new Uint8Array(256 * 4), 256, 1) };
+  private look: CellLook | null = null;
+  private size = "";
+
+  /** Takes cells row by row; `resolution` is the side of a cell, m. */
+  setCells(cells: Uint8Array, width: number, height: number, resolution: number): void {
+    const size = [width, height, resolution].join();
+    if (size !== this.size) {
+      this.clear();
+      this.size = size;
+      for (let y = 0; y < height; y += PART) {
+        for (let x = 0; x < width; x += PART) {
+          this.add(x, y, Math.min(PART, width - x), Math.min(PART, height - y), resolution);
+        }
+      }
+      if (this.look) this.setLook(this.look);
+    }
+    for (const part of this.parts) {
+      const { x, y } = part.userData as { x: number; y: number };
+      const map = part.material.uniforms["cells"]?.value as DataTexture;
+      copy(cells, width, x, y, map);
+      map.needsUpdate = true;
+    }
+  }
+
+  setLook(look: CellLook): void {
+    this.look = look;
+    this.palette.value.image.data?.set(look.palette);
+    this.palette.value.needsUpdate = true;
+    const seeThrough = look.alpha < 0.9998 || look.seeThrough;
+    for (const { material } of this.parts) {
+      // What is drawn behind must come before all that hides nothing, too: it is blended, but no see-through material.
+      material.transparent = seeThrough && !look.behind;
+      material.blending = CustomBlending;
+      material.depthWrite = !seeThrough && !look.behind;
+      material.depthTest = !look.behind;
+      const alpha = material.uniforms["alpha"];
+      if (alpha) alpha.value = look.alpha;
+      material.needsUpdate = true;
+    }
+    for (const part of this.parts) part.renderOrder = look.behind ? -1000 + look.order : look.order;
+  }
+
+  clear(): void {
+    for (const part of this.parts) {
+      part.removeFromParent();
+      part.geometry.dispose();
+      (part.material.uniforms["cells"]?.value as DataTexture).dispose();
+      part.material.dispose();
+    }
+    this.parts = [];
+    this.size = "";
+  }
+
+  dispose(): void {
+    this.clear();
+    this.palette.value.dispose();
+    this.root.removeFromParent();
+  }
+
+  private add(x: number, y: number, width: number, height: number, resolution: number): void {
+    const [w, h] = [width * resolution, height * resolution];
+    const geometry = new PlaneGeometry(w, h).translate(x * resolution + w / 2, y * resolution + h / 2, 0);
+    const material = new ShaderMaterial({
+      vertexShader: VERTEX,
+      fragmentShader: FRAGMENT,
+      uniforms: {
+        cells: { value: texture(new Uint8Array(width * height), width, height) },
+        palette: this.palette,
+        alpha: { value: 1 },
+      },
+      side: DoubleSide,
+      blending: CustomBlending,
+      blendDst: OneMinusSrcAlphaFactor,
+    });
+    const mesh = new Mesh(geometry, material);
+    mesh.userData = { x, y };
+    this.parts.push(mesh);
+    this.root.add(mesh);
+  }
+}
+
+function texture(data: Uint8Array, width: number, height: number): DataTexture {
+  const made = new DataTexture(data, width, height);
+  if (data.length === width * height) made.format = RedFormat;
+  made.magFilter = made.minFilter = NearestFilter;
+  made.wrapS = made.wrapT = ClampToEdgeWrapping;
+  made.unpackAlignment = 1;
+  return made;
+}
+
+/** The cells of a part, from the row-by-row cells of the whole. */
+function copy(cells: Uint8Array, width: number, left: number, bottom: number, map: DataTexture): void {
+  const { data, width: columns, height: rows } = map.image;
+  const target = data as Uint8Array;
+  if (columns === width && bottom === 0) {
+    target.set(cells.subarray(0, columns * rows));
+    return;
+  }
+  for (let row = 0; row < rows; row++) {
+    const start = (bottom + row) * width + left;
+    target.set(cells.subarray(start, start + columns), row * columns);
+  }
+}

@@ -1,0 +1,35 @@
+/** A point that a ray comes close to. */
+export interface NearPoint {
+  index: number;
+  /** Along the ray, m. */
+  distance: number;
+}
+
+/**
+ * The first point along a ray that is within `radius` m of it, or within `slope` times its distance: that is what a
+ * pointer of some pixels covers. `origin` and `direction` (of length one) are in the frame of the points.
+ */
+export function nearestPoint(
+  positions: Float32Array,
+  origin: readonly [number, number, number],
+  direction: readonly [number, number, number],
+  radius: number,
+  slope: number,
+): NearPoint | null {
+  const [ox, oy, oz] = origin;
+  const [dx, dy, dz] = direction;
+  let best: NearPoint | null = null;
+  let nearest = Infinity;
+  for (let i = 0; i < positions.length; i += 3) {
+    const x = (positions[i] ?? 0) - ox;
+    const y = (positions[i + 1] ?? 0) - oy;
+    const z = (positions[i + 2] ?? 0) - oz;
+    const along = x * dx + y * dy + z * dz;
+    if (along <= 0 || along >= nearest) continue;
+    const reach = radius + slope * along;
+    if (x * x + y * y + z * z - along * along > reach * reach) continue;
+    nearest = along;
+    best = { index: i / 3, distance: along };
+  }
+  return best;
+}

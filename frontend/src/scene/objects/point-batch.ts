@@ -1,0 +1,135 @@
+import {
+  BufferAttribute,
+  BufferGeometry,
+  Group,
+  Mesh,
+  Points,
+  Sphere,
+  Vector4,
+  type ShaderMaterial,
+  type WebGLRenderer,
+} from "three";
+import { pointMaterial, setLook, type PointLook, type PointVariant } from "./point-material";
+
+/** Up to so many points are drawn with corners, which may be larger than the screen; software renderers are slow at it. */
+const MOST_QUADS = 20_000;
+const CORNERS = [-1, -1, 1, -1, 1, 1, -1, 1] as const;
+
+/** Many points of one look in one draw call. */
+export class PointBatch {
+  readonly root = new Group();
+  positions: Float32Array = new Float32Array(0);
+  /** Red, green, blue and alpha of each point; nothing where all have the colour of the look. */
+  colors: Uint8Array = new Uint8Array(0);
+  private object: Points<BufferGeometry, ShaderMaterial> | Mesh<BufferGeometry, ShaderMaterial> | null = null;
+  private variant = "";
+  private translucent = false;
+
+  constructor(private look: PointLook) {}
+
+  get count(): number {
+    return this.positions.length / 3;
+  }
+
+  /** Takes points, x y z of each in m; `translucent`: some of the colours have less than full alpha. */
+  setPoints(positions: Float32Array, colors: Uint8Array, translucent: boolean): void {
+    this.positions = positions;
+    this.colors = colors;
+    this.translucent = translucent;
+    this.build();
+  }
+
+  setLook(look: PointLook): void {
+    const remake = this.variant !== JSON.stringify(this.wanted(look));
+    this.look = look;
+    if (remake) this.build();
+    else if (this.object) setLook(this.object.material, look);
+  }
+
+  dispose(): void {
+    this.root.removeFromParent();
+    this.clear();
+  }
+
+  private wanted(look: PointLook): PointVariant {
+    return {
+      style: look.style,
+      tinted: this.colors.length > 0,
+      quads: look.style !== "Points" && this.count <= MOST_QUADS,
+      seeThrough: look.alpha < 0.9998 || this.translucent,
+    };
+  }
+
+  private build(): void {
+    const variant = this.wanted(this.look);
+    const geometry = variant.quads ? quads(this.positions, this.colors) : points(this.positions, this.colors);
+    // To sort by distance three.js would look at every point.
+    geometry.boundingSphere = new Sphere();
+    const key = JSON.stringify(variant);
+    if (this.object && key === this.variant) {
+      this.object.geometry.dispose();
+      this.object.geometry = geometry;
+      setLook(this.object.material, this.look);
+      return;
+    }
+    this.clear();
+    this.variant = key;
+    const material = pointMaterial(variant);
+    setLook(material, this.look);
+    this.object = variant.quads ? new Mesh(geometry, material) : new Points(geometry, material);
+    // Their bounds cost more than drawing those outside of the view does.
+    this.object.frustumCulled = false;
+    this.object.onBeforeRender = (renderer) => setViewport(renderer, material);
+    this.root.add(this.object);
+  }
+
+  private clear(): void {
+    if (!this.object) return;
+    this.object.removeFromParent();
+    this.object.geometry.dispose();
+    this.object.material.dispose();
+    this.object = null;
+  }
+}
+
+const area = new Vector4();
+
+/** The shader counts in pixels of what is drawn to: the canvas, or the picture of a camera. */
+function setViewport(renderer: WebGLRenderer, material: ShaderMaterial): void {
+  renderer.getCurrentViewport(area);
+  const uniform = material.uniforms["viewport"];
+  if (uniform) uniform.value = [area.z, area.w];
+  material.uniformsNeedUpdate = true;
+}
+
+function points(positions: Float32Array, colors: Uint8Array): BufferGeometry {
+  const geometry = new BufferGeometry().setAttribute("position", new BufferAttribute(positions, 3));
+  if (colors.length > 0) geometry.setAttribute("tint", new BufferAttribute(colors, 4, true));
+  return geometry;
+}
+
+/** Four corners for each point. */
+function quads(positions: Float32Array, colors: Uint8Array): BufferGeometry {
+  const count = positions.length / 3;
+  const [places, corners] = [new Float32Array(count * 12), new Float32Array(count * 8)];
+  const indices = new Uint32Array(count * 6);
+  for (let i = 0; i < count; i++) {
+    const place = positions.subarray(i * 3, i * 3 + 3);
+    for (let corner = 0; corner < 4; corner++) places.set(place, i * 12 + corner * 3);
+    corners.set(CORNERS, i * 8);
+    const first = i * 4;
+    indices.set([first, first + 1, first + 2, first, first + 2, first + 3], i * 6);
+  }
+  const geometry = new BufferGeometry().setIndex(new BufferAttribute(indices, 1));
+  geometry.setAttribute("position", new BufferAttribute(places, 3));
+  geometry.setAttribute("corner", new BufferAttribute(corners, 2));
+  if (colors.length > 0) {
+    const tints = new Uint8Array(count * 16);
+    for (let i = 0; i < count; i++) {
+      const tint = colors.subarray(i * 4, i * 4 + 4);
+      for (let corner = 0; corner < 4; corner++) tints.set(tint, i * 16 + corner * 4);
+    }
+    geometry.setAttribute("tint", new BufferAttribute(tints, 4, true));
+  }
+  return geometry;
+}

@@ -1,0 +1,78 @@
+import {
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  LineBasicMaterial,
+  LineSegments,
+  type Box3,
+  type ColorRepresentation,
+} from "three";
+import { segmentsOf } from "./ribbons";
+
+/** Lines one pixel wide, unlit; the same calls as `WideLines`. */
+export class ThinLines {
+  readonly root = new LineSegments<BufferGeometry, LineBasicMaterial>(new BufferGeometry(), new LineBasicMaterial());
+  private opacity = 1;
+
+  constructor() {
+    this.root.frustumCulled = false;
+    this.root.visible = false;
+  }
+
+  /** Segments between pairs of points: x y z of both ends of each; `colors` r g b a of both ends, 0 to 1. */
+  setSegments(segments: Float32Array, colors: Float32Array | null = null): void {
+    const geometry = new BufferGeometry().setAttribute("position", new BufferAttribute(segments, 3));
+    if (colors) geometry.setAttribute("color", new BufferAttribute(colors, 4));
+    this.root.geometry.dispose();
+    this.root.geometry = geometry;
+    this.root.visible = segments.length > 0;
+    this.settle();
+  }
+
+  /** Lines through the points of each strip; `colors` r g b a of each point, 0 to 1, multiplied with the style's. */
+  setStrips(strips: readonly Float32Array[], colors: readonly Float32Array[] | null = null): void {
+    this.setSegments(
+      joined(strips.map((strip) => segmentsOf(strip))),
+      colors && joined(colors.map((each) => segmentsOf(each, 4))),
+    );
+  }
+
+  setStyle(color: ColorRepresentation, opacity: number): void {
+    this.root.material.color = new Color(color);
+    this.root.material.opacity = opacity;
+    this.opacity = opacity;
+    this.settle();
+  }
+
+  /** Makes `box` hold all lines, in the parent's frame. */
+  expandBox(box: Box3): void {
+    if (this.root.visible) box.expandByObject(this.root);
+  }
+
+  dispose(): void {
+    this.root.removeFromParent();
+    this.root.geometry.dispose();
+    this.root.material.dispose();
+  }
+
+  private settle(): void {
+    const { material, geometry } = this.root;
+    const colors = geometry.attributes["color"];
+    let transparent = this.opacity < 1;
+    for (let i = 0; !transparent && colors && i < colors.count; i++) transparent = colors.getW(i) < 1;
+    material.vertexColors = colors !== undefined;
+    material.transparent = transparent;
+    material.depthWrite = !transparent;
+    material.needsUpdate = true;
+  }
+}
+
+function joined(parts: readonly Float32Array[]): Float32Array {
+  const result = new Float32Array(parts.reduce((sum, part) => sum + part.length, 0));
+  let at = 0;
+  for (const part of parts) {
+    result.set(part, at);
+    at += part.length;
+  }
+  return result;
+}

@@ -1,0 +1,35 @@
+import { BoxGeometry, BufferGeometry, EdgesGeometry, Float32BufferAttribute, LineBasicMaterial, LineSegments } from "three";
+
+const EDGES = new EdgesGeometry(new BoxGeometry(1, 1, 1)).getAttribute("position").array as Float32Array;
+
+/** The edges of cubes along the axes, seen through everything: RViz's marks of selected points. */
+export class WireBoxes {
+  readonly root = new LineSegments(
+    new BufferGeometry(),
+    new LineBasicMaterial({ color: 0x00ffff, depthTest: false, transparent: true }),
+  );
+
+  constructor() {
+    this.root.visible = false;
+    this.root.frustumCulled = false;
+    this.root.renderOrder = 9;
+  }
+
+  /** `middles`: x y z of each cube, `side` its length, m. */
+  set(middles: readonly number[], side: number): void {
+    const corners = new Float32Array((middles.length / 3) * EDGES.length);
+    for (let i = 0; i < corners.length; i++) {
+      const cube = Math.floor(i / EDGES.length);
+      corners[i] = (middles[cube * 3 + (i % 3)] ?? 0) + (EDGES[i % EDGES.length] ?? 0) * side;
+    }
+    this.root.geometry.dispose();
+    this.root.geometry = new BufferGeometry().setAttribute("position", new Float32BufferAttribute(corners, 3));
+    this.root.visible = corners.length > 0;
+  }
+
+  dispose(): void {
+    this.root.removeFromParent();
+    this.root.geometry.dispose();
+    this.root.material.dispose();
+  }
+}

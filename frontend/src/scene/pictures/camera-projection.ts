@@ -1,0 +1,34 @@
+import { Matrix4 } from "three";
+import type { CameraModel } from "../../protocol.gen";
+
+const NEAR = 0.01;
+
+/** How much of a window an image covers, along x and y, for it to keep its shape; RViz's rule. */
+export function imageZoom(
+  camera: CameraModel,
+  factor: number,
+  windowWidth: number,
+  windowHeight: number,
+): readonly [number, number] {
+  const image = camera.width / camera.focal_x / (camera.height / camera.focal_y);
+  const aspect = windowWidth / windowHeight;
+  return image > aspect ? [factor, (factor / image) * aspect] : [(factor / aspect) * image, factor];
+}
+
+/** The projection of a pinhole camera whose image covers `zoom` of the window; `far` is where the view ends, m. */
+export function projection(camera: CameraModel, zoom: readonly [number, number], far: number): Matrix4 {
+  const { width, height, focal_x, focal_y, centre_x, centre_y } = camera;
+  const x = ((2 * focal_x) / width) * zoom[0];
+  const y = ((2 * focal_y) / height) * zoom[1];
+  const shiftX = 2 * (0.5 - centre_x / width) * zoom[0];
+  const shiftY = 2 * (centre_y / height - 0.5) * zoom[1];
+  const end = Math.max(far, NEAR * 2);
+  const depth = -(end + NEAR) / (end - NEAR);
+  const shift = (-2 * end * NEAR) / (end - NEAR);
+  return new Matrix4().set(x, 0, shiftX, 0, 0, y, shiftY, 0, 0, 0, depth, shift, 0, 0, -1, 0);
+}
+
+/** Where the camera is in the frame of its image, turned from the image's axes (z ahead) to the scene's (z back). */
+export function cameraInImageFrame({ offset_x, offset_y }: CameraModel): Matrix4 {
+  return new Matrix4().makeRotationX(Math.PI).setPosition(offset_x, offset_y, 0);
+}

@@ -1,0 +1,55 @@
+import { h } from "../../dom";
+import type { IconName } from "../../icons";
+import type { DrawingContext } from "../displays/drawing";
+
+/** The panel of an Image or Camera display: there as long as the display is enabled, as in RViz. */
+export class OwnPanel {
+  readonly element: HTMLElement;
+  private readonly notice = h("p", { class: "picture-notice" });
+  private readonly key: string;
+  private title = "";
+  private offered = false;
+
+  constructor(
+    private readonly context: DrawingContext,
+    private readonly icon: IconName,
+    private readonly canvas: HTMLCanvasElement,
+  ) {
+    this.key = `display:${context.display.id}`;
+    canvas.setAttribute("role", "img");
+    this.element = h("div", { class: "picture-panel" }, canvas, this.notice);
+  }
+
+  /** Text over the picture, or in its place; empty for none. */
+  say(text: string): void {
+    this.notice.textContent = text;
+    this.notice.hidden = text === "";
+  }
+
+  /** Whether the user can see it. */
+  get isSeen(): boolean {
+    return this.element.clientWidth > 0 && this.element.clientHeight > 0;
+  }
+
+  /** Opens, closes and names the panel as the display is now. */
+  match(): void {
+    const { display, panels, session } = this.context;
+    this.canvas.setAttribute("aria-label", display.name);
+    if (!display.enabled) {
+      this.close();
+    } else if (!this.offered) {
+      this.offered = true;
+      this.title = display.name;
+      const closed = (): void => session.setProperty(display.enabledId, false);
+      panels.offer({ key: this.key, title: this.title, icon: this.icon, element: this.element, closed });
+    } else if (this.title !== display.name) {
+      this.title = display.name;
+      panels.retitle(this.key, this.title);
+    }
+  }
+
+  close(): void {
+    if (this.offered) this.context.panels.withdraw(this.key);
+    this.offered = false;
+  }
+}

@@ -1,0 +1,52 @@
+import { Color, LinearSRGBColorSpace, WebGLRenderTarget, type Camera, type Scene, type WebGLRenderer } from "three";
+
+/** The scene drawn to a canvas of its own, see-through where there is nothing; edges are not smoothed, to be quick. */
+export class ScenePicture {
+  readonly canvas = document.createElement("canvas");
+  private readonly target = new WebGLRenderTarget(1, 1, { colorSpace: LinearSRGBColorSpace });
+  private bytes = new Uint8Array(0);
+  private readonly context: CanvasRenderingContext2D;
+
+  constructor() {
+    const context = this.canvas.getContext("2d");
+    if (!context) throw new Error("This browser gives no 2D canvas");
+    this.context = context;
+  }
+
+  /** Draws the scene as a camera sees it; sizes in pixels. */
+  draw(renderer: WebGLRenderer, scene: Scene, camera: Camera, width: number, height: number): void {
+    if (this.canvas.width !== width || this.canvas.height !== height) {
+      this.canvas.width = width;
+      this.canvas.height = height;
+      this.target.setSize(width, height);
+      this.bytes = new Uint8Array(width * height * 4);
+    }
+    const [color, alpha] = [renderer.getClearColor(new Color()), renderer.getClearAlpha()];
+    renderer.setClearColor(0x000000, 0);
+    renderer.setRenderTarget(this.target);
+    renderer.clear();
+    renderer.render(scene, camera);
+    renderer.readRenderTargetPixels(this.target, 0, 0, width, height, this.bytes);
+    renderer.setRenderTarget(null);
+    renderer.setClearColor(color, alpha);
+    this.context.putImageData(upright(this.bytes, width, height), 0, 0);
+  }
+
+  dispose(): void {
+    this.target.dispose();
+  }
+}
+
+/** Rows from the top on, and colours not multiplied with alpha, as canvases want them. */
+function upright(bytes: Uint8Array, width: number, height: number): ImageData {
+  const image = new ImageData(width, height);
+  const { data } = image;
+  const row = width * 4;
+  for (let y = 0; y < height; y++) data.set(bytes.subarray((height - 1 - y) * row, (height - y) * row), y * row);
+  for (let i = 3; i < data.length; i += 4) {
+    const alpha = data[i] ?? 0;
+    if (alpha === 0 || alpha === 255) continue;
+    for (let part = i - 3; part < i; part++) data[part] = ((data[part] ?? 0) * 255) / alpha;
+  }
+  return image;
+}

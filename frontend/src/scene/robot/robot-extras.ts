@@ -1,0 +1,131 @@
+import { Matrix4, Quaternion, Vector3, type Box3, type Object3D } from "three";
+import type { JointScene, LinkInertia, RobotScene } from "../../protocol.gen";
+import type { PropertyNode, PropertyRows } from "../../state/properties";
+import { alongX, ArrowBatch } from "../objects/arrow-batch";
+import { AxesBatch } from "../objects/axes-batch";
+import { CopyBatch } from "../objects/copy-batch";
+import { ballGeometry, cubeGeometry } from "../objects/geometries";
+
+const AXES_LENGTH = 0.1;
+const AXES_RADIUS = 0.01;
+const AXIS = { shaftLength: 0.15, shaftDiameter: 0.05, headLength: 0.05, headDiameter: 0.08 };
+const AXIS_COLOR = 0x00cc00;
+const MASS_COLOR = 0xff0000;
+/** Of lead, kg/m3: what RViz's balls of a link's mass are made of. */
+const DENSITY = 11340;
+const ONE = new Vector3(1, 1, 1);
+
+/** Where a link is drawn; null before it had a transform. */
+export type LinkPose = (link: string) => Matrix4 | null;
+
+/** What RViz draws of a robot beside its shapes: axes of links and joints, joint axes, masses and inertias. */
+export class RobotExtras {
+  private readonly axes: AxesBatch;
+  private readonly arrows: ArrowBatch;
+  private readonly balls: CopyBatch;
+  private readonly boxes: CopyBatch;
+  private readonly joints: readonly { joint: JointScene; origin: Matrix4 }[];
+  private linkAxes: string[] = [];
+  private jointAxes = new Set<string>();
+  private jointArrows = new Set<string>();
+  private masses: [string, LinkInertia][] = [];
+  private inertias: [string, LinkInertia][] = [];
+
+  constructor(
+    private readonly scene: RobotScene,
+    parent: Object3D,
+  ) {
+    this.axes = new AxesBatch(parent, AXES_LENGTH, AXES_RADIUS);
+    this.arrows = new ArrowBatch(parent);
+    this.balls = new CopyBatch(parent, ballGeometry(20));
+    this.boxes = new CopyBatch(parent, cubeGeometry());
+    this.joints = scene.joints.map((joint) => ({ joint, origin: jointOrigin(joint) }));
+  }
+
+  /** How many of each are drawn. */
+  get counts(): { axes: number; jointAxes: number; masses: number; inertias: number } {
+    return {
+      axes: this.axes.size,
+      jointAxes: this.arrows.size,
+      masses: this.balls.size,
+      inertias: this.boxes.size,
+    };
+  }
+
+  /** Reads what is to be drawn. */
+  style(rows: PropertyRows): void {
+    const links = new Map(rows.find("Links")?.children.map((row) => [row.name, row]));
+    const shown = this.scene.links.filter((link) => links.get(link.name)?.value !== false);
+    const masses = shown.flatMap((link): [string, LinkInertia][] => (link.inertia ? [[link.name, link.inertia]] : []));
+    this.linkAxes = shown.filter((link) => isOn(links.get(link.name), "Show Axes")).map((link) => link.name);
+    this.masses = rows.bool(false, "Mass Properties", "Mass") ? masses : [];
+    this.inertias = rows.bool(false, "Mass Properties", "Inertia")
+      ? masses.filter(([, { box }]) => box.length === 3)
+      : [];
+    const joints = (rows.find("Joints")?.children ?? []).filter((row) => row.value !== false);
+    this.jointAxes = new Set(joints.filter((row) => isOn(row, "Show Axes")).map((row) => row.name));
+    this.jointArrows = new Set(joints.filter((row) => isOn(row, "Show Joint Axis")).map((row) => row.name));
+  }
+
+  place(poseOf: LinkPose): void {
+    this.placeAxes(poseOf);
+    const [matrix, size] = [new Matrix4(), new Matrix4()];
+    this.balls.begin(this.masses.length);
+    for (const [link, { mass, center }] of this.masses) {
+      const pose = poseOf(link);
+      if (!pose || mass <= 0) continue;
+      const diameter = 2 * Math.cbrt((0.75 * mass) / (Math.PI * DENSITY));
+      matrix.makeTranslation(new Vector3().fromArray(center)).premultiply(pose);
+      this.balls.add(matrix.multiply(size.makeScale(diameter, diameter, diameter)), 0, 1, MASS_COLOR);
+    }
+    this.balls.end();
+    this.boxes.begin(this.inertias.length);
+    for (const [link, { center, box, quaternion }] of this.inertias) {
+      const pose = poseOf(link);
+      if (!pose) continue;
+      const at = new Vector3().fromArray(center);
+      matrix.compose(at, new Quaternion().fromArray(quaternion), new Vector3().fromArray(box));
+      this.boxes.add(matrix.premultiply(pose), 0, 1, MASS_COLOR);
+    }
+    this.boxes.end();
+  }
+
+  expandBox(box: Box3): void {
+    for (const each of [this.axes, this.arrows, this.balls, this.boxes]) each.expandBox(box);
+  }
+
+  dispose(): void {
+    for (const each of [this.axes, this.arrows, this.balls, this.boxes]) each.dispose();
+  }
+
+  private placeAxes(poseOf: LinkPose): void {
+    this.axes.begin(this.linkAxes.length + this.jointAxes.size);
+    this.arrows.begin(this.jointArrows.size);
+    for (const link of this.linkAxes) {
+      const pose = poseOf(link);
+      if (pose) this.axes.add(pose);
+    }
+    const matrix = new Matrix4();
+    if (this.jointAxes.size + this.jointArrows.size > 0) {
+      for (const { joint, origin } of this.joints) {
+        const pose = poseOf(joint.parent);
+        if (!pose) continue;
+        if (this.jointAxes.has(joint.name)) this.axes.add(matrix.multiplyMatrices(pose, origin));
+        if (!this.jointArrows.has(joint.name)) continue;
+        alongX(new Vector3(), new Vector3().fromArray(joint.axis), matrix).premultiply(origin).premultiply(pose);
+        this.arrows.add(matrix, AXIS, { color: AXIS_COLOR });
+      }
+    }
+    this.axes.end();
+    this.arrows.end();
+  }
+}
+
+/** A joint's frame in that of its parent link, at position zero. */
+export function jointOrigin({ position, quaternion }: JointScene): Matrix4 {
+  return new Matrix4().compose(new Vector3().fromArray(position), new Quaternion().fromArray(quaternion), ONE);
+}
+
+function isOn(row: PropertyNode | undefined, name: string): boolean {
+  return row?.children.find((child) => child.name === name)?.value === true;
+}

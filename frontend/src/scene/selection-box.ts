@@ -1,0 +1,59 @@
+import { Matrix4, Mesh, Raycaster, Vector2, Vector3, Vector4, type BufferAttribute, type Camera, type Object3D } from "three";
+import type { SelectionBox } from "./picking";
+
+/** Of larger geometries only so many corners are looked at. */
+const MOST_CORNERS = 4000;
+
+/** A rectangle on the screen, in normalized device coordinates (-1 to 1, y up). */
+export class ScreenBox implements SelectionBox {
+  private readonly toScreen = new Matrix4();
+  private readonly corner = new Vector4();
+  private readonly point = new Vector3();
+
+  constructor(
+    private readonly camera: Camera,
+    private readonly low: Vector2,
+    private readonly high: Vector2,
+  ) {
+    this.toScreen.multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse);
+  }
+
+  hasPoint(x: number, y: number, z: number): boolean {
+    const at = this.corner.set(x, y, z, 1).applyMatrix4(this.toScreen);
+    if (at.w <= 0 || Math.abs(at.z) > at.w) return false;
+    const [u, v] = [at.x / at.w, at.y / at.w];
+    return u >= this.low.x && u <= this.high.x && v >= this.low.y && v <= this.high.y;
+  }
+
+  hasObject(object: Object3D): boolean {
+    const meshes: Mesh[] = [];
+    object.traverseVisible((each) => {
+      if (each instanceof Mesh) meshes.push(each as Mesh);
+    });
+    return meshes.some((mesh) => this.hasCorner(mesh)) || this.meetsRay(meshes);
+  }
+
+  private hasCorner(mesh: Mesh): boolean {
+    const corners = mesh.geometry.getAttribute("position") as BufferAttribute | undefined;
+    if (!corners) return false;
+    const step = Math.max(1, Math.floor(corners.count / MOST_CORNERS));
+    for (let i = 0; i < corners.count; i += step) {
+      const { x, y, z } = this.point.fromBufferAttribute(corners, i).applyMatrix4(mesh.matrixWorld);
+      if (this.hasPoint(x, y, z)) return true;
+    }
+    return false;
+  }
+
+  /** A rectangle within a large face has none of its corners in it. */
+  private meetsRay(meshes: Mesh[]): boolean {
+    const ray = new Raycaster();
+    for (const u of [0.5, 0, 1]) {
+      for (const v of [0.5, 0, 1]) {
+        const at = new Vector2(this.low.x + (this.high.x - this.low.x) * u, this.low.y + (this.high.y - this.low.y) * v);
+        ray.setFromCamera(at, this.camera);
+        if (ray.intersectObjects(meshes, false).length > 0) return true;
+      }
+    }
+    return false;
+  }
+}

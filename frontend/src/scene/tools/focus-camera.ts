@@ -1,0 +1,26 @@
+import { strings } from "../../strings";
+import { shown } from "./point-text";
+import type { SceneTool, ToolContext, ToolEvent } from "./tool";
+
+/** RViz's Focus Camera: the camera looks at the point that is clicked, or in its direction where there is none. */
+export class FocusCameraTool implements SceneTool {
+  constructor(private readonly context: ToolContext) {}
+
+  activate(): void {
+    this.context.setHint(strings.tools.hints.focusNowhere);
+    this.context.setCursor("default");
+  }
+
+  pointer(event: ToolEvent): void {
+    if (event.type === "wheel" || event.type === "leave") return;
+    const { stage, session } = this.context;
+    const point = stage.picker.pointAt(event.x, event.y);
+    this.context.setCursor(point ? "crosshair" : "default");
+    this.context.setHint(point ? strings.tools.hints.focus(shown(point)) : strings.tools.hints.focusNowhere);
+    if (event.type !== "up" || event.button !== "left") return;
+    const { origin, direction } = stage.picker.rayAt(event.x, event.y).ray;
+    const ahead = origin.clone().add(direction);
+    session.view.lookAt(point ?? [ahead.x, ahead.y, ahead.z]);
+    this.context.finish();
+  }
+}

@@ -1,0 +1,83 @@
+import { strings } from "../../strings";
+import { distanceBetween, type Vector } from "../../state/views/vector";
+import { ThinLines } from "../objects/thin-lines";
+import type { SceneTool, ToolContext, ToolEvent } from "./tool";
+
+const DARK_YELLOW = "#808000";
+
+/** RViz's Measure: the distance between two points that are clicked; a right click begins anew. */
+export class MeasureTool implements SceneTool {
+  private readonly line = new ThinLines();
+  private start: Vector | null = null;
+  private end: Vector | null = null;
+  private started = false;
+
+  constructor(private readonly context: ToolContext) {
+    context.stage.viewport.scene.add(this.line.root);
+    this.settingsChanged();
+  }
+
+  activate(): void {
+    this.started = false;
+    this.context.setCursor("default");
+    this.showLength();
+  }
+
+  pointer(event: ToolEvent): void {
+    if (event.type === "wheel" || event.type === "leave") return;
+    const point = this.context.stage.picker.pointAt(event.x, event.y);
+    this.context.setCursor(point ? "crosshair" : "default");
+    if (this.started && point) this.draw(point);
+    if (event.type === "up" && event.button === "left" && point) this.clicked(point);
+    if (event.type === "up" && event.button === "right") this.clear();
+    this.showLength();
+  }
+
+  settingsChanged(): void {
+    this.line.setStyle(this.context.state?.rows.text(DARK_YELLOW, "Line color") ?? DARK_YELLOW, 1);
+    this.context.stage.loop.invalidate();
+  }
+
+  inspect(): object {
+    return { length: this.length, start: this.start, end: this.end };
+  }
+
+  dispose(): void {
+    this.line.dispose();
+    this.context.stage.loop.invalidate();
+  }
+
+  /** Metres; null before there are two points. */
+  private get length(): number | null {
+    return this.start && this.end ? distanceBetween(this.start, this.end) : null;
+  }
+
+  private clicked(point: Vector): void {
+    if (this.started) this.started = false;
+    else {
+      this.started = true;
+      this.start = point;
+      this.draw(point);
+    }
+  }
+
+  private draw(end: Vector): void {
+    if (!this.start) return;
+    this.end = end;
+    this.line.setSegments(new Float32Array([...this.start, ...end]));
+    this.context.stage.loop.invalidate();
+  }
+
+  private clear(): void {
+    this.started = false;
+    this.start = this.end = null;
+    this.line.setSegments(new Float32Array(0));
+    this.context.stage.loop.invalidate();
+  }
+
+  private showLength(): void {
+    const { length } = this;
+    const measured = length !== null && length > 0 ? `[Length: ${Number(length.toPrecision(6))}m] ` : "";
+    this.context.setHint(measured + strings.tools.hints.measure);
+  }
+}

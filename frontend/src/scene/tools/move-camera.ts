@@ -1,0 +1,54 @@
+import type { Motion } from "../../state/views/view-controller";
+import { strings } from "../../strings";
+import type { SceneTool, ToolContext, ToolEvent } from "./tool";
+
+const CURSORS: Readonly<Record<Motion, string>> = {
+  rotate3d: "grabbing",
+  rotate2d: "grabbing",
+  moveXY: "move",
+  moveZ: "ns-resize",
+  zoom: "zoom-in",
+};
+
+/** RViz's Move Camera: the view's own way with the mouse. A click selects the link that is clicked. */
+export class MoveCameraTool implements SceneTool {
+  constructor(private readonly context: ToolContext) {}
+
+  activate(): void {
+    this.showHint(false);
+    this.context.setCursor("default");
+  }
+
+  deactivate(): void {
+    this.context.stage.focalShapeVisible = false;
+  }
+
+  pointer(event: ToolEvent): void {
+    const { stage, session } = this.context;
+    const { view } = session;
+    const held = event.left || event.middle || event.right;
+    this.showHint(event.shift);
+    this.context.setCursor(held ? CURSORS[view.controller.motion(event)] : "default");
+    switch (event.type) {
+      case "move":
+        if (!held) return;
+        stage.focalShapeVisible = true;
+        view.drag({ ...event, ...stage.viewport.size, x: event.x - event.dx, y: event.y - event.dy });
+        return;
+      case "wheel":
+        view.wheel(event.wheel, event.shift);
+        return;
+      case "up":
+        if (!held) stage.focalShapeVisible = false;
+        if (event.click && event.button === "left" && !event.shift) stage.picker.selectAt(event.x, event.y);
+        return;
+      case "down":
+      case "leave":
+    }
+  }
+
+  private showHint(shift: boolean): void {
+    const { mouse } = strings.views;
+    this.context.setHint(mouse[this.context.session.view.controller.hint(shift)]);
+  }
+}

@@ -1,0 +1,73 @@
+import { Vector2 } from "three";
+import { h } from "../../dom";
+import type { SelectionMode } from "../../state/selection";
+import { strings } from "../../strings";
+import { MoveCameraTool } from "./move-camera";
+import type { SceneTool, ToolContext, ToolEvent } from "./tool";
+
+/** RViz's Select: a click or a rectangle; Shift adds, Ctrl takes away, Alt moves the camera, F looks at what is selected. */
+export class SelectTool implements SceneTool {
+  readonly grabsKeys = true;
+  private readonly camera: MoveCameraTool;
+  private readonly band = h("div", { class: "rubber-band" });
+  private from: Vector2 | null = null;
+  private moving = false;
+
+  constructor(private readonly context: ToolContext) {
+    this.camera = new MoveCameraTool(context);
+  }
+
+  activate(): void {
+    this.context.setHint(strings.tools.hints.select);
+    this.context.setCursor("default");
+  }
+
+  deactivate(): void {
+    this.end();
+    this.camera.deactivate();
+  }
+
+  pointer(event: ToolEvent): void {
+    if (event.type === "down") this.moving = event.alt;
+    if (this.moving || event.type === "wheel") {
+      this.camera.pointer({ ...event, click: false });
+      this.context.setHint(strings.tools.hints.select);
+      return;
+    }
+    const { stage } = this.context;
+    const at = new Vector2(event.x, event.y);
+    if (event.type === "down" && event.button === "left") {
+      this.from = at;
+    } else if (event.type === "move" && this.from && event.left) {
+      this.draw(this.from, at);
+    } else if (event.type === "up" && event.button === "left" && this.from) {
+      const mode: SelectionMode = event.shift ? "add" : event.ctrl ? "remove" : "replace";
+      if (event.click) stage.picker.selectAt(event.x, event.y, mode);
+      else stage.picker.selectBox(this.from, at, mode);
+      this.end();
+    }
+  }
+
+  key(key: string): boolean {
+    if (key === "f") this.context.stage.focusSelected();
+    return true;
+  }
+
+  dispose(): void {
+    this.end();
+  }
+
+  private draw(a: Vector2, b: Vector2): void {
+    const { style } = this.band;
+    style.left = `${Math.min(a.x, b.x)}px`;
+    style.top = `${Math.min(a.y, b.y)}px`;
+    style.width = `${Math.abs(a.x - b.x)}px`;
+    style.height = `${Math.abs(a.y - b.y)}px`;
+    this.context.stage.viewport.container.append(this.band);
+  }
+
+  private end(): void {
+    this.from = null;
+    this.band.remove();
+  }
+}

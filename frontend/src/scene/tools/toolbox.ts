@@ -1,0 +1,86 @@
+import type { Session } from "../../state/session";
+import type { ToolState } from "../../state/tools";
+import type { Stage } from "../stage";
+import { TOOLS } from "./catalog";
+import { MoveCameraTool } from "./move-camera";
+import type { SceneTool, ToolContext } from "./tool";
+
+/** The tools of the toolbar at work: one of them has the mouse. */
+export class Toolbox {
+  private readonly made = new Map<string, { state: ToolState; tool: SceneTool }>();
+  /** In hand while there is no tool at all. */
+  private readonly fallback: SceneTool;
+  private inHand: SceneTool;
+
+  constructor(
+    private readonly stage: Stage,
+    private readonly session: Session,
+  ) {
+    const { tools, view } = session;
+    this.fallback = this.inHand = new MoveCameraTool(this.context(null));
+    this.fallback.activate?.();
+    tools.currentChanged.on((state) => this.take(state));
+    tools.valueChanged.on((state) => this.made.get(state.id)?.tool.settingsChanged?.());
+    // The mouse does other things in another class of view.
+    let { cls } = view.current;
+    view.changed.on(() => {
+      if (cls === view.current.cls) return;
+      cls = view.current.cls;
+      this.inHand.activate?.();
+    });
+    this.take(tools.current);
+  }
+
+  get current(): SceneTool {
+    return this.inHand;
+  }
+
+  private take(state: ToolState | null): void {
+    this.tidy();
+    const next = state ? this.toolOf(state) : this.fallback;
+    if (next === this.inHand) return;
+    this.inHand.deactivate?.();
+    this.inHand = next;
+    next.activate?.();
+  }
+
+  private toolOf(state: ToolState): SceneTool {
+    const known = this.made.get(state.id);
+    if (known) return known.tool;
+    const Tool = TOOLS.get(state.cls)?.make;
+    const tool = Tool ? new Tool(this.context(state)) : this.fallback;
+    this.made.set(state.id, { state, tool });
+    return tool;
+  }
+
+  /** Lets go of tools that were removed or told anew. */
+  private tidy(): void {
+    const { tools } = this.session.tools;
+    for (const [id, { state, tool }] of this.made) {
+      if (tools.includes(state)) continue;
+      if (tool === this.inHand) {
+        tool.deactivate?.();
+        this.inHand = this.fallback;
+      }
+      tool.dispose?.();
+      this.made.delete(id);
+    }
+  }
+
+  private context(state: ToolState | null): ToolContext {
+    const { stage, session } = this;
+    const { tools } = session;
+    return {
+      stage,
+      session,
+      state,
+      setHint: (text) => {
+        tools.hint = text;
+      },
+      setCursor: (cursor) => {
+        stage.viewport.canvas.style.cursor = cursor;
+      },
+      finish: () => tools.choose(tools.default),
+    };
+  }
+}

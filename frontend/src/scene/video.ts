@@ -1,0 +1,63 @@
+import { Signal } from "../state/signal";
+
+const FRAME_RATE = 30;
+const BITS_PER_SECOND = 8_000_000;
+/** The first that the browser can record. */
+const TYPES = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm", "video/mp4"];
+
+/** Records what a canvas shows. */
+export class VideoRecorder {
+  /** It began, went on for another second, or ended. */
+  readonly changed = new Signal();
+  private recorder: MediaRecorder | null = null;
+  private beganAt = 0;
+  private ticking = 0;
+
+  constructor(
+    private readonly canvas: HTMLCanvasElement,
+    private readonly finished: (video: Blob) => void,
+  ) {}
+
+  static get isPossible(): boolean {
+    return typeof MediaRecorder !== "undefined" && TYPES.some((type) => MediaRecorder.isTypeSupported(type));
+  }
+
+  get isRecording(): boolean {
+    return this.recorder !== null;
+  }
+
+  /** Since the beginning, s. */
+  get seconds(): number {
+    return this.recorder ? Math.floor((performance.now() - this.beganAt) / 1000) : 0;
+  }
+
+  start(): void {
+    if (this.recorder) return;
+    const type = TYPES.find((each) => MediaRecorder.isTypeSupported(each)) ?? "";
+    const stream = this.canvas.captureStream(FRAME_RATE);
+    const recorder = new MediaRecorder(stream, { mimeType: type, videoBitsPerSecond: BITS_PER_SECOND });
+    const parts: Blob[] = [];
+    recorder.ondataavailable = ({ data }) => parts.push(data);
+    recorder.onstop = () => {
+      for (const track of stream.getTracks()) track.stop();
+      this.finished(new Blob(parts, { type: recorder.mimeType }));
+    };
+    recorder.start(1000);
+    this.recorder = recorder;
+    this.beganAt = performance.now();
+    this.ticking = window.setInterval(() => this.changed.emit(), 1000);
+    this.changed.emit();
+  }
+
+  stop(): void {
+    this.recorder?.stop();
+    this.recorder = null;
+    clearInterval(this.ticking);
+    this.changed.emit();
+  }
+}
+
+/** Minutes and seconds. */
+export function timeText(seconds: number): string {
+  return `${Math.floor(seconds / 60)}:${String(seconds % 60).padStart(2, "0")}`;
+}

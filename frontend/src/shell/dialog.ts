@@ -1,0 +1,108 @@
+import { button, h } from "../dom";
+import { icon } from "../icons";
+import { strings } from "../strings";
+
+export interface DialogChoice {
+  label: string;
+  /** Runs and closes the dialog, unless it gives false. */
+  run?: () => boolean | undefined;
+  /** Enter does this one. */
+  main?: boolean;
+  danger?: boolean;
+}
+
+/** A question or a form over the page. The browser keeps the keyboard in it, and gives it back when it closes. */
+export class Dialog {
+  readonly element: HTMLDialogElement;
+  private readonly mainButton: HTMLButtonElement | null;
+
+  constructor(title: string, content: readonly (Node | string)[], choices: readonly DialogChoice[], className = "") {
+    const buttons = choices.map((choice) => {
+      const element = button(
+        choice.label,
+        () => {
+          if (choice.run?.() !== false) this.close();
+        },
+        `tool framed${choice.main === true ? " primary" : ""}${choice.danger === true ? " danger" : ""}`,
+        choice.label,
+      );
+      return { element, choice };
+    });
+    this.mainButton = buttons.find(({ choice }) => choice.main === true)?.element ?? null;
+    const heading = h("h2", {}, title);
+    heading.id = `dialog-${String(++opened)}`;
+    const close = button(strings.close, () => this.close(), "tool bare", icon("close"));
+    this.element = h(
+      "dialog",
+      { class: `dialog ${className}`.trim(), aria: { labelledby: heading.id } },
+      h("header", {}, heading, h("span", { class: "spacer" }), close),
+      h("div", { class: "dialog-body" }, ...content),
+      h("footer", {}, ...buttons.map(({ element }) => element)),
+    );
+    this.element.addEventListener("close", () => this.element.remove());
+    // The page's own keys do not apply while a dialog is open.
+    this.element.addEventListener("keydown", (event) => {
+      event.stopPropagation();
+      if (event.key === "Tab") this.keepFocus(event);
+      const { target } = event;
+      if (event.key !== "Enter" || !(target instanceof HTMLInputElement) || event.isComposing) return;
+      event.preventDefault();
+      this.mainButton?.click();
+    });
+  }
+
+  open(focus?: HTMLElement): this {
+    document.body.append(this.element);
+    this.element.showModal();
+    (focus ?? this.mainButton)?.focus();
+    return this;
+  }
+
+  close(): void {
+    this.element.close();
+  }
+
+  /** From the last element Tab goes to the first: the browser would go on to its own buttons, by way of the page. */
+  private keepFocus(event: KeyboardEvent): void {
+    const all = this.element.querySelectorAll<HTMLElement>("button, input, select, textarea, [tabindex]");
+    const stops = [...all].filter((each) => each.tabIndex >= 0 && !each.matches(":disabled") && each.checkVisibility());
+    const [first, last] = [stops[0], stops.at(-1)];
+    const leaving = event.shiftKey ? first : last;
+    if (document.activeElement !== leaving) return;
+    event.preventDefault();
+    (event.shiftKey ? last : first)?.focus();
+  }
+
+  /** Whether the main choice can be made. */
+  set ready(ready: boolean) {
+    if (this.mainButton) this.mainButton.disabled = !ready;
+  }
+}
+
+let opened = 0;
+
+/** Says something that the user must know. */
+export function tell(title: string, text: string): void {
+  new Dialog(title, [h("p", {}, text)], [{ label: strings.shell.ok, main: true }]).open();
+}
+
+/** Asks for a name. */
+export function askName(title: string, label: string, value: string, take: (name: string) => void): void {
+  const field = h("input", { class: "field wide", aria: { label } });
+  field.value = value;
+  field.maxLength = 200;
+  const accept = (): boolean => {
+    const name = field.value.trim();
+    if (name === "") return false;
+    if (name !== value) take(name);
+    return true;
+  };
+  const dialog = new Dialog(
+    title,
+    [h("label", { class: "form-field" }, h("span", {}, label), field)],
+    [{ label: strings.shell.cancel }, { label: strings.shell.ok, run: accept, main: true }],
+  );
+  field.addEventListener("input", () => (dialog.ready = field.value.trim() !== ""));
+  dialog.open(field);
+  field.select();
+}

@@ -1,0 +1,175 @@
+import type { ConfigurationRefused, EditName } from "../protocol.gen";
+import type { ConfigurationState } from "../state/configuration";
+import { strings } from "../strings";
+import { saveText } from "../panels/save-file";
+import { Dialog, tell } from "./dialog";
+import { FileDialog } from "./file-dialog";
+
+/** Bytes of a file that fits into a message to the server, quotes and all. */
+const LARGEST = 800_000;
+const CONTENT_TYPE = "application/yaml";
+
+/** What the user does with the configuration file, with the questions that keep work from being lost. */
+export class FileCommands {
+  /** What was asked for, to be asked for again when the user says that changes may be lost. */
+  private pending: ((discard: boolean) => void) | null = null;
+  /** Runs when the file is saved. */
+  private afterSaving: (() => void) | null = null;
+  private dialog: FileDialog | null = null;
+
+  constructor(private readonly state: ConfigurationState) {
+    state.refused.on((refusal) => this.refused(refusal));
+    state.saved.on(() => {
+      const next = this.afterSaving;
+      this.afterSaving = null;
+      next?.();
+    });
+    state.texts.on(({ name, text }) => saveText(name, text, CONTENT_TYPE));
+    window.addEventListener("beforeunload", (event) => {
+      // The shared configuration lives on in the program; one of this page's own ends with it.
+      if (state.current.own && state.current.unsaved) event.preventDefault();
+    });
+  }
+
+  begin(): void {
+    this.ask((discard) => this.state.begin(discard));
+  }
+
+  open(path: string): void {
+    this.ask((discard) => this.state.open(path, discard));
+  }
+
+  /** Lets the user choose a file of the server. */
+  chooseFile(): void {
+    this.show(new FileDialog(this.state, "open", (path) => this.open(path)));
+  }
+
+  /** Lets the user choose a file of the browser's machine. */
+  chooseLocal(): void {
+    const input = document.createElement("input");
+    input.type = "file";
+    input.accept = ".rviz,.yaml,.yml";
+    input.addEventListener("change", () => {
+      const file = input.files?.[0];
+      if (!file) return;
+      if (file.size > LARGEST) tell(strings.shell.refused, strings.shell.tooLarge(file.name));
+      else void file.text().then((text) => this.ask((discard) => this.state.load(file.name, text, discard)));
+    });
+    input.click();
+  }
+
+  save(): void {
+    if (this.state.current.path === null) this.saveAs();
+    else this.state.save();
+  }
+
+  saveAs(): void {
+    const cancelled = (): void => {
+      this.afterSaving = null;
+    };
+    this.show(new FileDialog(this.state, "save", (path) => this.state.save(path), cancelled));
+  }
+
+  download(): void {
+    this.state.askText();
+  }
+
+  revert(): void {
+    const words = strings.shell;
+    new Dialog(
+      words.revert,
+      [words.revertQuestion],
+      [
+        { label: words.cancel, main: true },
+        {
+          label: words.revert,
+          danger: true,
+          run: () => {
+            this.state.revert();
+            return undefined;
+          },
+        },
+      ],
+    ).open();
+  }
+
+  private show(dialog: FileDialog): void {
+    this.dialog?.close();
+    this.dialog = dialog;
+    dialog.open();
+  }
+
+  private ask(what: (discard: boolean) => void): void {
+    this.pending = what;
+    what(false);
+  }
+
+  private refused(refusal: ConfigurationRefused): void {
+    const words = strings.shell;
+    switch (refusal.question) {
+      case "unsaved":
+        this.askToDiscard();
+        break;
+      case "exists":
+        this.askToReplace(words.exists, words.existsQuestion(refusal.path ?? ""), refusal.path);
+        break;
+      case "changed_on_disk":
+        this.askToReplace(words.changedOnDisk, words.changedOnDiskQuestion(refusal.path ?? ""), refusal.path);
+        break;
+      case null:
+        this.afterSaving = null;
+        if (this.dialog?.refused(refusal.message) !== true) tell(words.refused, refusal.message);
+        break;
+    }
+  }
+
+  private askToDiscard(): void {
+    const words = strings.shell;
+    const again = this.pending;
+    const goOn = (): undefined => {
+      again?.(true);
+      return undefined;
+    };
+    new Dialog(
+      words.unsavedTitle,
+      [words.unsavedQuestion(this.state.fileName ?? words.untitled)],
+      [
+        { label: words.cancel },
+        { label: words.discard, danger: true, run: goOn },
+        {
+          label: words.saveFirst,
+          main: true,
+          run: () => {
+            this.afterSaving = goOn;
+            this.save();
+            return undefined;
+          },
+        },
+      ],
+    ).open();
+  }
+
+  private askToReplace(title: string, question: string, path: string | null): void {
+    const words = strings.shell;
+    new Dialog(
+      title,
+      [question],
+      [
+        { label: words.cancel, main: true },
+        {
+          label: words.replace,
+          danger: true,
+          run: () => {
+            this.state.save(path, true);
+            return undefined;
+          },
+        },
+      ],
+    ).open();
+  }
+}
+
+/** An edit in words: `adding Grid`. */
+export function editText(edit: EditName): string {
+  return strings.shell.edits[edit.kind](edit.name);
+}

@@ -1,0 +1,141 @@
+import { button, h } from "../dom";
+import { icon } from "../icons";
+import type { Folder } from "../protocol.gen";
+import type { ConfigurationState } from "../state/configuration";
+import { strings } from "../strings";
+import { Dialog } from "./dialog";
+
+const ENDING = ".rviz";
+
+/** Chooses a configuration file of the server: its folders and `.rviz` files, and a line to type a path in. */
+export class FileDialog {
+  private readonly dialog: Dialog;
+  private readonly list = h("ul", { class: "file-list", role: "listbox", aria: { label: strings.shell.folder } });
+  private readonly place = h("span", { class: "file-folder" });
+  private readonly problem = h("p", { class: "dialog-problem", role: "alert" });
+  private readonly name = h("input", { class: "field wide" });
+  private readonly up: HTMLButtonElement;
+  private readonly forget: () => void;
+  private folder: Folder | null = null;
+  private taken = false;
+
+  constructor(
+    private readonly state: ConfigurationState,
+    private readonly kind: "open" | "save",
+    private readonly take: (path: string) => void,
+    private readonly cancelled: () => void = () => undefined,
+  ) {
+    const words = strings.shell;
+    this.name.setAttribute("aria-label", words.fileName);
+    this.name.spellcheck = false;
+    if (kind === "save") this.name.value = state.fileName ?? `${words.untitled}${ENDING}`;
+    this.up = button(words.folderUp, () => this.ask(this.folder?.parent ?? null), "tool framed", icon("up"));
+    this.dialog = new Dialog(
+      kind === "open" ? words.openTitle : words.saveTitle,
+      [
+        h("div", { class: "file-place" }, this.up, this.place),
+        this.list,
+        h("label", { class: "form-field" }, h("span", {}, words.fileName), this.name),
+        this.problem,
+      ],
+      [
+        { label: words.cancel },
+        { label: kind === "open" ? words.openShort : words.save, main: true, run: () => this.accept() },
+      ],
+      "file-dialog",
+    );
+    this.list.addEventListener("keydown", (event) => this.keyed(event));
+    this.name.addEventListener("input", () => this.update());
+    this.forget = state.folders.on((folder) => this.show(folder));
+    this.dialog.element.addEventListener("close", () => {
+      this.forget();
+      if (!this.taken) this.cancelled();
+    });
+  }
+
+  open(): void {
+    this.dialog.open(this.name);
+    this.name.setSelectionRange(0, Math.max(0, this.name.value.length - ENDING.length));
+    this.update();
+    this.ask(null);
+  }
+
+  close(): void {
+    this.dialog.close();
+  }
+
+  /** Shows why a folder cannot be listed; whether the dialog is open. */
+  refused(message: string): boolean {
+    if (!this.dialog.element.open) return false;
+    this.problem.textContent = message;
+    return true;
+  }
+
+  private ask(path: string | null): void {
+    this.problem.textContent = "";
+    this.state.askFolder(path);
+  }
+
+  private show(folder: Folder): void {
+    this.folder = folder;
+    this.place.replaceChildren(h("bdi", {}, folder.path));
+    this.place.title = folder.path;
+    this.up.disabled = folder.parent === null;
+    const entries = [
+      ...folder.folders.map((name) => this.entry(name, true)),
+      ...folder.files.map((name) => this.entry(name, false)),
+    ];
+    this.list.replaceChildren(...entries);
+    if (entries.length === 0) this.list.append(h("li", { class: "empty" }, strings.shell.emptyFolder));
+    const [first] = entries;
+    if (first) first.tabIndex = 0;
+  }
+
+  private entry(name: string, isFolder: boolean): HTMLLIElement {
+    const entry = h("li", { role: "option", tabIndex: -1 }, icon(isFolder ? "folder" : "file"), name);
+    const choose = (): void => {
+      if (isFolder) this.ask(join(this.folder?.path ?? "", name));
+      else {
+        this.name.value = name;
+        this.update();
+        for (const other of this.list.children) other.setAttribute("aria-selected", String(other === entry));
+      }
+    };
+    entry.addEventListener("click", choose);
+    if (!isFolder) {
+      entry.addEventListener("dblclick", () => {
+        if (this.accept()) this.close();
+      });
+    }
+    return entry;
+  }
+
+  private keyed(event: KeyboardEvent): void {
+    const entries = [...this.list.querySelectorAll<HTMLLIElement>("[role=option]")];
+    const index = entries.indexOf(document.activeElement as HTMLLIElement);
+    if (event.key === "ArrowDown") entries[Math.min(index + 1, entries.length - 1)]?.focus();
+    else if (event.key === "ArrowUp") entries[Math.max(index - 1, 0)]?.focus();
+    else if (event.key === "Enter" || event.key === " ") entries[index]?.click();
+    else if (event.key === "Backspace" && !this.up.disabled) this.up.click();
+    else return;
+    event.preventDefault();
+  }
+
+  private update(): void {
+    this.dialog.ready = this.name.value.trim() !== "";
+  }
+
+  private accept(): boolean {
+    const typed = this.name.value.trim();
+    if (typed === "") return false;
+    const named = this.kind === "save" && !typed.endsWith(ENDING) ? `${typed}${ENDING}` : typed;
+    this.taken = true;
+    this.take(/^([/~]|[A-Za-z]:[\\/])/.test(named) ? named : join(this.folder?.path ?? "", named));
+    return true;
+  }
+}
+
+function join(folder: string, name: string): string {
+  if (folder === "" || /[/\\]$/.test(folder)) return folder + name;
+  return `${folder}${folder.includes("\\") && !folder.includes("/") ? "\\" : "/"}${name}`;
+}

@@ -1,0 +1,45 @@
+/** A key with what is held: `mod` is Ctrl, on a Mac Command. */
+export interface Shortcut {
+  key: string;
+  mod?: boolean;
+  shift?: boolean;
+  alt?: boolean;
+}
+
+const agent = (globalThis as { navigator?: Navigator }).navigator?.userAgent ?? "";
+const MAC = /Macintosh|iPhone|iPad/.test(agent);
+
+/** Whether an event is a shortcut. */
+export function matches(event: KeyboardEvent, { key, mod = false, shift = false, alt = false }: Shortcut): boolean {
+  const held = MAC ? event.metaKey && !event.ctrlKey : event.ctrlKey && !event.metaKey;
+  const free = !event.ctrlKey && !event.metaKey;
+  // With Alt some keyboards give another letter: then the place of the key counts.
+  const same = event.key.toLowerCase() === key.toLowerCase() || (alt && event.code === `Key${key.toUpperCase()}`);
+  return same && (mod ? held : free) && event.shiftKey === shift && event.altKey === alt;
+}
+
+const NAMES: Readonly<Record<string, string>> = { Delete: "Del", Insert: "Ins", ArrowUp: "↑", ArrowDown: "↓" };
+
+/** The keys as they are written on the keyboard: `Ctrl+Shift+S`. */
+export function keyText({ key, mod = false, shift = false, alt = false }: Shortcut): string {
+  const name = NAMES[key] ?? key.toUpperCase();
+  if (MAC) return `${alt ? "⌥" : ""}${shift ? "⇧" : ""}${mod ? "⌘" : ""}${name}`;
+  return [...(mod ? ["Ctrl"] : []), ...(alt ? ["Alt"] : []), ...(shift ? ["Shift"] : []), name].join("+");
+}
+
+/** RViz's keys, or others where a browser has its own use for them. */
+export const SHORTCUTS = {
+  open: { key: "o", mod: true },
+  save: { key: "s", mod: true },
+  saveAs: { key: "s", mod: true, shift: true },
+  undo: { key: "z", mod: true },
+  redo: { key: "z", mod: true, shift: true },
+  redoToo: { key: "y", mod: true },
+  add: { key: "a", alt: true },
+  addToo: { key: "Insert" },
+  duplicate: { key: "d", alt: true },
+  rename: { key: "F2" },
+  remove: { key: "Delete" },
+  moveUp: { key: "ArrowUp", alt: true },
+  moveDown: { key: "ArrowDown", alt: true },
+} as const satisfies Readonly<Record<string, Shortcut>>;

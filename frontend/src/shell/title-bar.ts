@@ -1,0 +1,195 @@
+import { button, h } from "../dom";
+import { icon } from "../icons";
+import type { Dock } from "../panels/dock";
+import { Logo } from "../panels/logo";
+import { openMenu, type MenuEntry } from "../panels/menu";
+import type { ShareMenu } from "../panels/share-menu";
+import type { Session } from "../state/session";
+import { chooseLanguage, language, strings } from "../strings";
+import { editText, type FileCommands } from "./file-commands";
+import { addressFor } from "./own-displays";
+import { keyText, SHORTCUTS } from "./shortcuts";
+import { THEME_CHOICES, type ThemeState } from "./theme";
+
+/** The head of the page: menus, the configuration file, and what concerns all of the page. */
+export class TitleBar {
+  readonly element: HTMLElement;
+  private readonly title = h("span", { class: "document-title" });
+  private readonly file = h("span", { class: "file-name" });
+  private readonly undo: HTMLButtonElement;
+  private readonly redo: HTMLButtonElement;
+  private programTitle = "";
+
+  constructor(
+    private readonly session: Session,
+    private readonly dock: Dock,
+    private readonly files: FileCommands,
+    theme: ThemeState,
+    share: ShareMenu,
+  ) {
+    const words = strings.shell;
+    const { configuration } = session;
+    this.undo = button(words.undo, () => configuration.undo(), "tool bare", icon("undo"));
+    this.redo = button(words.redo, () => configuration.redo(), "tool bare", icon("redo"));
+    const menus = [
+      menuButton(words.file, () => this.fileMenu()),
+      menuButton(words.panels, () => this.panelsMenu()),
+      menuButton(strings.sharing.share, () => share.entries()),
+    ];
+    walkWithArrows(menus);
+    const themes = button(
+      words.theme,
+      () =>
+        openMenu(
+          themes,
+          THEME_CHOICES.map((choice) => ({
+            label: words.themes[choice],
+            checked: theme.choice === choice,
+            run: () => theme.choose(choice),
+          })),
+        ),
+      "tool bare",
+      icon("system"),
+    );
+    themes.setAttribute("aria-haspopup", "menu");
+    const showTheme = (): void => themes.replaceChildren(icon(theme.theme === "light" ? "light" : "dark"));
+    theme.changed.on(showTheme);
+    showTheme();
+    this.element = h(
+      "header",
+      { class: "title-bar" },
+      Logo(),
+      h("span", { class: "brand" }, "Linkwright"),
+      h("nav", { class: "menu-bar", aria: { label: words.menu } }, ...menus),
+      this.undo,
+      this.redo,
+      this.file,
+      this.title,
+      h("span", { class: "spacer" }),
+      share.element,
+      this.ownSwitch(),
+      themes,
+      button(
+        words.languageHint,
+        () => chooseLanguage(language === "en" ? "zh" : "en"),
+        "tool",
+        icon("language"),
+        words.language,
+      ),
+    );
+    configuration.changed.on(() => this.update());
+    session.greeted.on(({ title, version }) => {
+      this.programTitle = title;
+      this.element.dataset["version"] = version;
+      this.update();
+    });
+    this.update();
+  }
+
+  private update(): void {
+    const words = strings.shell;
+    const { current, fileName } = this.session.configuration;
+    const name = fileName ?? words.untitled;
+    this.file.replaceChildren(name, current.unsaved ? h("span", { class: "unsaved", title: words.unsaved }, "●") : "");
+    this.file.title = `${current.path ?? words.untitled}${current.unsaved ? ` (${words.unsaved})` : ""}`;
+    this.title.textContent = this.programTitle;
+    document.title = `${current.unsaved ? "● " : ""}${this.programTitle || name} - Linkwright`;
+    this.undo.disabled = current.undo === null;
+    this.redo.disabled = current.redo === null;
+    describe(this.undo, current.undo ? words.undoing(editText(current.undo)) : words.undo, keyText(SHORTCUTS.undo));
+    describe(this.redo, current.redo ? words.redoing(editText(current.redo)) : words.redo, keyText(SHORTCUTS.redo));
+  }
+
+  private fileMenu(): MenuEntry[] {
+    const words = strings.shell;
+    const { files } = this;
+    const { current } = this.session.configuration;
+    return [
+      { label: words.newFile, icon: "file", run: () => files.begin() },
+      { label: words.open, icon: "open", keys: keyText(SHORTCUTS.open), run: () => files.chooseFile() },
+      { label: words.openLocal, icon: "upload", run: () => files.chooseLocal() },
+      { label: words.save, icon: "save", keys: keyText(SHORTCUTS.save), separate: true, run: () => files.save() },
+      { label: words.saveAs, keys: keyText(SHORTCUTS.saveAs), run: () => files.saveAs() },
+      { label: words.download, icon: "download", run: () => files.download() },
+      {
+        label: words.revert,
+        disabled: current.path === null || !current.unsaved,
+        separate: true,
+        run: () => files.revert(),
+      },
+      ...current.recent.map((path, index) => ({
+        label: shortened(path),
+        hint: path,
+        icon: "recent" as const,
+        separate: index === 0,
+        run: () => files.open(path),
+      })),
+    ];
+  }
+
+  private panelsMenu(): MenuEntry[] {
+    const { dock } = this;
+    return [
+      ...dock.ids
+        .filter((id) => id !== "joints" || this.session.joints.controls !== null)
+        .map((id) => ({
+          label: strings.panels[id],
+          checked: dock.isOpen(id),
+          run: () => (dock.isOpen(id) ? dock.close(id) : dock.open(id)),
+        })),
+      { label: strings.shell.resetLayout, separate: true, icon: "reset", run: () => dock.reset() },
+    ];
+  }
+
+  private ownSwitch(): HTMLElement {
+    const words = strings.shell;
+    const { configuration } = this.session;
+    const choose = (own: boolean) => (): void => {
+      if (own !== configuration.current.own) location.assign(addressFor(location.href, own));
+    };
+    const shared = button(words.sharedDisplays, choose(false), "", icon("shared"), words.shared);
+    const own = button(words.ownHint, choose(true), "", icon("own"), words.own);
+    const show = (): void => {
+      for (const [each, on] of [
+        [shared, !configuration.current.own],
+        [own, configuration.current.own],
+      ] as const) {
+        each.classList.toggle("on", on);
+        each.setAttribute("aria-pressed", String(on));
+      }
+    };
+    configuration.changed.on(show);
+    show();
+    return h("div", { class: "segmented own-switch", role: "group", aria: { label: words.displays } }, shared, own);
+  }
+}
+
+function describe(element: HTMLButtonElement, name: string, keys: string): void {
+  element.title = `${name} (${keys})`;
+  element.setAttribute("aria-label", name);
+}
+
+function menuButton(label: string, entries: () => MenuEntry[]): HTMLButtonElement {
+  const element = button(label, () => openMenu(element, entries()), "tool menu-button", label);
+  element.setAttribute("aria-haspopup", "menu");
+  element.setAttribute("aria-expanded", "false");
+  element.removeAttribute("title");
+  return element;
+}
+
+/** Left and right go from menu to menu, down opens one. */
+function walkWithArrows(menus: readonly HTMLButtonElement[]): void {
+  for (const [index, menu] of menus.entries()) {
+    menu.addEventListener("keydown", (event) => {
+      if (event.key === "ArrowRight") menus[(index + 1) % menus.length]?.focus();
+      else if (event.key === "ArrowLeft") menus.at(index - 1)?.focus();
+      else if (event.key === "ArrowDown") menu.click();
+      else return;
+      event.preventDefault();
+    });
+  }
+}
+
+function shortened(path: string): string {
+  return path.length <= 60 ? path : `…${path.slice(-58)}`;
+}

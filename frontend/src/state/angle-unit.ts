@@ -1,0 +1,32 @@
+import { Signal } from "./signal";
+import type { TextStorage } from "./storage";
+
+export type AngleUnit = "rad" | "deg";
+
+const KEY = "linkwright.angle-unit";
+const DEGREES = 180 / Math.PI;
+
+/** In which unit angles are shown and typed; remembered by the browser. */
+export class AngleUnits {
+  readonly changed = new Signal();
+  private unit: AngleUnit;
+
+  constructor(private readonly storage: TextStorage) {
+    this.unit = storage.getItem(KEY) === "deg" ? "deg" : "rad";
+  }
+
+  get current(): AngleUnit {
+    return this.unit;
+  }
+
+  set current(unit: AngleUnit) {
+    this.unit = unit;
+    this.storage.setItem(KEY, unit);
+    this.changed.emit();
+  }
+
+  /** What a position of a joint of this kind is multiplied with to be shown: 1 for metres. */
+  scale(kind: string): number {
+    return kind !== "prismatic" && this.unit === "deg" ? DEGREES : 1;
+  }
+}

@@ -1,0 +1,116 @@
+import type { Connection } from "../connection/connection";
+import type {
+  Configuration,
+  ConfigurationRefused,
+  ConfigurationText,
+  DisplayClass,
+  Folder,
+  TopicChoice,
+} from "../protocol.gen";
+import { Signal } from "./signal";
+
+/** The configuration file on the server, what can be added to it, undone in it and done with it. */
+export class ConfigurationState {
+  /** Path, unsaved changes, undo or redo are others. */
+  readonly changed = new Signal();
+  readonly saved = new Signal<string>();
+  readonly refused = new Signal<ConfigurationRefused>();
+  readonly texts = new Signal<ConfigurationText>();
+  readonly folders = new Signal<Folder>();
+  readonly topicsListed = new Signal<readonly TopicChoice[]>();
+  classes: readonly DisplayClass[] = [];
+  current: Configuration = {
+    type: "configuration",
+    path: null,
+    opened: 0,
+    unsaved: false,
+    undo: null,
+    redo: null,
+    own: false,
+    recent: [],
+  };
+
+  constructor(private readonly connection: Connection) {
+    connection.on("configuration", (message) => {
+      this.current = message;
+      this.changed.emit();
+    });
+    connection.on("display_classes", ({ classes }) => (this.classes = classes));
+    connection.on("configuration_saved", ({ path }) => this.saved.emit(path));
+    connection.on("configuration_refused", (message) => this.refused.emit(message));
+    connection.on("configuration_text", (message) => this.texts.emit(message));
+    connection.on("folder", (message) => this.folders.emit(message));
+    connection.on("topic_choices", ({ topics }) => this.topicsListed.emit(topics));
+  }
+
+  /** The name of the file; null when there is none yet. */
+  get fileName(): string | null {
+    return this.current.path === null ? null : (this.current.path.split(/[\\/]/).pop() ?? this.current.path);
+  }
+
+  undo(): void {
+    this.connection.send({ type: "undo" });
+  }
+
+  redo(): void {
+    this.connection.send({ type: "redo" });
+  }
+
+  add(cls: string, name: string, group: string | null = null, topic: string | null = null): void {
+    this.connection.send({ type: "add_display", cls, name, group, topic });
+  }
+
+  duplicate(displays: string[]): void {
+    this.connection.send({ type: "duplicate_displays", displays });
+  }
+
+  rename(display: string, name: string): void {
+    this.connection.send({ type: "rename_display", display, name });
+  }
+
+  remove(displays: string[]): void {
+    this.connection.send({ type: "remove_displays", displays });
+  }
+
+  /** Puts displays into a group (null for none), in front of one of it (null for the end). */
+  move(displays: string[], group: string | null, before: string | null): void {
+    this.connection.send({ type: "move_displays", displays, group, before });
+  }
+
+  group(displays: string[], name: string): void {
+    this.connection.send({ type: "group_displays", displays, name });
+  }
+
+  askTopics(): void {
+    this.connection.send({ type: "ask_topics" });
+  }
+
+  askFolder(path: string | null): void {
+    this.connection.send({ type: "ask_folder", path });
+  }
+
+  /** Asks for the file as it would be saved now. */
+  askText(): void {
+    this.connection.send({ type: "ask_configuration_text" });
+  }
+
+  begin(discard = false): void {
+    this.connection.send({ type: "new_configuration", discard });
+  }
+
+  open(path: string, discard = false): void {
+    this.connection.send({ type: "open_configuration", path, discard });
+  }
+
+  load(name: string, text: string, discard = false): void {
+    this.connection.send({ type: "load_configuration", name, text, discard });
+  }
+
+  revert(): void {
+    this.connection.send({ type: "revert_configuration" });
+  }
+
+  save(path: string | null = null, replace = false): void {
+    this.connection.send({ type: "save_configuration", path, replace });
+  }
+}

@@ -1,0 +1,90 @@
+import type { Description, JointDetails, LinkDetails, SourceRange, Written } from "../protocol.gen";
+
+/** A link or joint of the robot of one display. */
+export interface ElementName {
+  readonly display: string;
+  readonly kind: "link" | "joint";
+  readonly name: string;
+}
+
+/** What the expanded text is called among the files. */
+export const EXPANDED = "";
+
+/** A description as a tree, with places. */
+export class DescriptionModel {
+  readonly links: ReadonlyMap<string, LinkDetails>;
+  readonly joints: ReadonlyMap<string, JointDetails>;
+  private readonly below = new Map<string, JointDetails[]>();
+  private readonly depths = new Map<string, number>();
+  /** Ranges of one file from its start; those of a macro come several times. */
+  private readonly ranges = new Map<string, { range: SourceRange; element: ElementName }[]>();
+
+  constructor(readonly description: Description) {
+    this.links = new Map(description.links.map((link) => [link.name, link]));
+    this.joints = new Map(description.joints.map((joint) => [joint.name, joint]));
+    for (const joint of [...description.joints].sort((a, b) => (a.name < b.name ? -1 : 1))) {
+      // Of several joints above a link urdfdom keeps one.
+      if (this.links.get(joint.child)?.parent_joint !== joint.name) continue;
+      const siblings = this.below.get(joint.parent);
+      if (siblings) siblings.push(joint);
+      else this.below.set(joint.parent, [joint]);
+    }
+    this.measure();
+    for (const link of description.links) this.place("link", link.name, link.written);
+    for (const joint of description.joints) this.place("joint", joint.name, joint.written);
+  }
+
+  get display(): string {
+    return this.description.display;
+  }
+
+  /** The joints that hang from a link, by name, as urdfdom has them. */
+  jointsBelow(link: string): readonly JointDetails[] {
+    return this.below.get(link) ?? [];
+  }
+
+  jointAbove(link: string): JointDetails | undefined {
+    const name = this.links.get(link)?.parent_joint;
+    return name === undefined || name === null ? undefined : this.joints.get(name);
+  }
+
+  /** Joints between the root and a link. */
+  depthOf(link: string): number {
+    return this.depths.get(link) ?? 0;
+  }
+
+  get deepest(): number {
+    return Math.max(0, ...this.depths.values());
+  }
+
+  written(element: ElementName): Written | undefined {
+    const from: ReadonlyMap<string, { written: Written }> = element.kind === "link" ? this.links : this.joints;
+    return from.get(element.name)?.written;
+  }
+
+  /** The links and joints written on a line of a file, in the order of the description; several for a macro's line. */
+  elementsAt(file: string, line: number): ElementName[] {
+    const here = this.ranges.get(file) ?? [];
+    return here.filter(({ range }) => range.line <= line && line <= range.end_line).map(({ element }) => element);
+  }
+
+  private measure(): void {
+    const pending: [string, number][] = [[this.description.root, 0]];
+    for (let next = pending.pop(); next; next = pending.pop()) {
+      const [link, depth] = next;
+      if (this.depths.has(link)) continue;
+      this.depths.set(link, depth);
+      for (const joint of this.jointsBelow(link)) pending.push([joint.child, depth + 1]);
+    }
+  }
+
+  private place(kind: "link" | "joint", name: string, { expanded, origin }: Written): void {
+    for (const range of [expanded, origin]) {
+      if (!range) continue;
+      const entry = { range, element: { display: this.display, kind, name } };
+      const known = this.ranges.get(range.file);
+      if (known) known.push(entry);
+      else this.ranges.set(range.file, [entry]);
+    }
+  }
+}

@@ -1,0 +1,136 @@
+import type { Connection } from "../connection/connection";
+import type { DescriptionChanged, InertiaFinding, InertiaFindings } from "../protocol.gen";
+import { DescriptionModel } from "./description-model";
+import { Signal } from "./signal";
+
+/** What an edit on disk changed. */
+export interface Change {
+  readonly display: string;
+  readonly links: readonly string[];
+  readonly joints: readonly string[];
+}
+
+/**
+ * What stands behind the robots. The server tells only when it is another; the rest is asked for as long as somebody
+ * holds it, and texts when they are read.
+ */
+export class DescriptionState {
+  /** The description of a display has come. */
+  readonly arrived = new Signal<DescriptionModel>();
+  /** The findings about the masses of a display's robot have come. */
+  readonly findingsArrived = new Signal<string>();
+  /** Links and joints say something else than before. */
+  readonly edited = new Signal<Change>();
+  /** A text has come. */
+  readonly textArrived = new Signal();
+  /** The user wants to see a place: a diagnostic's, a link's. */
+  readonly placeAsked = new Signal<{ file: string; line: number }>();
+  /** Texts that were read may be others now. */
+  readonly textsOutdated = new Signal();
+  private readonly revisions = new Map<string, number>();
+  private readonly models = new Map<string, DescriptionModel>();
+  private readonly findings = new Map<string, InertiaFindings>();
+  /** Undefined while it is being asked for. */
+  private readonly texts = new Map<string, string | null | undefined>();
+  private modelHolders = 0;
+  private findingHolders = 0;
+
+  constructor(private readonly connection: Connection) {
+    connection.on("hello", () => this.revisions.clear());
+    connection.on("tree", ({ displays }) => {
+      const shown = new Set(displays.map((display) => display.id));
+      for (const known of [this.revisions, this.models, this.findings]) {
+        for (const display of known.keys()) if (!shown.has(display)) known.delete(display);
+      }
+    });
+    connection.on("description_changed", (message) => this.changed(message));
+    connection.on("description", (message) => {
+      const model = new DescriptionModel(message);
+      this.models.set(message.display, model);
+      this.arrived.emit(model);
+    });
+    connection.on("inertia_findings", (message) => {
+      this.findings.set(message.display, message);
+      this.findingsArrived.emit(message.display);
+    });
+    connection.on("description_text", ({ display, file, text }) => {
+      this.texts.set(textKey(display, file), text);
+      this.textArrived.emit();
+    });
+    // With an error, texts are those that are wrong; without, those of the robot.
+    connection.on("diagnostics", () => this.forgetTexts());
+  }
+
+  /** Keeps the descriptions of all displays current until the returned function is called. */
+  hold(): () => void {
+    this.modelHolders += 1;
+    if (this.modelHolders === 1) {
+      for (const [display, revision] of this.revisions) {
+        if (this.models.get(display)?.description.revision !== revision) this.ask("ask_description", display);
+      }
+    }
+    return once(() => (this.modelHolders -= 1));
+  }
+
+  /** Keeps what is implausible about masses current until the returned function is called. */
+  holdFindings(): () => void {
+    this.findingHolders += 1;
+    if (this.findingHolders === 1) {
+      for (const [display, revision] of this.revisions) {
+        if (this.findings.get(display)?.revision !== revision) this.ask("ask_inertia", display);
+      }
+    }
+    return once(() => (this.findingHolders -= 1));
+  }
+
+  /** The description of a display, if it has come; it may be that of a moment ago. */
+  of(display: string): DescriptionModel | undefined {
+    return this.models.get(display);
+  }
+
+  findingsOf(display: string): readonly InertiaFinding[] {
+    return this.findings.get(display)?.findings ?? [];
+  }
+
+  /** A text, as far as it is here, else it is asked for; null for one that there is not. */
+  text(display: string, file: string): string | null | undefined {
+    const key = textKey(display, file);
+    if (!this.texts.has(key)) {
+      this.texts.set(key, undefined);
+      this.connection.send({ type: "ask_description_text", display, file });
+    }
+    return this.texts.get(key);
+  }
+
+  private changed({ display, revision, links, joints }: DescriptionChanged): void {
+    const isNew = this.revisions.get(display) !== revision;
+    this.revisions.set(display, revision);
+    if (isNew) {
+      this.forgetTexts();
+      if (this.modelHolders > 0) this.ask("ask_description", display);
+      if (this.findingHolders > 0) this.ask("ask_inertia", display);
+    }
+    if (links.length + joints.length > 0) this.edited.emit({ display, links, joints });
+  }
+
+  private ask(type: "ask_description" | "ask_inertia", display: string): void {
+    this.connection.send({ type, display });
+  }
+
+  private forgetTexts(): void {
+    this.texts.clear();
+    this.textsOutdated.emit();
+  }
+}
+
+function textKey(display: string, file: string): string {
+  return `${display} ${file}`;
+}
+
+function once(work: () => void): () => void {
+  let done = false;
+  return () => {
+    if (!done) work();
+    done = true;
+  };
+}

@@ -1,0 +1,95 @@
+import type { JointDetails } from "../protocol.gen";
+import type { DescriptionModel, ElementName } from "./description-model";
+import { general } from "./number-text";
+import { tidyTree, type TreeNode } from "./tidy-tree";
+
+/** A box (link) or ellipse (joint) of the diagram; x and y of its middle, px. */
+export interface DiagramNode {
+  readonly element: ElementName;
+  readonly x: number;
+  readonly y: number;
+  readonly width: number;
+  readonly height: number;
+  /** What stands at the edge above a joint: its origin in the parent's frame. */
+  readonly origin: readonly string[];
+  /** The node that the edge comes from. */
+  readonly above: DiagramNode | null;
+}
+
+export interface Diagram {
+  readonly nodes: readonly DiagramNode[];
+  readonly width: number;
+  readonly height: number;
+}
+
+const BOX_PX = 26;
+const ELLIPSE_PX = 30;
+const GAP_PX = 22;
+const LEVEL_GAP_PX = 26;
+const ORIGIN_PX = 34;
+
+interface Sized extends TreeNode {
+  readonly element: ElementName;
+  readonly boxWidth: number;
+  readonly boxHeight: number;
+  readonly origin: readonly string[];
+  readonly children: readonly Sized[];
+}
+
+/**
+ * The structure as urdf_to_graphviz draws it: links as boxes, joints as ellipses between them, origins at the edges.
+ *
+ * @param measure width of a text in px.
+ */
+export function layOut(model: DescriptionModel, origins: boolean, measure: (text: string) => number): Diagram {
+  const size = (kind: ElementName["kind"], name: string, origin: readonly string[], children: readonly Sized[]): Sized => {
+    const boxWidth = measure(name) + (kind === "link" ? 20 : 34);
+    const boxHeight = kind === "link" ? BOX_PX : ELLIPSE_PX;
+    const width = Math.max(boxWidth, ...origin.map(measure));
+    const height = boxHeight + (origin.length > 0 ? ORIGIN_PX : 0);
+    const element = { display: model.display, kind, name };
+    return { id: `${kind} ${name}`, element, width, height, boxWidth, boxHeight, origin, children };
+  };
+  const tree = tidyTree(build(model, origins, size), GAP_PX, LEVEL_GAP_PX);
+  const made = new Map<TreeNode, DiagramNode>();
+  const nodes = tree.nodes.map(({ node, x, y, parent }) => {
+    const { element, boxWidth, boxHeight, origin } = node as Sized;
+    const above = (parent && made.get(parent.node)) ?? null;
+    const below = origin.length > 0 ? ORIGIN_PX / 2 : 0;
+    const placed = { element, x, y: y + below, width: boxWidth, height: boxHeight, origin, above };
+    made.set(node, placed);
+    return placed;
+  });
+  return { nodes, width: tree.width, height: tree.height };
+}
+
+/** From the leaves up, without recursion: descriptions may be chains of thousands. */
+function build(
+  model: DescriptionModel,
+  origins: boolean,
+  size: (kind: ElementName["kind"], name: string, origin: readonly string[], children: readonly Sized[]) => Sized,
+): Sized {
+  const order: string[] = [];
+  const seen = new Set<string>();
+  const pending = [model.description.root];
+  for (let link = pending.pop(); link !== undefined; link = pending.pop()) {
+    if (seen.has(link)) continue;
+    seen.add(link);
+    order.push(link);
+    for (const joint of model.jointsBelow(link)) pending.push(joint.child);
+  }
+  const made = new Map<string, Sized>();
+  for (const link of order.reverse()) {
+    const joints = model.jointsBelow(link).flatMap((joint) => {
+      const child = made.get(joint.child);
+      return child ? [size("joint", joint.name, origins ? originText(joint) : [], [child])] : [];
+    });
+    made.set(link, size("link", link, [], joints));
+  }
+  return made.get(model.description.root) ?? size("link", model.description.root, [], []);
+}
+
+/** As urdf_to_graphviz writes it: metres, and radians that came through the quaternion. */
+export function originText({ xyz, rpy }: Pick<JointDetails, "xyz" | "rpy">): [string, string] {
+  return [`xyz: ${xyz.map(general).join(" ")}`, `rpy: ${rpy.map(general).join(" ")}`];
+}

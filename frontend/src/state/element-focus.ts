@@ -1,0 +1,63 @@
+import type { RobotScene } from "../protocol.gen";
+import type { ElementName } from "./description-model";
+import type { SelectionState } from "./selection";
+import { Signal } from "./signal";
+
+/**
+ * The link or joint that the panels of the description are about. A joint selects the link that it moves in the scene;
+ * a link selected there is the element here.
+ */
+export class ElementFocus {
+  readonly changed = new Signal();
+  readonly hoverChanged = new Signal();
+  private joint: ElementName | null = null;
+  private hover: ElementName | null = null;
+
+  constructor(
+    private readonly selection: SelectionState,
+    private readonly robots: ReadonlyMap<string, RobotScene>,
+  ) {
+    selection.changed.on(() => {
+      if (this.joint && this.linkOf(this.joint) !== selection.selected?.link.name) this.joint = null;
+      this.changed.emit();
+    });
+  }
+
+  get current(): ElementName | null {
+    if (this.joint) return this.joint;
+    const selected = this.selection.selected;
+    return selected && { display: selected.display, kind: "link", name: selected.link.name };
+  }
+
+  /** What the pointer is over in a list or tree. */
+  get hovered(): ElementName | null {
+    return this.hover;
+  }
+
+  select(element: ElementName | null): void {
+    this.joint = element?.kind === "joint" ? element : null;
+    const name = element && this.linkOf(element);
+    const link = element && this.robots.get(element.display)?.links.find((each) => each.name === name);
+    const before = this.selection.selected;
+    this.selection.select(element && link ? { display: element.display, link } : null);
+    // The same link by another of its joints, or by itself.
+    if (before?.link.name === this.selection.selected?.link.name) this.changed.emit();
+  }
+
+  setHovered(element: ElementName | null): void {
+    if (same(element, this.hover)) return;
+    this.hover = element;
+    this.hoverChanged.emit();
+  }
+
+  /** The link that shows an element in the scene. */
+  linkOf(element: ElementName): string | undefined {
+    if (element.kind === "link") return element.name;
+    const links = this.robots.get(element.display)?.links ?? [];
+    return links.find((link) => link.parent_joint === element.name)?.name;
+  }
+}
+
+export function same(a: ElementName | null, b: ElementName | null): boolean {
+  return a === b || (a !== null && b !== null && a.display === b.display && a.kind === b.kind && a.name === b.name);
+}

@@ -1,0 +1,93 @@
+import { Signal } from "./signal";
+import type { TextStorage } from "./storage";
+
+const KEY = "linkwright.inspect";
+
+/** What is drawn of a robot that cannot be seen. */
+export interface Inspected {
+  /** Centres of mass of the links and of the whole robot. */
+  centers: boolean;
+  /** Boxes of the same inertia. */
+  boxes: boolean;
+  /** Ellipsoids of the same inertia. */
+  ellipsoids: boolean;
+  /** Axes of joints, their limits and where they stand. */
+  joints: boolean;
+  /** Collisions against visuals. */
+  contrast: boolean;
+  /** Frames of links, smaller and in other colours the deeper they are. */
+  frames: boolean;
+}
+
+const NOTHING: Inspected = {
+  centers: false,
+  boxes: false,
+  ellipsoids: false,
+  joints: false,
+  contrast: false,
+  frames: false,
+};
+
+/** What the user wants to see of the invisible; remembered by the browser, for it is no part of an .rviz file. */
+export class InspectState {
+  readonly changed = new Signal();
+  private shown: Inspected;
+  private size: number;
+  private depth: number | null = null;
+
+  constructor(private readonly storage: TextStorage) {
+    const { scale, ...shown } = read(storage.getItem(KEY));
+    this.shown = { ...NOTHING, ...shown };
+    this.size = scale;
+  }
+
+  get current(): Readonly<Inspected> {
+    return this.shown;
+  }
+
+  /** Whether anything is on. */
+  get any(): boolean {
+    return Object.values(this.shown).some(Boolean);
+  }
+
+  /** How large marks are drawn; 1 suits the robot. */
+  get scale(): number {
+    return this.size;
+  }
+
+  set scale(scale: number) {
+    this.size = scale;
+    this.remember();
+  }
+
+  /** Frames deeper than this are not drawn; null for all. */
+  get deepest(): number | null {
+    return this.depth;
+  }
+
+  set deepest(depth: number | null) {
+    this.depth = depth;
+    this.remember();
+  }
+
+  set(what: keyof Inspected, on: boolean): void {
+    this.shown = { ...this.shown, [what]: on };
+    this.remember();
+  }
+
+  private remember(): void {
+    this.storage.setItem(KEY, JSON.stringify({ ...this.shown, scale: this.size }));
+    this.changed.emit();
+  }
+}
+
+function read(text: string | null): Partial<Inspected> & { scale: number } {
+  try {
+    const known = JSON.parse(text ?? "{}") as Record<string, unknown>;
+    const on = Object.keys(NOTHING).map((name) => [name, known[name] === true]);
+    const scale = known["scale"];
+    return { ...(Object.fromEntries(on) as Partial<Inspected>), scale: typeof scale === "number" && scale > 0 ? scale : 1 };
+  } catch {
+    return { scale: 1 };
+  }
+}

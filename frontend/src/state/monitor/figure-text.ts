@@ -1,0 +1,25 @@
+const UNITS = ["B/s", "KB/s", "MB/s", "GB/s"];
+
+/** Bytes a second in a unit that suits, thousands as `ros2 topic bw` counts them. */
+export function bandwidthText(bytes: number): string {
+  let [value, unit] = [bytes, 0];
+  while (value >= 1000 && unit < UNITS.length - 1) {
+    value /= 1000;
+    unit++;
+  }
+  const digits = unit === 0 || value >= 100 ? 0 : value >= 10 ? 1 : 2;
+  return `${value.toFixed(digits)} ${UNITS[unit] ?? ""}`;
+}
+
+/** Hertz with as many digits as mean something. */
+export function rateText(rate: number): string {
+  return rate >= 100 ? rate.toFixed(0) : rate >= 10 ? rate.toFixed(1) : rate.toFixed(2);
+}
+
+/** A time of day with milliseconds; `time` in seconds since the epoch. */
+export function clockText(time: number): string {
+  const date = new Date(time * 1000);
+  const part = (value: number, digits: number): string => String(value).padStart(digits, "0");
+  const clock = [date.getHours(), date.getMinutes(), date.getSeconds()].map((each) => part(each, 2)).join(":");
+  return `${clock}.${part(date.getMilliseconds(), 3)}`;
+}

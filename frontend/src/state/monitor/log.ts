@@ -1,0 +1,128 @@
+import type { Connection } from "../../connection/connection";
+import type { LogLine } from "../../protocol.gen";
+import { Signal } from "../signal";
+
+/** Records that are kept; the oldest go, a tenth at a time. */
+export const MOST_LINES = 20_000;
+const SAVED_KEY = "linkwright.log-levels";
+
+export const LEVELS = [10, 20, 30, 40, 50] as const;
+export type Level = (typeof LEVELS)[number];
+
+/** The level whose colour and name a record has: rcl_interfaces/msg/Log knows numbers in between too. */
+export function levelOf(line: Pick<LogLine, "level">): Level {
+  return LEVELS.findLast((level) => line.level >= level) ?? 10;
+}
+
+/** A record as it is copied: as on the console. */
+export function lineText(line: LogLine, levelName: string): string {
+  const place = line.file === "" ? "" : ` (${line.file}:${line.line})`;
+  return `[${levelName}] [${line.time.toFixed(9)}] [${line.node}]: ${line.message}${place}`;
+}
+
+/** The records of /rosout that the page has seen, and those of them that pass the filters. */
+export class LogState {
+  /** Records or filters changed. */
+  readonly changed = new Signal();
+  lines: LogLine[] = [];
+  /** The records that pass the filters. */
+  shown: LogLine[] = [];
+  /** Records that the server could not send in time. */
+  missed = 0;
+  readonly levels: Set<number>;
+  paused = false;
+  private node = "";
+  private text = "";
+  private waiting: LogLine[] = [];
+  private opened = false;
+
+  constructor(
+    private readonly connection: Connection,
+    private readonly storage: Pick<Storage, "getItem" | "setItem">,
+  ) {
+    const saved = storage.getItem(SAVED_KEY);
+    this.levels = new Set(saved === null ? LEVELS : saved.split(",").map(Number));
+    connection.on("hello", () => {
+      if (this.opened) this.announce();
+    });
+    connection.on("log_lines", ({ lines, missed }) => {
+      this.missed += missed;
+      this.take(lines);
+    });
+  }
+
+  /** The nodes that have written, sorted. */
+  get nodes(): string[] {
+    return [...new Set(this.lines.map((line) => line.node))].sort();
+  }
+
+  setOpen(open: boolean): void {
+    if (open === this.opened) return;
+    this.opened = open;
+    this.announce();
+  }
+
+  setLevel(level: number, shown: boolean): void {
+    if (shown) this.levels.add(level);
+    else this.levels.delete(level);
+    this.storage.setItem(SAVED_KEY, [...this.levels].join(","));
+    this.filter();
+  }
+
+  setNode(node: string): void {
+    this.node = node;
+    this.filter();
+  }
+
+  setText(text: string): void {
+    this.text = text.toLowerCase();
+    this.filter();
+  }
+
+  /** Records that come while paused are shown when it ends. */
+  setPaused(paused: boolean): void {
+    this.paused = paused;
+    const { waiting } = this;
+    this.waiting = [];
+    if (!paused) this.take(waiting);
+    this.changed.emit();
+  }
+
+  clear(): void {
+    this.lines = [];
+    this.waiting = [];
+    this.missed = 0;
+    this.filter();
+  }
+
+  private take(lines: readonly LogLine[]): void {
+    if (this.paused) {
+      this.waiting.push(...lines);
+      if (this.waiting.length > MOST_LINES) this.waiting = this.waiting.slice(-MOST_LINES);
+      return;
+    }
+    this.lines.push(...lines);
+    if (this.lines.length > MOST_LINES) {
+      this.lines = this.lines.slice(-MOST_LINES * 0.9);
+      this.filter();
+      return;
+    }
+    this.shown.push(...lines.filter((line) => this.passes(line)));
+    this.changed.emit();
+  }
+
+  private filter(): void {
+    this.shown = this.lines.filter((line) => this.passes(line));
+    this.changed.emit();
+  }
+
+  private passes(line: LogLine): boolean {
+    if (!this.levels.has(levelOf(line))) return false;
+    if (this.node !== "" && line.node !== this.node) return false;
+    return this.text === "" || line.message.toLowerCase().includes(this.text) || line.node.toLowerCase().includes(this.text);
+  }
+
+  private announce(): void {
+    this.connection.send({ type: "watch_log", watched: this.opened });
+  }
+}

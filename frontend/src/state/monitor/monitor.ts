@@ -1,0 +1,52 @@
+import type { Connection } from "../../connection/connection";
+import type { TextStorage } from "../storage";
+import { fieldText } from "./field-text";
+import { LogState } from "./log";
+import { NodeGraphState } from "./node-graph";
+import { ParametersState } from "./parameters";
+import { PlotsState } from "./plots";
+import { TeleopState } from "./teleop";
+import { TopicsState } from "./topics";
+
+/** What the live panels know. */
+export class MonitorState {
+  readonly topics: TopicsState;
+  readonly plots: PlotsState;
+  readonly graph: NodeGraphState;
+  readonly parameters: ParametersState;
+  readonly log: LogState;
+  readonly teleop: TeleopState;
+
+  constructor(connection: Connection, storage: TextStorage) {
+    this.topics = new TopicsState(connection);
+    this.plots = new PlotsState(connection, storage);
+    this.graph = new NodeGraphState(connection);
+    this.parameters = new ParametersState(connection);
+    this.log = new LogState(connection, storage);
+    this.teleop = new TeleopState(connection, storage);
+  }
+
+  /** For `window.linkwright`. */
+  inspect(): object {
+    const { plots, topics, graph, parameters, log, teleop } = this;
+    return {
+      plots: plots.plots.map(({ series, range }) => ({
+        range,
+        series: series.map((each) => ({
+          name: fieldText(each),
+          error: each.error,
+          samples: each.buffer.length,
+          last: each.buffer.lastValue,
+        })),
+      })),
+      paused: plots.paused,
+      window: plots.window,
+      topics: topics.topics.map((topic) => ({ ...topic })),
+      traffic: Object.fromEntries(topics.traffic),
+      nodes: [...graph.graph.nodes],
+      parameterNodes: [...parameters.nodes],
+      log: { lines: log.lines.length, shown: log.shown.length, last: log.shown.at(-1)?.message ?? null },
+      teleop: { aim: teleop.aim, motion: teleop.motion, settings: { ...teleop.settings } },
+    };
+  }
+}

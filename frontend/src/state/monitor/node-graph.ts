@@ -1,0 +1,30 @@
+import type { Connection } from "../../connection/connection";
+import type { NodeGraph } from "../../protocol.gen";
+import { Signal } from "../signal";
+
+/** The nodes and topics of the graph while somebody looks at them. */
+export class NodeGraphState {
+  readonly changed = new Signal();
+  graph: NodeGraph = { type: "node_graph", nodes: [], topics: [] };
+  private watched = false;
+
+  constructor(private readonly connection: Connection) {
+    connection.on("hello", () => {
+      if (this.watched) this.announce();
+    });
+    connection.on("node_graph", (graph) => {
+      this.graph = graph;
+      this.changed.emit();
+    });
+  }
+
+  watch(watched: boolean): void {
+    if (watched === this.watched) return;
+    this.watched = watched;
+    this.announce();
+  }
+
+  private announce(): void {
+    this.connection.send({ type: "watch_node_graph", watched: this.watched });
+  }
+}

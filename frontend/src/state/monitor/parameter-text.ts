@@ -1,0 +1,24 @@
+import type { ParameterKind } from "../../protocol.gen";
+
+/** A parameter's values as one text: alone, or as a list in brackets, where texts stand in quotes. */
+export function parameterText(kind: ParameterKind, values: readonly string[]): string {
+  if (!kind.endsWith("_array")) return values[0] ?? "";
+  const shown = kind === "string_array" ? values.map((value) => JSON.stringify(value)) : values;
+  return `[${shown.join(", ")}]`;
+}
+
+/** The values that a text stands for, brackets and quotes may be left out; null when quotes are not closed. */
+export function parameterValues(kind: ParameterKind, text: string): string[] | null {
+  if (!kind.endsWith("_array")) return [text];
+  const inner = text.trim().replace(/^\[/, "").replace(/\]$/, "").trim();
+  if (inner === "") return [];
+  const items = /^(?:[^",]*|\s*"(?:[^"\\]|\\.)*"\s*)(?:,(?:[^",]*|\s*"(?:[^"\\]|\\.)*"\s*))*$/.test(inner)
+    ? (inner.match(/"(?:[^"\\]|\\.)*"|[^,"\s][^,"]*/g) ?? [])
+    : null;
+  if (items === null) return null;
+  try {
+    return items.map((item) => (item.startsWith('"') ? (JSON.parse(item) as string) : item.trim()));
+  } catch {
+    return null;
+  }
+}

@@ -1,0 +1,61 @@
+import type { Connection } from "../../connection/connection";
+import type { NodeParameters, ParameterDump, ParameterKind, ParameterResult } from "../../protocol.gen";
+import { Signal } from "../signal";
+
+/** The nodes that have parameters, and the parameters of the one that is chosen. */
+export class ParametersState {
+  readonly nodesChanged = new Signal();
+  readonly changed = new Signal();
+  readonly resultCame = new Signal<ParameterResult>();
+  readonly dumpCame = new Signal<ParameterDump>();
+  nodes: readonly string[] = [];
+  node: string | null = null;
+  /** Null until the node has answered. */
+  parameters: NodeParameters | null = null;
+  private listed = false;
+
+  constructor(private readonly connection: Connection) {
+    connection.on("hello", () => {
+      if (this.listed) this.announce();
+    });
+    connection.on("parameter_nodes", ({ nodes }) => {
+      this.nodes = nodes;
+      this.nodesChanged.emit();
+    });
+    connection.on("node_parameters", (parameters) => {
+      if (parameters.node !== this.node) return;
+      this.parameters = parameters;
+      this.changed.emit();
+    });
+    connection.on("parameter_result", (result) => {
+      if (result.node === this.node) this.resultCame.emit(result);
+    });
+    connection.on("parameter_dump", (dump) => this.dumpCame.emit(dump));
+  }
+
+  watch(watched: boolean): void {
+    if (watched === this.listed) return;
+    this.listed = watched;
+    this.announce();
+  }
+
+  choose(node: string | null): void {
+    this.node = node;
+    this.parameters = null;
+    this.changed.emit();
+    this.announce();
+  }
+
+  set(name: string, kind: ParameterKind, values: string[]): void {
+    if (this.node !== null) this.connection.send({ type: "set_parameter", node: this.node, name, kind, values });
+  }
+
+  dump(): void {
+    if (this.node !== null) this.connection.send({ type: "dump_parameters", node: this.node });
+  }
+
+  private announce(): void {
+    const node = this.listed ? this.node : null;
+    this.connection.send({ type: "watch_parameters", listed: this.listed, node });
+  }
+}

@@ -1,0 +1,203 @@
+import type { Connection } from "../../connection/connection";
+import type { SeriesSamples } from "../../connection/samples";
+import type { TopicFields } from "../../protocol.gen";
+import { Signal } from "../signal";
+import { fieldText, type FieldName } from "./field-text";
+import { SeriesBuffer, type TimeSource } from "./series-buffer";
+
+/** One line of a plot. */
+export interface Series extends FieldName {
+  readonly id: number;
+  readonly buffer: SeriesBuffer;
+  /** Why there are no values; null when there are, or when they are waited for. */
+  error: string | null;
+}
+
+/** One diagram; a fixed range of values, or null for the range of what is shown. */
+export interface Plot {
+  readonly id: number;
+  readonly series: Series[];
+  range: readonly [number, number] | null;
+}
+
+interface Saved {
+  seconds: number;
+  source: TimeSource;
+  plots: { series: FieldName[]; range: readonly [number, number] | null }[];
+}
+
+const SAVED_KEY = "linkwright.plots.1";
+const FIRST_SECONDS = 30;
+
+/** The plots and their samples. The server sends samples while the panel is open, and only those. */
+export class PlotsState {
+  /** Plots, series, errors or settings changed. */
+  readonly changed = new Signal();
+  /** Samples came, or the window moved. */
+  readonly moved = new Signal();
+  readonly fieldsTold = new Signal<TopicFields>();
+  readonly plots: Plot[] = [];
+  /** Length of the window, seconds. */
+  seconds = FIRST_SECONDS;
+  source: TimeSource = "received";
+  private heldAt: readonly [number, number] | null = null;
+  private opened = false;
+  private nextId = 1;
+
+  constructor(
+    private readonly connection: Connection,
+    private readonly storage: Pick<Storage, "getItem" | "setItem">,
+  ) {
+    this.restore();
+    connection.on("hello", () => {
+      if (this.opened) this.announce();
+    });
+    connection.on("series_states", ({ states }) => {
+      for (const { id, error } of states) {
+        const series = this.series.find((each) => each.id === id);
+        if (series) series.error = error;
+      }
+      this.changed.emit();
+    });
+    connection.on("topic_fields", (fields) => this.fieldsTold.emit(fields));
+    connection.samples.on((samples) => this.take(samples));
+  }
+
+  get series(): Series[] {
+    return this.plots.flatMap((plot) => plot.series);
+  }
+
+  get paused(): boolean {
+    return this.heldAt !== null;
+  }
+
+  /** From when to when the plots show, seconds; null while there is nothing to show. */
+  get window(): readonly [number, number] | null {
+    if (this.heldAt) return this.heldAt;
+    const times = this.series.map((each) => each.buffer.latest(this.source)).filter((time) => time !== null);
+    if (times.length === 0) return null;
+    const to = Math.max(...times);
+    return [to - this.seconds, to];
+  }
+
+  /** The panel was opened or closed. */
+  setOpen(open: boolean): void {
+    this.opened = open;
+    this.announce();
+  }
+
+  addPlot(): Plot {
+    const plot = { id: this.nextId++, series: [], range: null };
+    this.plots.push(plot);
+    this.edited();
+    return plot;
+  }
+
+  removePlot(plot: Plot): void {
+    this.plots.splice(this.plots.indexOf(plot), 1);
+    this.edited();
+  }
+
+  addSeries(plot: Plot, field: FieldName): void {
+    if (plot.series.some((each) => fieldText(each) === fieldText(field))) return;
+    plot.series.push({ ...field, id: this.nextId++, buffer: new SeriesBuffer(), error: null });
+    this.edited();
+  }
+
+  removeSeries(plot: Plot, series: Series): void {
+    plot.series.splice(plot.series.indexOf(series), 1);
+    this.edited();
+  }
+
+  setRange(plot: Plot, range: readonly [number, number] | null): void {
+    plot.range = range;
+    this.edited();
+  }
+
+  setSeconds(seconds: number): void {
+    this.seconds = seconds;
+    this.heldAt = null;
+    this.edited();
+  }
+
+  setSource(source: TimeSource): void {
+    this.source = source;
+    this.heldAt = null;
+    this.edited();
+  }
+
+  /** Holds the picture; samples are taken on. */
+  setPaused(paused: boolean): void {
+    this.heldAt = paused ? this.window : null;
+    this.changed.emit();
+    this.moved.emit();
+  }
+
+  /** Holds the picture at a part of it. */
+  hold(from: number, to: number): void {
+    this.heldAt = [from, to];
+    this.changed.emit();
+    this.moved.emit();
+  }
+
+  clear(): void {
+    for (const { buffer } of this.series) buffer.clear();
+    this.heldAt = null;
+    this.changed.emit();
+    this.moved.emit();
+  }
+
+  /** Asks what can be plotted of a topic; null when the answer is of no use any more. */
+  askFields(topic: string | null): void {
+    this.connection.send({ type: "ask_fields", topic });
+  }
+
+  private take(samples: readonly SeriesSamples[]): void {
+    const series = new Map(this.series.map((each) => [each.id, each]));
+    for (const { id, received, stamps, values } of samples) series.get(id)?.buffer.append(received, stamps, values);
+    if (!this.paused) this.moved.emit();
+  }
+
+  private edited(): void {
+    const saved: Saved = {
+      seconds: this.seconds,
+      source: this.source,
+      plots: this.plots.map(({ series, range }) => ({
+        series: series.map(({ topic, path }) => ({ topic, path })),
+        range,
+      })),
+    };
+    this.storage.setItem(SAVED_KEY, JSON.stringify(saved));
+    if (this.opened) this.announce();
+    this.changed.emit();
+    this.moved.emit();
+  }
+
+  private restore(): void {
+    const text = this.storage.getItem(SAVED_KEY);
+    if (text === null) return;
+    try {
+      const saved = JSON.parse(text) as Saved;
+      for (const { series, range } of saved.plots) {
+        const made = series.map(({ topic, path }) => ({
+          topic,
+          path,
+          id: this.nextId++,
+          buffer: new SeriesBuffer(),
+          error: null,
+        }));
+        this.plots.push({ id: this.nextId++, series: made, range });
+      }
+      this.seconds = saved.seconds;
+      this.source = saved.source;
+    } catch {
+      // Plots of another version of the page: start with none.
+      this.plots.length = 0;
+    }
+  }
+
+  private announce(): void {
+    const series = this.opened ? this.series.map(({ id, topic, path }) => ({ id, topic, path })) : [];
+    this.connection.send({ type: "watch_series", series });
+  }
+}

@@ -1,0 +1,93 @@
+/** Which time a sample is plotted at. */
+export type TimeSource = "received" | "stamp";
+
+const FIRST_CAPACITY = 1024;
+/** Ten minutes of a topic of 1 kHz. */
+export const MOST_SAMPLES = 600_000;
+/** Stamps that go back by more than this began anew: simulated time was reset, or a recording starts over. */
+const RESET_SECONDS = 1;
+
+/** The samples of one series, the newest last; the oldest go when there are too many. */
+export class SeriesBuffer {
+  private received = new Float64Array(FIRST_CAPACITY);
+  private stamps = new Float64Array(FIRST_CAPACITY);
+  private numbers = new Float64Array(FIRST_CAPACITY);
+  private count = 0;
+
+  constructor(private readonly most = MOST_SAMPLES) {}
+
+  get length(): number {
+    return this.count;
+  }
+
+  get values(): Float64Array {
+    return this.numbers.subarray(0, this.count);
+  }
+
+  /** The times of the samples, seconds; where there is no header the time of receiving stands for its stamp. */
+  times(source: TimeSource): Float64Array {
+    return (source === "stamp" ? this.stamps : this.received).subarray(0, this.count);
+  }
+
+  /** The newest time, seconds; null while there are no samples. */
+  latest(source: TimeSource): number | null {
+    return this.times(source)[this.count - 1] ?? null;
+  }
+
+  get lastValue(): number | null {
+    return this.numbers[this.count - 1] ?? null;
+  }
+
+  append(received: ArrayLike<number>, stamps: ArrayLike<number>, values: ArrayLike<number>): void {
+    this.reserve(values.length);
+    for (let index = 0; index < values.length; index++) {
+      const time = received[index] ?? 0;
+      const header = stamps[index] ?? NaN;
+      const stamp = Number.isNaN(header) ? time : header;
+      if (this.count > 0 && stamp < (this.stamps[this.count - 1] ?? 0) - RESET_SECONDS) this.count = 0;
+      this.received[this.count] = time;
+      this.stamps[this.count] = stamp;
+      this.numbers[this.count] = values[index] ?? NaN;
+      this.count++;
+    }
+  }
+
+  clear(): void {
+    this.count = 0;
+  }
+
+  /** Index of the first sample that is not before a time. */
+  indexFrom(source: TimeSource, time: number): number {
+    const times = this.times(source);
+    let low = 0;
+    let high = times.length;
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if ((times[middle] ?? 0) < time) low = middle + 1;
+      else high = middle;
+    }
+    return low;
+  }
+
+  private reserve(more: number): void {
+    const needed = this.count + more;
+    if (needed <= this.numbers.length) return;
+    if (needed > this.most) {
+      // Half goes at once, so that this is rare.
+      const kept = Math.min(this.count, Math.max(0, (this.most >> 1) - more));
+      for (const array of [this.received, this.stamps, this.numbers]) array.copyWithin(0, this.count - kept, this.count);
+      this.count = kept;
+      if (kept + more <= this.numbers.length) return;
+    }
+    const capacity = Math.max(this.count + more, Math.min(this.most, this.numbers.length * 2));
+    this.received = grown(this.received, capacity);
+    this.stamps = grown(this.stamps, capacity);
+    this.numbers = grown(this.numbers, capacity);
+  }
+}
+
+function grown(array: Float64Array, capacity: number): Float64Array<ArrayBuffer> {
+  const larger = new Float64Array(capacity);
+  larger.set(array);
+  return larger;
+}

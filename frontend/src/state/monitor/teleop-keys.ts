@@ -1,0 +1,78 @@
+/** Directions of motion, each -1 to 1: forward, left and up, and turning to the left. */
+export interface Motion {
+  x: number;
+  y: number;
+  z: number;
+  turn: number;
+}
+
+export const STILL: Motion = { x: 0, y: 0, z: 0, turn: 0 };
+
+const motion = (x: number, turn = 0, y = 0, z = 0): Motion => ({ x, y, z, turn });
+
+/** teleop_twist_keyboard's keys, the arrows, and WASD. With Shift they move to the side instead of turning. */
+const KEYS: Readonly<Record<string, Motion>> = {
+  i: motion(1),
+  o: motion(1, -1),
+  j: motion(0, 1),
+  l: motion(0, -1),
+  u: motion(1, 1),
+  ",": motion(-1),
+  ".": motion(-1, 1),
+  m: motion(-1, -1),
+  I: motion(1),
+  O: motion(1, 0, -1),
+  J: motion(0, 0, 1),
+  L: motion(0, 0, -1),
+  U: motion(1, 0, 1),
+  "<": motion(-1),
+  ">": motion(-1, 0, -1),
+  M: motion(-1, 0, 1),
+  t: motion(0, 0, 0, 1),
+  b: motion(0, 0, 0, -1),
+  w: motion(1),
+  s: motion(-1),
+  a: motion(0, 1),
+  d: motion(0, -1),
+  W: motion(1),
+  S: motion(-1),
+  A: motion(0, 0, 1),
+  D: motion(0, 0, -1),
+  ArrowUp: motion(1),
+  ArrowDown: motion(-1),
+  ArrowLeft: motion(0, 1),
+  ArrowRight: motion(0, -1),
+};
+
+const SIDEWAYS: Readonly<Record<string, Motion>> = { ArrowLeft: motion(0, 0, 1), ArrowRight: motion(0, 0, -1) };
+
+/** What a key means; null when it means nothing to the pad. */
+export function motionOfKey(key: string, shift: boolean): Motion | null {
+  return (shift ? SIDEWAYS[key] : undefined) ?? KEYS[key] ?? null;
+}
+
+/** Several motions at once. */
+export function together(motions: Iterable<Motion>): Motion {
+  const sum = { ...STILL };
+  for (const each of motions) {
+    sum.x += each.x;
+    sum.y += each.y;
+    sum.z += each.z;
+    sum.turn += each.turn;
+  }
+  return { x: unit(sum.x), y: unit(sum.y), z: unit(sum.z), turn: unit(sum.turn) };
+}
+
+export function isStill(each: Motion): boolean {
+  return each.x === 0 && each.y === 0 && each.z === 0 && each.turn === 0;
+}
+
+/** A stick's deflection, -1 to 1, without the play around its middle. */
+export function stick(value: number, play = 0.12): number {
+  const beyond = Math.abs(value) - play;
+  return beyond <= 0 ? 0 : unit((Math.sign(value) * beyond) / (1 - play));
+}
+
+function unit(value: number): number {
+  return Math.min(1, Math.max(-1, value));
+}

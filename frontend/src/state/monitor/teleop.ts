@@ -1,0 +1,137 @@
+import type { Connection } from "../../connection/connection";
+import type { TeleopState as Aim, TwistKind } from "../../protocol.gen";
+import { Signal } from "../signal";
+import { isStill, STILL, together, type Motion } from "./teleop-keys";
+
+export interface TeleopSettings {
+  topic: string;
+  kind: TwistKind;
+  frameId: string;
+  /** Greatest speed along each axis, m/s. */
+  linear: number;
+  /** Greatest speed of turning, rad/s. */
+  angular: number;
+  /** Velocities a second while one is held, 10 to 20. */
+  rate: number;
+  gamepad: boolean;
+}
+
+/** What moves the robot: keys and the pad add up, a gamepad goes by itself. */
+export type Source = "keys" | "pad" | "gamepad";
+
+const SAVED_KEY = "linkwright.teleop.1";
+const FIRST: TeleopSettings = {
+  topic: "/cmd_vel",
+  kind: "auto",
+  frameId: "base_link",
+  linear: 0.5,
+  angular: 1,
+  rate: 20,
+  gamepad: false,
+};
+
+/** Sends velocities while a motion is held, and zero once it is not. */
+export class TeleopState {
+  /** Settings, the aim or the motion changed. */
+  readonly changed = new Signal();
+  settings: TeleopSettings;
+  /** What the server made of the settings; null before it said. */
+  aim: Aim | null = null;
+  private readonly motions = new Map<Source, Motion>();
+  private opened = false;
+  private timer = 0;
+
+  constructor(
+    private readonly connection: Connection,
+    private readonly storage: Pick<Storage, "getItem" | "setItem">,
+  ) {
+    this.settings = { ...FIRST, ...read(storage.getItem(SAVED_KEY)) };
+    connection.on("hello", () => {
+      if (this.opened) this.announce();
+    });
+    connection.on("teleop_state", (aim) => {
+      this.aim = aim;
+      this.changed.emit();
+    });
+    connection.stateChanged.on((state) => {
+      if (state !== "connected") this.stop();
+    });
+  }
+
+  /** All that is held now. */
+  get motion(): Motion {
+    return together(this.motions.values());
+  }
+
+  setOpen(open: boolean): void {
+    if (open === this.opened) return;
+    if (!open) this.stop();
+    this.opened = open;
+    this.aim = null;
+    this.announce();
+  }
+
+  configure(change: Partial<TeleopSettings>): void {
+    const before = this.settings;
+    this.settings = { ...before, ...change };
+    this.storage.setItem(SAVED_KEY, JSON.stringify(this.settings));
+    const { topic, kind, frameId } = this.settings;
+    if (topic !== before.topic || kind !== before.kind || frameId !== before.frameId) {
+      this.stop();
+      if (this.opened) this.announce();
+    }
+    this.changed.emit();
+  }
+
+  /** A source holds a motion from now on. */
+  move(source: Source, motion: Motion): void {
+    const before = this.motion;
+    if (isStill(motion)) this.motions.delete(source);
+    else this.motions.set(source, motion);
+    const now = this.motion;
+    if (now.x === before.x && now.y === before.y && now.z === before.z && now.turn === before.turn) return;
+    if (isStill(now)) this.stop();
+    else if (this.timer === 0) this.drive();
+    this.changed.emit();
+  }
+
+  /** Lets go of everything. */
+  stop(): void {
+    const driven = this.timer !== 0;
+    clearTimeout(this.timer);
+    this.timer = 0;
+    this.motions.clear();
+    if (!driven) return;
+    this.send(STILL);
+    this.changed.emit();
+  }
+
+  /** Sends what is held, and again after the period. */
+  private drive(): void {
+    this.send(this.motion);
+    this.timer = window.setTimeout(() => this.drive(), 1000 / this.settings.rate);
+  }
+
+  private send({ x, y, z, turn }: Motion): void {
+    const { linear, angular } = this.settings;
+    this.connection.send({
+      type: "drive",
+      linear: [x * linear, y * linear, z * linear],
+      angular: [0, 0, turn * angular],
+    });
+  }
+
+  private announce(): void {
+    const { topic, kind, frameId } = this.settings;
+    const target = this.opened ? { topic, kind, frame_id: frameId } : null;
+    this.connection.send({ type: "aim_teleop", target });
+  }
+}
+
+function read(text: string | null): Partial<TeleopSettings> {
+  try {
+    return text === null ? {} : (JSON.parse(text) as Partial<TeleopSettings>);
+  } catch {
+    return {};
+  }
+}

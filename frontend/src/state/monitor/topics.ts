@@ -1,0 +1,59 @@
+import type { Connection } from "../../connection/connection";
+import type { TopicMessage, TopicRow, TopicTraffic } from "../../protocol.gen";
+import { Signal } from "../signal";
+
+/** The topics, and what is known of those that somebody watches. */
+export class TopicsState {
+  readonly listChanged = new Signal();
+  readonly figuresChanged = new Signal();
+  readonly messageCame = new Signal<TopicMessage>();
+  topics: readonly TopicRow[] = [];
+  readonly traffic = new Map<string, TopicTraffic>();
+  readonly messages = new Map<string, TopicMessage>();
+  private readonly readers = new Set<object>();
+  private measured: readonly string[] = [];
+  private opened: readonly string[] = [];
+
+  constructor(private readonly connection: Connection) {
+    connection.on("hello", () => {
+      if (this.readers.size > 0 || this.measured.length > 0) this.announce();
+    });
+    connection.on("topic_list", ({ topics }) => {
+      this.topics = topics;
+      this.listChanged.emit();
+    });
+    connection.on("topic_figures", ({ traffic }) => {
+      for (const each of traffic) this.traffic.set(each.topic, each);
+      this.figuresChanged.emit();
+    });
+    connection.on("topic_message", (message) => {
+      if (!this.opened.includes(message.topic)) return;
+      this.messages.set(message.topic, message);
+      this.messageCame.emit(message);
+    });
+  }
+
+  /** Somebody wants the list of topics to be current, or does so no longer. */
+  list(reader: object, wanted: boolean): void {
+    const before = this.readers.size;
+    if (wanted) this.readers.add(reader);
+    else this.readers.delete(reader);
+    if (before === 0 || this.readers.size === 0) this.announce();
+  }
+
+  /** Which topics are to be measured, and of which the last message is wanted. */
+  watch(measured: Iterable<string>, opened: Iterable<string>): void {
+    this.measured = [...measured];
+    this.opened = [...opened];
+    const kept = new Set([...this.measured, ...this.opened]);
+    for (const topic of this.traffic.keys()) if (!kept.has(topic)) this.traffic.delete(topic);
+    for (const topic of this.messages.keys()) if (!this.opened.includes(topic)) this.messages.delete(topic);
+    this.announce();
+    this.figuresChanged.emit();
+  }
+
+  private announce(): void {
+    const { measured, opened } = this;
+    this.connection.send({ type: "watch_topics", listed: this.readers.size > 0, measured: [...measured], opened: [...opened] });
+  }
+}

@@ -1,0 +1,98 @@
+import { Signal } from "./signal";
+import type { TextStorage } from "./storage";
+
+/** Positions of joints under a name, rad or m. */
+export interface NamedPose {
+  readonly name: string;
+  readonly positions: Readonly<Record<string, number>>;
+}
+
+const KEY = "linkwright.poses.";
+
+/** The named poses of each robot, by its name. The browser keeps them; a file takes them elsewhere. */
+export class PoseStore {
+  readonly changed = new Signal();
+
+  constructor(private readonly storage: TextStorage) {}
+
+  of(robot: string): readonly NamedPose[] {
+    try {
+      const known: unknown = JSON.parse(this.storage.getItem(KEY + robot) ?? "[]");
+      return Array.isArray(known) ? known.filter(isPose) : [];
+    } catch {
+      return [];
+    }
+  }
+
+  /** Keeps poses, each instead of one of the same name. */
+  save(robot: string, ...poses: readonly NamedPose[]): void {
+    const all = new Map([...this.of(robot), ...poses].map((pose) => [pose.name, pose]));
+    this.write(robot, [...all.values()]);
+  }
+
+  remove(robot: string, name: string): void {
+    this.write(robot, this.of(robot).filter((pose) => pose.name !== name));
+  }
+
+  private write(robot: string, poses: readonly NamedPose[]): void {
+    this.storage.setItem(KEY + robot, JSON.stringify(poses));
+    this.changed.emit();
+  }
+}
+
+/** Poses as the group states of an SRDF file, which MoveIt reads too. */
+export function srdfOf(robot: string, poses: readonly NamedPose[]): string {
+  const states = poses.map(({ name, positions }) => {
+    const joints = Object.entries(positions).map(
+      ([joint, value]) => `    <joint name="${escaped(joint)}" value="${String(value)}"/>`,
+    );
+    return [`  <group_state name="${escaped(name)}" group="all">`, ...joints, "  </group_state>"].join("\n");
+  });
+  return ['<?xml version="1.0"?>', `<robot name="${escaped(robot)}">`, ...states, "</robot>", ""].join("\n");
+}
+
+/** The group states of an SRDF file; one name for several groups makes several poses, joints of several numbers are left out. */
+export function posesOf(srdf: string): NamedPose[] {
+  const text = srdf.replace(/<!--[\s\S]*?-->/g, "");
+  const poses = new Map<string, NamedPose>();
+  for (const [, tag = "", inside = ""] of text.matchAll(/<group_state\b([^>]*)>([\s\S]*?)<\/group_state\s*>/g)) {
+    const positions: Record<string, number> = {};
+    for (const [, joint = ""] of inside.matchAll(/<joint\b([^>]*)>/g)) {
+      const [name, value] = [attribute(joint, "name"), attribute(joint, "value")];
+      if (name !== null && value !== null && value !== "" && Number.isFinite(Number(value))) positions[name] = Number(value);
+    }
+    const own = attribute(tag, "name") ?? "";
+    const name = poses.has(own) ? `${own} (${attribute(tag, "group") ?? ""})` : own;
+    if (name !== "" && Object.keys(positions).length > 0) poses.set(name, { name, positions });
+  }
+  return [...poses.values()];
+}
+
+/** Whether the joints stand as a pose says, as far as it says it. */
+export function standsAs(pose: NamedPose, positions: Readonly<Record<string, number>>): boolean {
+  return Object.entries(pose.positions).every(([name, value]) => {
+    const position = positions[name];
+    return position === undefined || Math.abs(position - value) < 1e-6;
+  });
+}
+
+function isPose(value: unknown): value is NamedPose {
+  const pose = value as Partial<NamedPose> | null;
+  return typeof pose?.name === "string" && typeof pose.positions === "object";
+}
+
+function attribute(tag: string, name: string): string | null {
+  const found = new RegExp(`(?:^|\\s)${name}\\s*=\\s*(?:"([^"]*)"|'([^']*)')`).exec(tag);
+  const value = found && (found[1] ?? found[2]);
+  return value === null || value === undefined ? null : unescaped(value).trim();
+}
+
+const ENTITIES: Readonly<Record<string, string>> = { "&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;" };
+
+function escaped(text: string): string {
+  return text.replace(/[&<>"]/g, (character) => ENTITIES[character] ?? character);
+}
+
+function unescaped(text: string): string {
+  return Object.entries(ENTITIES).reduceRight((all, [character, entity]) => all.replaceAll(entity, character), text);
+}

@@ -1,0 +1,13 @@
+/** Six significant digits, as C++ streams and printf's %g print numbers. */
+export function general(value: number): string {
+  if (!Number.isFinite(value)) return String(value);
+  if (value === 0) return Object.is(value, -0) ? "-0" : "0";
+  const exponent = Number(value.toExponential(5).split("e")[1]);
+  if (exponent >= -4 && exponent < 6) return trimmed(value.toPrecision(6));
+  const [mantissa = "", power = ""] = value.toExponential(5).split("e");
+  return `${trimmed(mantissa)}e${power.replace(/^([+-])(\d)$/, "$10$2")}`;
+}
+
+function trimmed(text: string): string {
+  return text.includes(".") ? text.replace(/\.?0+$/, "") : text;
+}

@@ -1,0 +1,60 @@
+import type { DisplayData } from "../connection/data";
+import type { DisplayDataStore } from "./display-data";
+import { Signal } from "./signal";
+
+/** Over so long contents are counted for their rate, ms. */
+const COUNTED_MS = 3000;
+
+/** How a display's content was made smaller. */
+export type Reduction =
+  | { kind: "points"; step: number }
+  | { kind: "image"; columns: number; rows: number; width: number; height: number; quality: number };
+
+export interface Reduced {
+  display: string;
+  reduction: Reduction;
+  /** How often content comes, Hz; null when there was too little to tell. */
+  rate: number | null;
+}
+
+/** What the server sends in less detail because the line to this page is slow. */
+export class SlowLine {
+  readonly changed = new Signal();
+  private readonly known = new Map<string, { reduction: Reduction; times: number[] }>();
+
+  constructor(data: DisplayDataStore, private readonly now: () => number = () => performance.now()) {
+    data.received.on((each) => this.take(each));
+    data.forgotten.on(({ display }) => {
+      if (this.known.delete(display)) this.changed.emit();
+    });
+  }
+
+  get reduced(): Reduced[] {
+    return [...this.known].map(([display, { reduction, times }]) => ({ display, reduction, rate: rateOf(times) }));
+  }
+
+  private take({ display, content }: DisplayData): void {
+    const reduction = reductionOf(content);
+    if (reduction === null) {
+      if (this.known.delete(display)) this.changed.emit();
+      return;
+    }
+    const now = this.now();
+    const times = [...(this.known.get(display)?.times ?? []), now].filter((time) => now - time < COUNTED_MS);
+    this.known.set(display, { reduction, times });
+    this.changed.emit();
+  }
+}
+
+function reductionOf(content: DisplayData["content"]): Reduction | null {
+  if (content.kind === "cloud_points") return content.step > 1 ? { kind: "points", step: content.step } : null;
+  if (content.kind !== "image_frame" || content.quality === 0) return null;
+  const { columns, rows, width, height, quality } = content;
+  return { kind: "image", columns, rows, width, height, quality };
+}
+
+function rateOf(times: readonly number[]): number | null {
+  const [first, last] = [times[0], times.at(-1)];
+  if (first === undefined || last === undefined || last - first < COUNTED_MS / 10) return null;
+  return ((times.length - 1) * 1000) / (last - first);
+}

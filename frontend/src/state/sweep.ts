@@ -1,0 +1,52 @@
+import type { JointControl } from "../protocol.gen";
+
+export type SweepOrder = "one" | "all";
+
+/** Seconds in which a joint goes from where it stands to its upper limit, to its lower one and back, at speed 1. */
+const ROUND_S = 4;
+
+/** Every joint through its range, one after another or all at once, over and over. */
+export class Sweep {
+  private readonly joints: readonly JointControl[];
+
+  /**
+   * @param controls joints that follow others are left out.
+   * @param start where the joints stand, rad or m.
+   */
+  constructor(
+    controls: readonly JointControl[],
+    private readonly start: Readonly<Record<string, number>>,
+    private readonly order: SweepOrder,
+  ) {
+    this.joints = controls.filter((joint) => joint.mimic === null);
+  }
+
+  /** Where the joints are after so many seconds at speed 1; those that do not move now stand where they did at the start. */
+  positionsAt(seconds: number): Record<string, number> {
+    const round = seconds / ROUND_S;
+    const moving = Math.floor(round) % Math.max(1, this.joints.length);
+    return Object.fromEntries(
+      this.joints.map((joint, i) => {
+        const start = this.start[joint.name] ?? joint.zero;
+        const moves = this.order === "all" || i === moving;
+        return [joint.name, moves ? roundTrip(joint, start, round % 1) : start];
+      }),
+    );
+  }
+
+  /** The joint that moves now, when they go one after another. */
+  movingAt(seconds: number): string | null {
+    if (this.order === "all") return null;
+    return this.joints[Math.floor(seconds / ROUND_S) % Math.max(1, this.joints.length)]?.name ?? null;
+  }
+}
+
+/** From `start` to the upper limit, to the lower one and back, evenly; `part` of the way, 0 to 1. */
+export function roundTrip({ lower, upper }: Pick<JointControl, "lower" | "upper">, start: number, part: number): number {
+  const range = upper - lower;
+  const gone = part * 2 * range;
+  const up = upper - start;
+  if (gone <= up) return start + gone;
+  if (gone <= up + range) return upper - (gone - up);
+  return lower + (gone - up - range);
+}

@@ -1,0 +1,114 @@
+/** A node to be laid out: its size, and what hangs from it. Any unit. */
+export interface TreeNode {
+  readonly id: string;
+  readonly width: number;
+  readonly height: number;
+  readonly children: readonly TreeNode[];
+}
+
+/** Where the middle of a node is; y grows downwards. */
+export interface PlacedNode {
+  readonly node: TreeNode;
+  readonly x: number;
+  readonly y: number;
+  readonly parent: PlacedNode | null;
+}
+
+export interface TidyTree {
+  readonly nodes: readonly PlacedNode[];
+  readonly width: number;
+  readonly height: number;
+}
+
+/** Left and right edge of a subtree, level by level, relative to its top node's middle. */
+interface Contour {
+  left: number[];
+  right: number[];
+}
+
+/**
+ * A tree with its root at the top: each level in a row, each parent over the middle of its children, subtrees side by
+ * side as close as `gap` allows on every level (after Reingold and Tilford).
+ */
+export function tidyTree(root: TreeNode, gap: number, levelGap: number): TidyTree {
+  const order = preorder(root);
+  const offsets = new Map<TreeNode, number>();
+  const contours = new Map<TreeNode, Contour>();
+  // From the leaves up; no recursion, for chains may be thousands long.
+  for (const { node } of [...order].reverse()) contours.set(node, settle(node, contours, offsets, gap));
+  const rows = rowTops(order, levelGap);
+  const whole = contours.get(root) ?? { left: [0], right: [0] };
+  const left = Math.min(...whole.left);
+  const placed = new Map<TreeNode, PlacedNode>();
+  const nodes = order.map(({ node, depth, above }) => {
+    const parent = (above && placed.get(above)) ?? null;
+    const x = parent ? parent.x + (offsets.get(node) ?? 0) : -left;
+    const { top = 0, height = 0 } = rows[depth] ?? {};
+    const place = { node, x, y: top + height / 2, parent };
+    placed.set(node, place);
+    return place;
+  });
+  const last = rows.at(-1);
+  return { nodes, width: Math.max(...whole.right) - left, height: last ? last.top + last.height : 0 };
+}
+
+/** Puts the children of a node side by side and returns the outline of the whole. */
+function settle(
+  node: TreeNode,
+  contours: ReadonlyMap<TreeNode, Contour>,
+  offsets: Map<TreeNode, number>,
+  gap: number,
+): Contour {
+  const outline: Contour = { left: [-node.width / 2], right: [node.width / 2] };
+  const [only, ...more] = node.children;
+  if (!only) return outline;
+  const below = contours.get(only);
+  if (below && more.length === 0) {
+    // Nobody else asks for the child's outline: a long chain has one that grows.
+    below.left.unshift(-node.width / 2);
+    below.right.unshift(node.width / 2);
+    return below;
+  }
+  const together: Contour = { left: [], right: [] };
+  const xs = node.children.map((child) => {
+    const contour = contours.get(child) ?? outline;
+    let x = 0;
+    contour.left.forEach((left, level) => {
+      const right = together.right[level];
+      if (right !== undefined) x = Math.max(x, right + gap - left);
+    });
+    contour.left.forEach((left, level) => (together.left[level] ??= left + x));
+    contour.right.forEach((right, level) => (together.right[level] = right + x));
+    return x;
+  });
+  const middle = ((xs[0] ?? 0) + (xs.at(-1) ?? 0)) / 2;
+  node.children.forEach((child, i) => offsets.set(child, (xs[i] ?? 0) - middle));
+  for (const left of together.left) outline.left.push(left - middle);
+  for (const right of together.right) outline.right.push(right - middle);
+  return outline;
+}
+
+function preorder(root: TreeNode): { node: TreeNode; depth: number; above: TreeNode | null }[] {
+  const order: { node: TreeNode; depth: number; above: TreeNode | null }[] = [];
+  const pending = [{ node: root, depth: 0, above: null as TreeNode | null }];
+  for (let next = pending.pop(); next; next = pending.pop()) {
+    order.push(next);
+    const { node, depth } = next;
+    for (const child of [...node.children].reverse()) pending.push({ node: child, depth: depth + 1, above: node });
+  }
+  return order;
+}
+
+function rowTops(order: readonly { node: TreeNode; depth: number }[], gap: number): { top: number; height: number }[] {
+  const rows: { top: number; height: number }[] = [];
+  for (const { node, depth } of order) {
+    const row = (rows[depth] ??= { top: 0, height: 0 });
+    row.height = Math.max(row.height, node.height);
+  }
+  let top = 0;
+  for (const row of rows) {
+    row.top = top;
+    top += row.height + gap;
+  }
+  return rows;
+}

@@ -1,0 +1,75 @@
+import type { Connection } from "../connection/connection";
+import type { Clock, TimeState } from "../protocol.gen";
+import { Signal } from "./signal";
+
+export type SyncMode = TimeState["mode"];
+
+/** The four figures of the Time panel, seconds. */
+export interface Times {
+  ros: number;
+  rosElapsed: number;
+  wall: number;
+  wallElapsed: number;
+}
+
+/** Pause, synchronization and clocks, as the server has them for all pages. */
+export class TimeControlState {
+  readonly changed = new Signal();
+  readonly clockChanged = new Signal();
+  /** Displays were cleared. */
+  readonly wasReset = new Signal();
+  paused = false;
+  mode: SyncMode = "Off";
+  source = "";
+  sources: readonly string[] = [];
+  private clock: Clock | null = null;
+  private clockAt = 0;
+  private watching = false;
+
+  constructor(
+    private readonly connection: Connection,
+    private readonly now: () => number = () => performance.now(),
+  ) {
+    connection.on("time_state", ({ paused, mode, source, sources }) => {
+      Object.assign(this, { paused, mode, source, sources });
+      this.changed.emit();
+    });
+    connection.on("clock", (clock) => {
+      this.clock = clock;
+      this.clockAt = this.now();
+      this.clockChanged.emit();
+    });
+    connection.on("time_reset", () => this.wasReset.emit());
+    // A new connection knows nothing of what this page watches.
+    connection.on("hello", () => {
+      if (this.watching) connection.send({ type: "watch_clock", watching: true });
+    });
+  }
+
+  /** What the clocks show now; null before the server told. */
+  times(): Times | null {
+    if (!this.clock) return null;
+    const { ros, ros_start, wall, wall_start, running } = this.clock;
+    const passed = (this.now() - this.clockAt) / 1000;
+    const rosNow = ros + (running ? passed : 0);
+    const wallNow = wall + passed;
+    return { ros: rosNow, rosElapsed: rosNow - ros_start, wall: wallNow, wallElapsed: wallNow - wall_start };
+  }
+
+  /** Has the server tell the clocks, or no more. */
+  watch(watching: boolean): void {
+    if (watching === this.watching) return;
+    this.watching = watching;
+    this.connection.send({ type: "watch_clock", watching });
+  }
+
+  set(part: { paused?: boolean; mode?: SyncMode; source?: string }): void {
+    const { paused, mode, source } = { paused: this.paused, mode: this.mode, source: this.source, ...part };
+    this.connection.send({ type: "set_time", paused, mode, source });
+  }
+
+  /** RViz's Reset button: displays are cleared. */
+  reset(): void {
+    this.connection.send({ type: "reset_time" });
+  }
+}

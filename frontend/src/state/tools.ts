@@ -1,0 +1,107 @@
+import type { Connection } from "../connection/connection";
+import type { PropertyValue, Tool, ToolClass } from "../protocol.gen";
+import { PropertyNode, PropertyRows } from "./properties";
+import { Signal } from "./signal";
+
+/** One tool of the toolbar. */
+export class ToolState {
+  readonly id: string;
+  readonly cls: string;
+  readonly name: string;
+  readonly supported: boolean;
+  readonly rows: PropertyRows;
+
+  constructor(tool: Tool) {
+    this.id = tool.id;
+    this.cls = tool.cls;
+    this.name = tool.name;
+    this.supported = tool.supported;
+    this.rows = new PropertyRows(tool.properties.map((property) => new PropertyNode(property)));
+  }
+}
+
+/** The tools of the file, and the one that this page has in hand. */
+export class ToolsState {
+  /** The tools are others now. */
+  readonly listChanged = new Signal();
+  /** Another tool is in hand. */
+  readonly currentChanged = new Signal<ToolState | null>();
+  readonly valueChanged = new Signal<ToolState>();
+  readonly hintChanged = new Signal<string>();
+  tools: readonly ToolState[] = [];
+  /** What can be added. */
+  classes: readonly ToolClass[] = [];
+  private inHand: ToolState | null = null;
+  private text = "";
+
+  constructor(private readonly connection: Connection) {
+    connection.on("tools", ({ tools, classes }) => this.take(tools, classes));
+    connection.on("tool_property_changed", ({ id, value }) => this.setValue(id, value));
+  }
+
+  get current(): ToolState | null {
+    return this.inHand;
+  }
+
+  /** What is in hand when no other is: the first. */
+  get default(): ToolState | null {
+    return this.tools.find((tool) => tool.supported) ?? null;
+  }
+
+  /** What the status line says the mouse does. */
+  get hint(): string {
+    return this.text;
+  }
+
+  set hint(text: string) {
+    if (text === this.text) return;
+    this.text = text;
+    this.hintChanged.emit(text);
+  }
+
+  /** Takes a tool in hand. */
+  choose(tool: ToolState | null): void {
+    if (tool === this.inHand || tool?.supported === false) return;
+    this.inHand = tool;
+    this.currentChanged.emit(tool);
+  }
+
+  /** Takes a tool in hand, or puts it away when it is. */
+  toggle(tool: ToolState): void {
+    this.choose(tool === this.inHand ? this.default : tool);
+  }
+
+  setProperty(id: string, value: PropertyValue): void {
+    this.setValue(id, value);
+    this.connection.send({ type: "set_tool_property", id, value });
+  }
+
+  add(cls: string): void {
+    this.connection.send({ type: "add_tool", cls });
+  }
+
+  remove(id: string): void {
+    this.connection.send({ type: "remove_tool", id });
+  }
+
+  private take(tools: readonly Tool[], classes: readonly ToolClass[]): void {
+    const before = this.inHand?.id;
+    this.tools = tools.map((tool) => new ToolState(tool));
+    this.classes = classes;
+    this.inHand = this.tools.find((tool) => tool.id === before && tool.supported) ?? this.default;
+    this.listChanged.emit();
+    this.currentChanged.emit(this.inHand);
+  }
+
+  private setValue(id: string, value: PropertyValue): void {
+    for (const tool of this.tools) {
+      for (const top of tool.rows.nodes) {
+        for (const node of top.walk()) {
+          if (node.id !== id || node.value === value) continue;
+          node.value = value;
+          this.valueChanged.emit(tool);
+        }
+      }
+    }
+  }
+}

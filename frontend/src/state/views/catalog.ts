@@ -1,0 +1,25 @@
+import { FpsController } from "./fps";
+import { OrbitController } from "./orbit";
+import { TopDownOrthoController } from "./top-down-ortho";
+import type { ViewController } from "./view-controller";
+import { ThirdPersonFollowerController, XYOrbitController } from "./xy-orbit";
+
+const ORBIT = new OrbitController();
+
+/** The view classes of RViz. Their properties are declared in `viewer/views.py`. */
+const CONTROLLERS: ReadonlyMap<string, ViewController> = new Map<string, ViewController>([
+  ["rviz_default_plugins/FPS", new FpsController()],
+  ["rviz_default_plugins/Orbit", ORBIT],
+  ["rviz_default_plugins/ThirdPersonFollower", new ThirdPersonFollowerController()],
+  ["rviz_default_plugins/TopDownOrtho", new TopDownOrthoController()],
+  ["rviz_default_plugins/XYOrbit", new XYOrbitController()],
+]);
+
+export function controllerOf(cls: string): ViewController {
+  return CONTROLLERS.get(cls) ?? ORBIT;
+}
+
+/** `rviz_default_plugins/XYOrbit` as people call it: XYOrbit. */
+export function shortName(cls: string): string {
+  return cls.slice(cls.lastIndexOf("/") + 1);
+}

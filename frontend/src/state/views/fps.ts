@@ -1,0 +1,106 @@
+import { toFixed, toTarget, type Camera, type Target } from "./camera";
+import { add, cross, length, subtract, type Vector } from "./vector";
+import {
+  clampPitch,
+  number,
+  RADIANS_PER_PIXEL,
+  vector,
+  vectorValues,
+  wrapYaw,
+  type Drag,
+  type Look,
+  type Motion,
+  type MouseHint,
+  type ViewController,
+  type ViewValues,
+} from "./view-controller";
+
+type FpsMotion = Extract<Motion, "rotate3d" | "moveXY" | "moveZ">;
+
+const START: Vector = [5, 5, 10];
+const METRES_PER_PIXEL = 0.01;
+const METRES_PER_PIXEL_AHEAD = 0.1;
+const METRES_PER_WHEEL_UNIT = 0.01;
+/** So much of the line of sight along z that its yaw is none: then the side that is up tells it. */
+const VERTICAL = 0.99999;
+
+/** RViz's FPS: a camera that flies; yaw turns it about z, pitch tips it down. */
+export class FpsController implements ViewController {
+  readonly followsYaw = false;
+  readonly focalColor = 0xffff00;
+
+  camera(values: ViewValues): Camera {
+    const yaw = number(values, "Yaw", 0);
+    const pitch = clampPitch(number(values, "Pitch", 0));
+    const back: Vector = [-Math.cos(yaw) * Math.cos(pitch), -Math.sin(yaw) * Math.cos(pitch), Math.sin(pitch)];
+    const right: Vector = [Math.sin(yaw), -Math.cos(yaw), 0];
+    return { position: vector(values, "Position", START), right, up: cross(back, right), back, scale: null, focal: null };
+  }
+
+  zero(): ViewValues {
+    return { ...vectorValues("Position", START), ...looking(subtract([0, 0, 0], START), [0, 0, 1]) };
+  }
+
+  drag(values: ViewValues, drag: Drag): ViewValues {
+    const { left, middle, right, dx, dy } = drag;
+    if (!left && !middle && !right) return {};
+    switch (this.motion(drag)) {
+      case "rotate3d":
+        return {
+          Yaw: wrapYaw(number(values, "Yaw", 0) - dx * RADIANS_PER_PIXEL),
+          Pitch: clampPitch(number(values, "Pitch", 0) + dy * RADIANS_PER_PIXEL),
+        };
+      case "moveXY":
+        return this.fly(values, [dx * METRES_PER_PIXEL, -dy * METRES_PER_PIXEL, 0]);
+      case "moveZ":
+        return this.fly(values, [0, 0, dy * METRES_PER_PIXEL_AHEAD]);
+    }
+  }
+
+  wheel(values: ViewValues, delta: number): ViewValues {
+    return this.fly(values, [0, 0, -delta * METRES_PER_WHEEL_UNIT]);
+  }
+
+  lookAt(values: ViewValues, point: Vector): ViewValues {
+    const { position, up } = this.camera(values);
+    return looking(subtract(point, position), up);
+  }
+
+  mimic({ camera }: Look): ViewValues {
+    const ahead = subtract([0, 0, 0], camera.back);
+    return { ...vectorValues("Position", camera.position), ...looking(ahead, camera.up) };
+  }
+
+  retarget(values: ViewValues, from: Target, to: Target): ViewValues {
+    return vectorValues("Position", toTarget(toFixed(vector(values, "Position", START), from), to));
+  }
+
+  motion({ left, middle, right, shift }: Pick<Drag, "left" | "middle" | "right" | "shift">): FpsMotion {
+    if (left && !shift) return "rotate3d";
+    if (middle || left) return "moveXY";
+    if (right) return "moveZ";
+    return shift ? "moveXY" : "rotate3d";
+  }
+
+  hint(shift: boolean): MouseHint {
+    return shift ? "flyShift" : "fly";
+  }
+
+  /** Moves along the camera's own axes: right, up, back. */
+  private fly(values: ViewValues, [x, y, z]: Vector): ViewValues {
+    const { position, right, up, back } = this.camera(values);
+    return vectorValues("Position", add(add(add(position, right, x), up, y), back, z));
+  }
+}
+
+/** Yaw and pitch of a line of sight; `up` tells the yaw of one that is vertical. */
+function looking(ahead: Vector, up: Vector): ViewValues {
+  const far = length(ahead);
+  if (far === 0) return {};
+  const down = -ahead[2] / far;
+  const [x, y] = Math.abs(down) > VERTICAL ? [up[0] * down, up[1] * down] : ahead;
+  return {
+    Yaw: wrapYaw(Math.atan2(y, x)),
+    Pitch: clampPitch(Math.asin(Math.max(-1, Math.min(1, down)))),
+  };
+}

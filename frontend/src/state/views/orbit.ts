@@ -1,0 +1,152 @@
+import { FIELD_OF_VIEW, toFixed, toTarget, type Camera, type Target } from "./camera";
+import { add, cross, distanceBetween, length, ORIGIN, scale, type Vector } from "./vector";
+import {
+  clampPitch,
+  number,
+  RADIANS_PER_PIXEL,
+  vector,
+  vectorValues,
+  wrapYaw,
+  type Drag,
+  type Look,
+  type Motion,
+  type MouseHint,
+  type ViewController,
+  type ViewValues,
+} from "./view-controller";
+
+export type OrbitMotion = Extract<Motion, "rotate3d" | "moveXY" | "moveZ" | "zoom">;
+
+const START = { distance: 10, angle: 0.785398 };
+const SMALLEST_DISTANCE = 0.001;
+const ZOOM_PER_PIXEL = 0.1;
+const ZOOM_PER_WHEEL_UNIT = 0.001;
+/** How far from the ground RViz puts an Orbit that takes over from TopDownOrtho. */
+const ABOVE_MAP = 100;
+/** So little beside the vertical that the picture keeps its side up. */
+const ASIDE = 0.0001;
+
+/**
+ * RViz's Orbit: eye = focal + distance (cos yaw cos pitch, sin yaw cos pitch, sin pitch), looking at the focal point.
+ * Constants and signs are those of rviz_default_plugins' OrbitViewController.
+ */
+export class OrbitController implements ViewController {
+  readonly followsYaw: boolean = false;
+  readonly focalColor: number = 0xffff00;
+
+  camera(values: ViewValues): Camera {
+    const { distance, yaw, pitch, focal } = orbitOf(values);
+    const sign = values["Invert Z Axis"] === true ? -1 : 1;
+    const back = direction(yaw * sign, pitch * sign);
+    const flat = Math.hypot(back[0], back[1]);
+    const right: Vector = [(-back[1] * sign) / flat, (back[0] * sign) / flat, 0];
+    return { position: add(focal, back, distance), right, up: cross(back, right), back, scale: null, focal };
+  }
+
+  zero(): ViewValues {
+    return { Distance: START.distance, Yaw: START.angle, Pitch: START.angle, ...vectorValues("Focal Point", ORIGIN) };
+  }
+
+  drag(values: ViewValues, drag: Drag): ViewValues {
+    const { distance, yaw, pitch } = orbitOf(values);
+    switch (this.motion(drag)) {
+      case "rotate3d":
+        if (!drag.left) return {};
+        return {
+          Yaw: wrapYaw(yaw - drag.dx * RADIANS_PER_PIXEL),
+          Pitch: clampPitch(pitch + drag.dy * RADIANS_PER_PIXEL),
+        };
+      case "moveXY":
+        return this.pan(values, drag);
+      case "moveZ":
+        return this.dolly(values, drag.dy * ZOOM_PER_PIXEL * (distance / 10));
+      case "zoom":
+        return { Distance: clampDistance(distance + drag.dy * ZOOM_PER_PIXEL * (distance / 10)) };
+    }
+  }
+
+  wheel(values: ViewValues, delta: number, shift: boolean): ViewValues {
+    const { distance } = orbitOf(values);
+    const amount = delta * ZOOM_PER_WHEEL_UNIT * distance;
+    return shift ? this.dolly(values, -amount) : { Distance: clampDistance(distance - amount) };
+  }
+
+  lookAt(values: ViewValues, point: Vector): ViewValues {
+    return aroundFrom(point, this.camera(values).position);
+  }
+
+  mimic({ cls, values, camera }: Look): ViewValues {
+    if (cls === "rviz_default_plugins/Orbit") {
+      const { distance, focal } = orbitOf(values);
+      return { ...aroundFrom(focal, camera.position), Distance: distance };
+    }
+    if (cls === "rviz_default_plugins/TopDownOrtho") return aboveMap(camera.position);
+    const distance = length(camera.position);
+    return aroundFrom(add(camera.position, camera.back, -distance), camera.position);
+  }
+
+  retarget(values: ViewValues, from: Target, to: Target): ViewValues {
+    const { focal, yaw } = orbitOf(values);
+    const turned = from.yaw === to.yaw ? {} : { Yaw: wrapYaw(yaw + from.yaw - to.yaw) };
+    return { ...vectorValues("Focal Point", toTarget(toFixed(focal, from), to)), ...turned };
+  }
+
+  motion({ left, middle, right, shift }: Pick<Drag, "left" | "middle" | "right" | "shift">): OrbitMotion {
+    if (left && !shift) return "rotate3d";
+    if (middle || (left && shift)) return "moveXY";
+    if (right) return shift ? "moveZ" : "zoom";
+    return shift ? "moveXY" : "rotate3d";
+  }
+
+  hint(shift: boolean): MouseHint {
+    return shift ? "orbitShift" : "orbit";
+  }
+
+  /** The focal point follows the pointer in the camera's plane. */
+  protected pan(values: ViewValues, { dx, dy, height, left, middle }: Drag): ViewValues {
+    if (!left && !middle) return {};
+    const { distance, focal } = orbitOf(values);
+    const metresPerPixel = (2 * distance * Math.tan(FIELD_OF_VIEW / 2)) / Math.max(1, height);
+    const { right, up } = this.camera(values);
+    return vectorValues("Focal Point", add(add(focal, right, -dx * metresPerPixel), up, dy * metresPerPixel));
+  }
+
+  /** Eye and focal point move along the line of sight. */
+  private dolly(values: ViewValues, amount: number): ViewValues {
+    return vectorValues("Focal Point", add(orbitOf(values).focal, this.camera(values).back, amount));
+  }
+}
+
+export function orbitOf(values: ViewValues): { distance: number; yaw: number; pitch: number; focal: Vector } {
+  return {
+    distance: clampDistance(number(values, "Distance", START.distance)),
+    yaw: number(values, "Yaw", START.angle),
+    pitch: clampPitch(number(values, "Pitch", START.angle)),
+    focal: vector(values, "Focal Point", ORIGIN),
+  };
+}
+
+/** The values that look at `focal` from `eye`. */
+export function aroundFrom(focal: Vector, eye: Vector): ViewValues {
+  const distance = clampDistance(distanceBetween(focal, eye));
+  const [x, y, z] = scale(add(eye, focal, -1), 1 / distance);
+  return {
+    Distance: distance,
+    Yaw: wrapYaw(Math.atan2(y, x)),
+    Pitch: clampPitch(Math.asin(Math.max(-1, Math.min(1, z)))),
+    ...vectorValues("Focal Point", focal),
+  };
+}
+
+/** The values that look straight down at where a TopDownOrtho was. */
+export function aboveMap([x, y]: Vector): ViewValues {
+  return aroundFrom([x, y, 0], [x, y - ASIDE, ABOVE_MAP]);
+}
+
+function clampDistance(distance: number): number {
+  return Math.max(SMALLEST_DISTANCE, distance);
+}
+
+function direction(yaw: number, pitch: number): Vector {
+  return [Math.cos(yaw) * Math.cos(pitch), Math.sin(yaw) * Math.cos(pitch), Math.sin(pitch)];
+}

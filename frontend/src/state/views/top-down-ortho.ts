@@ -1,0 +1,109 @@
+import { toFixed, toTarget, type Camera, type Target } from "./camera";
+import { turn, type Vector } from "./vector";
+import {
+  number,
+  RADIANS_PER_PIXEL,
+  type Drag,
+  type Look,
+  type Motion,
+  type MouseHint,
+  type ViewController,
+  type ViewValues,
+} from "./view-controller";
+
+type MapMotion = Extract<Motion, "rotate2d" | "moveXY" | "zoom">;
+
+const START_SCALE = 10;
+const SMALLEST_SCALE = 0.001;
+const SMALLEST_FACTOR = 0.001;
+const HEIGHT = 500;
+const ZOOM_PER_PIXEL = 0.01;
+const ZOOM_PER_WHEEL_UNIT = 0.001;
+
+/** RViz's TopDownOrtho: straight down, without perspective; x is to the right at angle 0. */
+export class TopDownOrthoController implements ViewController {
+  readonly followsYaw = false;
+  readonly focalColor = 0xffff00;
+
+  camera(values: ViewValues): Camera {
+    const scale = scaleOf(values);
+    const angle = number(values, "Angle", 0);
+    // A negative scale, which a fast drag in RViz leads to, mirrors the picture in both directions.
+    const side = Math.sign(scale);
+    return {
+      position: [number(values, "X", 0), number(values, "Y", 0), HEIGHT],
+      right: turn([side, 0, 0], angle),
+      up: turn([0, side, 0], angle),
+      back: [0, 0, 1],
+      scale: Math.abs(scale),
+      focal: null,
+    };
+  }
+
+  zero(): ViewValues {
+    return { Scale: START_SCALE, Angle: 0, X: 0, Y: 0 };
+  }
+
+  drag(values: ViewValues, drag: Drag): ViewValues {
+    const { left, middle, right, dx, dy } = drag;
+    if (!left && !middle && !right) return {};
+    const scale = scaleOf(values);
+    switch (this.motion(drag)) {
+      case "rotate2d":
+        return { Angle: number(values, "Angle", 0) + dx * RADIANS_PER_PIXEL };
+      case "moveXY":
+        return shifted(values, turn([-dx / scale, dy / scale, 0], number(values, "Angle", 0)));
+      case "zoom":
+        return { Scale: zoomed(scale, 1 - dy * ZOOM_PER_PIXEL) };
+    }
+  }
+
+  wheel(values: ViewValues, delta: number): ViewValues {
+    return { Scale: zoomed(scaleOf(values), 1 + delta * ZOOM_PER_WHEEL_UNIT) };
+  }
+
+  lookAt(_values: ViewValues, [x, y]: Vector): ViewValues {
+    return { X: x, Y: y };
+  }
+
+  mimic({ cls, values, camera }: Look): ViewValues {
+    if (cls === "rviz_default_plugins/TopDownOrtho") {
+      return { Scale: scaleOf(values), Angle: number(values, "Angle", 0), X: camera.position[0], Y: camera.position[1] };
+    }
+    const [x, y] = camera.focal ?? camera.position;
+    return { X: x, Y: y };
+  }
+
+  retarget(values: ViewValues, from: Target, to: Target): ViewValues {
+    const [x, y] = toTarget(toFixed([number(values, "X", 0), number(values, "Y", 0), 0], from), to);
+    return { X: x, Y: y };
+  }
+
+  motion({ left, middle, right, shift }: Pick<Drag, "left" | "middle" | "right" | "shift">): MapMotion {
+    if (left && !shift) return "rotate2d";
+    if (middle || left) return "moveXY";
+    if (right) return "zoom";
+    return shift ? "moveXY" : "rotate2d";
+  }
+
+  hint(shift: boolean): MouseHint {
+    return shift ? "mapShift" : "map";
+  }
+}
+
+function zoomed(scale: number, factor: number): number {
+  return clampScale(scale * Math.max(SMALLEST_FACTOR, factor));
+}
+
+function scaleOf(values: ViewValues): number {
+  return clampScale(number(values, "Scale", START_SCALE));
+}
+
+/** Keeps away from zero, on the side where it is. */
+function clampScale(scale: number): number {
+  return scale < 0 ? Math.min(-SMALLEST_SCALE, scale) : Math.max(SMALLEST_SCALE, scale);
+}
+
+function shifted(values: ViewValues, [x, y]: Vector): ViewValues {
+  return { X: number(values, "X", 0) + x, Y: number(values, "Y", 0) + y };
+}

@@ -1,0 +1,67 @@
+import { onGround, rayThrough, type Camera } from "./camera";
+import { aboveMap, aroundFrom, OrbitController, orbitOf, type OrbitMotion } from "./orbit";
+import { add, distanceBetween, length, scale, subtract, type Vector } from "./vector";
+import { vectorValues, type Drag, type Look, type MouseHint, type ViewValues } from "./view-controller";
+
+/** Part of the distance by which the camera is raised, so that the focal point is in the lower half of the picture. */
+const RAISE = 0.2;
+/** Near the horizon a pixel is many metres; the focal point goes no further in one step. */
+const LONGEST_STEP = 1;
+
+/** RViz's XYOrbit: an Orbit whose focal point moves on the ground, z = 0 of its target. */
+export class XYOrbitController extends OrbitController {
+  override readonly focalColor: number = 0x00ffff;
+
+  override camera(values: ViewValues): Camera {
+    const camera = super.camera(values);
+    return { ...camera, position: add(camera.position, camera.up, RAISE * orbitOf(values).distance) };
+  }
+
+  override wheel(values: ViewValues, delta: number): ViewValues {
+    return super.wheel(values, delta, false);
+  }
+
+  override lookAt(values: ViewValues, [x, y]: Vector): ViewValues {
+    return aroundFrom([x, y, 0], this.camera(values).position);
+  }
+
+  /** Keeps the picture where the camera is above the ground and sees some of it; otherwise begins anew, as RViz does. */
+  override mimic({ cls, camera }: Look): ViewValues {
+    if (cls === "rviz_default_plugins/TopDownOrtho") return aboveMap(camera.position);
+    const ahead = onGround({ origin: camera.position, direction: scale(camera.back, -1) });
+    const below = onGround({ origin: camera.position, direction: scale(camera.up, -1) });
+    if (!ahead || !below) return this.zero();
+    const [far, down] = [distanceBetween(camera.position, ahead), distanceBetween(camera.position, below)];
+    const distance = (far * down) / (RAISE * far + down);
+    const eye = add(camera.position, camera.up, -RAISE * distance);
+    const focal = onGround({ origin: eye, direction: scale(camera.back, -1) });
+    return focal ? aroundFrom(focal, eye) : this.zero();
+  }
+
+  override motion(drag: Pick<Drag, "left" | "middle" | "right" | "shift">): OrbitMotion {
+    const motion = super.motion(drag);
+    return motion === "moveZ" ? "zoom" : motion;
+  }
+
+  override hint(shift: boolean): MouseHint {
+    return shift ? "groundShift" : "orbit";
+  }
+
+  /** The ground follows the pointer. */
+  protected override pan(values: ViewValues, drag: Drag): ViewValues {
+    if (!drag.left && !drag.middle) return {};
+    const camera = this.camera(values);
+    const before = onGround(rayThrough(camera, drag.x, drag.y, drag));
+    const after = onGround(rayThrough(camera, drag.x + drag.dx, drag.y + drag.dy, drag));
+    if (!before || !after) return {};
+    const step = subtract(before, after);
+    const far = length(step);
+    const allowed = far > LONGEST_STEP ? scale(step, LONGEST_STEP / far) : step;
+    return vectorValues("Focal Point", add(orbitOf(values).focal, allowed));
+  }
+}
+
+/** RViz's ThirdPersonFollower: an XYOrbit that moves and turns with its target, but does not tilt with it. */
+export class ThirdPersonFollowerController extends XYOrbitController {
+  override readonly followsYaw = true;
+}

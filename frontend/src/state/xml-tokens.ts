@@ -1,0 +1,121 @@
+/** What a piece of XML text is, for its colour. */
+export type TokenKind = "text" | "tag" | "attribute" | "value" | "expression" | "comment" | "punctuation";
+
+export interface Token {
+  readonly kind: TokenKind;
+  readonly text: string;
+}
+
+/** What a line begins inside of. */
+export type LineState = "text" | "tag" | "comment" | "cdata" | "instruction" | '"' | "'";
+
+/** One way into the parts that go on over line ends, and the way out of each. */
+const ENDS: Readonly<Partial<Record<LineState, string>>> = { comment: "-->", cdata: "]]>", instruction: "?>" };
+const OPENINGS: readonly (readonly [string, LineState])[] = [
+  ["<!--", "comment"],
+  ["<![CDATA[", "cdata"],
+  ["<?", "instruction"],
+];
+const TAG_PART = /^(?:\s+|\/?>|[^\s=/>"'<]+|=|["']|.)/u;
+/** A xacro expression or substitution in a value. */
+const EXPRESSION = /\$\$?(?:\{[^}]*\}?|\([^)]*\)?)/g;
+
+/** A line of text and whole tags without surprises, as nearly all are: it ends in the text in which it began. */
+const PLAIN = /^[^<]*(?:<[^<>"'!?]*(?:"[^"<>]*"[^<>"']*)*>[^<]*)*$/;
+
+/** The tokens of one line that begins in `state`, and what the next one begins in. Together they are the line. */
+export function tokenize(line: string, state: LineState): { tokens: Token[]; state: LineState } {
+  const scanner = new Scanner(line, state);
+  scanner.run();
+  return { tokens: scanner.tokens, state: scanner.state };
+}
+
+/** What each line of a text begins inside of. */
+export function lineStates(lines: readonly string[]): LineState[] {
+  let state: LineState = "text";
+  return lines.map((line) => {
+    const before = state;
+    if (state !== "text" || !PLAIN.test(line)) state = tokenize(line, state).state;
+    return before;
+  });
+}
+
+/** Reads one line. Each of its steps takes at least a character, or changes the state. */
+class Scanner {
+  readonly tokens: Token[] = [];
+  private expectsName = false;
+
+  constructor(
+    private rest: string,
+    public state: LineState,
+  ) {}
+
+  run(): void {
+    while (this.rest !== "") {
+      const end = ENDS[this.state];
+      if (end !== undefined) this.readUntil(end);
+      else if (this.state === '"' || this.state === "'") this.readValue(this.state);
+      else if (this.state === "tag") this.readTagPart();
+      else this.readText();
+    }
+  }
+
+  private readUntil(end: string): void {
+    const at = this.rest.indexOf(end);
+    const kind = this.state === "cdata" ? "text" : "comment";
+    this.take(kind, at < 0 ? this.rest.length : at + end.length);
+    if (at >= 0) this.state = "text";
+  }
+
+  private readValue(quote: string): void {
+    const at = this.rest.indexOf(quote);
+    this.takeMixed("value", at < 0 ? this.rest.length : at);
+    if (at < 0) return;
+    this.take("value", 1);
+    this.state = "tag";
+  }
+
+  private readTagPart(): void {
+    const part = TAG_PART.exec(this.rest)?.[0] ?? this.rest;
+    if (part === '"' || part === "'") {
+      this.take("value", 1);
+      this.state = part;
+    } else if (part === "=" || part === "/" || part.endsWith(">") || /^\s/.test(part)) {
+      this.take("punctuation", part.length);
+      if (part.endsWith(">")) this.state = "text";
+    } else {
+      this.take(this.expectsName ? "tag" : "attribute", part.length);
+      this.expectsName = false;
+    }
+  }
+
+  private readText(): void {
+    const at = this.rest.indexOf("<");
+    this.takeMixed("text", at < 0 ? this.rest.length : at);
+    if (at < 0) return;
+    const opening = OPENINGS.find(([text]) => this.rest.startsWith(text));
+    if (opening) {
+      this.state = opening[1];
+      return;
+    }
+    this.take("punctuation", /^<[/!]/.test(this.rest) ? 2 : 1);
+    this.state = "tag";
+    this.expectsName = true;
+  }
+
+  /** Takes text in which expressions may stand. */
+  private takeMixed(kind: TokenKind, length: number): void {
+    let at = 0;
+    for (const match of this.rest.slice(0, length).matchAll(EXPRESSION)) {
+      this.take(kind, match.index - at);
+      this.take("expression", match[0].length);
+      at = match.index + match[0].length;
+    }
+    this.take(kind, length - at);
+  }
+
+  private take(kind: TokenKind, length: number): void {
+    if (length > 0) this.tokens.push({ kind, text: this.rest.slice(0, length) });
+    this.rest = this.rest.slice(length);
+  }
+}

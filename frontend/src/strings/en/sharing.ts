@@ -1,0 +1,37 @@
+interface ReducedImage {
+  columns: number;
+  rows: number;
+  width: number;
+  height: number;
+  quality: number;
+}
+
+/** Export, pictures, videos; and what a slow line leaves out. */
+export const sharing = {
+  slowLine: "Slow connection",
+  slowLineHint: "The robot's movements go first; the rest comes in less detail until the connection is faster.",
+  points: (step: number): string => `1 of ${step} points`,
+  image: ({ columns, rows, width, height, quality }: ReducedImage): string =>
+    `WebP ${columns} × ${rows} of ${width} × ${height}, quality ${quality}`,
+  share: "Share",
+  screenshot: "Screenshot",
+  screenshotScaled: (scale: number): string => `Screenshot, ${scale} times as large`,
+  startVideo: "Record a video",
+  stopVideo: (time: string): string => `Stop recording (${time})`,
+  recording: "Recording",
+  exportHtml: "Export HTML…",
+  exportGlb: "Export glb…",
+  exportFailed: "The robot could not be exported",
+  exported: {
+    made: (program: string): string => `Made with ${program}`,
+    joints: "Joints",
+    views: "View",
+    shown: "Shown",
+    visual: "Visual",
+    collision: "Collision",
+    start: "Reset",
+    startHint: "Joints and view as they were in the file",
+    sides: { start: "Start", front: "Front", left: "Left", top: "Top", iso: "Corner" },
+    sidebar: "Panel",
+  },
+};

@@ -1,0 +1,13 @@
+import type { TreeItem } from "./tree-item";
+
+/** The items whose name has `text` in it, with what is above them, opened, and all that is below them. */
+export function filterItems(items: readonly TreeItem[], text: string): readonly TreeItem[] {
+  const wanted = text.trim().toLowerCase();
+  return wanted === "" ? items : items.flatMap((item) => filtered(item, wanted));
+}
+
+function filtered(item: TreeItem, wanted: string): TreeItem[] {
+  if (item.name.toLowerCase().includes(wanted)) return [item];
+  const below = (item.children?.() ?? []).flatMap((child) => filtered(child, wanted));
+  return below.length > 0 ? [{ ...item, open: true, children: () => below }] : [];
+}

@@ -1,0 +1,106 @@
+import { button, h } from "../dom";
+import { icon } from "../icons";
+import type { PropertyValue } from "../protocol.gen";
+import { strings } from "../strings";
+import type { Editor } from "./editors";
+import { TextEditor } from "./text-editor";
+import type { TreeItem } from "./tree-item";
+
+/** Tells the names to choose from, at once or when they are known. */
+export type Offer = (item: TreeItem, show: (names: readonly string[]) => void) => void;
+
+/** The name of a frame or topic: any text, or one of those known from a list. */
+export class NameEditor implements Editor {
+  readonly element: HTMLElement;
+  private readonly text: TextEditor;
+  private list: HTMLElement | null = null;
+  private item: TreeItem | null = null;
+
+  constructor(
+    private readonly commit: (value: PropertyValue) => void,
+    private readonly label: string,
+    private readonly offer: Offer,
+    mayBeEmpty = false,
+  ) {
+    const parse = (text: string): string | null => text.trim() || (mayBeEmpty ? "" : null);
+    this.text = new TextEditor({ format: String, parse, commit });
+    const open = button(label, () => this.toggleList(), "drop", icon("chevron"));
+    open.tabIndex = -1;
+    this.element = h("span", { class: "frame-editor" }, this.text.element, open);
+    this.text.element.addEventListener("keydown", (event) => {
+      if (event.key === "ArrowDown") {
+        this.open();
+        event.stopPropagation();
+      }
+    });
+  }
+
+  show(item: TreeItem): void {
+    this.item = item;
+    this.text.show(item);
+  }
+
+  focus(): boolean {
+    return this.text.focus();
+  }
+
+  private toggleList(): void {
+    if (this.list) this.close();
+    else this.open();
+  }
+
+  private open(): void {
+    if (this.item) this.offer(this.item, (names) => this.openList(names));
+  }
+
+  private openList(options: readonly string[]): void {
+    const entries = options.map((name) => {
+      const entry = h("li", { role: "option", tabIndex: -1, data: { name } }, name);
+      entry.setAttribute("aria-selected", String(name === this.item?.value));
+      return entry;
+    });
+    this.close();
+    this.list = h("ul", { class: "popup", role: "listbox", aria: { label: this.label } }, ...entries);
+    if (entries.length === 0) this.list.append(h("li", { role: "option", tabIndex: -1 }, strings.tree.noNames));
+    this.list.addEventListener("click", (event) => this.choose(event.target as HTMLElement));
+    this.list.addEventListener("keydown", (event) => this.keyed(event));
+    this.list.addEventListener("focusout", (event) => {
+      if (!this.list?.contains(event.relatedTarget as Node | null)) this.close();
+    });
+    const box = this.element.getBoundingClientRect();
+    this.list.style.left = `${box.left}px`;
+    this.list.style.minWidth = `${box.width}px`;
+    document.body.append(this.list);
+    const below = window.innerHeight - box.bottom;
+    if (below < this.list.offsetHeight + 8 && box.top > below) this.list.style.bottom = `${window.innerHeight - box.top}px`;
+    else this.list.style.top = `${box.bottom}px`;
+    const current = entries.find((entry) => entry.dataset["name"] === this.item?.value);
+    (current ?? (this.list.firstElementChild as HTMLElement | null))?.focus();
+  }
+
+  private close(): void {
+    const { list } = this;
+    this.list = null;
+    list?.remove();
+  }
+
+  private choose(entry: HTMLElement): void {
+    const name = entry.dataset["name"];
+    this.close();
+    if (name !== undefined) this.commit(name);
+    this.element.closest<HTMLElement>("[role=treeitem]")?.focus();
+  }
+
+  private keyed(event: KeyboardEvent): void {
+    const entry = event.target as HTMLElement;
+    if (event.key === "ArrowDown") (entry.nextElementSibling as HTMLElement | null)?.focus();
+    else if (event.key === "ArrowUp") (entry.previousElementSibling as HTMLElement | null)?.focus();
+    else if (event.key === "Enter" || event.key === " ") this.choose(entry);
+    else if (event.key === "Escape") {
+      this.close();
+      this.text.focus();
+    } else return;
+    event.preventDefault();
+    event.stopPropagation();
+  }
+}

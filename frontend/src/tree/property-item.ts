@@ -1,0 +1,21 @@
+import type { PropertyValue } from "../protocol.gen";
+import type { PropertyNode } from "../state/properties";
+import type { TreeItem } from "./tree-item";
+
+/** The row of a property and those below it; `set` is told of edits with the property's id. */
+export function propertyItem(node: PropertyNode, set: (id: string, value: PropertyValue) => void): TreeItem {
+  return {
+    key: node.id,
+    name: node.name,
+    kind: node.kind,
+    value: node.value,
+    description: node.description,
+    options: node.options,
+    minimum: node.minimum,
+    maximum: node.maximum,
+    readOnly: node.readOnly,
+    expanded: node.expanded,
+    ...(node.children.length > 0 ? { children: () => node.children.map((child) => propertyItem(child, set)) } : {}),
+    ...(node.readOnly ? {} : { set: (value: PropertyValue) => set(node.id, value) }),
+  };
+}

@@ -1,0 +1,35 @@
+import { expect, test } from "vitest";
+import { unpackData } from "../src/connection/data";
+
+/** A frame as `pack_data` of viewer/protocol/data.py packs it. */
+function packed(header: object, arrays: readonly ArrayBufferView[]): ArrayBuffer {
+  const pad = (length: number): number => Math.ceil(length / 8) * 8;
+  const text = new TextEncoder().encode(JSON.stringify(header));
+  const start = pad(16 + text.length);
+  const bytes = new Uint8Array(start + arrays.reduce((sum, array) => sum + pad(array.byteLength), 0));
+  const view = new DataView(bytes.buffer);
+  view.setUint32(0, 2, true);
+  view.setUint32(4, text.length, true);
+  bytes.set(text, 16);
+  let at = start;
+  for (const array of arrays) {
+    bytes.set(new Uint8Array(array.buffer, array.byteOffset, array.byteLength), at);
+    at += pad(array.byteLength);
+  }
+  return bytes.buffer;
+}
+
+test("content comes with its arrays where the header has references", () => {
+  const content = { kind: "point_marks", positions: { $: ["f4", 0, 3] }, colors: [{ $: ["u1", 16, 2] }] };
+  const header = { display: "display-1", key: "", frame: "", stamp: 1.5, pose: null, content };
+  const data = unpackData(packed(header, [new Float32Array([1, 2, 3]), new Uint8Array([7, 8])]));
+  expect(data).toEqual({
+    ...header,
+    content: { kind: "point_marks", positions: new Float32Array([1, 2, 3]), colors: [new Uint8Array([7, 8])] },
+  });
+});
+
+test("what is no data of a display is not taken for it", () => {
+  expect(unpackData(new ArrayBuffer(3))).toBeNull();
+  expect(unpackData(new ArrayBuffer(64))).toBeNull();
+});

@@ -1,0 +1,265 @@
+import { Ray, Vector3 } from "three";
+import { beforeEach, describe, expect, it, vi } from "vitest";
+import { Connection } from "../src/connection/connection";
+import type { Description, JointDetails, LinkDetails, PageMessage, ServerMessage } from "../src/protocol.gen";
+import { slideTowards, turnTowards } from "../src/scene/joint-drag";
+import { AngleUnits } from "../src/state/angle-unit";
+import { DescriptionModel } from "../src/state/description-model";
+import { layOut } from "../src/state/diagram-layout";
+import { InspectState } from "../src/state/inspect";
+import { cells, sorted } from "../src/state/joint-table";
+import { flattened, LinkTreeState } from "../src/state/link-tree";
+import { general } from "../src/state/number-text";
+import { Session } from "../src/state/session";
+import { browserStorage } from "../src/state/storage";
+import { display, robot, tree } from "./messages";
+
+const NOWHERE = { expanded: null, origin: null, calls: [] };
+
+function link(name: string, parent_joint: string | null = null, lines: readonly [number, number] | null = null): LinkDetails {
+  const origin = lines && { file: "m.xacro", line: lines[0], column: 1, end_line: lines[1], end_column: 9 };
+  return { name, frame: name, parent_joint, inertia: null, written: { ...NOWHERE, origin } };
+}
+
+function joint(name: string, parent: string, child: string, part: Partial<JointDetails> = {}): JointDetails {
+  return {
+    name,
+    kind: "revolute",
+    parent,
+    child,
+    xyz: [0, 0, 0.5],
+    rpy: [0, -0, 1.5707963267948966],
+    quaternion: [0, 0, 0, 1],
+    axis: [0, 0, 1],
+    lower: -1,
+    upper: 2,
+    velocity: 3,
+    effort: 4,
+    damping: null,
+    friction: null,
+    soft_lower: null,
+    soft_upper: null,
+    k_position: null,
+    k_velocity: null,
+    mimic: null,
+    written: NOWHERE,
+    ...part,
+  };
+}
+
+function description(part: Partial<Description> = {}): Description {
+  return {
+    type: "description",
+    display: "d1",
+    revision: 1,
+    name: "arm",
+    root: "base",
+    links: [link("base"), link("left", "turn", [3, 6]), link("right", "lift", [3, 6]), link("tip", "fix")],
+    joints: [joint("turn", "base", "left"), joint("lift", "base", "right", { kind: "prismatic" }), joint("fix", "left", "tip", { kind: "fixed" })],
+    files: ["m.xacro"],
+    ...part,
+  };
+}
+
+let sent: PageMessage[];
+let session: Session;
+
+beforeEach(() => {
+  sent = [];
+  vi.stubGlobal("window", { setTimeout });
+  const connection = new Connection("ws://localhost/ws");
+  vi.spyOn(connection, "send").mockImplementation((message) => void sent.push(message));
+  session = new Session(connection);
+});
+
+function receive(...messages: ServerMessage[]): void {
+  for (const message of messages) session.connection.message.emit(message);
+}
+
+function changed(revision: number, links: string[] = [], joints: string[] = []): ServerMessage {
+  return { type: "description_changed", display: "d1", revision, links, joints };
+}
+
+describe("the description", () => {
+  it("is asked for while somebody holds it, and not again while it is current", () => {
+    receive(changed(1));
+    expect(sent).toEqual([]);
+    const release = session.description.hold();
+    expect(sent).toEqual([{ type: "ask_description", display: "d1" }]);
+    receive(description());
+    expect(session.description.of("d1")?.links.size).toBe(4);
+    release();
+    session.description.hold()();
+    expect(sent).toHaveLength(1);
+    receive(changed(2));
+    expect(sent).toHaveLength(1);
+    session.description.hold();
+    expect(sent).toHaveLength(2);
+    receive(changed(3));
+    expect(sent).toHaveLength(3);
+  });
+
+  it("tells what an edit changed", () => {
+    const edits: unknown[] = [];
+    session.description.edited.on((change) => edits.push(change));
+    receive(changed(1), changed(2, ["left"], ["turn"]));
+    expect(edits).toEqual([{ display: "d1", links: ["left"], joints: ["turn"] }]);
+  });
+
+  it("asks for a text once, and anew when it may be another", () => {
+    const { description: texts } = session;
+    expect(texts.text("d1", "")).toBeUndefined();
+    expect(texts.text("d1", "")).toBeUndefined();
+    expect(sent).toHaveLength(1);
+    receive({ type: "description_text", display: "d1", revision: 1, file: "", text: "<robot/>" });
+    expect(texts.text("d1", "")).toBe("<robot/>");
+    receive({ type: "diagnostics", items: [] });
+    expect(texts.text("d1", "")).toBeUndefined();
+    expect(sent).toHaveLength(2);
+  });
+});
+
+describe("the element that panels are about", () => {
+  beforeEach(() => {
+    const scene = robot("d1", "base", "left");
+    scene.links[1]!.parent_joint = "turn";
+    receive(tree(display({ id: "d1", cls: "rviz_default_plugins/RobotModel" })), scene);
+  });
+
+  it("is a joint until another link is selected; the scene shows the link that it moves", () => {
+    const { focus, selection } = session;
+    focus.select({ display: "d1", kind: "joint", name: "turn" });
+    expect(selection.selected?.link.name).toBe("left");
+    expect(focus.current).toEqual({ display: "d1", kind: "joint", name: "turn" });
+    focus.select({ display: "d1", kind: "link", name: "left" });
+    expect(focus.current?.kind).toBe("link");
+    focus.select({ display: "d1", kind: "joint", name: "turn" });
+    selection.select({ display: "d1", link: session.robots.get("d1")!.links[0]! });
+    expect(focus.current).toEqual({ display: "d1", kind: "link", name: "base" });
+    selection.select(null);
+    expect(focus.current).toBeNull();
+  });
+});
+
+describe("the model", () => {
+  const model = new DescriptionModel(description());
+
+  it("is a tree with depths and places", () => {
+    expect(model.jointsBelow("base").map((each) => each.name)).toEqual(["lift", "turn"]);
+    expect([model.depthOf("base"), model.depthOf("tip"), model.deepest]).toEqual([0, 2, 2]);
+    expect(model.elementsAt("m.xacro", 4).map((each) => each.name)).toEqual(["left", "right"]);
+    expect(model.elementsAt("m.xacro", 7)).toEqual([]);
+    expect(model.elementsAt("other", 4)).toEqual([]);
+  });
+
+  it("is listed as folds and search want it", () => {
+    const state = new LinkTreeState();
+    const names = (search = ""): string[] => flattened(model, state, search).map((row) => row.link.name);
+    expect(names()).toEqual(["base", "right", "left", "tip"]);
+    state.toggle("left");
+    expect(names()).toEqual(["base", "right", "left"]);
+    expect(names("FIX")).toEqual(["base", "left", "tip"]);
+    expect(names("no such")).toEqual([]);
+    state.open(model, "tip");
+    expect(names()).toHaveLength(4);
+  });
+
+  it("is drawn as urdf_to_graphviz draws it", () => {
+    const { nodes } = layOut(model, true, (text) => text.length * 7);
+    const of = (name: string): (typeof nodes)[number] => nodes.find((node) => node.element.name === name)!;
+    expect(nodes).toHaveLength(7);
+    expect(of("turn").origin).toEqual(["xyz: 0 0 0.5", "rpy: 0 -0 1.5708"]);
+    expect(of("left").above).toBe(of("turn"));
+    expect(of("turn").above).toBe(of("base"));
+    expect(of("lift").x).toBeLessThan(of("turn").x);
+    expect(of("base").y).toBeLessThan(of("turn").y);
+    expect(of("turn").y).toBeLessThan(of("left").y);
+  });
+
+  it("has two joints above a link only as far as urdfdom has", () => {
+    const both = description({ joints: [joint("a", "base", "left"), joint("turn", "base", "left")] });
+    expect(new DescriptionModel(both).jointsBelow("base").map((each) => each.name)).toEqual(["turn"]);
+  });
+});
+
+describe("numbers", () => {
+  it("are written as C++ streams write them", () => {
+    const values = [0, -0, 1, 0.1, -0.095, 1.5707963267948966, 123456, 1234567, 0.0001, 0.00001234, 1e-20, 1e21, 0.30000000000000004];
+    expect(values.map(general)).toEqual(
+      "0 -0 1 0.1 -0.095 1.5708 123456 1.23457e+06 0.0001 1.234e-05 1e-20 1e+21 0.3".split(" "),
+    );
+  });
+});
+
+describe("the joint table", () => {
+  const words = {
+    kinds: { revolute: "revolute", continuous: "", prismatic: "", fixed: "", floating: "", planar: "" },
+    table: { damping: (value: string) => `d ${value}`, friction: (value: string) => `f ${value}` },
+  };
+
+  it("has units, in degrees where the user wants them", () => {
+    const angles = new AngleUnits(browserStorage());
+    const one = joint("a", "b", "c", { damping: 0.5, mimic: { joint: "m", multiplier: -1, offset: Math.PI / 2 } });
+    expect(cells(one, angles, words)).toMatchObject({ lower: "-1 rad", effort: "4 N m", dynamics: "d 0.5", mimic: "−m + 1.571 rad" });
+    angles.current = "deg";
+    expect(cells(one, angles, words)).toMatchObject({ upper: "114.6 deg", velocity: "171.9 deg/s", mimic: "−m + 90 deg" });
+    expect(cells({ ...one, kind: "prismatic" }, angles, words)).toMatchObject({ lower: "-1 m", effort: "4 N" });
+  });
+
+  it("sorts by number or name, and puts what has none last", () => {
+    const joints = [joint("j10", "b", "c", { upper: null }), joint("j2", "b", "c", { upper: 1 }), joint("j1", "b", "c", { upper: 10 })];
+    const names = (column: "name" | "upper", down = false): string[] => sorted(joints, column, down).map((each) => each.name);
+    expect(names("name")).toEqual(["j1", "j2", "j10"]);
+    expect(names("upper")).toEqual(["j2", "j1", "j10"]);
+    expect(names("upper", true)).toEqual(["j1", "j2", "j10"]);
+  });
+});
+
+describe("what is to be seen of the invisible", () => {
+  it("is remembered, and rubbish is no memory", () => {
+    const storage = browserStorage();
+    const state = new InspectState(storage);
+    expect(state.any).toBe(false);
+    state.set("joints", true);
+    state.scale = 2;
+    const again = new InspectState(storage);
+    expect([again.current.joints, again.current.boxes, again.scale]).toEqual([true, false, 2]);
+    storage.setItem("linkwright.inspect", '{"joints": 5, "scale": -1');
+    expect(new InspectState(storage).any).toBe(false);
+  });
+});
+
+describe("dragging a link", () => {
+  const towards = (from: Vector3, to: Vector3): Ray => new Ray(from, to.clone().sub(from).normalize());
+  const z = new Vector3(0, 0, 1);
+
+  it("turns it so that the point that was grabbed stays under the pointer", () => {
+    const eye = new Vector3(0, 0, 5);
+    const grabbed = new Vector3(1, 0, 0);
+    for (const angle of [0.3, -0.7, 1.2]) {
+      const ray = towards(eye, new Vector3(Math.cos(angle), Math.sin(angle), 0));
+      expect(turnTowards(ray, z, new Vector3(), grabbed, 0)).toBeCloseTo(angle, 4);
+    }
+  });
+
+  it("goes on over whole turns, and works where the circle is seen from its edge", () => {
+    const eye = new Vector3(0, 0, 5);
+    let angle = 0;
+    for (let i = 1; i <= 60; i++) {
+      const at = i * 0.2;
+      angle = turnTowards(towards(eye, new Vector3(Math.cos(at), Math.sin(at), 0)), z, new Vector3(), new Vector3(1, 0, 0), angle);
+    }
+    expect(angle).toBeCloseTo(12, 3);
+    const side = new Vector3(0, -5, 0);
+    const near = turnTowards(towards(side, new Vector3(0.5, 0, 0)), z, new Vector3(), new Vector3(0, -1, 0), 0);
+    expect(near).toBeGreaterThan(0.3);
+    expect(near).toBeLessThan(0.7);
+  });
+
+  it("slides it along its axis, and stays where the pointer says nothing about it", () => {
+    const x = new Vector3(1, 0, 0);
+    const ray = towards(new Vector3(0.4, -3, 2), new Vector3(0.4, 0, 0));
+    expect(slideTowards(ray, x, new Vector3(0.1, 0, 0))).toBeCloseTo(0.3, 6);
+    expect(slideTowards(new Ray(new Vector3(-5, 0, 0.1), x), x, new Vector3())).toBe(0);
+  });
+});

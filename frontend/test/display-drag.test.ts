@@ -1,0 +1,88 @@
+import { describe, expect, it } from "vitest";
+import { dropPart, dropPlace, type DropPart } from "../src/panels/display-drag";
+import { DisplaysState } from "../src/state/displays";
+import { display, tree } from "./messages";
+
+const GROUP = "rviz_common/Group";
+
+/** grid, sensors(laser, deep(cloud)), tf */
+function displays(): DisplaysState {
+  const state = new DisplaysState();
+  state.setTree(
+    tree(
+      display({ id: "grid" }),
+      display({ id: "sensors", cls: GROUP }),
+      display({ id: "laser", group: "sensors" }),
+      display({ id: "deep", cls: GROUP, group: "sensors" }),
+      display({ id: "cloud", group: "deep" }),
+      display({ id: "tf" }),
+    ),
+  );
+  return state;
+}
+
+function drop(dragged: string, target: string, part: DropPart): unknown {
+  const state = displays();
+  const [from, to] = [state.find(dragged), state.find(target)];
+  if (!from || !to) throw new Error("no such display");
+  return dropPlace(state.displays, from, to, part);
+}
+
+describe("a display that is dropped", () => {
+  it("goes in front of another, among its siblings", () => {
+    expect(drop("tf", "grid", "before")).toEqual({ group: null, before: "grid" });
+    expect(drop("tf", "laser", "before")).toEqual({ group: "sensors", before: "laser" });
+  });
+
+  it("goes behind another, which is in front of the next sibling", () => {
+    expect(drop("tf", "grid", "after")).toEqual({ group: null, before: "sensors" });
+    expect(drop("tf", "laser", "after")).toEqual({ group: "sensors", before: "deep" });
+    expect(drop("grid", "tf", "after")).toEqual({ group: null, before: null });
+    expect(drop("sensors", "grid", "after")).toEqual({ group: null, before: "tf" });
+  });
+
+  it("goes into a group, before what is there", () => {
+    expect(drop("grid", "sensors", "inside")).toEqual({ group: "sensors", before: "laser" });
+    expect(drop("laser", "sensors", "inside")).toEqual({ group: "sensors", before: "deep" });
+    expect(drop("tf", "grid", "inside")).toBeNull();
+  });
+
+  it("never goes into itself", () => {
+    for (const part of ["before", "inside", "after"] as const) {
+      expect(drop("sensors", "sensors", part)).toBeNull();
+      expect(drop("sensors", "laser", part)).toBeNull();
+      expect(drop("sensors", "cloud", part)).toBeNull();
+    }
+  });
+
+  it("goes where the pointer is on the row", () => {
+    expect(dropPart(2, 20, false)).toBe("before");
+    expect(dropPart(12, 20, false)).toBe("after");
+    expect(dropPart(10, 20, true)).toBe("inside");
+    expect(dropPart(2, 20, true)).toBe("before");
+    expect(dropPart(19, 20, true)).toBe("after");
+  });
+});
+
+describe("groups", () => {
+  it("switch off what they hold", () => {
+    const state = displays();
+    const told: string[] = [];
+    state.enabledChanged.on((each) => told.push(each.id));
+    state.setValue("sensors/Enabled", false, null);
+    expect(told).toEqual(["sensors", "laser", "deep", "cloud"]);
+    expect(state.displays.filter((each) => !each.enabled).map((each) => each.id)).toEqual(told);
+    expect(state.find("laser")?.checked).toBe(true);
+    told.length = 0;
+    state.setValue("deep/Enabled", false, null);
+    expect(told).toEqual(["deep"]);
+    state.setValue("sensors/Enabled", true, null);
+    expect(told).toEqual(["deep", "sensors", "laser"]);
+  });
+
+  it("hold displays in their order", () => {
+    const state = displays();
+    expect(state.within(null).map((each) => each.id)).toEqual(["grid", "sensors", "tf"]);
+    expect(state.within(state.find("sensors") ?? null).map((each) => each.id)).toEqual(["laser", "deep"]);
+  });
+});

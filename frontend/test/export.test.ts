@@ -1,0 +1,93 @@
+import { describe, expect, it } from "vitest";
+import type { FrameTable, JointControl, JointScene, LinkScene, RobotScene } from "../src/protocol.gen";
+import { jointPose, MovingRobot } from "../src/export/moving-robot";
+import { RecordedFiles } from "../src/export/recorded-files";
+import { timeText } from "../src/scene/video";
+
+const HALF = Math.SQRT1_2;
+
+function joint(name: string, kind: JointScene["kind"], parent: string, child: string, more: Partial<JointScene> = {}): JointScene {
+  return { name, kind, parent, child, position: [0, 0, 0], quaternion: [0, 0, 0, 1], axis: [0, 0, 1], lower: null, upper: null, ...more };
+}
+
+function link(name: string): LinkScene {
+  return { name, frame: name, parent_joint: null, visuals: [], collisions: [], place: null, inertia: null };
+}
+
+function control(name: string, mimic: string | null = null, multiplier = 1, offset = 0): JointControl {
+  return { name, kind: "revolute", lower: -4, upper: 4, zero: 0, mimic, multiplier, offset };
+}
+
+const ROBOT: RobotScene = {
+  type: "robot_scene",
+  display: "d",
+  revision: 1,
+  name: "arm",
+  links: ["base", "arm", "hand"].map(link),
+  joints: [
+    joint("turn", "revolute", "base", "arm", { position: [1, 0, 0] }),
+    joint("slide", "prismatic", "arm", "hand", { axis: [2, 0, 0] }),
+  ],
+};
+const TABLE: FrameTable = { type: "frame_table", revision: 3, names: ["hand", "arm", "base", "cup"], parents: [1, 2, -1, 0] };
+/** Everything as it stands at zero; the cup is half a metre above the hand. */
+const AT_ZERO = { revision: 3, stamp: 0, ages: new Float32Array(4), poses: rows([1, 0, 0], [1, 0, 0], [0, 0, 0], [1, 0, 0.5]) };
+
+function rows(...positions: number[][]): Float32Array {
+  return new Float32Array(positions.flatMap((position) => [...position, 0, 0, 0, 1]));
+}
+
+function moved(robot: MovingRobot, positions: Record<string, number>, name: string): number[] {
+  const row = TABLE.names.indexOf(name);
+  return [...robot.transforms(positions).poses.subarray(row * 7, row * 7 + 7)].map((each) => Math.round(each * 1e5) / 1e5 + 0);
+}
+
+describe("the robot of an exported page", () => {
+  const controls = [control("turn"), control("slide", "turn", 0.5, 0.25)];
+  const robot = new MovingRobot(TABLE, AT_ZERO, ROBOT, controls);
+
+  it("turns and slides, and what hangs on it goes along", () => {
+    const quarter = { turn: Math.PI / 2 };
+    const out = 0.5 * (Math.PI / 2) + 0.25;
+    const place = [1, out, 0, 0, 0, HALF, HALF].map((each) => Math.round(each * 1e5) / 1e5);
+    expect(moved(robot, quarter, "hand")).toEqual(place);
+    expect(moved(robot, quarter, "cup").slice(0, 3)).toEqual([1, place[1], 0.5]);
+    expect(moved(robot, quarter, "base")).toEqual([0, 0, 0, 0, 0, 0, 1]);
+  });
+
+  it("keeps the fixed frame where it is, though it is not the root", () => {
+    const fixed = { ...AT_ZERO, poses: rows([0, 0, 0], [0, 0, 0], [-1, 0, 0], [0, 0, 0.5]) };
+    const turned = new MovingRobot(TABLE, fixed, ROBOT, [control("turn")]).transforms({ turn: Math.PI });
+    expect([...turned.poses.subarray(0, 3)].map(Math.round)).toEqual([0, 0, 0]);
+    expect(turned.poses[14]).toBeCloseTo(1);
+  });
+
+  it("follows a chain of mimics, and a circle of them not forever", () => {
+    const chain = new MovingRobot(TABLE, AT_ZERO, ROBOT, [control("a"), control("b", "a", 2, 1), control("c", "b", -1, 0.5)]);
+    expect(chain.position("c", { a: 3 })).toBeCloseTo(-6.5);
+    const circle = new MovingRobot(TABLE, AT_ZERO, ROBOT, [control("a", "b"), control("b", "a")]);
+    expect(circle.position("a", {})).toBe(0);
+  });
+
+  it("leaves joints without an axis, and fixed ones, where they are", () => {
+    expect(jointPose(joint("j", "revolute", "a", "b", { axis: [0, 0, 0], position: [1, 2, 3] }), 1).elements[12]).toBe(1);
+    expect(jointPose(joint("j", "fixed", "a", "b"), 1).elements[0]).toBe(1);
+  });
+});
+
+describe("the files of an exported page", () => {
+  const files = new RecordedFiles({ "/mesh/arm-1/meshes/a.stl": btoa("solid a") });
+
+  it("are found wherever the page was opened from", async () => {
+    for (const url of ["/mesh/arm-1/meshes/a.stl?v=1", "file:///C:/mesh/arm-1/meshes/a.stl", "file:///mesh/arm-1/meshes/a.stl"]) {
+      const response = await files.fetch(url);
+      expect(await response.text()).toBe("solid a");
+    }
+    expect((await files.fetch("/mesh/arm-1/meshes/b.stl")).status).toBe(404);
+    expect(files.address("blob:something")).toBe("blob:something");
+  });
+});
+
+it("tells the time of a recording", () => {
+  expect([0, 9, 60, 3725].map(timeText)).toEqual(["0:00", "0:09", "1:00", "62:05"]);
+});

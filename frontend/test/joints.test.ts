@@ -1,0 +1,121 @@
+import { beforeEach, describe, expect, it, vi } from "vitest";
+import { Connection } from "../src/connection/connection";
+import type { JointControl, PageMessage } from "../src/protocol.gen";
+import { JointsState } from "../src/state/joints";
+import { PoseStore, posesOf, srdfOf, standsAs } from "../src/state/named-poses";
+import { browserStorage } from "../src/state/storage";
+import { roundTrip, Sweep } from "../src/state/sweep";
+
+function control(name: string, part: Partial<JointControl> = {}): JointControl {
+  return { name, kind: "revolute", lower: -1, upper: 2, zero: 0, mimic: null, multiplier: 1, offset: 0, ...part };
+}
+
+describe("moving joints", () => {
+  let sent: PageMessage[];
+  let frames: (() => void)[];
+  let joints: JointsState;
+
+  beforeEach(() => {
+    sent = [];
+    frames = [];
+    const connection = new Connection("ws://localhost/ws");
+    vi.spyOn(connection, "send").mockImplementation((message) => void sent.push(message));
+    joints = new JointsState(connection, (work) => frames.push(work));
+    const controls = [control("grip"), control("claw", { mimic: "grip", multiplier: -2, offset: 0.5 })];
+    connection.message.emit({ type: "joints", controls: [...controls, control("tip", { mimic: "claw" })] });
+  });
+
+  function frame(): void {
+    for (const work of frames.splice(0)) work();
+  }
+
+  it("tells the first move at once and the rest of a frame as one", () => {
+    for (const position of [0.1, 0.2, 0.3]) joints.move({ grip: position });
+    joints.move({ lift: 1 });
+    expect(sent).toEqual([{ type: "set_joint", name: "grip", position: 0.1 }]);
+    frame();
+    expect(sent[1]).toEqual({ type: "set_joints", positions: { grip: 0.3, lift: 1 } });
+    frame();
+    frame();
+    expect(sent).toHaveLength(2);
+    joints.move({ grip: 0.4 });
+    expect(sent).toHaveLength(3);
+  });
+
+  it("finds the joint that a following one is moved by, and where it must go", () => {
+    expect(joints.leader("grip", 0.7)?.position).toBe(0.7);
+    const found = joints.leader("tip", 1.5);
+    expect(found?.control.name).toBe("grip");
+    expect(found?.position).toBe(-0.5);
+    expect(joints.leader("fixed", 0)).toBeNull();
+  });
+});
+
+describe("named poses", () => {
+  const home = { name: "home", positions: { a: 0.5, "b<1>": -1e-7 } };
+
+  it("are kept for each robot, one of a name", () => {
+    const storage = browserStorage();
+    const store = new PoseStore(storage);
+    store.save("mbot", home, { name: "up", positions: { a: 1 } });
+    store.save("mbot", { name: "home", positions: { a: 2 } });
+    expect(new PoseStore(storage).of("mbot").map((pose) => [pose.name, pose.positions["a"]])).toEqual([
+      ["home", 2],
+      ["up", 1],
+    ]);
+    expect(store.of("other")).toEqual([]);
+    store.remove("mbot", "home");
+    expect(store.of("mbot").map((pose) => pose.name)).toEqual(["up"]);
+  });
+
+  it("go into an SRDF file and come back", () => {
+    const poses = [home, { name: 'say "hi" & go', positions: { a: 3 } }];
+    expect(posesOf(srdfOf("r&d", poses))).toEqual(poses);
+  });
+
+  it("are read from a file of MoveIt", () => {
+    const text = `<robot name="panda">
+      <!-- <group_state name="old" group="arm"><joint name="x" value="1"/></group_state> -->
+      <group name="arm"><joint name="x"/></group>
+      <group_state name="ready" group="arm">
+        <joint name='x' value='1.5' /><joint value=" -2 " name="y"/><joint name="base" value="0 0 0"/>
+      </group_state>
+      <group_state group="hand" name="ready"><joint name="z" value="0"></joint></group_state>
+    </robot>`;
+    expect(posesOf(text)).toEqual([
+      { name: "ready", positions: { x: 1.5, y: -2 } },
+      { name: "ready (hand)", positions: { z: 0 } },
+    ]);
+    expect(posesOf("no XML at all")).toEqual([]);
+  });
+
+  it("know whether the robot stands so", () => {
+    expect(standsAs(home, { a: 0.5, "b<1>": 0, c: 9 })).toBe(true);
+    expect(standsAs(home, { a: 0.51 })).toBe(false);
+  });
+});
+
+describe("a sweep", () => {
+  it("goes from where a joint stands to both limits and back", () => {
+    const range = { lower: -1, upper: 2 };
+    expect([0, 1 / 3, 0.5, 5 / 6, 1].map((part) => roundTrip(range, 0, part))).toEqual([0, 2, 1, -1, 0]);
+    for (let i = 0; i <= 100; i++) {
+      const position = roundTrip(range, 1.5, i / 100);
+      expect(position).toBeGreaterThanOrEqual(-1);
+      expect(position).toBeLessThanOrEqual(2);
+    }
+  });
+
+  it("moves joints one after another, each back to where it stood, or all at once", () => {
+    const controls = [control("a"), control("b", { lower: 0, upper: 1 }), control("c", { mimic: "a" })];
+    const start = { a: 0.5, b: 0.25 };
+    const one = new Sweep(controls, start, "one");
+    expect(one.positionsAt(1)).toEqual({ a: 2, b: 0.25 });
+    expect(one.movingAt(5)).toBe("b");
+    expect(one.positionsAt(5)).toEqual({ a: 0.5, b: 0.75 });
+    expect(one.movingAt(8)).toBe("a");
+    const all = new Sweep(controls, start, "all").positionsAt(1);
+    expect(all).toEqual({ a: 2, b: 0.75 });
+    expect(new Sweep([], {}, "one").positionsAt(3)).toEqual({});
+  });
+});

@@ -1,0 +1,207 @@
+import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
+import { Connection } from "../src/connection/connection";
+import type { LogLine, PageMessage } from "../src/protocol.gen";
+import { bandwidthText, rateText } from "../src/state/monitor/figure-text";
+import { levelOf, lineText, LogState, MOST_LINES } from "../src/state/monitor/log";
+import { ParametersState } from "../src/state/monitor/parameters";
+import { parameterText, parameterValues } from "../src/state/monitor/parameter-text";
+import { TeleopState } from "../src/state/monitor/teleop";
+import { motionOfKey, STILL, stick, together } from "../src/state/monitor/teleop-keys";
+import { TopicsState } from "../src/state/monitor/topics";
+
+let sent: PageMessage[];
+let connection: Connection;
+let texts: Map<string, string>;
+const storage = {
+  getItem: (key: string) => texts.get(key) ?? null,
+  setItem: (key: string, text: string) => void texts.set(key, text),
+};
+
+beforeEach(() => {
+  sent = [];
+  texts = new Map();
+  vi.useFakeTimers();
+  vi.stubGlobal("window", { setTimeout });
+  connection = new Connection("ws://localhost/ws");
+  vi.spyOn(connection, "send").mockImplementation((message) => void sent.push(message));
+});
+
+afterEach(() => {
+  vi.useRealTimers();
+  vi.unstubAllGlobals();
+});
+
+describe("topics", () => {
+  it("are listed while somebody reads the list", () => {
+    const topics = new TopicsState(connection);
+    const [one, two] = [{}, {}];
+    topics.list(one, true);
+    topics.list(two, true);
+    topics.list(one, false);
+    expect(sent).toEqual([{ type: "watch_topics", listed: true, measured: [], opened: [] }]);
+    topics.list(two, false);
+    expect(sent.at(-1)).toMatchObject({ listed: false });
+  });
+
+  it("are forgotten when they are measured no more", () => {
+    const topics = new TopicsState(connection);
+    topics.watch(["/a", "/b"], []);
+    const traffic = ["/a", "/b"].map((topic) => ({ topic, rate: 1, bandwidth: 2, error: null }));
+    connection.message.emit({ type: "topic_figures", traffic });
+    topics.watch(["/b"], []);
+    expect([...topics.traffic.keys()]).toEqual(["/b"]);
+  });
+
+  it("have figures that read well", () => {
+    expect([12, 1500, 45_678, 2.5e6, 3e9].map(bandwidthText)).toEqual(["12 B/s", "1.50 KB/s", "45.7 KB/s", "2.50 MB/s", "3.00 GB/s"]);
+    expect([0.2, 29.97, 1000.4].map(rateText)).toEqual(["0.20", "30.0", "1000"]);
+  });
+});
+
+describe("texts of parameters", () => {
+  it("show lists in brackets", () => {
+    expect(parameterText("double", ["1.5"])).toBe("1.5");
+    expect(parameterText("integer_array", ["1", "2"])).toBe("[1, 2]");
+    expect(parameterText("string_array", ["a", 'b"c'])).toBe('["a", "b\\"c"]');
+    expect(parameterText("bool_array", [])).toBe("[]");
+  });
+
+  it("are read back", () => {
+    expect(parameterValues("string", "[a, b]")).toEqual(["[a, b]"]);
+    expect(parameterValues("integer_array", "[1, 2]")).toEqual(["1", "2"]);
+    expect(parameterValues("double_array", "1.5, 2")).toEqual(["1.5", "2"]);
+    expect(parameterValues("string_array", '["a, b", "c"]')).toEqual(["a, b", "c"]);
+    expect(parameterValues("string_array", "a, b c")).toEqual(["a", "b c"]);
+    expect(parameterValues("string_array", "[]")).toEqual([]);
+    expect(parameterValues("string_array", '["a, b]')).toBeNull();
+  });
+
+  it("survive the way there and back", () => {
+    const values = ["", "a,b", 'say "x"', "[1]", "ü"];
+    expect(parameterValues("string_array", parameterText("string_array", values))).toEqual(values);
+  });
+});
+
+describe("parameters", () => {
+  it("are those of the node that is chosen", () => {
+    const parameters = new ParametersState(connection);
+    parameters.watch(true);
+    parameters.choose("/a");
+    connection.message.emit({ type: "node_parameters", node: "/b", parameters: [], error: null });
+    expect(parameters.parameters).toBeNull();
+    connection.message.emit({ type: "node_parameters", node: "/a", parameters: [], error: null });
+    expect(parameters.parameters?.node).toBe("/a");
+    parameters.watch(false);
+    expect(sent.at(-1)).toEqual({ type: "watch_parameters", listed: false, node: null });
+  });
+});
+
+function line(part: Partial<LogLine>): LogLine {
+  return { level: 20, node: "talker", message: "hello", time: 1.5, file: "", function: "", line: 0, ...part };
+}
+
+describe("the log", () => {
+  const receive = (lines: LogLine[], missed = 0): void => connection.message.emit({ type: "log_lines", lines, missed });
+
+  it("shows what passes the filters", () => {
+    const log = new LogState(connection, storage);
+    receive([line({ level: 10 }), line({ level: 40, node: "base", message: "Hot" }), line({})]);
+    log.setLevel(10, false);
+    expect(log.shown.map(({ level }) => level)).toEqual([40, 20]);
+    log.setNode("base");
+    expect(log.shown.map(({ message }) => message)).toEqual(["Hot"]);
+    log.setNode("");
+    log.setText("hO");
+    expect(log.shown).toHaveLength(1);
+    expect(log.nodes).toEqual(["base", "talker"]);
+    expect(new LogState(connection, storage).levels.has(10)).toBe(false);
+  });
+
+  it("holds while it is paused, and goes on with all that came", () => {
+    const log = new LogState(connection, storage);
+    log.setPaused(true);
+    receive([line({})]);
+    expect(log.lines).toHaveLength(0);
+    log.setPaused(false);
+    expect(log.shown).toHaveLength(1);
+  });
+
+  it("keeps so many records and no more", () => {
+    const log = new LogState(connection, storage);
+    for (let block = 0; block < 45; block++) {
+      receive(Array.from({ length: 1000 }, (_, index) => line({ message: String(block * 1000 + index) })), 1);
+    }
+    expect(log.lines.length).toBeLessThanOrEqual(MOST_LINES);
+    expect(log.shown).toHaveLength(log.lines.length);
+    expect(log.shown.at(-1)?.message).toBe("44999");
+    expect(log.missed).toBe(45);
+  });
+
+  it("is copied as on the console", () => {
+    const text = lineText(line({ level: 30, file: "/x/talker.py", line: 7 }), "WARN");
+    expect(text).toBe("[WARN] [1.500000000] [talker]: hello (/x/talker.py:7)");
+    expect([5, 10, 25, 50, 99].map((level) => levelOf({ level }))).toEqual([10, 10, 20, 50, 50]);
+  });
+});
+
+describe("driving", () => {
+  const drives = (): number[][] =>
+    sent.flatMap((message) => (message.type === "drive" ? [[message.linear[0] ?? 0, message.angular[2] ?? 0]] : []));
+
+  it("by keys is as in teleop_twist_keyboard", () => {
+    expect(motionOfKey("i", false)).toEqual({ ...STILL, x: 1 });
+    expect(motionOfKey("m", false)).toEqual({ ...STILL, x: -1, turn: -1 });
+    expect(motionOfKey(".", false)).toEqual({ ...STILL, x: -1, turn: 1 });
+    expect(motionOfKey("J", true)).toEqual({ ...STILL, y: 1 });
+    expect(motionOfKey("ArrowLeft", true)).toEqual({ ...STILL, y: 1 });
+    expect(motionOfKey("a", false)).toEqual({ ...STILL, turn: 1 });
+    expect(motionOfKey("x", false)).toBeNull();
+    expect(together([motionOfKey("w", false)!, motionOfKey("i", false)!, motionOfKey("a", false)!])).toEqual({ ...STILL, x: 1, turn: 1 });
+  });
+
+  it("by a stick has play in the middle", () => {
+    expect([0.1, -0.1, 1, -1].map((value) => stick(value))).toEqual([0, 0, 1, -1]);
+    expect(stick(0.5)).toBeGreaterThan(0.4);
+  });
+
+  it("repeats what is held and ends with one zero", () => {
+    const teleop = new TeleopState(connection, storage);
+    teleop.setOpen(true);
+    expect(sent.at(-1)).toEqual({ type: "aim_teleop", target: { topic: "/cmd_vel", kind: "auto", frame_id: "base_link" } });
+    teleop.configure({ linear: 2, angular: 3 });
+    teleop.move("keys", { ...STILL, x: 1 });
+    vi.advanceTimersByTime(500);
+    expect(drives()).toHaveLength(11);
+    expect(drives()[0]).toEqual([2, 0]);
+    teleop.move("pad", { ...STILL, turn: -0.5 });
+    vi.advanceTimersByTime(50);
+    expect(drives().at(-1)).toEqual([2, -1.5]);
+    teleop.move("keys", STILL);
+    teleop.move("pad", STILL);
+    vi.advanceTimersByTime(500);
+    expect(drives().filter(([x, turn]) => x === 0 && turn === 0)).toHaveLength(1);
+    expect(drives().at(-1)).toEqual([0, 0]);
+  });
+
+  it("stops when the panel is closed or the connection is lost", () => {
+    const teleop = new TeleopState(connection, storage);
+    teleop.setOpen(true);
+    teleop.move("keys", { ...STILL, x: 1 });
+    teleop.setOpen(false);
+    expect(sent.slice(-2).map(({ type }) => type)).toEqual(["drive", "aim_teleop"]);
+    teleop.setOpen(true);
+    teleop.move("keys", { ...STILL, x: 1 });
+    connection.stateChanged.emit("reconnecting");
+    expect(teleop.motion).toEqual(STILL);
+    const count = drives().length;
+    vi.advanceTimersByTime(500);
+    expect(drives()).toHaveLength(count);
+  });
+
+  it("keeps its settings", () => {
+    new TeleopState(connection, storage).configure({ topic: "/robot/cmd_vel", rate: 10 });
+    expect(new TeleopState(connection, storage).settings).toMatchObject({ topic: "/robot/cmd_vel", rate: 10, linear: 0.5 });
+    texts.set("linkwright.teleop.1", "{");
+    expect(new TeleopState(connection, storage).settings.topic).toBe("/cmd_vel");
+  });
+});

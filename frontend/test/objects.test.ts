@@ -1,0 +1,218 @@
+import { Box3, Group, Matrix4, Quaternion, Raycaster, Vector3 } from "three";
+import { describe, expect, it } from "vitest";
+import { rainbow } from "../src/scene/displays/effort";
+import { alongX, ArrowBatch } from "../src/scene/objects/arrow-batch";
+import { AxesBatch } from "../src/scene/objects/axes-batch";
+import { CopyBatch } from "../src/scene/objects/copy-batch";
+import { CovarianceBatch, type CovarianceStyle } from "../src/scene/objects/covariance-batch";
+import { principalAxes } from "../src/scene/objects/eigen";
+import { ballGeometry, coneGeometry, cubeGeometry, rodGeometry } from "../src/scene/objects/geometries";
+import { ribbons, segmentsOf, stripsOf } from "../src/scene/objects/ribbons";
+
+interface Boxed {
+  expandBox(box: Box3): void;
+}
+
+/** Bounds with two decimals. */
+function bounds(...batches: Boxed[]): { min: number[]; max: number[] } {
+  const box = new Box3();
+  for (const batch of batches) batch.expandBox(box);
+  const round = (vector: Vector3): number[] => vector.toArray().map((each) => Math.round(each * 100) / 100 + 0);
+  return { min: round(box.min), max: round(box.max) };
+}
+
+describe("geometries", () => {
+  it("have the sizes that batches count on", () => {
+    const box = (geometry: { computeBoundingBox(): void; boundingBox: Box3 | null }): Box3 => {
+      geometry.computeBoundingBox();
+      return geometry.boundingBox!;
+    };
+    expect(box(rodGeometry(16)).min.toArray().map(Math.fround)).toEqual([0, -0.5, -0.5]);
+    expect(box(rodGeometry(16)).max.toArray().map(Math.fround)).toEqual([1, 0.5, 0.5]);
+    expect(box(coneGeometry(16)).max.x).toBeCloseTo(1);
+    expect(box(ballGeometry(16)).getSize(new Vector3()).z).toBeCloseTo(1);
+    expect(box(cubeGeometry()).getSize(new Vector3()).toArray()).toEqual([1, 1, 1]);
+  });
+});
+
+describe("CopyBatch", () => {
+  it("puts copies where their matrices say", () => {
+    const parent = new Group();
+    const batch = new CopyBatch(parent, cubeGeometry());
+    batch.begin(3);
+    batch.add(new Matrix4().makeTranslation(5, 0, 0));
+    batch.add(new Matrix4().makeRotationZ(Math.PI / 2).multiply(new Matrix4().makeScale(4, 1, 1)), 0, 0.5, 0x123456);
+    batch.end();
+    expect(batch.size).toBe(2);
+    expect(bounds(batch)).toEqual({ min: [-0.5, -2, -0.5], max: [5.5, 2, 0.5] });
+    batch.begin(1);
+    batch.end();
+    expect(parent.children[0]!.visible).toBe(false);
+    batch.dispose();
+    expect(parent.children).toHaveLength(0);
+  });
+});
+
+describe("ArrowBatch", () => {
+  it("points along x with a head behind the shaft", () => {
+    const arrows = new ArrowBatch(new Group(), 16);
+    arrows.begin(1);
+    const shape = { shaftLength: 1, shaftDiameter: 0.1, headLength: 0.3, headDiameter: 0.2 };
+    arrows.add(new Matrix4().makeTranslation(0, 0, 2), shape, { color: 0xff0000 });
+    arrows.end();
+    expect(bounds(arrows)).toEqual({ min: [0, -0.1, 1.9], max: [1.3, 0.1, 2.1] });
+  });
+
+  it("can be aimed anywhere", () => {
+    const pose = alongX(new Vector3(1, 2, 3), new Vector3(0, 0, -7), new Matrix4());
+    expect(new Vector3(1, 0, 0).applyMatrix4(pose).distanceTo(new Vector3(1, 2, 2))).toBeLessThan(1e-6);
+    const back = alongX(new Vector3(), new Vector3(-1, 0, 0), new Matrix4());
+    expect(new Vector3(1, 0, 0).applyMatrix4(back).x).toBeCloseTo(-1);
+  });
+});
+
+describe("AxesBatch", () => {
+  it("is as thick as RViz's radius says", () => {
+    const axes = new AxesBatch(new Group());
+    axes.setShape(2, 0.5, 16);
+    axes.begin(1);
+    axes.add(new Matrix4());
+    axes.end();
+    expect(bounds(axes)).toEqual({ min: [-0.25, -0.25, -0.25], max: [2, 2, 2] });
+  });
+});
+
+describe("ribbons", () => {
+  it("share the vertices of a corner, across the middle of both directions", () => {
+    const made = ribbons([new Float32Array([0, 0, 0, 1, 0, 0, 1, 3, 0])]);
+    expect(made.positions).toHaveLength(18);
+    expect([...made.sides]).toEqual([-0.5, 0.5, -0.5, 0.5, -0.5, 0.5]);
+    expect([...made.directions.subarray(6, 9)]).toEqual([1, 1, 0]);
+    expect([...made.directions.subarray(12, 15)]).toEqual([0, 1, 0]);
+    expect([...made.indices]).toEqual([0, 1, 3, 0, 3, 2, 2, 3, 5, 2, 5, 4]);
+  });
+
+  it("do not join strips", () => {
+    const line = new Float32Array([0, 0, 0, 1, 0, 0]);
+    const made = ribbons([line, line], [new Float32Array(8).fill(1), new Float32Array(8).fill(0.5)]);
+    expect([...made.indices]).toEqual([0, 1, 3, 0, 3, 2, 4, 5, 7, 4, 7, 6]);
+    expect([...made.colors!.subarray(16, 20)]).toEqual([0.5, 0.5, 0.5, 0.5]);
+  });
+
+  it("go on where a line turns right back, and hold a strip of one point", () => {
+    const made = ribbons([new Float32Array([0, 0, 0, 1, 0, 0, 0, 0, 0]), new Float32Array([5, 5, 5])]);
+    expect([...made.directions.subarray(6, 9)]).toEqual([-1, 0, 0]);
+    expect(made.indices).toHaveLength(12);
+  });
+
+  it("come from segments and go to them", () => {
+    const strip = new Float32Array([0, 0, 0, 1, 0, 0, 1, 1, 0]);
+    expect([...segmentsOf(strip)]).toEqual([0, 0, 0, 1, 0, 0, 1, 0, 0, 1, 1, 0]);
+    expect(stripsOf(segmentsOf(strip))).toHaveLength(2);
+  });
+});
+
+describe("principal axes", () => {
+  it("make the matrix again", () => {
+    const m = [4, 1, -2, 1, 3, 0.5, -2, 0.5, 6] as const;
+    const { values, axes } = principalAxes(m);
+    const [x, y, z] = [new Vector3(), new Vector3(), new Vector3()];
+    axes.extractBasis(x, y, z);
+    expect(axes.determinant()).toBeCloseTo(1);
+    [x, y, z].forEach((axis, i) => {
+      const image = new Vector3(
+        m[0] * axis.x + m[1] * axis.y + m[2] * axis.z,
+        m[3] * axis.x + m[4] * axis.y + m[5] * axis.z,
+        m[6] * axis.x + m[7] * axis.y + m[8] * axis.z,
+      );
+      expect(image.distanceTo(axis.clone().multiplyScalar(values[i]!))).toBeLessThan(1e-9);
+    });
+  });
+});
+
+describe("CovarianceBatch", () => {
+  const POSITION: CovarianceStyle = { position: { color: 0xffffff, alpha: 1, scale: 1 }, orientation: null };
+  const ORIENTATION: CovarianceStyle = {
+    position: null,
+    orientation: { local: true, colors: [1, 2, 3], alpha: 1, offset: 2, scale: 1 },
+  };
+
+  function drawn(diagonal: number[], style: CovarianceStyle, pose = [0, 0, 0, 0, 0, 0, 1]): ReturnType<typeof bounds> {
+    const covariance = new Float32Array(36);
+    diagonal.forEach((value, i) => (covariance[i * 7] = value));
+    const batch = new CovarianceBatch(new Group());
+    batch.begin(1);
+    batch.add(new Matrix4(), new Float32Array(pose), covariance, style);
+    batch.end();
+    return bounds(batch);
+  }
+
+  it("draws one standard deviation of the position to either side", () => {
+    expect(drawn([4, 1, 0.25, 1, 1, 1], POSITION)).toEqual({ min: [-2, -1, -0.5], max: [2, 1, 0.5] });
+  });
+
+  it("does not turn the position with the pose", () => {
+    const turned = new Quaternion().setFromAxisAngle(new Vector3(0, 0, 1), Math.PI / 2).toArray();
+    expect(drawn([4, 1, 0.25, 1, 1, 1], POSITION, [1, 0, 0, ...turned]).max).toEqual([3, 1, 0.5]);
+  });
+
+  it("draws an ellipse and a triangle for a pose in a plane", () => {
+    expect(drawn([4, 1, 0, 0, 0, 0.01], POSITION)).toEqual({ min: [-2, -1, 0], max: [2, 1, 0] });
+    const { min, max } = drawn([4, 1, 0, 0, 0, 0.01], ORIENTATION);
+    expect([min[0], max[0], max[1]]).toEqual([0, 2, 0.2]);
+  });
+
+  it("tilts each axis by the rotations about the others", () => {
+    const { min, max } = drawn([1, 1, 1, 0.01, 0.04, 0.0001], ORIENTATION);
+    // Pitch moves x along z and z along x, roll moves y along z and z along y, yaw hardly anything.
+    expect(max).toEqual([2, 2, 2]);
+    expect(min[2]).toBeCloseTo(-0.41, 1);
+    expect(min[0]).toBeCloseTo(-0.41, 1);
+    expect(min[1]).toBeCloseTo(-0.2, 1);
+  });
+
+  it("draws nothing for what is no covariance", () => {
+    expect(drawn([-1, 1, 1, 1, 1, 1], POSITION).min).toEqual([Infinity, Infinity, Infinity]);
+  });
+});
+
+describe("colours of efforts", () => {
+  it("go from violet to red", () => {
+    expect([0, 0.2, 0.4, 0.6, 0.8, 1].map((value) => rainbow(value).map((part) => Math.round(part)))).toEqual([
+      [1, 0, 1],
+      [0, 0, 1],
+      [0, 1, 1],
+      [0, 1, 0],
+      [1, 1, 0],
+      [1, 0, 0],
+    ]);
+  });
+});
+
+describe("picking", () => {
+  const ray = (x: number, y: number): Raycaster => new Raycaster(new Vector3(x, y, 10), new Vector3(0, 0, -1));
+
+  it("finds the nearest copy, and three.js the bounds of all", () => {
+    const parent = new Group();
+    const batch = new CopyBatch(parent, cubeGeometry());
+    batch.begin(3);
+    batch.add(new Matrix4());
+    batch.add(new Matrix4().makeTranslation(0, 0, 2));
+    batch.add(new Matrix4().makeTranslation(5, 0, 0));
+    batch.end();
+    expect(batch.pick(ray(0, 0))).toMatchObject({ copy: 1, distance: 7.5 });
+    expect(batch.pick(ray(5, 0.2))?.copy).toBe(2);
+    expect(batch.pick(ray(2, 0))).toBeNull();
+    expect(new Box3().setFromObject(parent).max.toArray()).toEqual([5.5, 0.5, 2.5]);
+  });
+
+  it("tells an arrow by its shaft and by its head", () => {
+    const arrows = new ArrowBatch(new Group());
+    const shape = { shaftLength: 1, shaftDiameter: 0.1, headLength: 0.3, headDiameter: 0.2 };
+    arrows.begin(2);
+    arrows.add(new Matrix4(), { ...shape, shaftLength: 0 }, { color: 0 });
+    arrows.add(new Matrix4().makeTranslation(0, 3, 0), shape, { color: 0 });
+    arrows.end();
+    expect([ray(0.1, 0.01), ray(0.5, 3), ray(1.1, 3.01)].map((each) => arrows.pick(each)?.copy)).toEqual([0, 1, 1]);
+  });
+});

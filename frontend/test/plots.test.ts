@@ -1,0 +1,196 @@
+import { describe, expect, it, vi } from "vitest";
+import { Connection } from "../src/connection/connection";
+import { unpackSamples } from "../src/connection/samples";
+import type { PageMessage } from "../src/protocol.gen";
+import { fieldText, parseField, valueText } from "../src/state/monitor/field-text";
+import { csvText, plotTable } from "../src/state/monitor/plot-table";
+import { PlotsState } from "../src/state/monitor/plots";
+import { SeriesBuffer } from "../src/state/monitor/series-buffer";
+
+function buffer(...samples: [number, number][]): SeriesBuffer {
+  const made = new SeriesBuffer();
+  for (const [time, value] of samples) made.append([time], [NaN], [value]);
+  return made;
+}
+
+function storage(): Pick<Storage, "getItem" | "setItem"> {
+  const texts = new Map<string, string>();
+  return { getItem: (key) => texts.get(key) ?? null, setItem: (key, text) => void texts.set(key, text) };
+}
+
+describe("names of fields", () => {
+  it("are a topic and a path", () => {
+    expect(parseField("/joint_states.position[2]")).toEqual({ topic: "/joint_states", path: "position[2]" });
+    expect(parseField(" odom.twist.twist.linear.x ")).toEqual({ topic: "/odom", path: "twist.twist.linear.x" });
+    expect(parseField("/a/b.c[x.y]")).toEqual({ topic: "/a/b", path: "c[x.y]" });
+    expect(fieldText({ topic: "/a", path: "b.c" })).toBe("/a.b.c");
+  });
+
+  it("need both", () => {
+    for (const text of ["", "/odom", "/odom.", ".x", "/a b.c"]) expect(parseField(text)).toBeNull();
+  });
+
+  it("stand beside short values", () => {
+    expect([1 / 3, 1e-9, 5, NaN, -Infinity, null].map(valueText)).toEqual(["0.333333", "1e-9", "5", "nan", "-inf", ""]);
+  });
+});
+
+describe("frames of samples", () => {
+  it("are read as they were packed", () => {
+    const bytes = new ArrayBuffer(16 + 8 + 3 * 8 * 2 + 8);
+    const view = new DataView(bytes);
+    view.setUint32(0, 3, true);
+    view.setUint32(4, 2, true);
+    view.setUint32(16, 7, true);
+    view.setUint32(20, 2, true);
+    [1, 2, NaN, 3, 4, 5].forEach((value, index) => view.setFloat64(24 + index * 8, value, true));
+    view.setUint32(72, 9, true);
+    const [one, other] = unpackSamples(bytes) ?? [];
+    expect(one).toEqual({
+      id: 7,
+      received: new Float64Array([1, 2]),
+      stamps: new Float64Array([NaN, 3]),
+      values: new Float64Array([4, 5]),
+    });
+    expect([other?.id, other?.values.length]).toEqual([9, 0]);
+  });
+
+  it("are not mistaken for others", () => {
+    expect(unpackSamples(new ArrayBuffer(64))).toBeNull();
+    expect(unpackSamples(new ArrayBuffer(3))).toBeNull();
+  });
+});
+
+describe("a buffer", () => {
+  it("grows, and forgets the oldest when it is full", () => {
+    const made = new SeriesBuffer(5000);
+    for (let block = 0; block < 100; block++) {
+      const times = Array.from({ length: 100 }, (_, index) => block * 100 + index);
+      made.append(times, times.map(() => NaN), times);
+    }
+    expect(made.length).toBeLessThanOrEqual(5000);
+    expect(made.length).toBeGreaterThan(2000);
+    expect(made.lastValue).toBe(9999);
+    const times = made.times("received");
+    expect(times.every((time, index) => index === 0 || time === (times[index - 1] ?? 0) + 1)).toBe(true);
+  });
+
+  it("knows both times", () => {
+    const made = new SeriesBuffer();
+    made.append([100, 101], [5, NaN], [1, 2]);
+    expect([...made.times("stamp")]).toEqual([5, 101]);
+    expect(made.latest("received")).toBe(101);
+    expect(made.indexFrom("received", 100.5)).toBe(1);
+  });
+
+  it("begins anew when stamps go back", () => {
+    const made = new SeriesBuffer();
+    made.append([100, 101, 102], [50, 51, 0], [1, 2, 3]);
+    expect([...made.values]).toEqual([3]);
+  });
+});
+
+describe("what is drawn", () => {
+  it("is every sample while there are few, at the times of all series", () => {
+    const [times, a, b] = plotTable([buffer([1, 10], [2, 20]), buffer([2, 5], [3, NaN])], "received", 0, 10, 100);
+    expect(times).toEqual([1, 2, 3]);
+    expect(a).toEqual([10, 20, undefined]);
+    expect(b).toEqual([undefined, 5, null]);
+  });
+
+  it("reaches beyond both edges", () => {
+    const [times] = plotTable([buffer([1, 1], [2, 2], [3, 3], [4, 4], [5, 5])], "received", 2.5, 3.5, 100);
+    expect(times).toEqual([2, 3, 4]);
+  });
+
+  it("keeps the extremes of each column when there are many samples", () => {
+    const many = new SeriesBuffer();
+    const times = Array.from({ length: 20_000 }, (_, index) => index / 1000);
+    many.append(times, times, times.map((time, index) => (index === 12_345 ? 99 : Math.sin(time))));
+    const [columns, values] = plotTable([many], "stamp", 5, 15, 400);
+    expect(columns.length).toBeLessThan(820);
+    expect(columns.every((time, index) => index === 0 || time > (columns[index - 1] ?? 0))).toBe(true);
+    expect(values).toContain(99);
+    const at = values?.indexOf(99) ?? 0;
+    expect(Math.abs((columns[at] ?? 0) - 12.345)).toBeLessThan(10 / 400);
+  });
+
+  it("does not flicker while the window moves", () => {
+    const many = new SeriesBuffer();
+    const times = Array.from({ length: 20_000 }, (_, index) => index / 1000);
+    many.append(times, times, times.map((time) => Math.sin(40 * time)));
+    const [firstTimes, first] = plotTable([many], "stamp", 5, 15, 397);
+    const [laterTimes, later] = plotTable([many], "stamp", 5.031, 15.031, 397);
+    const known = new Map(firstTimes.map((time, row) => [time.toFixed(6), first?.[row]]));
+    const shared = laterTimes.slice(4, -8).map((time, row) => [known.get(time.toFixed(6)), later?.[row + 4]]);
+    expect(shared.length).toBeGreaterThan(700);
+    // The column at the right edge was not complete yet.
+    for (const [before, after] of shared.slice(0, 780)) expect(before).toBe(after);
+  });
+
+  it("is saved as CSV", () => {
+    const text = csvText(["/a.x", 'b"y'], [buffer([1, 10], [2, 20]), buffer([2, 5], [9, 1])], "received", 1, 2);
+    expect(text).toBe('time,/a.x,"b""y"\n1.000000,10,\n2.000000,20,5\n');
+  });
+});
+
+describe("plots", () => {
+  function made(texts = storage()): { sent: PageMessage[]; plots: PlotsState; connection: Connection } {
+    const sent: PageMessage[] = [];
+    const connection = new Connection("ws://localhost/ws");
+    vi.spyOn(connection, "send").mockImplementation((message) => void sent.push(message));
+    return { sent, plots: new PlotsState(connection, texts), connection };
+  }
+
+  it("ask for samples only while the panel is open, and again after a loss of the connection", () => {
+    const { sent, plots, connection } = made();
+    plots.addSeries(plots.addPlot(), { topic: "/a", path: "x" });
+    expect(sent).toEqual([]);
+    plots.setOpen(true);
+    const wanted = { type: "watch_series", series: [{ id: plots.series[0]?.id, topic: "/a", path: "x" }] };
+    expect(sent.at(-1)).toEqual(wanted);
+    connection.message.emit({ type: "hello", protocol: 3, version: "1", title: "" });
+    expect(sent.filter((message) => JSON.stringify(message) === JSON.stringify(wanted))).toHaveLength(2);
+    plots.setOpen(false);
+    expect(sent.at(-1)).toEqual({ type: "watch_series", series: [] });
+  });
+
+  it("follow the newest value, and hold when they are paused", () => {
+    const { plots, connection } = made();
+    plots.addSeries(plots.addPlot(), { topic: "/a", path: "x" });
+    const id = plots.series[0]?.id ?? 0;
+    const take = (time: number): void =>
+      connection.samples.emit([
+        { id, received: Float64Array.of(time), stamps: Float64Array.of(NaN), values: Float64Array.of(1) },
+      ]);
+    expect(plots.window).toBeNull();
+    take(100);
+    expect(plots.window).toEqual([70, 100]);
+    plots.setPaused(true);
+    take(110);
+    expect(plots.window).toEqual([70, 100]);
+    plots.setPaused(false);
+    expect(plots.window).toEqual([80, 110]);
+    expect(plots.series[0]?.buffer.length).toBe(2);
+  });
+
+  it("are remembered", () => {
+    const texts = storage();
+    const { plots } = made(texts);
+    plots.addSeries(plots.addPlot(), { topic: "/a", path: "x[1]" });
+    plots.setRange(plots.plots[0]!, [-1, 2]);
+    plots.setSeconds(60);
+    const again = made(texts).plots;
+    expect(again.seconds).toBe(60);
+    expect(again.plots[0]?.range).toEqual([-1, 2]);
+    expect(again.series.map(fieldText)).toEqual(["/a.x[1]"]);
+  });
+
+  it("take no field twice", () => {
+    const { plots } = made();
+    const plot = plots.addPlot();
+    plots.addSeries(plot, { topic: "/a", path: "x" });
+    plots.addSeries(plot, { topic: "/a", path: "x" });
+    expect(plot.series).toHaveLength(1);
+  });
+});

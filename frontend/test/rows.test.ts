@@ -1,0 +1,250 @@
+import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
+import { Connection } from "../src/connection/connection";
+import { detailRows } from "../src/panels/detail-rows";
+import { displayRows, linkOfKey, linkPath } from "../src/panels/robot-rows";
+import type { JointScene, Property, ServerMessage } from "../src/protocol.gen";
+import { composed, relative } from "../src/state/pose-numbers";
+import { Session } from "../src/state/session";
+import type { TreeItem } from "../src/tree/tree-item";
+import { display, property, robot, tree } from "./messages";
+
+// The page's words ask for the language when they are read.
+vi.hoisted(() => vi.stubGlobal("localStorage", { getItem: () => "en" }));
+
+const HALF = Math.SQRT1_2;
+
+let session: Session;
+
+function receive(...messages: ServerMessage[]): void {
+  for (const message of messages) session.connection.message.emit(message);
+}
+
+function frames(poses: Record<string, { parent: string | null; pose: number[] }>): void {
+  const names = Object.keys(poses);
+  const parents = names.map((name) => names.indexOf(poses[name]!.parent ?? ""));
+  receive({ type: "frame_table", revision: 1, names, parents });
+  session.frames.setTransforms({
+    revision: 1,
+    stamp: 1,
+    poses: new Float32Array(names.flatMap((name) => poses[name]!.pose)),
+    ages: new Float32Array(names.length),
+  });
+}
+
+function joint(name: string, parent: string, child: string, part: Partial<JointScene> = {}): JointScene {
+  return {
+    name,
+    kind: "revolute",
+    parent,
+    child,
+    position: [0, 0, 0],
+    quaternion: [0, 0, 0, 1],
+    axis: [0, 0, 1],
+    lower: null,
+    upper: null,
+    ...part,
+  };
+}
+
+function row(group: string, name: string, details: "link" | "joint"): Property {
+  const extras = [property({ id: `d0/${group}/${name}/Show Axes`, name: "Show Axes", kind: "bool", value: false })];
+  return property({ id: `d0/${group}/${name}`, name, kind: "bool", value: true, details, children: extras });
+}
+
+/** A robot of three links in a row: arm, which the root base carries, and hand. */
+function show(style: string, open: readonly string[] = []): void {
+  const option = (name: string, value: string | boolean): Property =>
+    property({ id: `d0/Links/${name}`, name, kind: typeof value === "string" ? "enum" : "bool", value });
+  const links = property({
+    id: "d0/Links",
+    name: "Links",
+    kind: "group",
+    children: [
+      option("Link Tree Style", style),
+      ...["Expand Tree", "Expand Link Details", "Expand Joint Details"].map((name) => option(name, open.includes(name))),
+      option("All Links Enabled", true),
+      ...["arm", "base", "hand"].map((name) => row("Links", name, "link")),
+    ],
+  });
+  const joints = property({
+    id: "d0/Joints",
+    name: "Joints",
+    kind: "group",
+    children: ["elbow", "grip"].map((name) => row("Joints", name, "joint")),
+  });
+  const scene = {
+    ...robot("d0", "base", "arm", "hand"),
+    joints: [joint("elbow", "base", "arm", { position: [1, 0, 0], lower: -1 }), joint("grip", "arm", "hand", { kind: "fixed" })],
+  };
+  receive(tree(display({ id: "d0", cls: "rviz_default_plugins/RobotModel", properties: [links, joints] })), scene);
+}
+
+function outline(items: readonly TreeItem[], depth = 0): string[] {
+  return items.flatMap((item) => [
+    `${"  ".repeat(depth)}${item.name}${item.expanded ? "*" : ""}`,
+    ...outline(item.children?.() ?? [], depth + 1),
+  ]);
+}
+
+/** The rows, without options and what is known of each link. */
+function arranged(): string[] {
+  const known = /Show|Position|Orientation|^ *[XYZW]$|Type|Limit|Axis|Style|Expand|All/;
+  return outline(displayRows(session.displays.displays[0]!, session, () => undefined)).filter((line) => !known.test(line));
+}
+
+beforeEach(() => {
+  vi.stubGlobal("window", { setTimeout });
+  session = new Session(new Connection("ws://localhost/ws"));
+});
+
+afterEach(() => vi.unstubAllGlobals());
+
+describe("a robot's rows", () => {
+  it("are its links", () => {
+    show("Links in Alphabetic Order");
+    expect(arranged()).toEqual(["Links", "  arm", "  base", "  hand"]);
+  });
+
+  it("are its joints", () => {
+    show("Joints in Alphabetic Order", ["Expand Joint Details"]);
+    expect(arranged()).toEqual(["Joints", "  elbow*", "  grip*"]);
+  });
+
+  it("are a tree of links", () => {
+    show("Tree of links", ["Expand Tree"]);
+    expect(arranged()).toEqual([
+      "Link Tree",
+      "  base*",
+      "    Details",
+      "    arm*",
+      "      Details",
+      "      hand*",
+      "        Details",
+    ]);
+  });
+
+  it("are a tree of links and joints", () => {
+    show("Tree of links and joints", ["Expand Link Details"]);
+    expect(arranged()).toEqual([
+      "Link/Joint Tree",
+      "  base",
+      "    Details*",
+      "    elbow",
+      "      Details",
+      "      arm",
+      "        Details*",
+      "        grip",
+      "          Details",
+      "          hand",
+      "            Details*",
+    ]);
+  });
+
+  it("offer to open what there is", () => {
+    const offered = (): string[] =>
+      outline(displayRows(session.displays.displays[0]!, session, () => undefined)).filter((line) => /Expand/.test(line));
+    show("Links in Alphabetic Order");
+    expect(offered()).toEqual(["  Expand Link Details"]);
+    show("Joints in Alphabetic Order");
+    expect(offered()).toEqual(["  Expand Joint Details"]);
+    show("Tree of links");
+    expect(offered()).toEqual(["  Expand Tree", "  Expand Link Details"]);
+  });
+
+  it("are found by their link", () => {
+    show("Tree of links and joints");
+    const [model] = session.displays.displays;
+    expect(linkPath(model!, session, "arm")).toEqual(["d0", "d0/Links", "d0/Links/base", "d0/Joints/elbow", "d0/Links/arm"]);
+    expect(linkOfKey(session, "d0/Links/arm")).toEqual({ display: model, link: "arm" });
+    expect(linkOfKey(session, "d0/Links/All Links Enabled")).toBeNull();
+    show("Joints in Alphabetic Order");
+    expect(linkPath(model!, session, "arm")).toEqual(["d0", "d0/Links", "d0/Joints/elbow"]);
+    expect(linkPath(model!, session, "base")).toBeNull();
+    show("Links in Alphabetic Order");
+    expect(linkPath(model!, session, "arm")).toEqual(["d0", "d0/Links", "d0/Links/arm"]);
+  });
+});
+
+describe("rows of details", () => {
+  const values = (items: readonly TreeItem[]): Record<string, unknown> =>
+    Object.fromEntries(items.map((item) => [item.name, item.value]));
+
+  it("say where a joint is, and what it is", () => {
+    show("Joints in Alphabetic Order");
+    frames({ base: { parent: null, pose: [0, 0, 2, 0, 0, HALF, HALF] } });
+    const [model] = session.displays.displays;
+    const [elbow, grip] = model!.rows.find("Joints")!.children;
+    const rows = detailRows(elbow!, model!, session);
+    expect(values(rows)).toEqual({
+      Position: "0; 1; 2",
+      Orientation: "0; 0; 0.707107; 0.707107",
+      Type: "revolute",
+      "Lower Limit": "-1",
+      "Joint Axis": "0; 0; 1",
+    });
+    expect(values(detailRows(grip!, model!, session))["Type"]).toBe("fixed");
+    expect(values(rows[0]!.children!())).toEqual({ X: "0", Y: "1", Z: "2" });
+  });
+
+  it("say where a frame is, as seen from its parent too, and follow it", () => {
+    const box = property({ id: "d1/Frames/tip", name: "tip", kind: "bool", value: true, details: "frame" });
+    receive(tree(display({ id: "d1", properties: [box] })));
+    const place = (x: number): void =>
+      frames({
+        base: { parent: null, pose: [1, 0, 0, 0, 0, HALF, HALF] },
+        tip: { parent: "base", pose: [x, 0, 0, 0, 0, 0, 1] },
+      });
+    place(3);
+    const [tf] = session.displays.displays;
+    const rows = detailRows(tf!.rows.nodes[0]!, tf!, session);
+    expect(values(rows)).toEqual({
+      Parent: "base",
+      Position: "3; 0; 0",
+      Orientation: "0; 0; 0; 1",
+      "Relative Position": "0; -2; 0",
+      "Relative Orientation": "0; 0; -0.707107; 0.707107",
+    });
+    place(5);
+    expect(rows[1]!.value).toBe("5; 0; 0");
+  });
+
+  it("are empty for a frame without a place", () => {
+    const box = property({ id: "d1/Frames/gone", name: "gone", kind: "bool", value: true, details: "frame" });
+    receive(tree(display({ id: "d1", properties: [box] })));
+    const [tf] = session.displays.displays;
+    expect(Object.values(values(detailRows(tf!.rows.nodes[0]!, tf!, session)))).toEqual(["", "", "", "", ""]);
+  });
+
+  it("give a joint's last effort", () => {
+    const box = property({ id: "d2/Joints/elbow", name: "elbow", kind: "bool", value: true, details: "effort" });
+    receive(tree(display({ id: "d2", properties: [box] })));
+    const rings = (effort: number, stamp: number): void =>
+      session.connection.data.emit({
+        display: "d2",
+        key: String(stamp % 2),
+        frame: "",
+        stamp,
+        pose: null,
+        content: {
+          kind: "effort_rings",
+          joints: ["elbow"],
+          poses: new Float32Array(7),
+          efforts: new Float32Array([effort]),
+          limits: new Float32Array([10]),
+        },
+      });
+    rings(1, 1);
+    rings(2, 2);
+    rings(3, 3);
+    const [effort] = session.displays.displays;
+    expect(values(detailRows(effort!.rows.nodes[0]!, effort!, session))).toEqual({ Effort: "3", "Max Effort": "10" });
+  });
+});
+
+describe("poses", () => {
+  it("put together and taken apart are the same", () => {
+    const a = [1, 2, 3, 0, HALF, 0, HALF] as const;
+    const b = [-1, 0.5, 2, HALF, 0, 0, HALF] as const;
+    relative(a, composed(a, b)).forEach((part, i) => expect(part).toBeCloseTo(b[i]!));
+  });
+});

@@ -1,0 +1,52 @@
+import { BoxGeometry, Mesh, OrthographicCamera, PerspectiveCamera, SphereGeometry, Vector2 } from "three";
+import { describe, expect, it } from "vitest";
+import { ScreenBox } from "../src/scene/selection-box";
+
+const ALL = [new Vector2(-0.95, -0.95), new Vector2(0.95, 0.95)] as const;
+
+function camera(): PerspectiveCamera {
+  const made = new PerspectiveCamera(45, 1, 0.01, 1000);
+  made.position.set(0, 0, 10);
+  made.updateMatrixWorld(true);
+  return made;
+}
+
+function ball(x: number): Mesh {
+  const mesh = new Mesh(new SphereGeometry(0.1, 16, 12));
+  mesh.position.set(x, 0, 0);
+  mesh.updateMatrixWorld(true);
+  return mesh;
+}
+
+describe("a rectangle on the screen", () => {
+  it("holds what is seen in it", () => {
+    const box = new ScreenBox(camera(), ...ALL);
+    expect(box.hasPoint(0, 0, 0)).toBe(true);
+    expect(box.hasPoint(3.5, 0, 0)).toBe(true);
+    expect(box.hasPoint(5, 0, 0)).toBe(false);
+    expect(box.hasPoint(0, 0, 11)).toBe(false);
+    expect(box.hasObject(ball(3))).toBe(true);
+    expect(box.hasObject(ball(6))).toBe(false);
+  });
+
+  it("leaves out what is beside it", () => {
+    const right = new ScreenBox(camera(), new Vector2(0.1, -1), new Vector2(1, 1));
+    expect(right.hasObject(ball(2))).toBe(true);
+    expect(right.hasObject(ball(-2))).toBe(false);
+  });
+
+  it("within a face holds the object though none of its corners", () => {
+    const small = new ScreenBox(camera(), new Vector2(-0.02, -0.02), new Vector2(0.02, 0.02));
+    const wall = new Mesh(new BoxGeometry(4, 4, 0.1));
+    wall.updateMatrixWorld(true);
+    expect(small.hasObject(wall)).toBe(true);
+  });
+
+  it("works without perspective", () => {
+    const flat = new OrthographicCamera(-4, 4, 4, -4, 0.01, 1000);
+    flat.position.set(0, 0, 500);
+    flat.updateMatrixWorld(true);
+    const box = new ScreenBox(flat, new Vector2(0, 0), new Vector2(1, 1));
+    expect([box.hasPoint(2, 2, 0), box.hasPoint(-2, 2, 0)]).toEqual([true, false]);
+  });
+});

@@ -1,0 +1,81 @@
+import { describe, expect, it } from "vitest";
+import { socketUrl } from "../src/connection/connection";
+import { addressFor, hasOwnDisplays, ownKey } from "../src/shell/own-displays";
+import { keyText, matches, SHORTCUTS } from "../src/shell/shortcuts";
+import { ThemeState } from "../src/shell/theme";
+
+function storage(): { getItem(key: string): string | null; setItem(key: string, text: string): void } {
+  const texts = new Map<string, string>();
+  return { getItem: (key) => texts.get(key) ?? null, setItem: (key, text) => void texts.set(key, text) };
+}
+
+describe("displays of a page's own", () => {
+  it("are asked for in the page's address", () => {
+    const own = addressFor("http://localhost:7447/?token=abc", true);
+    expect(own).toBe("http://localhost:7447/?token=abc&displays=own");
+    expect(hasOwnDisplays(own)).toBe(true);
+    expect(addressFor(own, false)).toBe("http://localhost:7447/?token=abc");
+    expect(hasOwnDisplays("http://localhost:7447/?displays=shared")).toBe(false);
+  });
+
+  it("have a name that stays while the tab does", () => {
+    const tab = storage();
+    const key = ownKey(tab);
+    expect(key).toMatch(/^[0-9a-f]{32}$/);
+    expect(ownKey(tab)).toBe(key);
+    expect(ownKey(storage())).not.toBe(key);
+    expect(socketUrl("http://localhost:7447/?token=abc&displays=own", key)).toBe(
+      `ws://localhost:7447/ws?token=abc&own=${key}`,
+    );
+  });
+});
+
+describe("keys", () => {
+  const event = (part: Partial<KeyboardEvent>): KeyboardEvent =>
+    ({ key: "", code: "", ctrlKey: false, metaKey: false, shiftKey: false, altKey: false, ...part }) as KeyboardEvent;
+
+  it("are taken with exactly what is held", () => {
+    expect(matches(event({ key: "s", ctrlKey: true }), SHORTCUTS.save)).toBe(true);
+    expect(matches(event({ key: "S", ctrlKey: true, shiftKey: true }), SHORTCUTS.save)).toBe(false);
+    expect(matches(event({ key: "S", ctrlKey: true, shiftKey: true }), SHORTCUTS.saveAs)).toBe(true);
+    expect(matches(event({ key: "s" }), SHORTCUTS.save)).toBe(false);
+    expect(matches(event({ key: "å", code: "KeyA", altKey: true }), SHORTCUTS.add)).toBe(true);
+    expect(matches(event({ key: "Delete" }), SHORTCUTS.remove)).toBe(true);
+    expect(matches(event({ key: "Delete", ctrlKey: true }), SHORTCUTS.remove)).toBe(false);
+  });
+
+  it("are none that browsers keep for themselves", () => {
+    const taken = ["Ctrl+N", "Ctrl+T", "Ctrl+W", "Ctrl+R", "Ctrl+Shift+N", "Ctrl+Shift+T", "Ctrl+Shift+W", "F5", "Ctrl+D"];
+    const ours = Object.values(SHORTCUTS).map(keyText);
+    expect(ours.filter((key) => taken.includes(key))).toEqual([]);
+    expect(new Set(ours).size).toBe(ours.length);
+    expect(keyText(SHORTCUTS.moveUp)).toBe("Alt+↑");
+  });
+});
+
+describe("the theme", () => {
+  function made(light: boolean, texts = storage()): { theme: ThemeState; root: HTMLElement; change: (light: boolean) => void } {
+    const listeners: (() => void)[] = [];
+    const query = { matches: light, addEventListener: (_: string, run: () => void) => listeners.push(run) };
+    const root = { dataset: {} } as HTMLElement;
+    const theme = new ThemeState(root, texts, query as unknown as MediaQueryList);
+    const change = (next: boolean): void => {
+      query.matches = next;
+      for (const run of listeners) run();
+    };
+    return { theme, root, change };
+  }
+
+  it("follows the system until one is chosen, which is remembered", () => {
+    const texts = storage();
+    const { theme, root, change } = made(false, texts);
+    expect(root.dataset["theme"]).toBe("dark");
+    change(true);
+    expect(root.dataset["theme"]).toBe("light");
+    theme.choose("dark");
+    expect(root.dataset["theme"]).toBe("dark");
+    change(true);
+    expect(root.dataset["theme"]).toBe("dark");
+    expect(made(true, texts).root.dataset["theme"]).toBe("dark");
+  });
+});

@@ -1,0 +1,38 @@
+import { expect, it, vi } from "vitest";
+import type { DisplayData } from "../src/connection/data";
+import type { DisplayDataStore } from "../src/state/display-data";
+import { Signal } from "../src/state/signal";
+import { SlowLine } from "../src/state/slow-line";
+
+function store() {
+  return { received: new Signal<DisplayData>(), forgotten: new Signal<{ display: string; key: string | null }>() };
+}
+
+function cloud(step: number): DisplayData {
+  const content = { kind: "cloud_points", positions: new Float32Array(3), colours: new Uint8Array(4), translucent: false, pixel: 0, step } as const;
+  return { display: "cloud", key: "", frame: "", stamp: 0, pose: null, content };
+}
+
+it("tells what is thinned and how often it comes, until it comes whole again", () => {
+  const data = store();
+  let now = 0;
+  const line = new SlowLine(data as unknown as DisplayDataStore, () => now);
+  const changed = vi.fn();
+  line.changed.on(changed);
+  data.received.emit(cloud(1));
+  expect(line.reduced).toEqual([]);
+  expect(changed).not.toHaveBeenCalled();
+  for (now = 0; now <= 1000; now += 250) data.received.emit(cloud(8));
+  expect(line.reduced).toEqual([{ display: "cloud", reduction: { kind: "points", step: 8 }, rate: 4 }]);
+  data.received.emit(cloud(1));
+  expect(line.reduced).toEqual([]);
+});
+
+it("forgets what is drawn no more", () => {
+  const data = store();
+  const line = new SlowLine(data as unknown as DisplayDataStore, () => 0);
+  data.received.emit(cloud(2));
+  expect(line.reduced[0]?.rate).toBeNull();
+  data.forgotten.emit({ display: "cloud", key: null });
+  expect(line.reduced).toEqual([]);
+});

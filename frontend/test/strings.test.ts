@@ -1,0 +1,41 @@
+import { expect, it } from "vitest";
+import { DISPLAY_PATHS } from "../src/icons/displays";
+import { en } from "../src/strings/en";
+import { zh } from "../src/strings/zh";
+
+type Words = Readonly<Record<string, unknown>>;
+
+/** The path of every word, with what it is. */
+function* words(part: Words, path = ""): Generator<[string, unknown]> {
+  for (const [name, value] of Object.entries(part)) {
+    if (typeof value === "object" && value !== null && !Array.isArray(value)) yield* words(value as Words, `${path}${name}.`);
+    else yield [`${path}${name}`, value];
+  }
+}
+
+const english = new Map(words(en));
+const chinese = new Map(words(zh));
+
+/** RViz's own names of tools are English; only other languages have words for them. */
+const OTHERS_ONLY = "tools.names.";
+
+it("the languages have the same words", () => {
+  const common = (paths: Iterable<string>): string[] => [...paths].filter((path) => !path.startsWith(OTHERS_ONLY)).sort();
+  expect(common(chinese.keys())).toEqual(common(english.keys()));
+  for (const [path, word] of english) expect(typeof chinese.get(path), path).toBe(typeof word);
+});
+
+it("no word is empty, and Chinese ones are Chinese", () => {
+  const latin: string[] = [];
+  for (const [path, word] of chinese) {
+    if (typeof word !== "string") continue;
+    if (english.get(path) !== "") expect(word.trim(), path).not.toBe("");
+    if (word === english.get(path) && /[a-z]{4}/.test(word)) latin.push(path);
+  }
+  // What RViz and ROS call by an English name in any language.
+  expect(latin.length).toBeLessThan(25);
+});
+
+it("every display with an icon is described", () => {
+  expect(Object.keys(en.displays.about).sort()).toEqual(Object.keys(DISPLAY_PATHS).sort());
+});

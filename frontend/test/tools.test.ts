@@ -1,0 +1,106 @@
+import { beforeEach, describe, expect, it, vi } from "vitest";
+import { Connection } from "../src/connection/connection";
+import type { PageMessage, ServerMessage, Tool } from "../src/protocol.gen";
+import { SelectionState } from "../src/state/selection";
+import { TimeControlState } from "../src/state/time";
+import { ToolsState } from "../src/state/tools";
+import { property, robot } from "./messages";
+
+let connection: Connection;
+let sent: PageMessage[];
+
+function receive(message: ServerMessage): void {
+  connection.message.emit(message);
+}
+
+function tool(id: string, part: Partial<Tool> = {}): Tool {
+  return { id, cls: `rviz_default_plugins/${id}`, name: id, supported: true, properties: [], ...part };
+}
+
+beforeEach(() => {
+  sent = [];
+  connection = new Connection("ws://localhost/ws");
+  vi.spyOn(connection, "send").mockImplementation((message) => void sent.push(message));
+});
+
+describe("the tools", () => {
+  it("begin with the first that is known, and go back to it", () => {
+    const tools = new ToolsState(connection);
+    receive({ type: "tools", tools: [tool("Else", { supported: false }), tool("Interact"), tool("Measure")], classes: [] });
+    expect(tools.current?.id).toBe("Interact");
+    const [unknown, , measure] = tools.tools;
+    tools.toggle(measure!);
+    expect(tools.current?.id).toBe("Measure");
+    tools.toggle(measure!);
+    expect(tools.current?.id).toBe("Interact");
+    tools.choose(unknown!);
+    expect(tools.current?.id).toBe("Interact");
+  });
+
+  it("keep the one in hand while the list changes, as long as it is there", () => {
+    const tools = new ToolsState(connection);
+    receive({ type: "tools", tools: [tool("Interact"), tool("Measure")], classes: [] });
+    tools.choose(tools.tools[1]!);
+    receive({ type: "tools", tools: [tool("Interact"), tool("Measure"), tool("Select")], classes: [] });
+    expect(tools.current?.id).toBe("Measure");
+    receive({ type: "tools", tools: [tool("Interact")], classes: [] });
+    expect(tools.current?.id).toBe("Interact");
+  });
+
+  it("show a setting at once and tell it to the server", () => {
+    const tools = new ToolsState(connection);
+    const click = property({ id: "t/Single click", name: "Single click", kind: "bool", value: true });
+    receive({ type: "tools", tools: [tool("t", { properties: [click] })], classes: [] });
+    tools.setProperty("t/Single click", false);
+    expect(tools.tools[0]!.rows.bool(true, "Single click")).toBe(false);
+    expect(sent).toEqual([{ type: "set_tool_property", id: "t/Single click", value: false }]);
+    receive({ type: "tool_property_changed", id: "t/Single click", value: true });
+    expect(tools.tools[0]!.rows.bool(false, "Single click")).toBe(true);
+  });
+});
+
+describe("the clocks", () => {
+  it("go on by themselves while they run, and only then", () => {
+    let now = 1000;
+    const time = new TimeControlState(connection, () => now);
+    expect(time.times()).toBeNull();
+    const clock = { type: "clock", ros: 50, ros_start: 40, wall: 1e9, wall_start: 1e9 - 5 } as const;
+    receive({ ...clock, running: true });
+    now += 1500;
+    expect(time.times()).toEqual({ ros: 51.5, rosElapsed: 11.5, wall: 1e9 + 1.5, wallElapsed: 6.5 });
+    receive({ ...clock, running: false });
+    now += 1500;
+    expect(time.times()).toMatchObject({ ros: 50, wall: 1e9 + 1.5 });
+  });
+
+  it("are asked for again after the connection was lost", () => {
+    const time = new TimeControlState(connection);
+    time.watch(true);
+    time.watch(true);
+    receive({ type: "hello", protocol: 0, version: "", title: "" });
+    expect(sent).toEqual([
+      { type: "watch_clock", watching: true },
+      { type: "watch_clock", watching: true },
+    ]);
+  });
+});
+
+describe("the selection", () => {
+  it("adds, takes away, and tells the first link among all that is selected", () => {
+    const scene = robot("d1", "base", "tip");
+    const selection = new SelectionState(new Map([["d1", scene]]));
+    const changes = vi.fn();
+    selection.changed.on(changes);
+    selection.pick([{ display: "d0", key: "7" }], "replace");
+    expect(selection.selected).toBeNull();
+    selection.pick([{ display: "d1", key: "tip" }, { display: "d0", key: "7" }], "add");
+    expect(selection.items).toHaveLength(2);
+    expect(selection.selected?.link.name).toBe("tip");
+    selection.pick([{ display: "d1", key: "tip" }], "add");
+    expect(changes).toHaveBeenCalledTimes(2);
+    selection.pick([{ display: "d0", key: "7" }], "remove");
+    expect(selection.items).toEqual([{ display: "d1", key: "tip" }]);
+    selection.drop(() => false);
+    expect(selection.selected).toBeNull();
+  });
+});

@@ -1,0 +1,224 @@
+import { describe, expect, it } from "vitest";
+import { FIELD_OF_VIEW, onGround, rayThrough, type Camera } from "../src/state/views/camera";
+import { controllerOf } from "../src/state/views/catalog";
+import type { Drag, ViewController, ViewValues } from "../src/state/views/view-controller";
+import type { Vector } from "../src/state/views/vector";
+
+const SIZE = { width: 800, height: 600 };
+const ORBIT = view("Orbit");
+const GROUND = view("XYOrbit");
+const FLY = view("FPS");
+const MAP = view("TopDownOrtho");
+const FOCUSED: ViewValues = { Distance: 2, Yaw: 5.5, Pitch: 0.33, "Focal Point/X": 1, "Focal Point/Y": 2, "Focal Point/Z": 3 };
+
+function view(name: string): ViewController {
+  return controllerOf(`rviz_default_plugins/${name}`);
+}
+
+function dragged(part: Partial<Drag>): Drag {
+  return { ...SIZE, left: false, middle: false, right: false, shift: false, x: 400, y: 300, dx: 0, dy: 0, ...part };
+}
+
+function close(actual: readonly number[], expected: readonly number[], digits = 6): void {
+  expected.forEach((value, i) => expect(actual[i]).toBeCloseTo(value, digits));
+}
+
+function look(cls: string, values: ViewValues): { cls: string; values: ViewValues; camera: Camera } {
+  return { cls: `rviz_default_plugins/${cls}`, values, camera: view(cls).camera(values) };
+}
+
+function forward({ back }: Camera): Vector {
+  return [-back[0], -back[1], -back[2]];
+}
+
+/** Where a point is seen: right and up from the middle, per metre of depth. */
+function seen(camera: Camera, point: Vector): [number, number] {
+  const off = point.map((value, i) => value - (camera.position[i] ?? 0));
+  const along = (axis: Vector): number => axis.reduce((sum, value, i) => sum + value * (off[i] ?? 0), 0);
+  const depth = -along(camera.back);
+  return [along(camera.right) / depth, along(camera.up) / depth];
+}
+
+describe("every view", () => {
+  it("has right-handed axes of length one", () => {
+    for (const [name, values] of [["Orbit", FOCUSED], ["XYOrbit", FOCUSED], ["FPS", { Yaw: 1, Pitch: -0.4 }], ["TopDownOrtho", { Angle: 0.7 }]] as const) {
+      const { right, up, back } = view(name).camera(values);
+      for (const axis of [right, up, back]) expect(Math.hypot(...axis)).toBeCloseTo(1);
+      close(right, [up[1] * back[2] - up[2] * back[1], up[2] * back[0] - up[0] * back[2], up[0] * back[1] - up[1] * back[0]]);
+    }
+  });
+
+  it("changes nothing while no button is held", () => {
+    for (const name of ["Orbit", "XYOrbit", "FPS", "TopDownOrtho"]) {
+      for (const shift of [false, true]) {
+        expect(view(name).drag(FOCUSED, dragged({ dx: 10, dy: 10, shift })), name).toEqual({});
+      }
+    }
+  });
+});
+
+describe("Orbit", () => {
+  it("stands where RViz's formula says, and upside down with Invert Z", () => {
+    const [x, y, z] = ORBIT.camera(FOCUSED).position;
+    close([x, y, z], [1 + 2 * Math.cos(5.5) * Math.cos(0.33), 2 + 2 * Math.sin(5.5) * Math.cos(0.33), 3 + 2 * Math.sin(0.33)]);
+    const inverted = ORBIT.camera({ ...FOCUSED, "Invert Z Axis": true });
+    expect(inverted.position[2]).toBeCloseTo(3 - 2 * Math.sin(0.33));
+    expect(inverted.up[2]).toBeLessThan(0);
+  });
+
+  it("rotates 0.005 rad a pixel, wraps the yaw and stops the pitch below the pole", () => {
+    const rotated = ORBIT.drag(FOCUSED, dragged({ left: true, dx: 10, dy: 4 }));
+    close([Number(rotated["Yaw"]), Number(rotated["Pitch"])], [5.45, 0.35]);
+    expect(ORBIT.drag({ ...FOCUSED, Yaw: 0.01 }, dragged({ left: true, dx: 4 }))["Yaw"]).toBeCloseTo(2 * Math.PI - 0.01);
+    const limit = Math.PI / 2 - 0.001;
+    expect(ORBIT.drag(FOCUSED, dragged({ left: true, dy: 10_000 }))["Pitch"]).toBeCloseTo(limit);
+    expect(ORBIT.drag(FOCUSED, dragged({ left: true, dy: -10_000 }))["Pitch"]).toBeCloseTo(-limit);
+  });
+
+  it("pans so that the focal plane follows the pointer", () => {
+    const moved = ORBIT.drag(FOCUSED, dragged({ middle: true, dy: SIZE.height }));
+    const away = ["X", "Y", "Z"].map((axis) => Number(moved[`Focal Point/${axis}`]) - Number(FOCUSED[`Focal Point/${axis}`]));
+    expect(Math.hypot(...away)).toBeCloseTo(2 * 2 * Math.tan(FIELD_OF_VIEW / 2));
+    expect(ORBIT.drag(FOCUSED, dragged({ left: true, shift: true, dy: SIZE.height }))).toEqual(moved);
+  });
+
+  it("zooms 12 % a notch, and a hundredth of the distance a pixel with the right button", () => {
+    expect(ORBIT.wheel(FOCUSED, 120, false)["Distance"]).toBeCloseTo(2 * 0.88);
+    expect(ORBIT.drag(FOCUSED, dragged({ right: true, dy: 10 }))["Distance"]).toBeCloseTo(2 * 1.1);
+    expect(ORBIT.wheel(FOCUSED, 1e6, false)["Distance"]).toBeGreaterThan(0);
+  });
+
+  it("moves along the line of sight with Shift", () => {
+    const moved = ORBIT.wheel(FOCUSED, 120, true);
+    const { back } = ORBIT.camera(FOCUSED);
+    ["X", "Y", "Z"].forEach((axis, i) => {
+      expect(moved[`Focal Point/${axis}`]).toBeCloseTo(Number(FOCUSED[`Focal Point/${axis}`]) - 0.24 * (back[i] ?? 0));
+    });
+    expect(moved["Distance"]).toBeUndefined();
+  });
+
+  it("looks at a point from where it is", () => {
+    const after = ORBIT.camera({ ...FOCUSED, ...ORBIT.lookAt(FOCUSED, [0, 0, 1]) });
+    close(after.position, ORBIT.camera(FOCUSED).position);
+    close(seen(after, [0, 0, 1]), [0, 0]);
+  });
+});
+
+describe("XYOrbit", () => {
+  const values: ViewValues = { Distance: 10, Yaw: 0.5, Pitch: 0.6, "Focal Point/X": 1, "Focal Point/Y": 2, "Focal Point/Z": 0 };
+
+  it("is raised by a fifth of the distance", () => {
+    const [orbit, ground] = [ORBIT.camera(values), GROUND.camera(values)];
+    close(ground.position, orbit.position.map((each, i) => each + 2 * (orbit.up[i] ?? 0)));
+  });
+
+  it("keeps the ground under the pointer, a metre at most in one step", () => {
+    const drag = dragged({ middle: true, dx: 12, dy: -7 });
+    const before = onGround(rayThrough(GROUND.camera(values), drag.x, drag.y, SIZE));
+    const after = { ...values, ...GROUND.drag(values, drag) };
+    close(onGround(rayThrough(GROUND.camera(after), drag.x + 12, drag.y - 7, SIZE)) ?? [], before ?? [NaN]);
+    expect(after["Focal Point/Z"]).toBe(0);
+    const far = GROUND.drag(values, dragged({ middle: true, dy: -300 }));
+    expect(Math.hypot(Number(far["Focal Point/X"]) - 1, Number(far["Focal Point/Y"]) - 2)).toBeLessThanOrEqual(1 + 1e-9);
+  });
+
+  it("zooms with the wheel and the right button, with Shift too", () => {
+    expect(GROUND.wheel(values, 120, true)["Distance"]).toBeCloseTo(8.8);
+    expect(GROUND.drag(values, dragged({ right: true, shift: true, dy: 10 }))["Distance"]).toBeCloseTo(11);
+  });
+
+  it("focuses on the ground below a point", () => {
+    expect(GROUND.lookAt(values, [3, 4, 5])).toMatchObject({ "Focal Point/X": 3, "Focal Point/Y": 4, "Focal Point/Z": 0 });
+  });
+});
+
+describe("FPS", () => {
+  it("looks along yaw, tipped down by pitch", () => {
+    close(forward(FLY.camera({ Yaw: 0, Pitch: 0 })), [1, 0, 0]);
+    close(forward(FLY.camera({ Yaw: Math.PI / 2, Pitch: 0.5 })), [0, Math.cos(0.5), -Math.sin(0.5)]);
+  });
+
+  it("turns, moves across, and flies ahead", () => {
+    const values: ViewValues = { Yaw: 1, Pitch: 0, "Position/X": 0, "Position/Y": 0, "Position/Z": 1 };
+    const turned = FLY.drag(values, dragged({ left: true, dx: 10, dy: 10 }));
+    close([Number(turned["Yaw"]), Number(turned["Pitch"])], [0.95, 0.05]);
+    const { right } = FLY.camera(values);
+    const across = FLY.drag(values, dragged({ middle: true, dx: 100 }));
+    close([Number(across["Position/X"]), Number(across["Position/Y"])], [right[0], right[1]]);
+    const ahead = FLY.wheel(values, 120, false);
+    close([Number(ahead["Position/X"]), Number(ahead["Position/Y"])], [1.2 * Math.cos(1), 1.2 * Math.sin(1)]);
+    expect(FLY.drag(values, dragged({ right: true, dy: 10 }))["Position/Z"]).toBeCloseTo(1);
+  });
+
+  it("begins above and looks at the origin", () => {
+    const camera = FLY.camera(FLY.zero());
+    close(camera.position, [5, 5, 10]);
+    close(seen(camera, [0, 0, 0]), [0, 0]);
+  });
+});
+
+describe("TopDownOrtho", () => {
+  it("with a negative scale is turned by half a turn, and is dragged and zoomed likewise", () => {
+    const values = { Scale: -80, Angle: 0 };
+    const { right, up, scale } = MAP.camera(values);
+    close([...right, ...up, scale ?? 0], [-1, 0, 0, 0, -1, 0, 80]);
+    expect(MAP.drag(values, dragged({ middle: true, dx: 8 }))["X"]).toBeCloseTo(0.1);
+    expect(MAP.wheel(values, 120, false)["Scale"]).toBeCloseTo(-80 * 1.12);
+    expect(MAP.drag(values, dragged({ right: true, dy: 500 }))["Scale"]).toBeCloseTo(-0.08);
+  });
+
+  it("rotates, moves by pixels of its scale, and zooms", () => {
+    const values: ViewValues = { Scale: 50, Angle: Math.PI / 2, X: 1, Y: 2 };
+    expect(MAP.drag(values, dragged({ left: true, dx: 10 }))["Angle"]).toBeCloseTo(Math.PI / 2 + 0.05);
+    const moved = MAP.drag(values, dragged({ middle: true, dx: 50 }));
+    close([Number(moved["X"]), Number(moved["Y"])], [1, 1]);
+    expect(MAP.drag(values, dragged({ right: true, dy: 10 }))["Scale"]).toBeCloseTo(45);
+    expect(MAP.wheel(values, 120, false)["Scale"]).toBeCloseTo(56);
+  });
+
+  it("sees the ground where a pixel is", () => {
+    const camera = MAP.camera({ Scale: 100, Angle: 0, X: 1, Y: 2 });
+    close(onGround(rayThrough(camera, 500, 200, SIZE)) ?? [], [2, 3, 0]);
+  });
+});
+
+describe("another class of view", () => {
+  it("FPS keeps eye and direction of an Orbit, and back", () => {
+    const orbit = ORBIT.camera(FOCUSED);
+    const fly = FLY.camera(FLY.mimic(look("Orbit", FOCUSED)));
+    close(fly.position, orbit.position);
+    close(fly.back, orbit.back);
+    const back = ORBIT.camera(ORBIT.mimic(look("FPS", FLY.mimic(look("Orbit", FOCUSED)))));
+    close(back.position, orbit.position);
+    close(back.back, orbit.back);
+  });
+
+  it("Orbit turns about a point as far ahead as the origin is away", () => {
+    const values: ViewValues = { Yaw: 0, Pitch: 0, "Position/X": 3, "Position/Y": 0, "Position/Z": 4 };
+    expect(ORBIT.mimic(look("FPS", values))).toMatchObject({ Distance: 5, "Focal Point/X": 8, "Focal Point/Z": 4 });
+  });
+
+  it("XYOrbit keeps the picture where the camera sees the ground", () => {
+    const values: ViewValues = { Yaw: 0.3, Pitch: 0.7, "Position/X": 3, "Position/Y": 1, "Position/Z": 4 };
+    const fly = FLY.camera(values);
+    const mimicked = GROUND.mimic(look("FPS", values));
+    close(GROUND.camera(mimicked).position, fly.position);
+    close(GROUND.camera(mimicked).back, fly.back);
+    expect(mimicked["Focal Point/Z"]).toBeCloseTo(0);
+  });
+
+  it("XYOrbit begins anew where the camera looks up", () => {
+    expect(GROUND.mimic(look("FPS", { Pitch: -0.5, "Position/Z": 1 }))).toEqual(GROUND.zero());
+  });
+
+  it("TopDownOrtho shows the focal point, or what is below the camera", () => {
+    expect(MAP.mimic(look("Orbit", FOCUSED))).toEqual({ X: 1, Y: 2 });
+    expect(MAP.mimic(look("FPS", { "Position/X": 7, "Position/Y": 8 }))).toEqual({ X: 7, Y: 8 });
+  });
+
+  it("Orbit after TopDownOrtho looks down from 100 m with the same side up", () => {
+    const values = ORBIT.mimic(look("TopDownOrtho", { X: 1, Y: 2, Angle: 0 }));
+    expect(values["Distance"]).toBeCloseTo(100);
+    expect(ORBIT.camera(values).up[1]).toBeGreaterThan(0.99);
+  });
+});

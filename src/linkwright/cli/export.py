@@ -1,0 +1,64 @@
+"""``linkwright export``: a robot as one HTML file that opens anywhere, or as glTF."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from linkwright.cli.assignments import parse_assignments
+from linkwright.cli.output import write_output
+from linkwright.diagnostics import LinkwrightError, print_diagnostics
+
+HELP = "write a model as one HTML file that opens in any browser, or as glTF (.glb)"
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    parser.add_argument(
+        "out",
+        metavar="OUT",
+        help="the file to write: OUT.html has the robot with sliders for its joints and needs no server and no "
+        "network; OUT.glb is glTF 2.0 with a node for each link",
+    )
+    parser.add_argument("file", metavar="FILE", help="the URDF or xacro file")
+    parser.add_argument("values", metavar="NAME:=VALUE", nargs="*", help="values for the file's <xacro:arg>")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Write the file and say so."""
+    from linkwright.urdf import DescriptionLibrary
+    from linkwright.viewer.export import FORMATS, export_snapshot, format_of
+    from linkwright.viewer.export.model import snapshot_of_model
+    from linkwright.workspace import PackageFinder
+    from linkwright.xacro import expand
+
+    if format_of(arguments.out) is None:
+        endings = " or ".join(f".{ending}" for ending in FORMATS)
+        swapped = "; the file to write comes first" if format_of(arguments.file) is not None else ""
+        print(f"linkwright export: '{arguments.out}' should end with {endings}{swapped}", file=sys.stderr)
+        return 2
+    path = Path(arguments.file).absolute()
+    finder = PackageFinder(start=[path.parent, Path.cwd()])
+    expansion = expand(path, parse_assignments(arguments.values), packages=finder)
+    library = DescriptionLibrary()
+    text = str(expansion)
+    library.remember(text, expansion.document, expansion.story, expansion.dependencies)
+    reading = library.read(text)
+    print_diagnostics([*expansion.diagnostics, *reading.diagnostics], sys.stderr)
+    if reading.robot is None or not reading.robot.root:
+        return 1  # without a name for its first link nothing can be placed
+    snapshot = snapshot_of_model(text, reading.robot, library, finder)
+    print_diagnostics(snapshot.problems, sys.stderr)
+    try:
+        data = export_snapshot(snapshot, arguments.out.rpartition(".")[2].lower())
+    except LinkwrightError as error:
+        print_diagnostics(error.diagnostics, sys.stderr)
+        return 1
+    write_output(Path(arguments.out), data)
+    print(f"Created file {arguments.out} ({_size(len(data))})")
+    return 1 if snapshot.problems else 0
+
+
+def _size(count: int) -> str:
+    return f"{count / 1e6:.1f} MB" if count >= 1e6 else f"{max(1, round(count / 1e3))} kB"

@@ -1,0 +1,128 @@
+"""The points of a sensor_msgs/msg/PointCloud2: where they are, and what else is known of each."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+# sensor_msgs/msg/PointField: constants of its `datatype`
+_FORMATS = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 8: "f8"}
+_AXES = ("x", "y", "z")
+
+
+class BadCloudError(ValueError):
+    """A message cannot be shown as points; the text is for the status row ``Message``."""
+
+
+@dataclass(frozen=True, slots=True)
+class Points:
+    """Points with finite positions.
+
+    Attributes:
+        positions: float32 array, shape (N, 3), metres in the frame of the message.
+        channels: the values of other fields by name, in the order of the message; each of shape (N,).
+    """
+
+    positions: NDArray[np.float32]
+    channels: Mapping[str, NDArray[Any]] = field(default_factory=dict)
+
+    def __len__(self) -> int:
+        return len(self.positions)
+
+    def values(self, name: str) -> NDArray[Any] | None:
+        """A channel, or a coordinate; None for what these points do not have."""
+        if name in _AXES:
+            column: NDArray[Any] = self.positions[:, _AXES.index(name)]
+            return column
+        return self.channels.get(name)
+
+
+def points_of_cloud(message: Any) -> Points:
+    """The points of a PointCloud2 whose coordinates are finite, as RViz takes them.
+
+    Of several fields with one name the first counts; of a field with several values the first value. Fields of types
+    that are none are passed over.
+
+    Raises:
+        BadCloudError: the size of the data is not that of the points, a field lies outside of the point, or there are
+            no coordinates in float32.
+    """
+    count = message.width * message.height
+    step = message.point_step
+    data = np.frombuffer(message.data, dtype=np.uint8)
+    if data.size != count * step:
+        raise BadCloudError(
+            f"Data size ({data.size} bytes) does not match width ({message.width}) times height ({message.height}) "
+            f"times point_step ({step}).  Dropping message."
+        )
+    fields = _fields(message.fields, step)
+    if any(fields.get(axis, ("", 0))[0] != "f4" for axis in _AXES):
+        raise BadCloudError("No position transformer available for cloud")
+    if count == 0:
+        return Points(np.empty((0, 3), np.float32), {name: np.empty(0, kind) for name, (kind, _) in fields.items()})
+    order = ">" if message.is_bigendian else "<"
+    positions = _coordinates(data, [fields[axis][1] for axis in _AXES], order, step, count)
+    valid = None
+    with np.errstate(all="ignore"):
+        if not np.isfinite(positions.sum(dtype=np.float64)):
+            valid = np.isfinite(positions).all(axis=1)
+            positions = positions[valid]
+    channels: dict[str, NDArray[Any]] = {}
+    for name, (kind, offset) in fields.items():
+        if name not in _AXES:
+            column = _column(data, offset, order + kind, step, count)
+            channels[name] = column if valid is None else column[valid]
+    return Points(positions, channels)
+
+
+def points_of_legacy_cloud(message: Any) -> Points:
+    """The points of a sensor_msgs/msg/PointCloud whose coordinates are finite.
+
+    Raises:
+        BadCloudError: a channel has not one value for each point.
+    """
+    positions = np.array([(each.x, each.y, each.z) for each in message.points], dtype=np.float32).reshape(-1, 3)
+    channels: dict[str, NDArray[Any]] = {}
+    for channel in message.channels:
+        values = np.asarray(channel.values, dtype=np.float32)
+        if len(values) != len(positions):
+            raise BadCloudError(
+                f"Channel '{channel.name}' has {len(values)} values for {len(positions)} points.  Dropping message."
+            )
+        channels.setdefault(channel.name, values)
+    valid = np.isfinite(positions).all(axis=1)
+    return Points(positions[valid], {name: values[valid] for name, values in channels.items()})
+
+
+def _fields(fields: Any, step: int) -> dict[str, tuple[str, int]]:
+    """Type and offset of each field by name."""
+    found: dict[str, tuple[str, int]] = {}
+    for each in fields:
+        kind = _FORMATS.get(each.datatype)
+        if kind is None or each.name in found:
+            continue
+        if each.offset + int(kind[1]) > step:
+            raise BadCloudError(
+                f"Field '{each.name}' ends at byte {each.offset + int(kind[1])} of a point of {step} bytes"
+            )
+        found[each.name] = (kind, each.offset)
+    return found
+
+
+def _coordinates(data: NDArray[np.uint8], offsets: list[int], order: str, step: int, count: int) -> NDArray[np.float32]:
+    """Shape (N, 3); its own memory, so that the message may go."""
+    first = offsets[0]
+    if offsets == [first, first + 4, first + 8]:
+        view: NDArray[Any] = np.ndarray((count, 3), order + "f4", data.data, first, (step, 4))
+        return view.astype(np.float32)
+    columns = [_column(data, offset, order + "f4", step, count) for offset in offsets]
+    return np.stack(columns, axis=1).astype(np.float32, copy=False)
+
+
+def _column(data: NDArray[np.uint8], offset: int, kind: str, step: int, count: int) -> NDArray[Any]:
+    column: NDArray[Any] = np.ndarray((count,), kind, data.data, offset, (step,))
+    return column

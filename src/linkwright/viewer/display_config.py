@@ -1,0 +1,112 @@
+"""The entries of ``Displays`` in a configuration file, with groups inside of groups."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+from linkwright.diagnostics import Diagnostic, Severity
+from linkwright.viewer import yaml_tree
+from linkwright.viewer.former_names import GROUP, modern_class
+from linkwright.viewer.yaml_tree import Section
+
+_KEY = "Displays"
+_TRUE = ("true", "1", "yes", "on")
+
+
+class DisplayConfig:
+    """One entry of ``Displays``.
+
+    Args:
+        section: its part of the file.
+        group: the group it is in, or None.
+        report: told of entries below it that cannot be used.
+
+    Attributes:
+        cls: RViz 2's name of its class, also where the file says it as RViz 1 did.
+        displays: what a group holds.
+        identity: its id in pages; empty until it has one.
+    """
+
+    def __init__(
+        self, section: Section, group: DisplayConfig | None, report: Callable[[Diagnostic], None] = lambda _: None
+    ) -> None:
+        self.section = section
+        self.group = group
+        self.cls = modern_class(self.written_class)
+        self.identity = ""
+        self.displays: list[DisplayConfig] = read_displays(section, self, report) if self.is_group else []
+
+    @property
+    def written_class(self) -> str:
+        """The name of its class as the file has it."""
+        scalar = self.section.scalar("Class")
+        return scalar.text if scalar else ""
+
+    @property
+    def is_group(self) -> bool:
+        """Whether it holds displays instead of drawing something."""
+        return self.cls == GROUP
+
+    @property
+    def name(self) -> str:
+        """What it is called in the Displays panel; by default as its class."""
+        scalar = self.section.scalar("Name")
+        return scalar.text if scalar else self.cls.rpartition("/")[2]
+
+    @name.setter
+    def name(self, name: str) -> None:
+        self.section.put(("Name",), name, string=True)
+
+    @property
+    def checked(self) -> bool:
+        """Its own box: ``Enabled``, else ``Value``; without both it is off, as in RViz."""
+        text = self.section.text("Enabled")
+        if text is None:
+            text = self.section.text("Value")
+        return text is not None and text.strip().lower() in _TRUE
+
+    @checked.setter
+    def checked(self, value: bool) -> None:
+        if value == self.checked:
+            return
+        present = [key for key in ("Enabled", "Value") if self.section.scalar(key)]
+        for key in present or ["Enabled"]:
+            self.section.put((key,), "true" if value else "false")
+
+    @property
+    def enabled(self) -> bool:
+        """Whether it is drawn: its box and those of the groups around it are on."""
+        return self.checked and (self.group is None or self.group.enabled)
+
+    def walk(self) -> Iterator[DisplayConfig]:
+        """It and all that it holds, each group before what is in it."""
+        yield self
+        for display in self.displays:
+            yield from display.walk()
+
+
+def read_displays(
+    parent: Section, group: DisplayConfig | None, report: Callable[[Diagnostic], None]
+) -> list[DisplayConfig]:
+    """The entries of ``Displays`` in a section; those without a class are reported (RVIZ202) and left alone."""
+    displays = []
+    for section in parent.sections(_KEY):
+        if section.scalar("Class") is None:
+            message = "a display without a 'Class' is left out"
+            report(Diagnostic("RVIZ202", message, section.span(), Severity.WARNING, source=section.source))
+        else:
+            displays.append(DisplayConfig(section, group, report))
+    return displays
+
+
+def place(display: DisplayConfig, parent: Section, siblings: list[DisplayConfig], index: int) -> None:
+    """Put an entry among those of a parent, in the file too."""
+    before = siblings[index].section if index < len(siblings) else None
+    yaml_tree.insert_section(parent, _KEY, display.section, before)
+    siblings.insert(index, display)
+
+
+def displace(display: DisplayConfig, parent: Section, siblings: list[DisplayConfig]) -> None:
+    """Take an entry out from among those of a parent, in the file too."""
+    yaml_tree.remove_section(parent, _KEY, display.section)
+    siblings.remove(display)

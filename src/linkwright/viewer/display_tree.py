@@ -1,0 +1,244 @@
+"""The displays of a configuration: which there are, in which order and groups, and which are on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from linkwright.viewer.display_config import DisplayConfig
+from linkwright.viewer.displays import Stage, ViewerDisplay, make_display
+from linkwright.viewer.edits import BoxEdit, SwapEdit
+from linkwright.viewer.history import History
+from linkwright.viewer.protocol import EditKind, EditName
+from linkwright.viewer.rviz_config import Arrangement, RvizConfig
+from linkwright.viewer.yaml_tree import Memory
+
+
+class DisplayTree:
+    """The displays, which follow the entries of the configuration.
+
+    What is done here can be undone. A display that is removed is stopped; when that is undone, another one with its id
+    and its part of the file takes its place.
+
+    Args:
+        config: has the entries.
+        stage: what displays work with.
+        history: of edits.
+        next_id: an id that no display has had.
+        rearranged: told when displays came, went, moved or have another name, before new ones start.
+
+    Attributes:
+        displays: every display, each group before what is in it.
+    """
+
+    def __init__(
+        self,
+        config: RvizConfig,
+        stage: Stage,
+        history: History,
+        next_id: Callable[[], str],
+        *,
+        rearranged: Callable[[], None],
+    ) -> None:
+        self._stage = stage
+        self._history = history
+        self._next_id = next_id
+        self._rearranged = rearranged
+        self._running = False
+        self.displays: list[ViewerDisplay] = []
+        self.fill(config)
+
+    def fill(self, config: RvizConfig) -> None:
+        """Have the displays of a configuration, none of them started."""
+        self._config = config
+        self.displays = [self._make(entry) for entry in config.walk()]
+        self._tell_arrangement()
+
+    def start(self) -> None:
+        """Start all of them."""
+        self._running = True
+        for display in self.displays:
+            display.start()
+
+    def stop(self) -> None:
+        """Stop all of them."""
+        self._running = False
+        for display in self.displays:
+            display.stop()
+
+    def find(self, identity: str) -> ViewerDisplay | None:
+        """The display with an id."""
+        return next((display for display in self.displays if display.id == identity), None)
+
+    # --- edits -------------------------------------------------------------------------------------------------
+
+    def check(self, display: ViewerDisplay, value: bool) -> None:
+        """Switch a display on or off, and with it what is in it."""
+        if value != display.config.checked:
+            self.set_checked(display.id, value)
+            self._history.add(BoxEdit(self.set_checked, display))
+
+    def add(
+        self,
+        entry: DisplayConfig,
+        group: DisplayConfig | None = None,
+        prepare: Callable[[ViewerDisplay], None] | None = None,
+    ) -> ViewerDisplay:
+        """Show one more display, last of a group or of all.
+
+        Args:
+            entry: its part of the file.
+            group: to hold it.
+            prepare: sets properties before it starts.
+
+        Raises:
+            ValueError: the group is none.
+        """
+        display = self._make(entry)
+        if prepare is not None:
+            prepare(display)
+        self._rearrange(EditName("add", entry.name), lambda: self._config.insert(entry, group), [display])
+        return display
+
+    def duplicate(self, displays: Sequence[ViewerDisplay]) -> None:
+        """Show a display alike after each of these."""
+
+        def copy() -> None:
+            for entry in _outermost(displays):
+                siblings = self._config.siblings(entry.group)
+                self._config.insert(self._config.duplicate(entry), entry.group, siblings.index(entry) + 1)
+
+        self._rearrange(_named("duplicate", displays), copy)
+
+    def remove(self, displays: Sequence[ViewerDisplay]) -> None:
+        """Show displays, and what is in them, no more."""
+
+        def take_away() -> None:
+            for entry in _outermost(displays):
+                self._config.remove(entry)
+
+        self._rearrange(_named("remove", displays), take_away)
+
+    def move(
+        self, displays: Sequence[ViewerDisplay], group: DisplayConfig | None, before: DisplayConfig | None
+    ) -> None:
+        """Put displays into a group, in front of one of it or last.
+
+        Raises:
+            ValueError: the group is none, or inside of one of the displays.
+        """
+        moved = _outermost(displays)
+        if group is not None and (not group.is_group or any(group in entry.walk() for entry in moved)):
+            raise ValueError(f"displays cannot be put into '{group.name}'")
+
+        def shift() -> None:
+            siblings = self._config.siblings(group)
+            after = siblings[siblings.index(before) :] if before in siblings else []
+            target = next((entry for entry in after if entry not in moved), None)
+            for entry in moved:
+                self._config.remove(entry)
+                self._config.insert(entry, group, siblings.index(target) if target else None)
+
+        self._rearrange(_named("move", displays), shift)
+
+    def gather(self, displays: Sequence[ViewerDisplay], name: str) -> None:
+        """Put displays into a new group, where the first of them is."""
+        moved = _outermost(displays)
+        around, at = moved[0].group, self._config.siblings(moved[0].group).index(moved[0])
+        group = self._config.make_group(name)
+
+        def put_together() -> None:
+            self._config.insert(group, around, at)
+            for entry in moved:
+                self._config.remove(entry)
+                self._config.insert(entry, group)
+
+        self._rearrange(EditName("group", name), put_together)
+
+    def rename(self, display: ViewerDisplay, name: str) -> None:
+        """Give a display another name."""
+        if name == display.config.name:
+            return
+        section = display.config.section
+        before = section.memory("Name")
+
+        def swap(memory: Memory) -> Memory:
+            now = section.memory("Name")
+            section.recall(memory)
+            self._tell_arrangement()
+            self._rearranged()
+            return now
+
+        display.config.name = name
+        self._tell_arrangement()
+        self._rearranged()
+        self._history.add(SwapEdit(swap, before, EditName("rename", name)))
+
+    # --- what edits do -----------------------------------------------------------------------------------------
+
+    def set_checked(self, identity: str, value: bool) -> None:
+        """Set the box of a display."""
+        display = self.find(identity)
+        if display is None:
+            return
+        enabled = self._enabled()
+        display.set_checked(value)
+        for other in self.displays:
+            if other.enabled != enabled[other.config]:
+                other.enabled_changed()
+
+    def arrange(self, arrangement: Arrangement) -> Arrangement:
+        """Have the displays that there were; returns what there was now, to come back to it."""
+        before, enabled = self._config.arrangement(), self._enabled()
+        self._config.arrange(arrangement)
+        self._follow(enabled)
+        return before
+
+    def _rearrange(self, name: EditName, change: Callable[[], None], made: Sequence[ViewerDisplay] = ()) -> None:
+        before, enabled = self._config.arrangement(), self._enabled()
+        change()
+        self._follow(enabled, made)
+        self._history.add(SwapEdit(self.arrange, before, name))
+
+    def _enabled(self) -> dict[DisplayConfig, bool]:
+        return {display.config: display.enabled for display in self.displays}
+
+    def _follow(self, enabled: dict[DisplayConfig, bool], made: Sequence[ViewerDisplay] = ()) -> None:
+        """Have a display for each entry: those that came start, those that went stop."""
+        there = {display.config: display for display in self.displays}
+        new = {display.config: display for display in made}
+        entries = list(self._config.walk())
+        for entry in there.keys() - set(entries):
+            there[entry].stop()
+        self.displays = [there.get(entry) or new.get(entry) or self._make(entry) for entry in entries]
+        self._tell_arrangement()
+        self._rearranged()
+        for display in self.displays:
+            if display.config not in there:
+                self._begin(display)
+            elif display.enabled != enabled[display.config]:
+                display.enabled_changed()
+
+    def _tell_arrangement(self) -> None:
+        for display in self.displays:
+            display.arranged(self.displays)
+
+    def _begin(self, display: ViewerDisplay) -> None:
+        if self._running:
+            display.start()
+            display.frames_changed()
+        for message in display.messages():
+            self._stage.publish(message)
+
+    def _make(self, entry: DisplayConfig) -> ViewerDisplay:
+        entry.identity = entry.identity or self._next_id()
+        return make_display(self._stage, entry.identity, entry)
+
+
+def _outermost(displays: Sequence[ViewerDisplay]) -> list[DisplayConfig]:
+    """The entries of displays without those that are inside of others among them."""
+    entries = [display.config for display in displays]
+    return [entry for entry in entries if not any(entry in other.walk() for other in entries if other is not entry)]
+
+
+def _named(kind: EditKind, displays: Sequence[ViewerDisplay]) -> EditName:
+    return EditName(kind, ", ".join(display.config.name for display in displays))

@@ -1,0 +1,205 @@
+"""rviz_default_plugins/DepthCloud."""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from typing import Any, ClassVar
+
+import numpy as np
+
+from linkwright.graph import HistoryPolicy, QoSProfile, ReliabilityPolicy
+from linkwright.viewer.clouds import BadCloudError, DepthCamera, DepthCloudBuilder, Points
+from linkwright.viewer.displays.base import Stage
+from linkwright.viewer.displays.cloud_display import CloudDisplay
+from linkwright.viewer.displays.data_display import Pose
+from linkwright.viewer.displays.depth_properties import (
+    AUTO_SIZE,
+    COLOUR_TOPIC,
+    COLOUR_TRANSPORT,
+    DEPTH_SCHEMA,
+    DEPTH_TOPIC,
+    DEPTH_TRANSPORT,
+    INFO_TOPIC,
+    OCCLUSION,
+    OCCLUSION_TIMEOUT,
+    QUEUE_SIZE,
+    RAW,
+    RELIABILITY,
+    SIZE_FACTOR,
+    SOURCES,
+)
+from linkwright.viewer.displays.side_topic import SideTopic, camera_info_topic
+from linkwright.viewer.images import BadImageError, Picture, RangeFinder, picture_of
+from linkwright.viewer.property_store import Path
+from linkwright.viewer.rviz_config import DisplayConfig
+
+_IMAGE = "sensor_msgs/msg/Image"
+_SYNC_NS = 500_000_000
+"""A colour image farther from the depths in time does not belong to them."""
+
+# The camera counts as moved beyond these, metres and radians.
+_MOVED = 0.01
+_TURNED = np.radians(0.5)
+
+
+class DepthCloudDisplay(CloudDisplay):
+    """The points of a depth image, coloured by a colour image where there is one."""
+
+    CLASS = "rviz_default_plugins/DepthCloud"
+    MESSAGE = _IMAGE
+    SCHEMA = DEPTH_SCHEMA
+    TOPIC = (DEPTH_TOPIC,)
+    TOPIC_ROW: ClassVar[str] = "Depth Map"
+
+    def __init__(self, stage: Stage, identity: str, config: DisplayConfig) -> None:
+        super().__init__(stage, identity, config)
+        self._infos = SideTopic(stage.node, "sensor_msgs/msg/CameraInfo", self._info_received)
+        self._colours = SideTopic(stage.node, _IMAGE, self._colour_received)
+        self._builder = DepthCloudBuilder()
+        self._info: Any = None
+        self._pixel = 0.0
+        self._recent: deque[Any] = deque()
+        self._pending: tuple[Any, Pose] | None = None
+        self._camera_pose: Pose | None = None
+
+    def subscription(self) -> tuple[str, str, QoSProfile]:
+        """The depth map."""
+        return _IMAGE, self.properties.text(DEPTH_TOPIC).strip(), self._qos()
+
+    def most_waiting(self) -> int:
+        """How many depth maps may wait for their transforms."""
+        return int(self.properties.number(QUEUE_SIZE))
+
+    def pixel_size(self) -> float:
+        """The width of a pixel a metre away, if points are to be as large as pixels."""
+        return self._pixel * self.properties.number(AUTO_SIZE, SIZE_FACTOR) if self.properties.flag(AUTO_SIZE) else 0.0
+
+    def take(self, message: Any, pose: Pose | None) -> None:
+        """Show a depth map as soon as its colours are there."""
+        assert pose is not None
+        colour = self._colour_of(message) if self._wants_colour() else None
+        if self._info is None or (colour is None and self._wants_colour()):
+            self._pending = (message, pose)
+            return
+        self._pending = None
+        self._show_depths(message, pose, colour)
+
+    def changed(self, path: Path) -> None:
+        """Listen to other topics, or show the last depths differently."""
+        if path[0] in SOURCES:
+            self._restart()
+            return
+        super().changed(path)
+        if path[0] in (AUTO_SIZE, OCCLUSION):
+            self.show_again()
+
+    def reset(self) -> None:
+        """Forget everything that was covered."""
+        self._builder.reset()
+        self._camera_pose = None
+        self._pending = None
+        if self.last is None:
+            self._info = None
+            self._recent.clear()
+        super().reset()
+
+    # --- topics ------------------------------------------------------------------------------------------------
+
+    def _qos(self) -> QoSProfile:
+        reliable = self.properties.text(RELIABILITY) == "Reliable"
+        return QoSProfile(
+            depth=int(self.properties.number(QUEUE_SIZE)),
+            history=HistoryPolicy.KEEP_LAST,
+            reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
+        )
+
+    def _subscribe(self) -> None:
+        super()._subscribe()
+        depth, colour = self.properties.text(DEPTH_TOPIC).strip(), self.properties.text(COLOUR_TOPIC).strip()
+        if not depth:
+            return
+        for name in (DEPTH_TRANSPORT, COLOUR_TRANSPORT):
+            if (transport := self.properties.text(name)) != RAW:
+                self.say(name, "warn", f"Images of transport '{transport}' are not read; raw ones are listened to")
+        info = self.properties.text(INFO_TOPIC).strip() or camera_info_topic(depth)
+        problem = self._infos.listen(info, self._qos())
+        self.say("Depth Camera Info", "error" if problem else "warn", problem or f"No CameraInfo received on [{info}]")
+        if colour and (problem := self._colours.listen(colour, self._qos())):
+            self.say("Message", "error", problem)
+        if colour:
+            self.choose_transformer("RGB8")
+
+    def _unsubscribe(self) -> None:
+        super()._unsubscribe()
+        self._infos.close()
+        self._colours.close()
+
+    def _info_received(self, info: Any) -> None:
+        self._info = info
+        self.say("Depth Camera Info", "ok", "OK")
+        self._try_pending()
+
+    def _colour_received(self, message: Any) -> None:
+        self._recent.append(message)
+        while len(self._recent) > self.most_waiting():
+            self._recent.popleft()
+        self._try_pending()
+
+    def _try_pending(self) -> None:
+        if self._pending is not None:
+            self.take(*self._pending)
+
+    def _wants_colour(self) -> bool:
+        return bool(self.properties.text(COLOUR_TOPIC).strip())
+
+    def _colour_of(self, depth: Any) -> Any:
+        """The colour image nearest in time; None when there is none near."""
+        at = self.frame_of(depth)[1]
+        nearest = min(self._recent, key=lambda each: abs(self.frame_of(each)[1] - at), default=None)
+        if nearest is None or abs(self.frame_of(nearest)[1] - at) > _SYNC_NS:
+            return None
+        return nearest
+
+    # --- points ------------------------------------------------------------------------------------------------
+
+    def _show_depths(self, message: Any, pose: Pose, colour: Any) -> None:
+        self.say("Depth Image Size", "ok", f"{message.width} x {message.height}")
+        if colour is not None:
+            self.say("Image Size", "ok", f"{colour.width} x {colour.height}")
+        try:
+            points = self._points(message, pose, colour)
+        except BadCloudError as error:
+            self.say("Message", "error", str(error))
+            return
+        frames = (message.header.frame_id, colour.header.frame_id if colour is not None else message.header.frame_id)
+        if frames[0] != frames[1]:
+            text = f"Depth image frame id [{frames[0]}] doesn't match color image frame id [{frames[1]}]"
+            self.say("Message", "warn", text)
+        else:
+            self.say("Message", "ok", "Ok")
+        self.show(points, pose, self.frame_of(message)[1])
+
+    def _points(self, message: Any, pose: Pose, colour: Any) -> Points:
+        camera = DepthCamera.of(self._info, message.width, message.height)
+        self._pixel = camera.pixel
+        picture: Picture | None = None
+        if colour is not None:
+            try:
+                picture = picture_of(colour, RangeFinder())
+            except BadImageError as error:
+                raise BadCloudError(f"Error updating depth cloud: {error}") from None
+        keep = self.properties.number(OCCLUSION, OCCLUSION_TIMEOUT) if self.properties.flag(OCCLUSION) else None
+        if keep is not None and self._has_moved(pose):
+            self._builder.reset()
+        return self._builder.points(message, camera, picture, keep_covered=keep, now=time.monotonic())
+
+    def _has_moved(self, pose: Pose) -> bool:
+        before = self._camera_pose
+        if before is not None:
+            distance = float(np.linalg.norm(pose[:3] - before[:3]))
+            turn = 2.0 * np.arccos(min(1.0, abs(float(np.dot(pose[3:], before[3:])))))
+            if distance <= _MOVED and turn <= _TURNED:
+                return False
+        self._camera_pose = pose
+        return True

@@ -1,0 +1,195 @@
+"""rviz_default_plugins/Effort."""
+
+from __future__ import annotations
+
+import math
+from contextlib import suppress
+from typing import Any
+
+import numpy as np
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph import DESCRIPTION_QOS, TransformException
+from linkwright.messages import String
+from linkwright.urdf import Joint, Vector3
+from linkwright.viewer.display_config import DisplayConfig
+from linkwright.viewer.displays.base import Stage
+from linkwright.viewer.displays.look_properties import alpha
+from linkwright.viewer.displays.recent import RecentDisplay
+from linkwright.viewer.displays.topic_properties import topic_spec
+from linkwright.viewer.property_store import Path, Schema
+from linkwright.viewer.protocol import DataContent, EffortRings
+from linkwright.viewer.robot_scene import frame_of
+from linkwright.viewer.schema import PropertySpec
+
+_DESCRIPTION = "Robot Description"
+_PREFIX = "TF Prefix"
+_JOINTS = "Joints"
+_URDF = "URDF"
+_TURNING = ("revolute", "continuous")
+
+
+class EffortDisplay(RecentDisplay):
+    """The torques of turning joints, as rings about their axes that grow with the part of the limit that is used.
+
+    RViz draws those of revolute joints only, and turned away from axes other than z.
+    """
+
+    CLASS = "rviz_default_plugins/Effort"
+    MESSAGE = "sensor_msgs/msg/JointState"
+    LENGTH = ("History Length",)
+    IN_FIXED_FRAME = True
+    SCHEMA = (
+        topic_spec(description=MESSAGE, filter_size=10),
+        alpha(),
+        PropertySpec("Width", "float", 0.02, "Width of the rings' lines, in metres."),
+        PropertySpec("Scale", "float", 1.0, "Metres that a ring at its limit is wide."),
+        PropertySpec("History Length", "int", 1, "How many messages are shown.", minimum=1, maximum=100000),
+        PropertySpec(
+            _DESCRIPTION,
+            "string",
+            "/robot_description",
+            "The topic that carries the description of the robot, as std_msgs/msg/String.",
+        ),
+        PropertySpec(_PREFIX, "string", "", "What stands before a slash and a link's name in the name of its frame."),
+    )
+
+    def __init__(self, stage: Stage, identity: str, config: DisplayConfig) -> None:
+        self._joints: dict[str, Joint] | None = None
+        self._row: tuple[str, str] | None = None
+        self._descriptions: Any = None
+        super().__init__(stage, identity, config)
+
+    def schema(self) -> Schema:
+        """The fixed properties, and a box for each joint that has a limit."""
+        names = sorted(self._joints or ())
+        boxes = tuple(
+            PropertySpec(name, "bool", True, "Draw the ring of this joint.", nested=True, details="effort")
+            for name in names
+        )
+        return (*self.SCHEMA, PropertySpec(_JOINTS, "group", description="The turning joints.", children=boxes))
+
+    def start(self) -> None:
+        """Listen to the robot's description too."""
+        super().start()
+        self._follow()
+
+    def stop(self) -> None:
+        """Listen no more."""
+        self._leave()
+        super().stop()
+
+    def changed(self, path: Path) -> None:
+        """Follow another description; forget rings at the places of another prefix."""
+        super().changed(path)
+        if path == (_DESCRIPTION,):
+            self._follow()
+        elif path == (_PREFIX,):
+            self.reset()
+            self.frames_changed()
+
+    def enabled_changed(self) -> None:
+        """Listen to the description only while the display is enabled."""
+        super().enabled_changed()
+        self._follow()
+
+    def frame_of(self, message: Any) -> tuple[str, int]:
+        """The frame of the first joint that is drawn: joint states are in no frame of their own."""
+        stamp = message.header.stamp
+        joint = next((self._joints[name] for name in message.name if self._joints and name in self._joints), None)
+        frame = self.stage.frames.fixed_frame if joint is None else self._frame(joint)
+        return frame, stamp.sec * 1_000_000_000 + stamp.nanosec
+
+    def content(self, message: Any) -> DataContent | None:
+        """A ring for each joint whose frame has a place."""
+        if self._joints is None:
+            self.refuse("Robot model might not be loaded yet")
+            return None
+        if len(message.name) != len(message.effort):
+            self.refuse("Received a joint state msg with different joint names and efforts size!")
+            return None
+        self.accept()
+        _, stamp_ns = self.frame_of(message)
+        rings = [
+            (joint, effort, pose)
+            for name, effort in zip(message.name, message.effort, strict=True)
+            if (joint := self._joints.get(name)) is not None
+            and (pose := self._ring_pose(joint, float(effort), stamp_ns)) is not None
+        ]
+        return EffortRings(
+            [joint.name for joint, _, _ in rings],
+            np.array([pose for _, _, pose in rings], dtype=np.float32).reshape(-1, 7),
+            np.array([effort for _, effort, _ in rings], dtype=np.float32),
+            np.array([joint.limit.effort if joint.limit else 0.0 for joint, _, _ in rings], dtype=np.float32),
+        )
+
+    def _ring_pose(self, joint: Joint, effort: float, stamp_ns: int) -> tuple[float, ...] | None:
+        if not math.isfinite(effort):
+            self.say(joint.name, "error", f"Invalid effort: {effort}")
+            return None
+        frame, fixed_frame = self._frame(joint), self.stage.frames.fixed_frame
+        try:
+            pose = self.stage.history.pose(fixed_frame, frame, stamp_ns)
+        except TransformException:
+            self.say(joint.name, "error", f"Error transforming from frame '{frame}' to frame '{fixed_frame}'")
+            return None
+        self.say(joint.name, "ok", "OK")
+        return (*(float(part) for part in pose[:3]), *_product(pose[3:], _from_z(joint.axis)))
+
+    def _frame(self, joint: Joint) -> str:
+        return frame_of(joint.child, self.properties.text(_PREFIX))
+
+    # --- description -------------------------------------------------------------------------------------------
+
+    def _follow(self) -> None:
+        self._leave()
+        topic = self.properties.text(_DESCRIPTION).strip()
+        if not self.enabled or not topic:
+            return
+        try:
+            self._descriptions = self.stage.node.create_subscription(String, topic, self._described, DESCRIPTION_QOS)
+        except LinkwrightError as error:
+            self.say(_URDF, "error", f"Error subscribing: {error.diagnostics[0].message}")
+
+    def _leave(self) -> None:
+        if self._descriptions is not None:
+            with suppress(ValueError):  # the node may have been destroyed before
+                self.stage.node.destroy_subscription(self._descriptions)
+            self._descriptions = None
+
+    def _described(self, message: String) -> None:
+        robot = self.stage.library.read(message.data).robot
+        if robot is None:
+            self.say(_URDF, "error", "Unable to parse robot model description!")
+            return
+        self.say(_URDF, "ok", "Robot model parsed Ok")
+        known = self._joints
+        self._joints = {
+            joint.name: joint for joint in robot.joints.values() if joint.type in _TURNING and joint.limit is not None
+        }
+        if known is None or known.keys() != self._joints.keys():
+            self.publish_properties()
+        self.show_again()
+
+
+def _from_z(axis: Vector3) -> tuple[float, float, float, float]:
+    """The shortest turn of z to an axis, x y z w."""
+    x, y, z = axis
+    norm = math.sqrt(x * x + y * y + z * z)
+    if norm == 0.0 or z / norm < -1.0 + 1e-9:
+        return (1.0, 0.0, 0.0, 0.0) if norm else (0.0, 0.0, 0.0, 1.0)
+    x, y, z = x / norm, y / norm, z / norm
+    w = math.sqrt((1.0 + z) / 2.0)
+    return (-y / (2.0 * w), x / (2.0 * w), 0.0, w)
+
+
+def _product(a: Any, b: tuple[float, float, float, float]) -> tuple[float, float, float, float]:
+    """Of two quaternions: first b, then a."""
+    ax, ay, az, aw = (float(part) for part in a)
+    bx, by, bz, bw = b
+    return (
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
+        aw * bw - ax * bx - ay * by - az * bz,
+    )

@@ -1,0 +1,237 @@
+"""rviz_default_plugins/InteractiveMarkers."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph import TransformException
+from linkwright.graph.transforms.pose import Pose as FramePose
+from linkwright.messages import get_message
+from linkwright.viewer.display_config import DisplayConfig
+from linkwright.viewer.displays.base import Stage
+from linkwright.viewer.displays.data_display import DataDisplay, Pose
+from linkwright.viewer.markers import BadMarkerError
+from linkwright.viewer.markers.client import ClientEvents, InteractiveMarkerClient
+from linkwright.viewer.markers.controls import read_interactive_marker
+from linkwright.viewer.markers.shapes import pose_of
+from linkwright.viewer.mesh_files import MeshIndex
+from linkwright.viewer.property_store import Path
+from linkwright.viewer.protocol import InteractiveMarkerMoved, MarkerFeedback, StatusLevel
+from linkwright.viewer.schema import PropertySpec
+
+_NAMESPACE = "Interactive Markers Namespace"
+_TRANSPARENCY = "Enable Transparency"
+_CLIENT = "Interactive Marker Client"
+
+_EVENTS = {"pose_update": 1, "menu_select": 2, "button_click": 3, "mouse_down": 4, "mouse_up": 5}
+
+
+class InteractiveMarkersDisplay(DataDisplay):
+    """The markers of an interactive marker server, and what the user does to them, told to the server."""
+
+    CLASS = "rviz_default_plugins/InteractiveMarkers"
+    MESSAGE = "visualization_msgs/msg/InteractiveMarkerUpdate"
+    TOPIC = (_NAMESPACE,)
+    SCHEMA = (
+        PropertySpec(_NAMESPACE, "string", "", "The namespace of the interactive marker server."),
+        PropertySpec("Show Descriptions", "bool", True, "Show the description above each marker."),
+        PropertySpec("Show Axes", "bool", False, "Show the axes of each marker."),
+        PropertySpec("Show Visual Aids", "bool", False, "Show lines that help while a marker is moved or turned."),
+        PropertySpec(_TRANSPARENCY, "bool", True, "Whether arrows and rings that a server left out are seen through."),
+    )
+
+    def __init__(self, stage: Stage, identity: str, config: DisplayConfig) -> None:
+        super().__init__(stage, identity, config)
+        self._client: InteractiveMarkerClient | None = None
+        self._release: Any = None
+        self._markers: dict[str, Any] = {}
+        self._poses: dict[str, list[float]] = {}
+        self._unplaced: set[str] = set()
+        self._index = MeshIndex(stage.finder)
+
+    @classmethod
+    def topic_value(cls, topic: str) -> str:
+        """The namespace of the server whose updates a topic carries."""
+        return topic.rpartition("/")[0]
+
+    # --- life --------------------------------------------------------------------------------------------------
+
+    def start(self) -> None:
+        """Connect, if the display is enabled."""
+        if self.enabled:
+            self._connect()
+
+    def stop(self) -> None:
+        """Leave the server; pages may read the files that its markers named no more."""
+        self._disconnect()
+        self.stage.meshes.replace(self.id, {})
+
+    def changed(self, path: Path) -> None:
+        """Connect to another server, or make its markers anew."""
+        if path in ((_NAMESPACE,), (_TRANSPARENCY,)):
+            self.reset()
+
+    def enabled_changed(self) -> None:
+        """Connect, or leave."""
+        self.reset()
+
+    def reset(self) -> None:
+        """Begin anew."""
+        self._disconnect()
+        if self.enabled:
+            self._connect()
+
+    def frames_changed(self) -> None:
+        """Place the markers in the other Fixed Frame."""
+        for name in list(self._markers):
+            self._show(name)
+
+    def receive(self, message: Any) -> None:
+        """Tell the server what was done to a marker."""
+        if not isinstance(message, MarkerFeedback) or self._client is None:
+            return
+        marker = self._markers.get(message.marker)
+        if marker is None or len(message.pose) != 7:
+            return
+        if message.event == "pose_update":
+            self._poses[message.marker] = message.pose
+        feedback = get_message("visualization_msgs/msg/InteractiveMarkerFeedback")()
+        feedback.header = marker.header
+        feedback.client_id = self.stage.node.get_fully_qualified_name() + "/" + self.id
+        feedback.marker_name = message.marker
+        feedback.control_name = message.control
+        feedback.event_type = _EVENTS[message.event]
+        feedback.menu_entry_id = max(0, min(message.menu_entry, 2**32 - 1))
+        _set_pose(feedback.pose, message.pose)
+        feedback.mouse_point_valid = len(message.mouse_point) == 3
+        if feedback.mouse_point_valid:
+            feedback.mouse_point.x, feedback.mouse_point.y, feedback.mouse_point.z = message.mouse_point
+        self._client.publish(feedback)
+
+    def _connect(self) -> None:
+        namespace = self.properties.text(_NAMESPACE).strip()
+        if not namespace:
+            self.say(_CLIENT, "error", "Error connecting: empty namespace")
+            return
+        self._release = self.stage.history.use(self._transforms_came)
+        events = ClientEvents(self._take_all, self._take_update, self._clear, self._client_status)
+        try:
+            self._client = InteractiveMarkerClient(self.stage.node, namespace, events)
+        except LinkwrightError as error:
+            self.say(_CLIENT, "error", f"Error connecting: {error.diagnostics[0].message}")
+
+    def _disconnect(self) -> None:
+        if self._client is not None:
+            self._client.close()
+            self._client = None
+        if self._release is not None:
+            self._release()
+            self._release = None
+        self._clear()
+        self.unsay()
+
+    # --- from the server ---------------------------------------------------------------------------------------
+
+    def _client_status(self, level: StatusLevel, text: str) -> None:
+        self.say(_CLIENT, level, text)
+
+    def _clear(self) -> None:
+        for name in self._markers:
+            self.unsay(name)
+        self._markers.clear()
+        self._poses.clear()
+        self._unplaced.clear()
+        self.forget()
+
+    def _take_all(self, markers: list[Any]) -> None:
+        self._clear()
+        for marker in markers:
+            self._take(marker)
+
+    def _take_update(self, update: Any) -> None:
+        for marker in update.markers:
+            self._take(marker)
+        for moved in update.poses:
+            self._move(moved)
+        for name in update.erases:
+            self._erase(name)
+
+    def _take(self, marker: Any) -> None:
+        self._markers[marker.name] = marker
+        self._poses[marker.name] = pose_of(marker.pose)
+        self._data.pop(f"pose {marker.name}", None)
+        self._show(marker.name)
+
+    def _move(self, moved: Any) -> None:
+        marker = self._markers.get(moved.name)
+        if marker is None:
+            self.say(moved.name, "error", f"Pose received for non-existing marker '{moved.name}'")
+            return
+        pose = pose_of(moved.pose)
+        self._poses[moved.name] = pose
+        same_frame = moved.header.frame_id in ("", marker.header.frame_id) and _is_latest(moved) == _is_latest(marker)
+        if moved.header.frame_id:
+            marker.header = moved.header
+        if not same_frame or not _is_latest(marker):
+            self._show(moved.name)  # its frame is elsewhere now
+        elif moved.name not in self._unplaced:
+            content = InteractiveMarkerMoved(moved.name, pose)
+            self.send(content, key=f"pose {moved.name}", frame=marker.header.frame_id.removeprefix("/"))
+
+    def _erase(self, name: str) -> None:
+        self._markers.pop(name, None)
+        self._poses.pop(name, None)
+        self._unplaced.discard(name)
+        self._data.pop(f"pose {name}", None)
+        self.forget(f"marker {name}")
+        self.unsay(name)
+
+    # --- to pages ----------------------------------------------------------------------------------------------
+
+    def _show(self, name: str) -> None:
+        marker = self._markers[name]
+        frame = marker.header.frame_id.removeprefix("/")
+        try:
+            at = self._frame_pose(marker, frame)
+            shape = read_interactive_marker(
+                marker, self._index, self._relative, transparent=self.properties.flag(_TRANSPARENCY)
+            )
+        except TransformException as error:
+            self._unplaced.add(name)
+            self.say(name, "error", error.diagnostics[0].message)
+            self.forget(f"marker {name}")
+            return
+        except BadMarkerError as error:
+            self.say(name, "error", str(error))
+            self.forget(f"marker {name}")
+            return
+        self._unplaced.discard(name)
+        self.unsay(name)
+        shape.pose = self._poses[name]
+        self.stage.meshes.replace(self.id, self._index.folders)
+        self.send(shape, key=f"marker {name}", frame=frame, pose=at)
+
+    def _frame_pose(self, marker: Any, frame: str) -> Pose | None:
+        """Where the marker's frame was; None for a marker that follows it, which one without a time does."""
+        fixed_frame = self.stage.frames.fixed_frame
+        stamp = marker.header.stamp
+        pose = self.stage.history.pose(fixed_frame, frame, stamp.sec * 1_000_000_000 + stamp.nanosec)
+        return None if _is_latest(marker) else pose
+
+    def _relative(self, reference: str, frame: str) -> FramePose:
+        x, y, z, qx, qy, qz, qw = self.stage.history.pose(reference, frame, 0).tolist()
+        return x, y, z, qx, qy, qz, qw
+
+    def _transforms_came(self) -> None:
+        for name in list(self._unplaced):
+            self._show(name)
+
+
+def _is_latest(message: Any) -> bool:
+    return bool(message.header.stamp.sec == 0 and message.header.stamp.nanosec == 0)
+
+
+def _set_pose(message: Any, pose: list[float]) -> None:
+    position, orientation = message.position, message.orientation
+    position.x, position.y, position.z, orientation.x, orientation.y, orientation.z, orientation.w = pose

@@ -1,0 +1,248 @@
+"""rviz_default_plugins/Marker and rviz_default_plugins/MarkerArray."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Any
+
+from linkwright.graph import TransformException
+from linkwright.graph.transforms.pose import Pose as FramePose
+from linkwright.viewer.displays.base import Stage
+from linkwright.viewer.displays.data_display import Pose
+from linkwright.viewer.displays.topic_display import TopicDisplay
+from linkwright.viewer.displays.topic_properties import topic_spec
+from linkwright.viewer.markers import BadMarkerError, MarkerReading, MarkerStore, read_marker
+from linkwright.viewer.markers.shapes import ADD, DELETE, DELETE_ALL, marker_id, placed_in
+from linkwright.viewer.mesh_files import MeshIndex
+from linkwright.viewer.outbox import Payload
+from linkwright.viewer.property_store import Path, Schema
+from linkwright.viewer.protocol import MeshStatus
+from linkwright.viewer.rviz_config import DisplayConfig
+from linkwright.viewer.schema import PropertySpec
+
+_NAMESPACES = "Namespaces"
+_SHORTEST_LIFE_NS = 100_000
+"""A lifetime up to this counts as none, as in RViz."""
+
+_EXPIRY_PERIOD = 0.1
+"""Seconds between looks for markers whose life is over, while there are such."""
+
+_DUPLICATES = "Duplicate Marker Check"
+
+
+class _Marker:
+    """One marker: as it came, and until when it is shown (nanoseconds of the node's clock)."""
+
+    def __init__(self, reading: MarkerReading, message: Any, expires_ns: int | None) -> None:
+        self.reading = reading
+        self.frame: str = message.header.frame_id.removeprefix("/")
+        self.stamp_ns: int = message.header.stamp.sec * 1_000_000_000 + message.header.stamp.nanosec
+        self.locked: bool = message.frame_locked
+        self.expires_ns = expires_ns
+
+
+class MarkerDisplay(TopicDisplay):
+    """Markers of one topic.
+
+    A marker whose frame cannot be placed yet appears as soon as it can; RViz drops it.
+    """
+
+    CLASS = "rviz_default_plugins/Marker"
+    MESSAGE = "visualization_msgs/msg/Marker"
+    SCHEMA = (topic_spec(default="visualization_marker", description="visualization_msgs/msg/Marker"),)
+    TRANSFORMED = False
+    FOLLOWS_TRANSFORMS = True
+
+    def __init__(self, stage: Stage, identity: str, config: DisplayConfig) -> None:
+        self._namespaces: list[str] = []
+        super().__init__(stage, identity, config)
+        self._store = MarkerStore(identity)
+        self._markers: dict[str, _Marker] = {}
+        self._unplaced: set[str] = set()
+        self._frame_poses: dict[tuple[str, int], FramePose] = {}  # of this moment: an array has thousands of a kind
+        self._meshes = MeshIndex(stage.finder)
+        self._expiry: asyncio.TimerHandle | None = None
+        self._clock = stage.node.get_clock()
+
+    def schema(self) -> Schema:
+        """The topic, and a box for each namespace seen."""
+        boxes = tuple(
+            PropertySpec(name, "bool", True, "Show the markers of this namespace.") for name in self._namespaces
+        )
+        return (
+            *self.SCHEMA,
+            PropertySpec(_NAMESPACES, "bool", True, "Set the boxes of all namespaces.", children=boxes),
+        )
+
+    def take(self, message: Any, pose: Pose | None) -> None:  # noqa: ARG002
+        """Do what a marker says."""
+        self._do(message)
+        self._show()
+
+    def changed(self, path: Path) -> None:
+        """Follow the box over all namespaces."""
+        super().changed(path)
+        if path == (_NAMESPACES,):
+            value = self.properties.flag(_NAMESPACES)
+            for name in self._namespaces:
+                self.properties.set((_NAMESPACES, name), value)
+            self.publish_properties()
+
+    def reset(self) -> None:
+        """Forget the markers."""
+        self._markers.clear()
+        self._unplaced.clear()
+        self._store.clear()
+        self._meshes = MeshIndex(self.stage.finder)
+        self._show()
+
+    def stop(self) -> None:
+        """Listen no more; pages may read the files that markers named no more."""
+        super().stop()
+        self.stage.meshes.replace(self.id, {})
+        if self._expiry is not None:
+            self._expiry.cancel()
+            self._expiry = None
+
+    def data(self) -> list[Payload]:
+        """The markers."""
+        return [self._store]
+
+    def frames_changed(self) -> None:
+        """Place the markers in the other Fixed Frame."""
+        if self.fixed_frame_changed():
+            for identity, marker in self._markers.items():
+                self._place_marker(identity, marker)
+            self._show()
+
+    def transforms_came(self) -> None:
+        """Place the markers that could not be placed before."""
+        if self._unplaced:
+            for identity in list(self._unplaced):
+                self._place_marker(identity, self._markers[identity])
+            self._show()
+
+    def receive(self, message: Any) -> None:
+        """Take what a page says of a marker's mesh or texture."""
+        if isinstance(message, MeshStatus) and message.error is not None and message.link in self._markers:
+            self.say(message.link, "error", f"Mesh resource marker [{message.link}]: {message.error[:500]}")
+
+    # --- actions -----------------------------------------------------------------------------------------------
+
+    def _do(self, message: Any) -> None:
+        if message.action == ADD:
+            self._add(message)
+        elif message.action == DELETE:
+            self._remove(marker_id(message))
+        elif message.action == DELETE_ALL:
+            for identity in [
+                each for each, marker in self._markers.items() if message.ns in ("", marker.reading.shape.namespace)
+            ]:
+                self._remove(identity)
+        else:
+            self.say(marker_id(message), "error", f"Unknown marker action: {message.action}")
+
+    def _add(self, message: Any) -> None:
+        identity = marker_id(message)
+        try:
+            reading = read_marker(message, self._meshes)
+        except BadMarkerError as error:
+            self._remove(identity)
+            self.say(identity, "error", str(error))
+            return
+        if message.ns not in self._namespaces:
+            self._namespaces = sorted([*self._namespaces, message.ns])
+            self.publish_properties()
+        life_ns = message.lifetime.sec * 1_000_000_000 + message.lifetime.nanosec
+        expires_ns = self._clock.now_ns() + life_ns if life_ns > _SHORTEST_LIFE_NS else None
+        self._markers[identity] = marker = _Marker(reading, message, expires_ns)
+        if expires_ns is not None:
+            self._watch_expiry()
+        self._place_marker(identity, marker)
+
+    def _remove(self, identity: str) -> None:
+        self._markers.pop(identity, None)
+        self._unplaced.discard(identity)
+        self._store.remove(identity)
+        self.unsay(identity)
+
+    def _place_marker(self, identity: str, marker: _Marker) -> None:
+        fixed_frame = self.stage.frames.fixed_frame
+        shape = marker.reading.shape
+        try:
+            frame = self._frame_pose(fixed_frame, marker.frame, 0 if marker.locked else marker.stamp_ns)
+        except TransformException as error:
+            reason = error.diagnostics[0].message
+            text = f"For frame [{marker.frame}]: No transform to fixed frame [{fixed_frame}].  TF error: [{reason}]"
+            self.say(identity, "error", text)
+            self._unplaced.add(identity)
+            self._store.remove(identity)
+            return
+        self._unplaced.discard(identity)
+        if marker.reading.warning:
+            self.say(identity, "warn", marker.reading.warning)
+        else:
+            self.unsay(identity)
+        if marker.locked:
+            shape.frame, shape.pose = marker.frame, list(marker.reading.pose)
+        else:
+            shape.frame, shape.pose = "", placed_in(frame, marker.reading)
+        self._store.put(shape)
+
+    def _frame_pose(self, fixed_frame: str, frame: str, stamp_ns: int) -> FramePose:
+        known = self._frame_poses.get((frame, stamp_ns))
+        if known is None:
+            known = self._frame_poses[frame, stamp_ns] = tuple(
+                self.stage.history.pose(fixed_frame, frame, stamp_ns).tolist()
+            )
+        return known
+
+    def _show(self) -> None:
+        """Send what has changed: all of a message at once."""
+        self._frame_poses.clear()
+        self.stage.meshes.replace(self.id, self._meshes.folders)
+        self.stage.send_data(self._store.key, self._store)
+
+    # --- lifetimes ---------------------------------------------------------------------------------------------
+
+    def _watch_expiry(self) -> None:
+        if self._expiry is None:
+            self._expiry = asyncio.get_running_loop().call_later(_EXPIRY_PERIOD, self._expire)
+
+    def _expire(self) -> None:
+        self._expiry = None
+        now_ns = self._clock.now_ns()
+        mortal = {each: marker.expires_ns for each, marker in self._markers.items() if marker.expires_ns is not None}
+        over = [each for each, expires_ns in mortal.items() if expires_ns <= now_ns]
+        for identity in over:
+            self._remove(identity)
+        if over:
+            self._show()
+        if len(mortal) > len(over):
+            self._watch_expiry()
+
+
+class MarkerArrayDisplay(MarkerDisplay):
+    """Markers that come many at a time."""
+
+    CLASS = "rviz_default_plugins/MarkerArray"
+    MESSAGE = "visualization_msgs/msg/MarkerArray"
+    SCHEMA = (topic_spec(default="visualization_marker_array", description="visualization_msgs/msg/MarkerArray"),)
+
+    def take(self, message: Any, pose: Pose | None) -> None:  # noqa: ARG002
+        """Do what the markers say, one after the other."""
+        self._check_duplicates(message.markers)
+        for marker in message.markers:
+            self._do(marker)
+        self._show()
+
+    def _check_duplicates(self, markers: Any) -> None:
+        seen: set[tuple[str, int]] = set()
+        for marker in markers:
+            name = (marker.ns, marker.id)
+            if name in seen:
+                text = "Multiple Markers in the same MarkerArray message had the same ns and id: "
+                self.say(_DUPLICATES, "error", f"{text}({marker.ns}, {marker.id})")
+                return
+            seen.add(name)
+        self.unsay(_DUPLICATES)

@@ -1,0 +1,26 @@
+"""rviz_default_plugins/PointCloud."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from linkwright.viewer.clouds import Points, points_of_legacy_cloud
+from linkwright.viewer.displays.cloud_display import CloudDisplay
+from linkwright.viewer.displays.cloud_properties import STYLE_SPECS, TRANSFORMER_SPECS
+from linkwright.viewer.displays.topic_properties import topic_spec
+
+
+class PointCloudDisplay(CloudDisplay):
+    """A cloud of points as the old sensor_msgs/msg/PointCloud has it."""
+
+    CLASS = "rviz_default_plugins/PointCloud"
+    MESSAGE = "sensor_msgs/msg/PointCloud"
+    SCHEMA = (
+        topic_spec(description="sensor_msgs/msg/PointCloud", filter_size=10),
+        *STYLE_SPECS,
+        *TRANSFORMER_SPECS,
+    )
+
+    def points_of(self, message: Any) -> Points:
+        """The points with finite coordinates."""
+        return points_of_legacy_cloud(message)

@@ -1,0 +1,49 @@
+"""A second topic of a display: the CameraInfo of an image, the updates of a map."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Any
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph import Node, QoSProfile, Subscription
+
+
+class SideTopic:
+    """Listens to a topic that goes along with the display's own.
+
+    Args:
+        node: to subscribe with.
+        message_type: of its messages.
+        on_message: called with each of them.
+    """
+
+    def __init__(self, node: Node, message_type: str, on_message: Callable[[Any], None]) -> None:
+        self._node = node
+        self._type = message_type
+        self._on_message = on_message
+        self._subscription: Subscription[Any] | None = None
+
+    def listen(self, topic: str, qos: QoSProfile) -> str | None:
+        """Listen to a topic, and no more to the one before; RViz's words for why it cannot, or None."""
+        self.close()
+        try:
+            self._subscription = self._node.create_subscription(self._type, topic, self._on_message, qos)
+        except LinkwrightError as error:
+            return f"Error subscribing: {error.diagnostics[0].message}"
+        return None
+
+    def close(self) -> None:
+        """Listen no more."""
+        if self._subscription is not None:
+            with suppress(ValueError):  # the node may have been destroyed before
+                self._node.destroy_subscription(self._subscription)
+            self._subscription = None
+
+
+def camera_info_topic(image: str) -> str:
+    """Where the CameraInfo of an image topic is by ROS's convention: beside the image, whatever its transport."""
+    for transport in ("/compressed", "/compressedDepth", "/theora"):
+        image = image.removesuffix(transport)
+    return image.rpartition("/")[0] + "/camera_info"

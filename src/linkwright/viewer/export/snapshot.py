@@ -1,0 +1,176 @@
+"""What a viewer shows at one moment, apart from the program that shows it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity
+from linkwright.nodes.joint_layout import layout_of
+from linkwright.nodes.joint_settings import JointSettings
+from linkwright.urdf import Robot
+from linkwright.viewer.export.joint_state import positions_now
+from linkwright.viewer.markers.store import MarkerStore
+from linkwright.viewer.mesh_files import MeshFolders
+from linkwright.viewer.protocol import (
+    Display,
+    DisplayProperties,
+    FrameTable,
+    Hello,
+    JointControl,
+    JointPositions,
+    Joints,
+    Property,
+    RobotScene,
+    SavedViews,
+    ServerMessage,
+    Tree,
+    ViewClasses,
+    ViewState,
+    unpack_transforms,
+)
+from linkwright.viewer.scaled_data import ScaledData
+
+if TYPE_CHECKING:
+    from linkwright.viewer.displays import RobotModelDisplay
+    from linkwright.viewer.outbox import Payload
+
+_TAKEN = (DisplayProperties, FrameTable, Hello, SavedViews, ViewClasses, ViewState)
+"""Messages that go along as they are: nothing of the machine that the program runs on is in them."""
+
+_PATHS = frozenset({"Description File"})
+"""Properties that are paths of that machine."""
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """A robot, and all that is seen with it.
+
+    Attributes:
+        name: of the robot.
+        robot: its description.
+        scene: its links as pages draw them.
+        positions: joint -> rad or m.
+        messages: what a page must be told, the frame table last.
+        frames: binary frames, the transforms first.
+        meshes: finds the files that `scene` names.
+        problems: what of the robot cannot be drawn.
+        marker_meshes: addresses of the meshes that markers show.
+        fit: nobody chose where the camera is: it is to show all of the robot.
+    """
+
+    name: str
+    robot: Robot
+    scene: RobotScene
+    positions: Mapping[str, float]
+    messages: Sequence[ServerMessage]
+    frames: Sequence[bytes]
+    meshes: MeshFolders = field(repr=False)
+    problems: Sequence[Diagnostic] = ()
+    marker_meshes: Sequence[str] = ()
+    fit: bool = False
+
+
+def take_snapshot(
+    model: RobotModelDisplay, told: Sequence[ServerMessage], payloads: Sequence[Payload], meshes: MeshFolders
+) -> Snapshot:
+    """Keep of what a page would be told now what it needs to go on alone.
+
+    Args:
+        model: shows the robot whose joints can be moved.
+        told: the messages to a page that opens.
+        payloads: the binary frames to it.
+        meshes: the folders that it may read from.
+
+    Raises:
+        LinkwrightError: VIEW201, the display has no robot.
+    """
+    robot, scene = model.robot, model.scene
+    if robot is None:
+        raise no_robot()
+    frames = [frame for payload in payloads if isinstance(frame := _whole(payload), bytes)]
+    table = next(message for message in told if isinstance(message, FrameTable))
+    poses = _poses(table, frames)
+    positions = positions_now(robot, {link.name: poses[link.frame] for link in scene.links if link.frame in poses})
+    messages: list[ServerMessage] = []
+    for message in told:
+        if isinstance(message, Tree):
+            messages.append(_anonymous(message))
+        elif isinstance(message, RobotScene):
+            messages.append(replace(message, links=[replace(link, place=None) for link in message.links]))
+        elif isinstance(message, _TAKEN):
+            messages.append(message)
+    controls = _controls(robot)
+    messages[-1:-1] = [
+        Joints(controls),
+        JointPositions({each.name: positions.get(each.name, 0.0) for each in controls}),
+    ]
+    problems = [
+        Diagnostic("VIEW203", f"of link '{link}' something is left out: {text}", severity=Severity.WARNING)
+        for link, texts in model.file_problems.items()
+        for text in texts
+    ]
+    return Snapshot(
+        robot.name, robot, scene, positions, messages, frames, meshes.copy(), problems, _marker_meshes(payloads)
+    )
+
+
+def no_robot() -> LinkwrightError:
+    """The error where there is nothing to export (VIEW201)."""
+    hint = "wait until the robot is drawn, or enable its RobotModel display"
+    return LinkwrightError(Diagnostic("VIEW201", "there is no robot to export", hint=hint))
+
+
+def _whole(payload: Payload) -> bytes | str | None:
+    """All of a content, as a page that has nothing is sent it."""
+    if isinstance(payload, ScaledData):
+        return payload.whole
+    return payload if isinstance(payload, (bytes, str)) else payload.since(0)[0]
+
+
+def _marker_meshes(payloads: Sequence[Payload]) -> list[str]:
+    shapes = [shape for payload in payloads if isinstance(payload, MarkerStore) for shape in payload.shapes]
+    return [shape.mesh.url for shape in shapes if shape.mesh is not None and shape.mesh.url is not None]
+
+
+def _poses(table: FrameTable, frames: Sequence[bytes]) -> dict[str, NDArray[np.float64]]:
+    for frame in frames:
+        revision, poses = unpack_transforms(frame)
+        if revision == table.revision:
+            return {name: pose for name, pose in zip(table.names, poses, strict=True) if not np.isnan(pose[0])}
+    return {}
+
+
+def _anonymous(tree: Tree) -> Tree:
+    """The displays without their status and without paths, which tell of this machine."""
+    displays: list[Display] = [
+        replace(each, status=[], level="ok", properties=_without_paths(each.properties)) for each in tree.displays
+    ]
+    return replace(tree, global_status=[], global_level="ok", displays=displays)
+
+
+def _without_paths(properties: Sequence[Property]) -> list[Property]:
+    return [
+        replace(each, value="" if each.name in _PATHS else each.value, children=_without_paths(each.children))
+        for each in properties
+    ]
+
+
+def _controls(robot: Robot) -> list[JointControl]:
+    """A slider for each joint that moves, as joint_state_publisher_gui has them."""
+    layout = layout_of(robot, JointSettings())
+    controls = []
+    for joint in layout.ranges.values():
+        if joint.lower == joint.upper:
+            continue
+        follows = layout.dependent.get(joint.name)
+        kind = cast("Any", joint.kind)  # the joints that move are of these three kinds
+        control = JointControl(joint.name, kind, joint.lower, joint.upper, joint.zero)
+        if follows is not None:
+            control = replace(control, mimic=follows.parent, multiplier=follows.factor, offset=follows.offset)
+        controls.append(control)
+    return controls

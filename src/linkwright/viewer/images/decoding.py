@@ -1,0 +1,182 @@
+"""A sensor_msgs/msg/Image as 8-bit grey, RGB or RGBA pixels."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.viewer.images.bayer import demosaiced
+from linkwright.viewer.images.ranges import RangeFinder
+from linkwright.viewer.images.yuv import from_nv, from_packed
+
+Pixels = NDArray[np.uint8]
+
+
+class BadImageError(ValueError):
+    """A message cannot be shown as an image; the text is for the status row ``Image``."""
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """Pixels, row by row from the top.
+
+    Attributes:
+        pixels: shape (height, width) for grey, (height, width, 3) for RGB, (height, width, 4) for RGBA.
+    """
+
+    pixels: Pixels
+
+    @property
+    def width(self) -> int:
+        """In pixels."""
+        return int(self.pixels.shape[1])
+
+    @property
+    def height(self) -> int:
+        """In pixels."""
+        return int(self.pixels.shape[0])
+
+    @property
+    def channels(self) -> int:
+        """1, 3 or 4."""
+        return 1 if self.pixels.ndim == 2 else int(self.pixels.shape[2])
+
+    def rgb(self) -> Pixels:
+        """Shape (height, width, 3)."""
+        if self.pixels.ndim == 2:
+            return np.repeat(self.pixels[..., np.newaxis], 3, axis=2)
+        return self.pixels[..., :3]
+
+    def thinned(self, most_pixels: int) -> Picture:
+        """Every second, third, ... pixel of each row and column, so that there are at most so many."""
+        step = 1
+        while (self.width // step) * (self.height // step) > most_pixels:
+            step += 1
+        return self if step == 1 else Picture(np.ascontiguousarray(self.pixels[::step, ::step]))
+
+
+def has_range(encoding: str) -> bool:
+    """Whether RViz looks for black and white in the values of such an image: those of more than 8 bits."""
+    return encoding in _RANGED
+
+
+def picture_of(message: Any, ranges: RangeFinder) -> Picture:
+    """The image of a message.
+
+    Args:
+        message: sensor_msgs/msg/Image.
+        ranges: says what is black and what is white where values have more than 8 bits.
+
+    Raises:
+        BadImageError: the encoding is not known, or there are too few bytes.
+    """
+    encoding = message.encoding
+    if encoding in _RANGED:
+        return Picture(_normalized(_rows(message, _RANGED[encoding]), ranges))
+    if encoding in _PLAIN:
+        channels, order = _PLAIN[encoding]
+        pixels = _rows(message, "u1", channels)
+        return Picture(pixels if order is None else np.ascontiguousarray(pixels[..., order]))
+    if encoding.startswith("bayer_") and encoding[6:10] in ("rggb", "bggr", "gbrg", "grbg"):
+        deep = encoding.endswith("16")
+        mosaic = _rows(message, "u2" if deep else "u1")
+        return Picture(demosaiced((mosaic >> 8).astype(np.uint8) if deep else mosaic, encoding[6:10]))
+    if encoding in _YUV:
+        return Picture(_YUV[encoding](message))
+    raise BadImageError(f"Unsupported image encoding [{encoding}]")
+
+
+_RGB, _BGR, _RGBA, _BGRA = None, [2, 1, 0], None, [2, 1, 0, 3]
+
+_PLAIN: dict[str, tuple[int, list[int] | None]] = {
+    "rgb8": (3, _RGB),
+    "rgba8": (4, _RGBA),
+    "bgr8": (3, _BGR),
+    "8UC3": (3, _BGR),
+    "8SC3": (3, _BGR),
+    "bgra8": (4, _BGRA),
+    "8UC4": (4, _BGRA),
+    "8SC4": (4, _BGRA),
+    "mono8": (1, None),
+    "8UC1": (1, None),
+    "8SC1": (1, None),
+}
+_RANGED = {"mono16": "u2", "16UC1": "u2", "16SC1": "i2", "32FC1": "f4"}
+
+
+def _rows(message: Any, kind: str, channels: int = 1) -> NDArray[Any]:
+    """The values of an image whose rows may be padded: shape (height, width) or (height, width, channels)."""
+    size = int(kind[1])
+    row = message.width * channels * size
+    step = message.step or row
+    data = np.frombuffer(message.data, np.uint8)
+    height = message.height
+    if step < row or data.size < step * max(0, height - 1) + row * (height > 0):
+        raise BadImageError(
+            f"The image has {data.size} bytes in rows of {step}, too few for {message.width} x {height} "
+            f"pixels of '{message.encoding}'"
+        )
+    shape = (height, message.width) if channels == 1 else (height, message.width, channels)
+    strides = (step, size) if channels == 1 else (step, channels * size, size)
+    if data.size == 0:
+        return np.empty(shape, kind)
+    order = ">" if message.is_bigendian else "<"
+    rows: NDArray[Any] = np.ndarray(shape, order + kind, data.data, 0, strides)
+    return rows
+
+
+def _normalized(values: NDArray[Any], ranges: RangeFinder) -> Pixels:
+    found = ranges.range_of(values)
+    span = found.white - found.black
+    if not span > 0.0:
+        return np.zeros(values.shape, np.uint8)
+    if values.dtype.itemsize == 2 and values.dtype.kind == "u":
+        steps = np.arange(65536, dtype=np.float64)
+        table = np.clip((steps - found.black) / span * 255.0, 0.0, 255.0).astype(np.uint8)
+        looked_up: Pixels = table[values]
+        return looked_up
+    scaled = values.astype(np.float32)
+    scaled -= np.float32(found.black)
+    scaled /= np.float32(span)
+    scaled *= np.float32(255.0)
+    if not np.isfinite(scaled.sum(dtype=np.float64)):
+        np.nan_to_num(scaled, copy=False, nan=0.0, posinf=255.0, neginf=0.0)
+    np.clip(scaled, 0.0, 255.0, out=scaled)
+    pixels: Pixels = scaled.astype(np.uint8)
+    return pixels
+
+
+def _packed_yuv(first: str) -> Callable[[Any], Pixels]:
+    return lambda message: from_packed(_rows(message, "u1", 2), first)
+
+
+def _planar_yuv(layout: str) -> Callable[[Any], Pixels]:
+    def convert(message: Any) -> Pixels:
+        width, height = message.width, message.height
+        full = layout == "nv24"
+        pairs = width if full else (width + 1) // 2
+        step = message.step or (width if full else 2 * pairs)
+        chroma_step, chroma_rows = (2 * step, height) if full else (step, (height + 1) // 2)
+        data = np.frombuffer(message.data, np.uint8)
+        needed = step * height + chroma_step * chroma_rows
+        if step < width or chroma_step < 2 * pairs or data.size < needed or width == 0 or height == 0:
+            raise BadImageError(f"The image has {data.size} bytes, too few for {width} x {height} pixels of '{layout}'")
+        luma = data[: step * height].reshape(height, step)[:, :width]
+        rest = data[step * height : needed].reshape(chroma_rows, chroma_step)[:, : 2 * pairs]
+        return from_nv(luma, rest, layout)
+
+    return convert
+
+
+_YUV: dict[str, Callable[[Any], Pixels]] = {
+    "yuv422": _packed_yuv("uyvy"),
+    "uyvy": _packed_yuv("uyvy"),
+    "yuv422_yuy2": _packed_yuv("yuyv"),
+    "yuyv": _packed_yuv("yuyv"),
+    "nv21": _planar_yuv("nv21"),
+    "nv24": _planar_yuv("nv24"),
+}

@@ -1,0 +1,213 @@
+"""From a visualization_msgs/msg/InteractiveMarker to what the page draws.
+
+Controls without markers get the arrows, rings and buttons that the ``interactive_markers`` package gives them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from typing import Any, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.graph.transforms.pose import Pose, compose, invert
+from linkwright.viewer.markers.shapes import BadMarkerError, pose_of, read_marker, unit_quaternion
+from linkwright.viewer.mesh_files import MeshIndex
+from linkwright.viewer.placing import rotation_matrix
+from linkwright.viewer.protocol import (
+    InteractionMode,
+    InteractiveControl,
+    InteractiveMarkerShape,
+    MarkerKind,
+    MarkerMenuEntry,
+    MarkerShape,
+    OrientationMode,
+)
+
+_MODES: tuple[InteractionMode, ...] = get_args(InteractionMode)
+_ORIENTATIONS: tuple[OrientationMode, ...] = get_args(OrientationMode)
+
+_RING_STEPS = 36
+_RING_WIDTH = 0.3
+"""Of the inner radius, which is half the marker's scale."""
+
+_DARK = 0.6
+_NONE = np.empty((0, 4), dtype=np.float32)
+
+
+FramePlacer = Callable[[str, str], Pose]
+"""Gives the pose of the second frame in the first, now; raises a LinkwrightError where it has none."""
+
+
+def read_interactive_marker(
+    message: Any, index: MeshIndex, frames: FramePlacer, *, transparent: bool
+) -> InteractiveMarkerShape:
+    """What an interactive marker looks like.
+
+    Args:
+        message: a visualization_msgs/msg/InteractiveMarker.
+        index: finds the files that it names.
+        frames: places markers that name a frame of their own.
+        transparent: whether arrows and rings made here are seen through.
+
+    Raises:
+        BadMarkerError: it cannot be drawn.
+    """
+    scale = message.scale or 1.0
+    pose = pose_of(message.pose)
+    if not all(map(math.isfinite, (*pose, scale))):
+        raise BadMarkerError("Marker contains invalid floats!")
+    names: set[str] = set()
+    return InteractiveMarkerShape(
+        name=message.name,
+        description=message.description,
+        pose=pose,
+        scale=scale,
+        controls=[
+            _control(each, message, scale, _unique(each.name, names), index, frames, transparent)
+            for each in message.controls
+        ],
+        menu=[MarkerMenuEntry(each.id, each.parent_id, each.title) for each in message.menu_entries],
+    )
+
+
+def _unique(name: str, taken: set[str]) -> str:
+    chosen, number = name, 0
+    while chosen in taken:
+        chosen, number = f"{name}_u{number}", number + 1
+    taken.add(chosen)
+    return chosen
+
+
+def _control(
+    control: Any,
+    message: Any,
+    scale: float,
+    name: str,
+    index: MeshIndex,
+    frames: FramePlacer,
+    transparent: bool,
+) -> InteractiveControl:
+    if control.interaction_mode >= len(_MODES) or control.orientation_mode >= len(_ORIENTATIONS):
+        raise BadMarkerError(f"Control '{name}' has an unknown interaction or orientation mode")
+    mode = _MODES[control.interaction_mode]
+    facing = _ORIENTATIONS[control.orientation_mode]
+    independent = control.independent_marker_orientation
+    orientation = list(unit_quaternion(control.orientation))
+    if control.markers:
+        markers = [_marker(each, message, index, frames) for each in control.markers]
+    elif mode == "menu":
+        markers, facing, independent = [_button(control.description, scale)], "view_facing", False
+    else:
+        markers = list(_default_markers(mode, orientation, scale, 0.5 if transparent else 1.0))
+    for number, marker in enumerate(markers):
+        marker.id = f"{message.name}/{name}/{number}"
+        marker.namespace = message.name
+    return InteractiveControl(
+        name=name,
+        description=control.description,
+        mode=mode,
+        orientation_mode=facing,
+        orientation=orientation,
+        always_visible=control.always_visible,
+        independent_orientation=independent,
+        markers=markers,
+    )
+
+
+def _marker(marker: Any, message: Any, index: MeshIndex, frames: FramePlacer) -> MarkerShape:
+    shape = read_marker(marker, index).shape
+    shape.scale = [each or 1.0 for each in shape.scale]
+    frame = marker.header.frame_id.removeprefix("/")
+    reference = message.header.frame_id.removeprefix("/")
+    if frame:
+        # It says where it is by itself: here it hangs on the control all the same.
+        in_reference = compose(frames(reference, frame), _as_pose(shape.pose))
+        shape.pose = list(compose(invert(_as_pose(pose_of(message.pose))), in_reference))
+    return shape
+
+
+def _as_pose(pose: list[float]) -> Pose:
+    x, y, z, qx, qy, qz, qw = pose
+    return x, y, z, qx, qy, qz, qw
+
+
+def _default_markers(
+    mode: InteractionMode, orientation: list[float], scale: float, alpha: float
+) -> Iterator[MarkerShape]:
+    color = [*_color_of(orientation), alpha]
+    base = _shape("arrow", orientation, [scale] * 3, color)
+    if mode == "move_axis":
+        for way in (1.0, -1.0):
+            points = np.array([[way * scale * 0.5, 0, 0], [way * scale * 0.9, 0, 0]], dtype=np.float32)
+            yield replace(base, scale=[scale * 0.15, scale * 0.25, scale * 0.2], points=points)
+    elif mode in ("move_plane", "rotate_axis", "move_rotate"):
+        points, shades = _ring(mode)
+        colors = _NONE if shades is None else _shaded(color[:3], shades)
+        yield replace(base, shape="triangle_list", points=points, colors=colors)
+
+
+def _color_of(orientation: list[float]) -> list[float]:
+    """Red for an axis along x, green along y, blue along z, mixed between."""
+    axis = np.abs(rotation_matrix(np.array([0, 0, 0, *orientation]))[:, 0])
+    color: list[float] = (axis / axis.max()).tolist()
+    return color
+
+
+def _ring(mode: InteractionMode) -> tuple[NDArray[np.float32], NDArray[np.float64] | None]:
+    """Triangles of a ring about x with an inner radius of a half, and how dark each is, or None."""
+    angles = np.arange(_RING_STEPS) * (2 * np.pi / _RING_STEPS)
+    inner = 0.5 * np.stack([np.zeros(_RING_STEPS), np.cos(angles), np.sin(angles)], axis=1)
+    outer = (1 + _RING_WIDTH) * inner
+
+    def after(ring: NDArray[np.float64], steps: int) -> NDArray[np.float64]:
+        return np.roll(ring, -steps, axis=0)
+
+    inner_1, outer_1, outer_2 = after(inner, 1), after(outer, 1), after(outer, 2)
+    if mode == "rotate_axis":  # slanting teeth, light and dark by turns
+        corners = np.stack([inner, outer_1, inner_1, inner_1, outer_1, outer_2], axis=1)
+        shades = np.repeat(_DARK + (1 - _DARK) * (np.arange(_RING_STEPS) % 2), 2)
+    elif mode == "move_rotate":  # dark points inward, light ones outward
+        inner_2 = after(inner, 2)
+        dark = np.stack([inner, outer_1, inner_1, inner_1, outer_1, inner_2], axis=1)
+        light = np.stack([outer, outer_1, inner, outer_1, outer_2, inner_2], axis=1)
+        corners = np.stack([dark, light], axis=1)[::2].reshape(-1, 6, 3)
+        shades = np.tile(np.repeat([_DARK, 1.0], 2), _RING_STEPS // 2)
+    else:
+        corners = np.stack([inner, outer, inner_1, outer, outer_1, inner_1], axis=1)
+        return corners.reshape(-1, 3).astype(np.float32), None
+    return corners.reshape(-1, 3).astype(np.float32), shades
+
+
+def _shaded(color: list[float], shades: NDArray[np.float64]) -> NDArray[np.float32]:
+    rgb = shades[:, None] * np.array(color)
+    return np.hstack([rgb, np.ones((len(shades), 1))]).astype(np.float32)
+
+
+def _button(text: str, scale: float) -> MarkerShape:
+    size = 0.25 * scale
+    shape = _shape("text", [0.0, 0.0, 0.0, 1.0], [size] * 3, [1.0, 1.0, 1.0, 1.0])
+    shape.pose[0], shape.pose[2] = -0.1 * size, 1.2 * scale - 0.1 * size
+    shape.text = text
+    return shape
+
+
+def _shape(kind: MarkerKind, orientation: list[float], scale: list[float], color: list[float]) -> MarkerShape:
+    return MarkerShape(
+        id="",
+        namespace="",
+        shape=kind,
+        frame="",
+        pose=[0.0, 0.0, 0.0, *orientation],
+        scale=scale,
+        color=color,
+        points=_NONE,
+        colors=_NONE,
+        uvs=_NONE,
+        text="",
+        mesh=None,
+        texture=None,
+    )

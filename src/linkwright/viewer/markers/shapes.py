@@ -1,0 +1,215 @@
+"""From a visualization_msgs/msg/Marker to what the page draws; the rules and their texts are RViz's."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.graph.transforms.pose import Pose, compose
+from linkwright.viewer.mesh_files import IMAGE_TYPES, MESH_TYPES, MeshIndex
+from linkwright.viewer.protocol import MarkerKind, MarkerMesh, MarkerShape
+
+ADD, DELETE, DELETE_ALL = 0, 2, 3
+
+_KINDS: tuple[MarkerKind, ...] = get_args(MarkerKind)
+"""By visualization_msgs' numbers."""
+_NO_POINTS = np.empty((0, 3), dtype=np.float32)
+_NO_COLORS = np.empty((0, 4), dtype=np.float32)
+_NO_UVS = np.empty((0, 2), dtype=np.float32)
+
+
+class BadMarkerError(ValueError):
+    """A marker cannot be drawn; the text says why."""
+
+
+@dataclass(slots=True)
+class MarkerReading:
+    """A marker as it is drawn, before it is placed.
+
+    Attributes:
+        shape: with the pose in the message's frame, until it is placed.
+        pose: in the message's frame.
+        warning: what may not have been meant, or None.
+    """
+
+    shape: MarkerShape
+    pose: Pose
+    warning: str | None = None
+
+
+def marker_id(message: Any) -> str:
+    """Its name in RViz's status rows: ``<namespace>/<number>``."""
+    return f"{message.ns}/{message.id}"
+
+
+def read_marker(message: Any, index: MeshIndex) -> MarkerReading:
+    """What a marker looks like.
+
+    Args:
+        message: a visualization_msgs/msg/Marker whose action is ADD.
+        index: finds the files that it names.
+
+    Raises:
+        BadMarkerError: it cannot be drawn.
+    """
+    if not 0 <= message.type < len(_KINDS):
+        raise BadMarkerError(f"Unknown marker type: {message.type}")
+    kind = _KINDS[message.type]
+    pose = _pose(message.pose)
+    shape = MarkerShape(
+        id=marker_id(message),
+        namespace=message.ns,
+        shape=kind,
+        frame="",
+        pose=list(pose),
+        scale=[message.scale.x, message.scale.y, message.scale.z],
+        color=_rgba(message.color),
+        points=_points(message.points),
+        colors=_colors(message.colors),
+        uvs=_NO_UVS,
+        text=message.text if kind == "text" else "",
+        mesh=None,
+        texture=None,
+    )
+    _check_floats(shape)
+    check = _CHECKS.get(kind)
+    warning = check(shape) if check else None
+    if kind == "mesh":
+        shape.mesh = _mesh(message, shape, index)
+    elif kind == "triangle_list":
+        _add_texture(message, shape, index)
+    return MarkerReading(shape, pose, warning)
+
+
+def placed_in(frame: Pose, reading: MarkerReading) -> list[float]:
+    """The marker's pose in the frame that the pose of its own frame is given in."""
+    return list(compose(frame, reading.pose))
+
+
+def pose_of(pose: Any) -> list[float]:
+    """A geometry_msgs/msg/Pose as x, y, z, qx, qy, qz, qw, the quaternion of length one."""
+    return list(_pose(pose))
+
+
+def _pose(pose: Any) -> Pose:
+    position = pose.position
+    return (position.x, position.y, position.z, *unit_quaternion(pose.orientation))
+
+
+def unit_quaternion(q: Any) -> tuple[float, float, float, float]:
+    """A geometry_msgs/msg/Quaternion of length one; one that nobody set is taken for no rotation, as RViz does."""
+    length = math.hypot(q.x, q.y, q.z, q.w)
+    if length == 0.0:
+        return 0.0, 0.0, 0.0, 1.0
+    return q.x / length, q.y / length, q.z / length, q.w / length
+
+
+def _rgba(color: Any) -> list[float]:
+    return [color.r, color.g, color.b, color.a]
+
+
+def _points(points: Any) -> NDArray[np.float32]:
+    if not points:
+        return _NO_POINTS
+    return np.array([(each.x, each.y, each.z) for each in points], dtype=np.float32).reshape(-1, 3)
+
+
+def _colors(colors: Any) -> NDArray[np.float32]:
+    if not colors:
+        return _NO_COLORS
+    return np.array([(each.r, each.g, each.b, each.a) for each in colors], dtype=np.float32).reshape(-1, 4)
+
+
+def _check_floats(shape: MarkerShape) -> None:
+    finite = all(map(math.isfinite, (*shape.pose, *shape.scale, *shape.color)))
+    if not finite or any(len(each) and not np.isfinite(each).all() for each in (shape.points, shape.colors)):
+        raise BadMarkerError("Contains invalid floating point values (nans or infs)")
+
+
+def _check_arrow(shape: MarkerShape) -> str | None:
+    if len(shape.points) == 1:
+        raise BadMarkerError(f"Arrow marker [{shape.id}] only specified one point of a point to point arrow.")
+    if len(shape.points) == 2:
+        return "Scale of 0 in both x and y" if shape.scale[0] + shape.scale[1] == 0.0 else None
+    return _check_scale(shape)
+
+
+def _check_arrow_strip(shape: MarkerShape) -> str | None:
+    if len(shape.points) < 2:
+        raise BadMarkerError(f"Arrow strip marker [{shape.id}] needs at least two points.")
+    return "Scale of 0 in both x and y" if shape.scale[0] + shape.scale[1] == 0.0 else None
+
+
+def _check_scale(shape: MarkerShape) -> str | None:
+    return "Scale of 0 in one of x/y/z" if math.prod(shape.scale) == 0.0 else None
+
+
+def _check_line_list(shape: MarkerShape) -> str | None:
+    if len(shape.points) % 2:
+        raise BadMarkerError(f"Line list marker [{shape.id}] has an odd number of points.")
+    return None
+
+
+def _check_dots(shape: MarkerShape) -> str | None:
+    has_colors = len(shape.colors) > 0 and len(shape.colors) == len(shape.points)
+    if has_colors and not shape.colors[:, 3].any():
+        return "All points have a zero alpha value."
+    return None
+
+
+def _check_triangles(shape: MarkerShape) -> str | None:
+    count = len(shape.points)
+    if count == 0:
+        raise BadMarkerError(f"TriMesh marker [{shape.id}] has no points.")
+    if count % 3:
+        raise BadMarkerError(f"TriMesh marker [{shape.id}] has a point count which is not divisible by 3 [{count}]")
+    return _check_scale(shape)
+
+
+_CHECKS: dict[MarkerKind, Callable[[MarkerShape], str | None]] = {
+    "arrow": _check_arrow,
+    "arrow_strip": _check_arrow_strip,
+    "cube": _check_scale,
+    "sphere": _check_scale,
+    "cylinder": _check_scale,
+    "line_list": _check_line_list,
+    "cube_list": _check_dots,
+    "sphere_list": _check_dots,
+    "points": _check_dots,
+    "triangle_list": _check_triangles,
+}
+
+
+def _mesh(message: Any, shape: MarkerShape, index: MeshIndex) -> MarkerMesh:
+    """The mesh: the bytes in the message, which Iron and later may carry, or the file that it names."""
+    name = message.mesh_resource
+    carried = message.mesh_file
+    if carried.filename and len(carried.data):
+        data = np.frombuffer(bytes(carried.data), dtype=np.uint8)
+        return MarkerMesh(_ending(carried.filename), None, data, message.mesh_use_embedded_materials)
+    located = index.locate(name, None, MESH_TYPES)
+    if located.url is None:
+        raise BadMarkerError(f"Mesh resource marker [{shape.id}] could not load [{name}]: {located.problem}")
+    return MarkerMesh(_ending(name), located.url, None, message.mesh_use_embedded_materials)
+
+
+def _add_texture(message: Any, shape: MarkerShape, index: MeshIndex) -> None:
+    if not message.texture_resource or not message.uv_coordinates:
+        return
+    count = len(message.uv_coordinates)
+    if count != len(shape.points):
+        raise BadMarkerError(f"TriMesh marker [{shape.id}] has {count} uv coordinates for {len(shape.points)} points")
+    located = index.locate(message.texture_resource, None, IMAGE_TYPES)
+    if located.url is None:
+        raise BadMarkerError(f"Could not load texture '{message.texture_resource}': {located.problem}")
+    shape.texture = located.url
+    shape.uvs = np.array([(each.u, each.v) for each in message.uv_coordinates], dtype=np.float32)
+
+
+def _ending(name: str) -> str:
+    return name.rpartition(".")[2].lower()

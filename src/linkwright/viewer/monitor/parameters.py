@@ -1,0 +1,130 @@
+"""The parameters panel: what ``rqt_reconfigure`` shows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from linkwright.graph import MessageInfo
+from linkwright.viewer.audience import Page
+from linkwright.viewer.features import Desk, PageFeature
+from linkwright.viewer.monitor.graph_changes import GraphChanges
+from linkwright.viewer.monitor.node_parameters import RemoteNode
+from linkwright.viewer.monitor.topic_tap import TopicTap
+from linkwright.viewer.protocol import (
+    DumpParameters,
+    NodeParameters,
+    ParameterNodes,
+    SetParameter,
+    WatchParameters,
+)
+
+_EVENTS = "/parameter_events"
+_LIST = "/list_parameters"
+
+
+@dataclass(slots=True)
+class _Wish:
+    listed: bool
+    node: str | None
+    told: ParameterNodes | None = None
+
+
+class ParametersFeature(PageFeature):
+    """Shows pages the parameters of nodes, and sets them.
+
+    Args:
+        desk: of the viewer.
+        changes: of the graph.
+    """
+
+    RECEIVES = (WatchParameters, SetParameter, DumpParameters)
+
+    def __init__(self, desk: Desk, changes: GraphChanges) -> None:
+        self._node = desk.node
+        self._changes = changes
+        self._wishes: dict[Page, _Wish] = {}
+        self._nodes: dict[str, RemoteNode] = {}
+        self._events: TopicTap | None = None
+
+    def receive(self, page: Page, message: WatchParameters | SetParameter | DumpParameters) -> None:
+        """Do what a page asks for; a node's parameters can be set and dumped by who watches them."""
+        if isinstance(message, WatchParameters):
+            self._watch(page, message)
+            return
+        wish = self._wishes.get(page)
+        if wish is None or wish.node != message.node:
+            return
+        if isinstance(message, SetParameter):
+            self._nodes[message.node].set(message, page.send)
+        else:
+            self._nodes[message.node].dump(page.send)
+
+    def page_gone(self, page: Page) -> None:
+        """Forget what the page wanted."""
+        if self._wishes.pop(page, None) is not None:
+            self._keep()
+
+    def close(self) -> None:
+        """End everything."""
+        self._wishes.clear()
+        self._keep()
+
+    def _watch(self, page: Page, message: WatchParameters) -> None:
+        self._wishes[page] = _Wish(message.listed, message.node)
+        fresh = message.node is not None and message.node not in self._nodes
+        self._keep()
+        if message.listed:
+            self._send_lists()
+        if message.node is None:
+            return
+        node = self._nodes[message.node]
+        if fresh:
+            node.refresh()
+        elif node.known is not None:
+            page.send(node.known)
+
+    def _keep(self) -> None:
+        """Have the clients and the subscription that pages need, and no others."""
+        wishes = self._wishes.values()
+        wanted = {wish.node for wish in wishes if wish.node is not None}
+        for name in self._nodes.keys() - wanted:
+            self._nodes.pop(name).close()
+        for name in wanted - self._nodes.keys():
+            self._nodes[name] = RemoteNode(self._node, name, self._tell)
+        if wanted and self._events is None:
+            self._events = TopicTap(self._node, self._changes, _EVENTS, self._take)
+        elif not wanted and self._events is not None:
+            self._events.close()
+            self._events = None
+        if any(wish.listed for wish in wishes):
+            self._changes.listen(self._send_lists)
+        else:
+            self._changes.ignore(self._send_lists)
+
+    def _take(self, event: Any, _: MessageInfo) -> None:
+        node = self._nodes.get(event.node)
+        if node is not None:
+            node.take(event)
+
+    def _tell(self, parameters: NodeParameters) -> None:
+        for page, wish in self._wishes.items():
+            if wish.node == parameters.node:
+                page.send(parameters)
+
+    def _send_lists(self) -> None:
+        services = (name for name, _ in self._node.get_service_names_and_types())
+        listed = ParameterNodes([name.removesuffix(_LIST) for name in services if name.endswith(_LIST)])
+        for page, wish in self._wishes.items():
+            if wish.listed and wish.told != listed:
+                back = self._returned(wish, listed)
+                wish.told = listed
+                page.send(listed)
+                if back is not None:
+                    back.refresh()
+
+    def _returned(self, wish: _Wish, listed: ParameterNodes) -> RemoteNode | None:
+        """The node that the page watches, if it has come (again) since the last list."""
+        if wish.told is None or wish.node is None or wish.node in wish.told.nodes or wish.node not in listed.nodes:
+            return None
+        return self._nodes[wish.node]

@@ -1,0 +1,201 @@
+"""The description behind a robot: links and joints as they are written, texts, and what is odd about masses.
+
+A page asks for what it shows. `DescriptionChanged` tells every page that there is something new to ask for.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, Literal
+
+
+@dataclass(slots=True)
+class CallSite:
+    """Where a macro was called, or, without a macro, a file included; 1-based."""
+
+    macro: str | None
+    file: str
+    line: int
+    column: int
+
+
+@dataclass(slots=True)
+class SourceRange:
+    """Characters of a text, from 1, the end exclusive; `file` is empty for the expanded description."""
+
+    file: str
+    line: int
+    column: int
+    end_line: int
+    end_column: int
+
+
+@dataclass(slots=True)
+class Written:
+    """Where an element stands in the expanded text and where it was written, with the calls between them.
+
+    `origin` is None where only the expanded text is known. `calls` has macro calls and includes, innermost first;
+    of very many the outermost are left out.
+    """
+
+    expanded: SourceRange | None
+    origin: SourceRange | None
+    calls: list[CallSite]
+
+
+@dataclass(slots=True)
+class LinkInertia:
+    """Mass in kg and centre of mass in the link's frame, m.
+
+    `box` has the edges, m, of the uniform box of the same inertia, whose axes `quaternion` turns into the link's; it is
+    empty where no body can have this inertia.
+    """
+
+    mass: float
+    center: list[float]
+    box: list[float]
+    quaternion: list[float]
+
+
+@dataclass(slots=True)
+class LinkDetails:
+    """A link as it is described; `frame` is its name in tf."""
+
+    name: str
+    frame: str
+    parent_joint: str | None
+    inertia: LinkInertia | None
+    written: Written
+
+
+@dataclass(slots=True)
+class JointMimic:
+    """Position = multiplier * position of `joint` + offset."""
+
+    joint: str
+    multiplier: float
+    offset: float
+
+
+@dataclass(slots=True)
+class JointDetails:
+    """A joint as it is described: the origin in the parent's frame, the unit axis in the joint's frame; SI units.
+
+    What is not written, or is no finite number, is None.
+    """
+
+    name: str
+    kind: Literal["revolute", "continuous", "prismatic", "fixed", "floating", "planar"]
+    parent: str
+    child: str
+    xyz: list[float]
+    rpy: list[float]
+    quaternion: list[float]
+    axis: list[float]
+    lower: float | None
+    upper: float | None
+    velocity: float | None
+    effort: float | None
+    damping: float | None
+    friction: float | None
+    soft_lower: float | None
+    soft_upper: float | None
+    k_position: float | None
+    k_velocity: float | None
+    mimic: JointMimic | None
+    written: Written
+
+
+@dataclass(slots=True)
+class Description:
+    """What stands behind the robot of a RobotModel display; answers `AskDescription`.
+
+    Links are in the order of the file. `files` are the files that the description was made from, the main one first.
+    """
+
+    NEWEST_OF: ClassVar[tuple[str, ...]] = ("display",)
+
+    display: str
+    revision: int
+    name: str
+    root: str
+    links: list[LinkDetails]
+    joints: list[JointDetails]
+    files: list[str]
+    type: Literal["description"] = "description"
+
+
+@dataclass(slots=True)
+class DescriptionChanged:
+    """A display shows another description now; the links and joints that say something else than before are named."""
+
+    NEWEST_OF: ClassVar[tuple[str, ...]] = ("display",)
+
+    display: str
+    revision: int
+    links: list[str]
+    joints: list[str]
+    type: Literal["description_changed"] = "description_changed"
+
+
+@dataclass(slots=True)
+class DescriptionText:
+    """A text of a description, or the expanded one where `file` is empty; None for what is no file of it."""
+
+    NEWEST_OF: ClassVar[tuple[str, ...]] = ("display", "file")
+
+    display: str
+    revision: int
+    file: str
+    text: str | None
+    type: Literal["description_text"] = "description_text"
+
+
+@dataclass(slots=True)
+class InertiaFinding:
+    """What is implausible about the mass or inertia of a link."""
+
+    link: str
+    code: str
+    message: str
+    hint: str
+
+
+@dataclass(slots=True)
+class InertiaFindings:
+    """All that is implausible about the masses of a robot; answers `AskInertia`."""
+
+    NEWEST_OF: ClassVar[tuple[str, ...]] = ("display",)
+
+    display: str
+    revision: int
+    findings: list[InertiaFinding]
+    type: Literal["inertia_findings"] = "inertia_findings"
+
+
+@dataclass(slots=True)
+class AskDescription:
+    """The page shows links, joints or masses of a RobotModel display."""
+
+    display: str
+    type: Literal["ask_description"] = "ask_description"
+
+
+@dataclass(slots=True)
+class AskDescriptionText:
+    """The page shows a text of a description; an empty `file` is the expanded one.
+
+    `display` may be empty: then `file` is one that a diagnostic is about.
+    """
+
+    display: str
+    file: str
+    type: Literal["ask_description_text"] = "ask_description_text"
+
+
+@dataclass(slots=True)
+class AskInertia:
+    """The page wants to mark links whose masses are implausible, which takes the server a while."""
+
+    display: str
+    type: Literal["ask_inertia"] = "ask_inertia"

@@ -1,0 +1,61 @@
+"""Content of the displays of images and of maps."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from linkwright.viewer.protocol.data import Bytes
+
+
+@dataclass(slots=True)
+class CameraModel:
+    """The pinhole camera that an image is seen through, from the projection matrix of its CameraInfo.
+
+    Sizes, focal lengths and the principal point are pixels; `offset_x` and `offset_y` say how far, in metres right and
+    down, the camera is from the frame of the image.
+    """
+
+    width: float
+    height: float
+    focal_x: float
+    focal_y: float
+    centre_x: float
+    centre_y: float
+    offset_x: float
+    offset_y: float
+
+
+@dataclass(slots=True)
+class ImageFrame:
+    """Image and Camera: one image.
+
+    `width` and `height` are those of the message; `columns` and `rows` those of the data, which may have fewer pixels.
+    The data are 8-bit pixels row by row, or a file that browsers read. `quality` is that of the WebP (1 to 95) which
+    was made of the image for a slow line, else 0.
+    """
+
+    width: int
+    height: int
+    columns: int
+    rows: int
+    encoding: Literal["grey", "rgb", "rgba", "file"]
+    data: Bytes
+    camera: CameraModel | None = None
+    quality: int = 0
+    kind: Literal["image_frame"] = "image_frame"
+
+
+@dataclass(slots=True)
+class OccupancyMap:
+    """Map: the cells row by row from the origin's corner, each the byte of its int8 value.
+
+    `origin` is the pose of that corner in the frame of the message: x y z (metres) qx qy qz qw.
+    """
+
+    width: int
+    height: int
+    resolution: float
+    origin: list[float]
+    cells: Bytes
+    kind: Literal["occupancy_map"] = "occupancy_map"

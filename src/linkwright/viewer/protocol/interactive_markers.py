@@ -1,0 +1,91 @@
+"""The InteractiveMarkers display: markers that can be moved, turned and clicked, and what was done to them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from linkwright.viewer.protocol.markers import MarkerShape
+
+OrientationMode = Literal["inherit", "fixed", "view_facing"]
+"""In the order of visualization_msgs' numbers, as the modes below."""
+
+InteractionMode = Literal[
+    "none",
+    "menu",
+    "button",
+    "move_axis",
+    "move_plane",
+    "rotate_axis",
+    "move_rotate",
+    "move_3d",
+    "rotate_3d",
+    "move_rotate_3d",
+]
+FeedbackEvent = Literal["pose_update", "menu_select", "button_click", "mouse_down", "mouse_up"]
+
+
+@dataclass(slots=True)
+class InteractiveControl:
+    """A handle of an interactive marker.
+
+    Its axis is the x axis of `orientation` (x y z w, in the frame that the orientation mode says). The poses of
+    `markers` are in the frame of the control, or in that of the interactive marker when `independent_orientation`.
+    """
+
+    name: str
+    description: str
+    mode: InteractionMode
+    orientation_mode: OrientationMode
+    orientation: list[float]
+    always_visible: bool
+    independent_orientation: bool
+    markers: list[MarkerShape]
+
+
+@dataclass(slots=True)
+class MarkerMenuEntry:
+    """An entry of a marker's menu; `parent` is 0 at the top."""
+
+    id: int
+    parent: int
+    title: str
+
+
+@dataclass(slots=True)
+class InteractiveMarkerShape:
+    """An interactive marker in the frame of the content; `pose` is x y z qx qy qz qw, `scale` metres."""
+
+    name: str
+    description: str
+    pose: list[float]
+    scale: float
+    controls: list[InteractiveControl]
+    menu: list[MarkerMenuEntry]
+    kind: Literal["interactive_marker"] = "interactive_marker"
+
+
+@dataclass(slots=True)
+class InteractiveMarkerMoved:
+    """An interactive marker has another pose in the frame of the content."""
+
+    name: str
+    pose: list[float]
+    kind: Literal["interactive_marker_moved"] = "interactive_marker_moved"
+
+
+@dataclass(slots=True)
+class MarkerFeedback:
+    """The user did something to an interactive marker; poses and points are in the marker's frame.
+
+    `mouse_point` is where the mouse met the marker, or none.
+    """
+
+    display: str
+    marker: str
+    control: str
+    event: FeedbackEvent
+    pose: list[float]
+    menu_entry: int
+    mouse_point: list[float]
+    type: Literal["marker_feedback"] = "marker_feedback"

@@ -1,0 +1,61 @@
+"""Content of the displays of many points: clouds, scans, cells."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, Literal
+
+from linkwright.viewer.protocol.data import Bytes, Floats
+
+
+@dataclass(slots=True)
+class CloudPoints:
+    """PointCloud2 and its kin: points in the frame of the message, metres, shape (N, 3).
+
+    `colours` has red, green, blue and alpha of each point, shape (N, 4), or nothing where all have the display's own
+    colour. `translucent` says whether an alpha is less than full. `pixel` is the size of points by their depth in the
+    frame, metres per metre; 0 where they have the size that the display says. For a slow line only every `step`-th
+    point is sent.
+    """
+
+    positions: Floats
+    colours: Bytes
+    translucent: bool = False
+    pixel: float = 0.0
+    step: int = 1
+    kind: Literal["cloud_points"] = "cloud_points"
+
+
+@dataclass(slots=True)
+class CellGrid:
+    """GridCells: middles of the cells in the frame of the message, metres, shape (N, 3), and the sides of a cell."""
+
+    positions: Floats
+    width: float
+    height: float
+    kind: Literal["cell_grid"] = "cell_grid"
+
+
+@dataclass(slots=True)
+class AskPoint:
+    """The user selected a point of a display's content and wants to know its fields; answered by `PointFields`."""
+
+    display: str
+    key: str
+    index: int
+    type: Literal["ask_point"] = "ask_point"
+
+
+@dataclass(slots=True)
+class PointFields:
+    """The fields of a point besides its coordinates, by name, in the order of the message.
+
+    A packed colour is ``#rrggbbaa``; a value that is no finite number is a text.
+    """
+
+    display: str
+    key: str
+    index: int
+    fields: dict[str, float | str]
+    type: Literal["point_fields"] = "point_fields"
+    NEWEST_OF: ClassVar[tuple[str, ...]] = ("display", "key", "index")

@@ -1,0 +1,106 @@
+"""What a RobotModel display draws."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import ClassVar, Literal
+
+from linkwright.viewer.protocol.description import LinkInertia
+from linkwright.viewer.protocol.parts import Place
+
+ShapeKind = Literal["box", "cylinder", "capsule", "sphere", "mesh"]
+
+
+@dataclass(slots=True)
+class Shape:
+    """A shape to draw, posed in its link's frame.
+
+    `size` is x, y, z for a box; radius, length for a cylinder or capsule (along z); radius for a sphere; scale x, y, z
+    for a mesh. `url` and `format` (the file ending, lower case) are set for a mesh. `color` is None where the URDF
+    gives no colour: then a mesh keeps its own materials and another shape is RViz's red.
+    """
+
+    kind: ShapeKind
+    size: list[float]
+    position: list[float]
+    quaternion: list[float]
+    color: list[float] | None = None
+    texture: str | None = None
+    url: str | None = None
+    format: str | None = None
+    name: str = ""
+
+
+@dataclass(slots=True)
+class LinkScene:
+    """A link to draw in the frame of its name."""
+
+    name: str
+    frame: str
+    parent_joint: str | None
+    visuals: list[Shape]
+    collisions: list[Shape]
+    place: Place | None = None
+    inertia: LinkInertia | None = None
+
+
+@dataclass(slots=True)
+class JointScene:
+    """A joint, posed in its parent link's frame; `axis` is in the joint's own. SI units.
+
+    `lower` and `upper` are None without a limit; a number of the description that is not finite is None too.
+    """
+
+    name: str
+    kind: Literal["revolute", "continuous", "prismatic", "fixed", "floating", "planar"]
+    parent: str
+    child: str
+    position: list[float]
+    quaternion: list[float]
+    axis: list[float]
+    lower: float | None
+    upper: float | None
+
+
+@dataclass(slots=True)
+class RobotScene:
+    """What one RobotModel display draws; `revision` counts descriptions. No links means no robot."""
+
+    NEWEST_OF: ClassVar[tuple[str, ...]] = ("display",)
+
+    display: str
+    revision: int
+    name: str
+    links: list[LinkScene]
+    joints: list[JointScene] = field(default_factory=list)
+    type: Literal["robot_scene"] = "robot_scene"
+
+
+@dataclass(slots=True)
+class MeshStatus:
+    """How loading a mesh went in the page; `error` is None when it is drawn."""
+
+    display: str
+    link: str
+    url: str
+    error: str | None
+    type: Literal["mesh_status"] = "mesh_status"
+
+
+@dataclass(slots=True)
+class AskStory:
+    """The user selected a link of a RobotModel display and wants to know how it came to be."""
+
+    display: str
+    link: str
+    type: Literal["ask_story"] = "ask_story"
+
+
+@dataclass(slots=True)
+class LinkStory:
+    """Where a link was written, through which macro calls, and with which values, line by line; answers `AskStory`."""
+
+    display: str
+    link: str
+    lines: list[str]
+    type: Literal["link_story"] = "link_story"

@@ -1,0 +1,24 @@
+"""The connection itself."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+
+@dataclass(slots=True)
+class Hello:
+    """First message on every connection."""
+
+    protocol: int
+    version: str
+    title: str
+    type: Literal["hello"] = "hello"
+
+
+@dataclass(slots=True)
+class Received:
+    """How many messages of this connection the page has; sent after the first one and after each large one."""
+
+    count: int
+    type: Literal["received"] = "received"

@@ -1,0 +1,56 @@
+"""What a .rviz file says of time, in its Time panel."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from linkwright.viewer.former_names import modern_class
+from linkwright.viewer.protocol import SyncMode
+from linkwright.viewer.yaml_tree import Section
+
+_PANELS = "Panels"
+_TIME = ("rviz_common/Time", modern_class("rviz/Time"))
+_MODES: tuple[SyncMode, ...] = ("Off", "Exact", "Approximate")
+
+
+@dataclass(frozen=True, slots=True)
+class Synchronization:
+    """Whose messages lead time, and how."""
+
+    mode: SyncMode = "Off"
+    source: str = ""
+
+
+def read_synchronization(document: Section) -> Synchronization:
+    """What the Time panel says; RViz looks at it only where ``Experimental`` is on."""
+    panel = _panel(document)
+    if panel is None or _text(panel, "Experimental").lower() != "true":
+        return Synchronization()
+    number = _text(panel, "SyncMode")
+    if number not in ("1", "2"):
+        return Synchronization()
+    return Synchronization(_MODES[int(number)], _text(panel, "SyncSource"))
+
+
+def write_synchronization(document: Section, wanted: Synchronization) -> bool:
+    """Make the Time panel say it, in a file that has one; whether anything was another."""
+    panel = _panel(document)
+    if panel is None or read_synchronization(document) == wanted:
+        return False
+    panel.put(("SyncMode",), str(_MODES.index(wanted.mode)))
+    panel.put(("SyncSource",), wanted.source, string=True)
+    if wanted.mode != "Off":
+        panel.put(("Experimental",), "true")
+    return True
+
+
+def _panel(document: Section) -> Section | None:
+    for panel in document.sections(_PANELS):
+        if _text(panel, "Class") in _TIME:
+            return panel
+    return None
+
+
+def _text(section: Section, key: str) -> str:
+    scalar = section.scalar(key)
+    return scalar.text.strip() if scalar else ""

@@ -1,0 +1,112 @@
+"""The arm seen from above, where every pixel is known in metres, and what is heard of the page's tools."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import yaml
+
+from linkwright.graph import DESCRIPTION_QOS
+from linkwright.messages import String
+from tests.browser.conftest import state, until
+from tests.viewer.scene import ARM
+
+SCALE = 50.0
+"""Pixels to a metre of the file's TopDownOrtho view: so each pixel is known in metres."""
+CONFIG = {
+    "Visualization Manager": {
+        "Displays": [
+            {"Class": "rviz_default_plugins/Grid", "Name": "Grid", "Enabled": True},
+            {
+                "Class": "rviz_default_plugins/RobotModel",
+                "Name": "RobotModel",
+                "Enabled": True,
+                "Description Topic": {"Value": "/robot_description"},
+            },
+            {
+                "Class": "rviz_default_plugins/PointStamped",
+                "Name": "Clicks",
+                "Enabled": True,
+                "Topic": {"Value": "/clicked_point"},
+            },
+        ],
+        "Global Options": {"Fixed Frame": "base", "Background Color": "48; 48; 48", "Frame Rate": 30},
+        "Views": {"Current": {"Class": "rviz_default_plugins/TopDownOrtho", "Scale": SCALE}, "Saved": None},
+    }
+}
+TIP = (3.0, 1.0)
+"""Where the ball of the arm is seen from above, metres."""
+
+
+class Scene:
+    """A page that shows the arm from above, and what is heard of its tools."""
+
+    def __init__(self, viewer: Any, page: Any) -> None:
+        self.viewer, self.page = viewer, page
+        self.heard: dict[str, list[Any]] = {}
+        for kind, topic in (
+            ("PoseWithCovarianceStamped", "/initialpose"),
+            ("PoseStamped", "/goal_pose"),
+            ("PointStamped", "/clicked_point"),
+        ):
+            heard = self.heard[topic] = []
+            viewer.run(
+                lambda kind=kind, topic=topic, heard=heard: viewer.node.create_subscription(
+                    f"geometry_msgs/msg/{kind}", topic, heard.append, 10
+                )
+            )
+
+    def pixel(self, x: float, y: float) -> tuple[float, float]:
+        """The place on the page of a point of the fixed frame, while the file's view is seen."""
+        box = self.page.locator("canvas").first.bounding_box()
+        return box["x"] + box["width"] / 2 + x * SCALE, box["y"] + box["height"] / 2 - y * SCALE
+
+    def click(self, x: float, y: float, **options: Any) -> None:
+        at = self.pixel(x, y)
+        self.page.mouse.move(*at)
+        self.page.mouse.click(*at, **options)
+
+    def drag(self, start: tuple[float, float], end: tuple[float, float], button: str = "left") -> None:
+        (x0, y0), (x1, y1) = self.pixel(*start), self.pixel(*end)
+        self.page.mouse.move(x0, y0)
+        self.page.mouse.down(button=button)
+        self.page.mouse.move((x0 + x1) / 2, (y0 + y1) / 2)
+        self.page.mouse.move(x1, y1)
+        self.page.mouse.up(button=button)
+
+    def press(self, key: str) -> str:
+        """Press a key and say which tool is in hand then."""
+        self.page.keyboard.press(key)
+        return state(self.page, "tool.class").rpartition("/")[2]
+
+    def only(self, topic: str) -> Any:
+        """The one message heard on a topic."""
+        for _ in range(50):
+            if self.heard[topic]:
+                break
+            self.page.wait_for_timeout(50)
+        (message,) = self.heard[topic]
+        return message
+
+    def show(self, view: str) -> dict[str, Any]:
+        self.page.get_by_label("Type", exact=True).select_option(label=view)
+        until(self.page, f"lw.view.type === '{view}'")
+        return state(self.page, "view")
+
+    def selected(self) -> list[str]:
+        return [item["key"] for item in state(self.page, "selection")]
+
+    def file(self) -> dict[str, Any]:
+        text = self.viewer.run(self.viewer.viewer.config.text)
+        return yaml.safe_load(text)["Visualization Manager"]
+
+
+def open_scene(live: Any, open_page: Any) -> Scene:
+    """The arm, published and seen from above; the arguments are the fixtures of these names."""
+    viewer = live(yaml.safe_dump(CONFIG))
+    viewer.publish("/robot_description", String(ARM), DESCRIPTION_QOS)
+    viewer.place("tip", *TIP, 0.0)
+    viewer.place("mark", 0.0, 0.0, 0.0, parent="tip")
+    made = Scene(viewer, open_page(viewer))
+    until(made.page, "lw.tools.length === 8 && lw.frames.tip !== undefined")
+    return made

@@ -1,0 +1,129 @@
+"""A viewer in the test's own process, so that a test says at each moment what is published to it."""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar
+
+from linkwright.graph import STATIC_TF_PUBLISHER_QOS, Graph
+from linkwright.messages import TFMessage, get_message
+from linkwright.urdf import DescriptionLibrary
+from linkwright.viewer import RvizConfig, Viewer
+from linkwright.workspace import PackageFinder
+
+Result = TypeVar("Result")
+
+FILE = """\
+Visualization Manager:
+  Displays:
+{displays}
+  Global Options:
+    Background Color: 48; 48; 48
+    Fixed Frame: base
+    Frame Rate: 30
+  Views:
+    Current:
+      Class: rviz_default_plugins/Orbit
+      Distance: {distance}
+      Focal Point: {{X: 0, Y: 0, Z: 0}}
+      Pitch: {pitch}
+      Yaw: {yaw}
+"""
+
+
+def configuration(displays: str, *, distance: float = 10.0, pitch: float = 0.6, yaw: float = 0.8) -> str:
+    """A .rviz file with an Orbit view around the origin of the frame ``base``; `displays` are its entries as YAML."""
+    indented = "".join(f"    {line}\n" for line in displays.strip("\n").splitlines())
+    return FILE.format(displays=indented.rstrip("\n"), distance=distance, pitch=pitch, yaw=yaw)
+
+
+class LiveViewer:
+    """A graph with a viewer and a node to publish with, in a thread of its own.
+
+    Attributes:
+        url: of the page.
+        node: what the test publishes and subscribes with; use it inside of `run`.
+        viewer: the viewer, likewise.
+    """
+
+    url: str
+    node: Any
+    viewer: Viewer
+
+    def __init__(self, config: str, *, packages: dict[str, Path] | None = None) -> None:
+        self._config = config
+        self._packages = packages or {}
+        self._loop = asyncio.new_event_loop()
+        self._thread = threading.Thread(target=self._loop.run_forever, daemon=True)
+        self._thread.start()
+        self._publishers: dict[str, Any] = {}
+        self.run(self._start)
+
+    def run(self, function: Callable[[], Result]) -> Result:
+        """Run a function, or a coroutine function, in the viewer's loop, and give its result."""
+
+        async def call() -> Any:
+            result = function()
+            return await result if asyncio.iscoroutine(result) else result
+
+        return asyncio.run_coroutine_threadsafe(call(), self._loop).result(timeout=20)
+
+    def publish(self, topic: str, message: Any, qos: Any = 10) -> None:
+        """Publish a message; the publisher stays."""
+
+        def send() -> None:
+            if topic not in self._publishers:
+                self._publishers[topic] = self.node.create_publisher(type(message), topic, qos)
+            self._publishers[topic].publish(message)
+
+        self.run(send)
+
+    def place(self, child: str, *pose: float, parent: str = "base") -> None:
+        """Say where a frame always is: x y z, or x y z qx qy qz qw."""
+        full = (*pose, 0.0, 0.0, 0.0, 1.0) if len(pose) == 3 else pose
+        transform = get_message("geometry_msgs/msg/TransformStamped")()
+        transform.header.frame_id, transform.child_frame_id = parent, child
+        for part, names, numbers in (
+            (transform.transform.translation, "xyz", full[:3]),
+            (transform.transform.rotation, "xyzw", full[3:]),
+        ):
+            for name, number in zip(names, numbers, strict=True):
+                setattr(part, name, float(number))
+        self.publish("/tf_static", TFMessage(transforms=[transform]), STATIC_TF_PUBLISHER_QOS)
+
+    def status(self, name: str) -> dict[str, tuple[str, str]]:
+        """The status rows of a display: name -> level, text."""
+
+        def read() -> dict[str, tuple[str, str]]:
+            display = next(each for each in self.viewer.displays if each.config.name == name)
+            return {row.name: (row.level, row.text) for row in display.status}
+
+        return self.run(read)
+
+    def close(self) -> None:
+        """End the viewer and the thread."""
+
+        async def end() -> None:
+            await self.viewer.close()
+            await self._graph.close()
+
+        self.run(end)
+        self._loop.call_soon_threadsafe(self._loop.stop)
+        self._thread.join(timeout=10)
+        self._loop.close()
+
+    async def _start(self) -> None:
+        self._graph = Graph()
+        self.node = self._graph.create_node("test_publisher")
+        self.viewer = Viewer(
+            self._graph,
+            library=DescriptionLibrary(),
+            finder=PackageFinder(start=Path("/nonexistent"), environment={}, extra=self._packages),
+            config=RvizConfig.parse(self._config),
+            port=0,
+        )
+        await self.viewer.start()
+        self.url = self.viewer.url

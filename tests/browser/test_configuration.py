@@ -1,0 +1,162 @@
+"""The File menu, displays of a page's own, and the page as a whole: keyboard and colours."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from linkwright.viewer import RvizConfig
+from tests.browser.conftest import state, until
+from tests.browser.live import configuration
+
+pytestmark = pytest.mark.browser
+
+DISPLAYS = """
+- Class: rviz_default_plugins/Grid
+  Enabled: true
+  Name: Grid
+  Value: true
+- Class: rviz_common/Group
+  Displays:
+    - Class: rviz_default_plugins/Axes
+      Enabled: true
+      Name: Axes
+      Value: true
+    - Class: my_plugins/Radar
+      Enabled: true
+      Name: Radar
+      Value: true
+  Enabled: true
+  Name: Marks
+"""
+
+
+ACTIVE = "document.activeElement"
+
+
+@pytest.fixture(autouse=True)
+def _state_of_the_user(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+
+
+@pytest.fixture
+def opened(live, open_page):
+    """A viewer with some displays, and its page."""
+    viewer = live(configuration(DISPLAYS))
+    viewer.place("tip", 1.0, 0.0, 0.0)
+    page = open_page(viewer, wait=False)
+    page.wait_for_selector("[data-key='display-4']")
+    return viewer, page
+
+
+def names(page) -> list[str]:
+    return [each["name"] for each in state(page, "displays")]
+
+
+def row(page, identity: str):
+    return page.locator(f"[data-key='{identity}'] .row-title")
+
+
+def test_the_file_is_saved_and_opened(opened, tmp_path: Path):
+    _, page = opened
+    path = tmp_path / "mine.rviz"
+    page.keyboard.press("Control+s")  # it has no file yet
+    page.get_by_label("File name").fill(str(path))
+    page.keyboard.press("Enter")
+    page.wait_for_function("() => document.querySelector('.file-name').textContent === 'mine.rviz'")
+    assert len(list(RvizConfig.load(path).walk())) == 4
+    row(page, "display-1").click()
+    page.keyboard.press("Delete")
+    until(page, "lw.displays.length === 3")
+    # Nothing unsaved is lost unasked.
+    page.get_by_role("button", name="File", exact=True).click()
+    page.keyboard.press("Enter")
+    dialog = page.get_by_role("dialog", name="Unsaved changes")
+    dialog.get_by_role("button", name="Cancel").click()
+    assert len(names(page)) == 3
+    page.get_by_role("button", name="File", exact=True).click()
+    page.get_by_role("menuitem", name="New", exact=True).click()
+    dialog.get_by_role("button", name="Save", exact=True).click()
+    until(page, "lw.displays.length === 1")
+    assert len(list(RvizConfig.load(path).walk())) == 3
+    page.keyboard.press("Control+o")
+    page.get_by_label("File name").fill(str(path))
+    page.keyboard.press("Enter")
+    until(page, "lw.displays.length === 3")
+    page.get_by_role("button", name="File", exact=True).click()
+    assert page.get_by_role("menuitem", name="mine.rviz").get_attribute("title") == str(path)
+
+
+def test_the_file_is_downloaded_and_loaded_from_this_computer(opened, tmp_path: Path):
+    viewer, page = opened
+    text = viewer.viewer.config.text()
+    with page.expect_download() as downloads:
+        page.get_by_role("button", name="File", exact=True).click()
+        page.get_by_role("menuitem", name="Download").click()
+    path = tmp_path / "down.rviz"
+    downloads.value.save_as(path)
+    assert (downloads.value.suggested_filename, path.read_text()) == ("untitled.rviz", text)
+    path.write_text(text.replace("Name: Radar", "Name: Sonar"))
+    with page.expect_file_chooser() as choosers:
+        page.get_by_role("button", name="File", exact=True).click()
+        page.get_by_role("menuitem", name="Open from this computer").click()
+    choosers.value.set_files(path)
+    until(page, "lw.displays[3].name === 'Sonar'")
+
+
+def test_a_page_has_displays_of_its_own(opened, open_page):
+    viewer, page = opened
+    other = open_page(viewer, wait=False)
+    other.wait_for_selector("[data-key='display-4']")
+    other.get_by_role("button", name="Own", exact=True).click()
+    other.wait_for_url("**displays=own**")
+    other.wait_for_selector("[data-key='display-8']")
+    row(other, "display-5").click()
+    other.keyboard.press("Delete")
+    until(other, "lw.displays.length === 3")
+    assert len(names(page)) == 4
+    other.reload()
+    other.wait_for_selector("[data-key='display-8']")
+    assert len(names(other)) == 3
+    other.get_by_role("button", name="Shared", exact=True).click()
+    other.wait_for_selector("[data-key='display-1']")
+    assert len(names(other)) == 4
+
+
+def test_the_keyboard_reaches_everything_and_dialogs_keep_it(opened):
+    _, page = opened
+    reached = set()
+    page.locator("body").click(position={"x": 640, "y": 8})
+    for _ in range(40):
+        page.keyboard.press("Tab")
+        reached.add(page.evaluate(f"({ACTIVE}.getAttribute('aria-label') || {ACTIVE}.textContent).trim()"))
+    assert {"File", "Panels", "Add", "Filter displays and properties"} <= reached
+    page.get_by_role("button", name="File", exact=True).focus()
+    page.keyboard.press("ArrowRight")
+    page.keyboard.press("ArrowDown")
+    assert page.evaluate("document.activeElement.getAttribute('role')") == "menuitemcheckbox"
+    page.keyboard.press("Escape")
+    assert page.evaluate("document.activeElement.textContent") == "Panels"
+    page.get_by_role("button", name="Add", exact=True).click()
+    for _ in range(13):
+        page.keyboard.press("Tab")
+        assert page.evaluate(f"{ACTIVE}.closest('.add-dialog') !== null")
+    page.keyboard.press("Shift+Tab")
+    assert page.evaluate(f"{ACTIVE}.closest('.add-dialog') !== null")
+    page.keyboard.press("Escape")
+    page.wait_for_selector(".add-dialog", state="detached")
+
+
+def test_the_theme_is_chosen_and_remembered(opened):
+    _, page = opened
+    page.emulate_media(color_scheme="dark")
+    page.wait_for_function("() => document.documentElement.dataset.theme === 'dark'")
+    background = "getComputedStyle(document.body).backgroundColor"
+    dark = page.evaluate(background)
+    page.get_by_role("button", name="Colours").click()
+    page.get_by_role("menuitemcheckbox", name="Light").click()
+    assert page.evaluate(background) != dark
+    page.reload()
+    page.wait_for_selector("[data-key='display-4']")
+    assert page.evaluate("document.documentElement.dataset.theme") == "light"

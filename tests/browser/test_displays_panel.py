@@ -1,0 +1,151 @@
+"""The Displays panel: displays that come, go and move, and how that is undone."""
+
+from __future__ import annotations
+
+import pytest
+import yaml
+
+from linkwright.messages import get_message
+from tests.browser.conftest import state, until
+from tests.browser.live import configuration
+
+pytestmark = pytest.mark.browser
+
+PointStamped = get_message("geometry_msgs/msg/PointStamped")
+
+DISPLAYS = """
+- Class: rviz_default_plugins/Grid
+  Enabled: true
+  Name: Grid
+  Value: true
+- Class: rviz_common/Group
+  Displays:
+    - Class: rviz_default_plugins/Axes
+      Enabled: true
+      Name: Axes
+      Value: true
+    - Class: my_plugins/Radar
+      Enabled: true
+      Name: Radar
+      Value: true
+  Enabled: true
+  Name: Marks
+"""
+
+
+@pytest.fixture
+def opened(live, open_page):
+    """A viewer with some displays, and its page."""
+    viewer = live(configuration(DISPLAYS))
+    viewer.place("tip", 1.0, 0.0, 0.0)
+    page = open_page(viewer, wait=False)
+    page.wait_for_selector("[data-key='display-4']")
+    return viewer, page
+
+
+def names(page) -> list[str]:
+    return [each["name"] for each in state(page, "displays")]
+
+
+def row(page, identity: str):
+    return page.locator(f"[data-key='{identity}'] .row-title")
+
+
+def saved(viewer) -> list[dict]:
+    return yaml.safe_load(viewer.viewer.config.text())["Visualization Manager"]["Displays"]
+
+
+def test_displays_are_added_by_type_and_taken_back(opened):
+    viewer, page = opened
+    row(page, "display-2").click()
+    page.keyboard.press("Alt+a")
+    page.keyboard.type("points of a cloud")
+    assert page.locator(".choice-row").all_inner_texts()[-1].startswith("PointCloud2")
+    page.locator(".choice-row", has_text="PointCloud2").click()
+    assert page.get_by_label("Display name").input_value() == "PointCloud2"
+    page.get_by_label("Display name").fill("Cloud")
+    page.keyboard.press("Enter")
+    until(page, "lw.displays.length === 5")
+    assert names(page) == ["Grid", "Marks", "Axes", "Radar", "Cloud"]
+    assert page.evaluate("document.title").startswith("● ")
+    assert saved(viewer)[1]["Displays"][2]["Name"] == "Cloud"
+    page.keyboard.press("Control+z")
+    until(page, "lw.displays.length === 4")
+    page.keyboard.press("Control+Shift+z")
+    until(page, "lw.displays.length === 5")
+
+
+def test_displays_are_added_by_topic(opened):
+    viewer, page = opened
+    viewer.publish("/found", PointStamped())
+    page.get_by_role("button", name="Add", exact=True).click()
+    page.get_by_role("tab", name="By topic").click()
+    page.locator(".choice-row", has_text="PointStamped").click()
+    page.get_by_role("dialog").get_by_role("button", name="Add", exact=True).click()
+    until(page, "lw.displays.length === 5")
+    assert saved(viewer)[2]["Topic"]["Value"] == "/found"
+
+
+def test_displays_are_renamed_duplicated_and_removed_by_keys(opened):
+    viewer, page = opened
+    row(page, "display-3").click()
+    page.keyboard.press("F2")
+    page.keyboard.type("Origin")
+    page.keyboard.press("Enter")
+    until(page, "lw.displays[2].name === 'Origin'")
+    page.keyboard.press("Alt+d")
+    until(page, "lw.displays.length === 5")
+    assert names(page) == ["Grid", "Marks", "Origin", "Origin", "Radar"]
+    page.keyboard.press("Delete")
+    until(page, "lw.displays.length === 4")
+    row(page, "display-2").click()
+    page.keyboard.press("Delete")
+    until(page, "lw.displays.length === 1")
+    for _ in range(4):
+        page.keyboard.press("Control+z")
+    until(page, "lw.displays.length === 4 && lw.displays[2].name === 'Axes'")
+    assert not viewer.viewer.manager.history.unsaved
+
+
+def test_a_group_switches_off_what_it_holds(opened):
+    _, page = opened
+    page.locator("[data-key='display-2'] .check").click()
+    until(page, "lw.displays.every((each) => each.enabled === (each.name === 'Grid'))")
+    assert page.locator("[data-key='display-3'] .check").is_checked()
+    page.locator("[data-key='display-2'] .check").click()
+    until(page, "lw.displays.every((each) => each.enabled)")
+
+
+def test_displays_are_dragged(opened):
+    viewer, page = opened
+    page.locator("[data-key='display-1'] .row-title").drag_to(page.locator("[data-key='display-2']"))
+    until(page, "lw.displays[0].name === 'Marks'")
+    assert [each["Name"] for each in saved(viewer)[0]["Displays"]] == ["Grid", "Axes", "Radar"]
+    row(page, "display-1").click()
+    page.keyboard.press("Alt+ArrowDown")
+    until(page, "lw.displays[1].name === 'Axes'")
+    page.keyboard.press("Control+z")
+    page.keyboard.press("Control+z")
+    until(page, "lw.displays[0].name === 'Grid'")
+
+
+def test_the_filter_finds_properties(opened):
+    _, page = opened
+    page.get_by_label("Filter displays and properties").fill("cell size")
+    page.wait_for_function("() => document.querySelectorAll('.displays-panel .row').length === 2")
+    assert page.locator(".displays-panel .row-title").all_inner_texts() == ["Grid", "Cell Size"]
+    page.get_by_label("Filter displays and properties").fill("nothing like that")
+    page.get_by_text("Nothing has that in its name.").wait_for()
+
+
+def test_a_menu_of_each_display(opened):
+    _, page = opened
+    row(page, "display-3").click(button="right")
+    page.keyboard.press("r")
+    assert "Rename" in page.evaluate("document.activeElement.textContent")
+    page.keyboard.press("Escape")
+    assert page.evaluate("document.activeElement.dataset.key") == "display-3"
+    row(page, "display-3").click(button="right")
+    page.get_by_role("menuitem", name="Put into a new group").click()
+    until(page, "lw.displays.length === 5")
+    assert names(page) == ["Grid", "Marks", "Group", "Axes", "Radar"]

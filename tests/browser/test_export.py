@@ -1,0 +1,224 @@
+"""Exported pages from disk, and what the Share menu gives."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from linkwright.graph import DESCRIPTION_QOS
+from linkwright.messages import String
+from tests.browser.conftest import state, until
+from tests.browser.live import configuration
+from tests.browser.mesh_writers import dae, obj, png, stl_binary
+from tests.browser.test_golden_meshes import link, mesh, robot_of
+from tests.viewer.export.robots import GRIPPER
+from tests.viewer.export.test_glb import textured_dae
+
+pytestmark = pytest.mark.browser
+
+ROBOT = configuration(
+    """
+- Class: rviz_default_plugins/RobotModel
+  Description Topic:
+    Value: /robot_description
+  Enabled: true
+  Name: Robot
+""",
+    distance=4.0,
+)
+
+
+@pytest.fixture
+def open_file(browser):
+    """A function that opens a file of the disk; whatever it fetches or complains of fails the test."""
+    contexts, wrong = [], []
+
+    def open_it(path: Path, locale: str = "en-US"):
+        context = browser.new_context(viewport={"width": 1000, "height": 700}, locale=locale, offline=True)
+        contexts.append(context)
+        page = context.new_page()
+        page.on("pageerror", lambda error: wrong.append(str(error)))
+        page.on("console", lambda message: wrong.append(message.text) if message.type == "error" else None)
+
+        def requested(request) -> None:
+            if request.url != path.as_uri() and not request.url.startswith(("data:", "blob:")):
+                wrong.append(request.url)
+
+        page.on("request", requested)
+        page.goto(path.as_uri())
+        for _ in range(200):  # its policy lets no text be evaluated in it, as wait_for_function does
+            if page.evaluate("() => window.linkwright?.ready === true"):
+                break
+            page.wait_for_timeout(50)
+        assert state(page, "ready")
+        return page
+
+    yield open_it
+    for context in contexts:
+        context.close()
+    assert wrong == []
+
+
+def export(out: Path, model: Path, *values: str) -> None:
+    subprocess.run([sys.executable, "-m", "linkwright", "export", str(out), str(model), *values], check=True)
+
+
+def drawn(page) -> dict:
+    """Every visual as it is drawn, by link."""
+    robot = next(each for each in state(page, "displays") if each["class"].endswith("RobotModel"))["drawn"]
+    return {name: told["visuals"] for name, told in robot["links"].items()}
+
+
+def assert_alike(one: dict, other: dict) -> None:
+    """Numbers may differ in their last digits: joints were worked out from transforms."""
+    assert one.keys() == other.keys()
+    for name, shapes in one.items():
+        for a, b in zip(shapes, other[name], strict=True):
+            assert a["materials"] == b["materials"]
+            for corner in ("min", "max"):
+                assert a["bounds"][corner] == pytest.approx(b["bounds"][corner], abs=1e-5)
+
+
+def robot_with_meshes(folder: Path) -> str:
+    (folder / "skin.png").write_bytes(png(255, 255, 0))
+    (folder / "skin.dae").write_text(textured_dae())
+    (folder / "inches.dae").write_bytes(dae(unit=0.0254, diffuse="<color>0 0 1 1</color>"))
+    (folder / "own.obj").write_bytes(obj("own.mtl", "paint"))
+    (folder / "own.mtl").write_text("newmtl paint\nKd 1 0.5 0\n")
+    (folder / "plain.stl").write_bytes(stl_binary())
+    return robot_of(
+        "".join(link(path.stem, mesh(path, "")) for path in sorted(folder.iterdir()) if path.suffix in MESHES)
+    )
+
+
+MESHES = (".dae", ".obj", ".stl")
+
+
+def test_the_page_from_disk_draws_what_the_viewer_draws(live, open_page, open_file, tmp_path):
+    folder = tmp_path / "meshes"
+    folder.mkdir()
+    text = robot_with_meshes(folder)
+    (tmp_path / "robot.urdf").write_text(text)
+    export(tmp_path / "robot.html", tmp_path / "robot.urdf")
+    viewer = live(ROBOT)
+    for name in ("skin", "inches", "own", "plain"):
+        viewer.place(name, 0.0, 0.0, 0.0)
+    viewer.publish("/robot_description", String(data=text), DESCRIPTION_QOS)
+    exported = drawn(open_file(tmp_path / "robot.html"))
+    assert exported == drawn(open_page(viewer))
+    assert exported["skin"][0]["materials"][0]["textured"]
+
+
+def test_sliders_move_the_robot_and_what_mimics(open_file, tmp_path):
+    (tmp_path / "gripper.urdf").write_text(GRIPPER)
+    export(tmp_path / "gripper.html", tmp_path / "gripper.urdf")
+    page = open_file(tmp_path / "gripper.html")
+    assert state(page, "joints") == pytest.approx({"turn": 0.0, "open": 0.25, "open_too": -0.45})
+    slider = page.get_by_role("slider", name="open", exact=True)
+    slider.focus()
+    slider.fill("0.4")
+    assert state(page, "joints") == pytest.approx({"turn": 0.0, "open": 0.4, "open_too": -0.75})
+    assert state(page, "frames")["right"]["position"] == pytest.approx([0.95, 0, 1.25], abs=1e-5)
+    field = page.get_by_role("textbox").first
+    field.fill("1.2")
+    field.press("Enter")
+    assert state(page, "joints")["turn"] == pytest.approx(1.2)
+    page.get_by_role("button", name="Reset").click()
+    assert state(page, "joints")["turn"] == pytest.approx(0.0)
+    assert state(page, "frames")["base"]["position"] == pytest.approx([0, 0, 0])
+
+
+def test_boxes_views_and_words(open_file, tmp_path):
+    (tmp_path / "gripper.urdf").write_text(GRIPPER)
+    export(tmp_path / "gripper.html", tmp_path / "gripper.urdf")
+    page = open_file(tmp_path / "gripper.html")
+    page.get_by_label("Collision").check()
+    page.get_by_label("Visual").uncheck()
+    page.wait_for_timeout(200)
+    robot = next(each for each in state(page, "displays") if each["class"].endswith("RobotModel"))
+    assert robot["drawn"]["links"]["arm"]["collisions"]
+    assert state(page, "robot")["visuals"] == 0
+    page.get_by_role("button", name="Top").click()
+    assert state(page, "view")["pitch"] == pytest.approx(1.57, abs=0.01)
+    chinese = open_file(tmp_path / "gripper.html", locale="zh-CN")
+    assert chinese.get_by_label("碰撞").count() == 1
+
+
+def shown_gripper(live, open_page):
+    viewer = live(ROBOT)
+    viewer.place("arm", 0.0, 0.0, 0.25, 0.0, 0.0, 0.70710678, 0.70710678)
+    viewer.place("left", 0.0, 0.5, 1.0, parent="arm")
+    viewer.place("right", 0.0, -0.75, 1.0, parent="arm")
+    viewer.publish("/robot_description", String(data=GRIPPER), DESCRIPTION_QOS)
+    return viewer, open_page(viewer)
+
+
+def share(page, entry: str) -> None:
+    page.get_by_role("button", name="Share", exact=True).click()
+    page.get_by_role("menuitem", name=entry, exact=True).click()
+
+
+def saved(page, entry: str, folder: Path) -> Path:
+    with page.expect_download() as download:
+        share(page, entry)
+    path = folder / download.value.suggested_filename
+    download.value.save_as(path)
+    return path
+
+
+def test_a_running_viewer_exports_what_is_seen(live, open_page, open_file, tmp_path):
+    _, page = shown_gripper(live, open_page)
+    path = saved(page, "Export HTML…", tmp_path)
+    assert path.name == "gripper.html"
+    exported = open_file(path)
+    # As the joints are, not where a slider would begin
+    assert state(exported, "joints") == pytest.approx({"turn": 0.0, "open": 0.3, "open_too": -0.55}, abs=1e-5)
+    assert state(exported, "view")["distance"] == pytest.approx(state(page, "view")["distance"])
+    assert_alike(drawn(exported), drawn(page))
+
+
+def test_a_glb_that_is_shown_again_is_the_same_robot(live, open_page, tmp_path):
+    _, page = shown_gripper(live, open_page)
+    path = saved(page, "Export glb…", tmp_path)
+    before = drawn(page)
+    viewer = live(ROBOT)
+    again = f'<robot name="again"><link name="base">{mesh(path, "")}</link></robot>'
+    viewer.publish("/robot_description", String(data=again), DESCRIPTION_QOS)
+    (told,) = drawn(open_page(viewer))["base"]
+    bounds = [each["bounds"] for shapes in before.values() for each in shapes]
+    for corner, choose in (("min", min), ("max", max)):
+        expected = [choose(each[corner][axis] for each in bounds) for axis in range(3)]
+        assert told["bounds"][corner] == pytest.approx(expected, abs=1e-4)
+    assert len(told["materials"]) == 4
+
+
+def test_pictures_and_videos(live, open_page, tmp_path):
+    from PIL import Image
+
+    _, page = shown_gripper(live, open_page)
+    canvas = page.locator(".canvas-box canvas").bounding_box()
+    with Image.open(saved(page, "Screenshot, 2 times as large", tmp_path)) as picture:
+        assert picture.format == "PNG"
+        assert picture.size == pytest.approx((2 * canvas["width"], 2 * canvas["height"]), abs=2)
+        colors = {pixel for _, pixel in picture.convert("RGB").resize((200, 150)).getcolors(30_000)}
+    assert len(colors) > 3
+    assert page.locator(".canvas-box canvas").bounding_box() == canvas
+    share(page, "Record a video")
+    until(page, "document.querySelector('.recorder:not([hidden])') !== null")
+    for turn in range(10):
+        page.mouse.move(600 + 8 * turn, 400)
+        page.mouse.down()
+        page.mouse.move(620 + 8 * turn, 410)
+        page.mouse.up()
+        page.wait_for_timeout(120)
+    with page.expect_download() as download:
+        page.locator(".recorder button").click()
+    path = tmp_path / download.value.suggested_filename
+    download.value.save_as(path)
+    assert path.suffix == ".webm"
+    assert path.read_bytes().startswith(b"\x1aE\xdf\xa3")
+    assert path.stat().st_size > 2000
+    assert page.locator(".recorder").is_hidden()

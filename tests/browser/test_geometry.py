@@ -1,0 +1,210 @@
+"""Poses, paths, polygons, ranges, vectors and efforts, drawn in a real browser; TF's and the robot's rows."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from linkwright.graph import DESCRIPTION_QOS
+from linkwright.messages import String, get_message
+from tests.browser.conftest import state, until
+from tests.browser.live import configuration
+from tests.viewer.test_geometry_displays import message, pose
+
+pytestmark = pytest.mark.browser
+
+JointState = get_message("sensor_msgs/msg/JointState")
+
+DISPLAYS = configuration(
+    """
+- {Class: rviz_default_plugins/Pose, Enabled: true, Name: Pose, Topic: {Value: /pose}}
+- {Class: rviz_default_plugins/PoseWithCovariance, Enabled: true, Name: Guess, Topic: {Value: /guess}}
+- {Class: rviz_default_plugins/PoseArray, Enabled: true, Name: Cloud, Topic: {Value: /cloud}}
+- {Class: rviz_default_plugins/Odometry, Enabled: true, Name: Way, Topic: {Value: /odom}}
+- {Class: rviz_default_plugins/Path, Enabled: true, Name: Plan, Topic: {Value: /plan}, Line Style: Billboards,
+   Line Width: 0.1, Pose Style: Axes}
+- {Class: rviz_default_plugins/Polygon, Enabled: true, Name: Field, Topic: {Value: /field}}
+- {Class: rviz_default_plugins/Range, Enabled: true, Name: Sonar, Topic: {Value: /sonar}}
+- {Class: rviz_default_plugins/TwistStamped, Enabled: true, Name: Speed, Topic: {Value: /speed}}
+- {Class: rviz_default_plugins/Wrench, Enabled: true, Name: Push, Topic: {Value: /push}}
+- {Class: rviz_default_plugins/Effort, Enabled: true, Name: Torque, Topic: {Value: /joint_states}}
+- {Class: rviz_default_plugins/PointStamped, Enabled: true, Name: Click, Topic: {Value: /click}}
+- {Class: rviz_default_plugins/Axes, Enabled: true, Name: Axes, Reference Frame: tip}
+""",
+    distance=12.0,
+)
+CRANE = """\
+<robot name="crane">
+  <link name="base">
+    <visual><geometry><box size="1 1 0.1"/></geometry></visual>
+    <inertial><origin xyz="0 0 1"/><mass value="20"/>
+      <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+  </link>
+  <link name="tip"><visual><geometry><box size="0.1 0.1 1"/></geometry></visual></link>
+  <joint name="lift" type="revolute"><parent link="base"/><child link="tip"/><origin xyz="0 0 1"/><axis xyz="0 1 0"/>
+    <limit lower="-1" upper="2" effort="10" velocity="1"/></joint>
+</robot>
+"""
+
+
+def published(viewer) -> None:
+    """One message for each display; the frame ``tip`` is one metre above ``base``."""
+    viewer.place("tip", 0.0, 0.0, 1.0)
+    viewer.publish("/robot_description", String(data=CRANE), DESCRIPTION_QOS)
+    viewer.publish("/pose", message("geometry_msgs/msg/PoseStamped", pose=pose(1)))
+    guess = message("geometry_msgs/msg/PoseWithCovarianceStamped")
+    guess.pose.pose = pose(0, 2)
+    guess.pose.covariance = np.diag([0.25, 0.04, 0.01, 0.01, 0.01, 0.01]).ravel()
+    viewer.publish("/guess", guess)
+    viewer.publish("/cloud", message("geometry_msgs/msg/PoseArray", poses=[pose(x) for x in range(5)]))
+    for x in (0, 1, 2):
+        mark = message("nav_msgs/msg/Odometry")
+        mark.pose.pose = pose(x, -2)
+        viewer.publish("/odom", mark)
+    stamped = [message("geometry_msgs/msg/PoseStamped", pose=pose(x, 3)) for x in range(4)]
+    viewer.publish("/plan", message("nav_msgs/msg/Path", poses=stamped))
+    field = message("geometry_msgs/msg/PolygonStamped")
+    corner = get_message("geometry_msgs/msg/Point32")
+    field.polygon.points = [corner(x=x, y=y, z=0.0) for x, y in ((-3.0, -3.0), (-1.0, -3.0), (-1.0, -1.0))]
+    viewer.publish("/field", field)
+    sonar = message("sensor_msgs/msg/Range", range=2.0, min_range=0.1, max_range=4.0, field_of_view=math.pi / 2)
+    viewer.publish("/sonar", sonar)
+    speed = message("geometry_msgs/msg/TwistStamped")
+    speed.twist.linear.x, speed.twist.angular.z = 1.0, 0.1
+    viewer.publish("/speed", speed)
+    push = message("geometry_msgs/msg/WrenchStamped")
+    push.wrench.torque.z = 1.0
+    viewer.publish("/push", push)
+    viewer.publish("/joint_states", JointState(name=["lift"], position=[0.0], effort=[10.0]))
+    click = message("geometry_msgs/msg/PointStamped")
+    click.point.z = 1.0
+    viewer.publish("/click", click)
+
+
+def drawn(page) -> dict[str, dict]:
+    return {each["name"]: each["drawn"] for each in state(page, "displays")}
+
+
+def size(told: dict) -> list[float]:
+    return [most - least for least, most in zip(told["bounds"]["min"], told["bounds"]["max"], strict=True)]
+
+
+def test_every_display_draws_its_message_where_it_is(live, open_page):
+    viewer = live(DISPLAYS)
+    published(viewer)
+    page = open_page(viewer, wait=False)
+    until(page, "lw.displays.every((each) => each.drawn?.bounds)")
+    told = drawn(page)
+    assert told["Pose"]["bounds"]["min"] == pytest.approx([1, -0.05, 0.95], abs=1e-3)
+    assert told["Pose"]["bounds"]["max"] == pytest.approx([2.3, 0.05, 1.05], abs=1e-3)
+    assert told["Guess"]["bounds"]["max"] == pytest.approx([1.3, 3.001, 2.001], abs=0.02)
+    assert (told["Cloud"]["arrows"], size(told["Cloud"])[:2]) == (0, pytest.approx([4.3, 0.12], abs=1e-3))
+    assert (told["Way"]["arrows"], told["Way"]["contents"]) == (3, 3)
+    assert (told["Plan"]["points"], told["Plan"]["axes"], told["Plan"]["wide"]) == (4, 4, True)
+    assert told["Plan"]["bounds"]["max"] == pytest.approx([3.3, 3.3, 1.3], abs=1e-3)
+    assert told["Field"] == {"contents": 1, "corners": 3, "bounds": {"min": [-3, -3, 1], "max": [-1, -1, 1]}}
+    assert told["Sonar"]["bounds"]["max"] == pytest.approx([2, 2, 3], abs=1e-2)
+    assert told["Sonar"]["bounds"]["min"][0] == pytest.approx(0, abs=1e-6)
+    # An angular vector of 0.1 is as long as its arrow is wide and hidden.
+    assert (told["Speed"]["arrows"], told["Push"]["arrows"]) == (1, 2)
+    assert told["Speed"]["bounds"]["max"][0] == pytest.approx(2.6, abs=1e-3)
+    assert told["Push"]["bounds"]["max"][2] == pytest.approx(3.6, abs=1e-3)
+    assert (told["Torque"]["rings"], told["Torque"]["efforts"]) == (1, [10])
+    assert size(told["Torque"])[1] < 0.2 < size(told["Torque"])[0]
+    assert size(told["Click"]) == pytest.approx([0.2] * 3, abs=1e-2)
+    assert told["Axes"]["bounds"]["max"] == pytest.approx([1, 1, 2], abs=1e-3)
+    assert {each["level"] for each in state(page, "displays")} == {"ok"}
+
+
+def test_properties_act_at_once_and_content_goes_with_its_display(live, open_page):
+    viewer = live(DISPLAYS)
+    published(viewer)
+    page = open_page(viewer, wait=False)
+    until(page, "lw.displays.every((each) => each.drawn?.bounds)")
+
+    def change(name: str, path: tuple[str, ...], value: object) -> None:
+        def act() -> None:
+            display = next(each for each in viewer.viewer.displays if each.config.name == name)
+            display.set_property(path, value)
+
+        viewer.run(act)
+
+    change("Pose", ("Shaft Length",), 2.0)
+    change("Cloud", ("Shape",), "Arrow (3D)")
+    change("Plan", ("Line Style",), "Lines")
+    change("Way", ("Shape",), "Axes")
+    change("Guess", ("Covariance",), False)
+    change("Torque", ("Joints", "lift"), False)
+    change("Click", ("Topic",), "/nothing")
+    until(page, "lw.displays.find((each) => each.name === 'Click').drawn.points === 0")
+    until(page, "lw.displays.find((each) => each.name === 'Torque').drawn.rings === 0")
+    told = drawn(page)
+    assert told["Pose"]["bounds"]["max"][0] == pytest.approx(3.3, abs=1e-3)
+    assert told["Cloud"]["arrows"] == 5
+    assert told["Plan"]["wide"] is False
+    assert (told["Way"]["arrows"], told["Way"]["axes"]) == (0, 3)
+    assert told["Guess"]["bounds"]["max"] == pytest.approx([1.3, 2.05, 1.05], abs=1e-3)
+
+
+ROWS = configuration(
+    """
+- Class: rviz_default_plugins/TF
+  Enabled: true
+  Name: Frames
+  Show Names: true
+- Class: rviz_default_plugins/RobotModel
+  Enabled: true
+  Name: Robot
+  Description Topic: {Value: /robot_description}
+  Mass Properties: {Inertia: true, Mass: true}
+  Links:
+    Link Tree Style: Tree of links and joints
+    Expand Tree: true
+    Expand Link Details: true
+    base: {Show Axes: true, Value: true}
+  Joints:
+    lift: {Show Axes: true, Show Joint Axis: true}
+""",
+    distance=4.0,
+)
+
+
+def row(page, key: str):
+    return page.locator(f'.row[data-key="{key}"]')
+
+
+def test_rows_of_frames_links_and_joints_follow_what_is_drawn(live, open_page):
+    viewer = live(ROWS)
+    viewer.publish("/robot_description", String(data=CRANE), DESCRIPTION_QOS)
+    viewer.place("tip", 0.0, 0.0, 1.0)
+    page = open_page(viewer)
+    until(page, "lw.displays[0].drawn?.arrows === 1 && lw.displays[1].drawn?.inertias === 1")
+    frames, robot = (each["drawn"] for each in state(page, "displays"))
+    assert (frames["axes"], frames["names"]) == (2, 2)
+    assert frames["bounds"]["max"][2] == pytest.approx(1.2, abs=1e-3)
+    assert (robot["axes"], robot["jointAxes"], robot["masses"], robot["inertias"]) == (2, 1, 1, 1)
+    identities = {each.config.name: each.id for each in viewer.viewer.displays}
+    tf, model = identities["Frames"], identities["Robot"]
+    for key in (f"{tf}", f"{tf}/Frames", f"{tf}/Frames/tip"):
+        row(page, key).locator(".twist").click()
+    position = row(page, f"{tf}/Frames/tip#Relative Position")
+    assert row(page, f"{tf}/Frames/tip#Parent").locator(".row-value").inner_text() == "base"
+    assert position.locator(".row-value").inner_text() == "0; 0; 1"
+    viewer.place("tip", 0.0, 0.0, 1.5)
+    page.wait_for_function(f"""() => document.querySelector('.row[data-key="{tf}/Frames/tip#Relative Position"]')
+        .textContent.includes('0; 0; 1.5')""")
+    row(page, tf).locator(".twist").click()
+    top = row(page, f"{model}/Links")
+    assert "Link/Joint Tree" in top.inner_text()
+    top.locator(".twist").click()
+    row(page, f"{model}/Links/tip").wait_for()
+    names = page.locator(".row-title").all_inner_texts()
+    tree = names[names.index("Link/Joint Tree") :]
+    assert [name for name in tree if name in ("base", "lift", "tip")] == ["base", "lift", "tip"]
+    assert "Lower Limit" not in tree
+    row(page, f"{model}/Joints/lift#Details").locator(".twist").click()
+    assert row(page, f"{model}/Joints/lift#Lower Limit").locator(".row-value").inner_text() == "-1"
+    assert row(page, f"{model}/Joints/lift#Joint Axis").locator(".row-value").inner_text() == "0; 1; 0"
+    assert row(page, f"{model}/Links/tip#Position").locator(".row-value").inner_text() == "0; 0; 1.5"

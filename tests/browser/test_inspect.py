@@ -1,0 +1,82 @@
+"""What is invisible is drawn where it is: masses, inertias, joint axes, frames, collisions."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.browser.arm import write_arm
+from tests.browser.conftest import state, until
+from tests.browser.pixels import color_at
+
+pytestmark = pytest.mark.browser
+
+
+@pytest.fixture
+def page(start, open_page, tmp_path):
+    page = open_page(start("view", str(write_arm(tmp_path))))
+    page.locator(".inspect > button").click()
+    return page
+
+
+def switch(page, *names):
+    for name in names:
+        page.locator(f'[data-inspect="{name}"] input').click()
+
+
+def orange(page):
+    """How many of some places on the arm's base are orange, as collisions are in contrast."""
+    page.wait_for_timeout(600)  # a fine frame follows the coarse one
+    box = page.locator(".canvas-box canvas").bounding_box()
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    seen = [color_at(page, x + dx, y + dy) for dx, dy in ((-40, 0), (-30, 10), (30, 10), (40, 0), (0, 25))]
+    return sum(r > 100 and 0.3 * r < g < 0.8 * r and b < 0.7 * g for r, g, b in seen)
+
+
+def test_masses_and_inertias_and_what_is_implausible(page):
+    switch(page, "centers", "boxes", "ellipsoids")
+    until(page, "lw.inspected.boxes === 3 && lw.inspected.ellipsoids === 3 && lw.inspected.totals?.length === 1")
+    # base at 0.05 with 4 kg, upper arm at 0.1 + 0.2 with 2 kg, forearm at 0.5 + 0.15 with 1 kg
+    total = (4 * 0.05 + 2 * 0.3 + 1 * 0.65) / 7
+    assert state(page, "inspected.totals[0]") == pytest.approx([0, 0, total], abs=1e-5)
+    assert state(page, "inspected.centers") == 4  # three links, and the whole
+
+    # The centre follows the joints.
+    page.locator('[data-joint="fore_joint"] input[type=text]').fill("1.5707963")
+    page.keyboard.press("Enter")
+    bent = [0.15 / 7, 0, (4 * 0.05 + 2 * 0.3 + 1 * 0.5) / 7]
+    until(page, f"Math.abs(lw.inspected.totals[0][0] - {bent[0]}) < 1e-4")
+    assert state(page, "inspected.totals[0]") == pytest.approx(bent, abs=1e-4)
+
+    until(page, "lw.description.findings.some(({ link, code }) => link === 'fore' && code.startsWith('LW3'))")
+    assert "Mass of the robot: 7 kg" in page.locator(".inspect-facts").inner_text()
+    page.locator('.inspect-facts [data-link="fore"] button').first.click()
+    until(page, "lw.selected.link === 'fore'")
+
+
+def test_joint_axes_show_limits_and_where_joints_stand(page):
+    switch(page, "joints")
+    until(page, "lw.inspected.joints?.length === 4")
+    page.locator('[data-joint="upper_joint"] input[type=text]').fill("0.7")
+    page.keyboard.press("Enter")
+    page.locator('[data-joint="slide_joint"] input[type=text]').fill("0.1")
+    page.keyboard.press("Enter")
+    until(page, "Math.abs(lw.inspected.joints[0].position - 0.7) < 1e-4")
+    until(page, "Math.abs(lw.inspected.joints[2].position - 0.1) < 1e-4")
+    shown = {joint["name"]: joint for joint in state(page, "inspected.joints")}
+    assert (shown["upper_joint"]["lower"], shown["upper_joint"]["upper"]) == (-2, 2)
+    assert shown["finger_joint"]["position"] == pytest.approx(-0.04, abs=1e-4)
+    switch(page, "joints")
+    until(page, "lw.inspected.joints.length === 0 && lw.inspected.vertices === 0")
+
+
+def test_frames_by_depth_and_collisions_in_contrast(page):
+    switch(page, "frames")
+    until(page, "String(lw.inspected.frames) === '1,1,1,1,1'")
+    page.locator(".inspect-depth input").fill("2")
+    until(page, "String(lw.inspected.frames) === '1,1,1'")
+    switch(page, "frames")
+    assert orange(page) == 0  # the base is RViz's red
+    switch(page, "contrast")
+    assert orange(page) >= 3
+    switch(page, "contrast")
+    assert orange(page) == 0

@@ -1,0 +1,114 @@
+"""The Joints panel: units, poses, sweeps, and links that are dragged in the scene."""
+
+from __future__ import annotations
+
+import math
+import time
+
+import pytest
+
+from tests.browser.arm import write_arm
+from tests.browser.conftest import state, until
+
+pytestmark = pytest.mark.browser
+
+
+@pytest.fixture
+def page(start, open_page, tmp_path):
+    return open_page(start("view", str(write_arm(tmp_path))))
+
+
+def move(page, joint, text):
+    field = page.locator(f'[data-joint="{joint}"] input[type=text]')
+    field.fill(text)
+    field.press("Enter")
+
+
+def test_units_limits_and_followers(page):
+    row = page.locator('.joint[data-joint="fore_joint"]')
+    assert "-0.500 rad" in row.inner_text()
+    page.get_by_role("button", name="deg").first.click()
+    assert "-28.6 deg" in row.inner_text()
+    move(page, "fore_joint", "90")
+    until(page, f"Math.abs(lw.joints.fore_joint - {math.pi / 2}) < 1e-3")
+    follower = page.locator('.joint[data-joint="finger_joint"]')
+    assert "-0.5 × slide_joint + 0.01 m" in follower.inner_text()
+    assert follower.locator("input[type=range]").is_disabled()
+
+
+def test_poses_are_saved_recalled_and_outlive_a_reload(page):
+    move(page, "upper_joint", "0.5")
+    until(page, "lw.joints.upper_joint === 0.5")
+    page.get_by_label("Name of the pose").fill("bent")
+    page.get_by_label("Name of the pose").press("Enter")
+    page.locator('.chip.on[data-pose="bent"]').wait_for()
+    page.get_by_role("button", name="Center").click()
+    until(page, "lw.joints.upper_joint === 0")
+    page.reload()
+    until(page, "lw.ready")
+    page.locator('.chip[data-pose="bent"] .chip-name').click()
+    until(page, "lw.joints.upper_joint === 0.5")
+    with page.expect_download() as saved:
+        page.get_by_label("More about poses").click()
+        page.get_by_role("menuitem", name="Export as SRDF").click()
+    text = saved.value.path().read_text()
+    assert saved.value.suggested_filename == "arm.srdf"
+    assert '<group_state name="bent"' in text
+    assert '<joint name="upper_joint" value="0.5"/>' in text
+    page.locator('.chip[data-pose="bent"] .chip-remove').click()
+    page.locator(".chip").wait_for(state="detached")
+
+
+def test_a_sweep_moves_joints_until_it_is_stopped(page):
+    page.get_by_label("Which joints move").select_option("all")
+    page.get_by_label("Speed").select_option("4")
+    page.get_by_role("button", name="Start the sweep").click()
+    seen = set()
+    deadline = time.monotonic() + 3
+    while time.monotonic() < deadline and len(seen) < 12:
+        seen.add(round(state(page, "joints.upper_joint"), 2))
+        page.wait_for_timeout(60)
+    assert len(seen) >= 6
+    assert max(seen) - min(seen) > 1.5
+    page.get_by_role("button", name="Stop the sweep").click()
+    page.wait_for_timeout(300)
+    before = state(page, "joints")
+    page.wait_for_timeout(300)
+    assert state(page, "joints") == before
+
+
+def test_a_link_that_is_dragged_moves_its_joint(page):
+    # Seen along the joints' axis, from the right: x to the right of the picture, z up.
+    for name, value in (("Yaw", "-1.5707963"), ("Pitch", "0"), ("Distance", "2")):
+        row = page.locator(".row").filter(has=page.get_by_text(name, exact=True))
+        field = row.locator("input").first
+        field.fill(value)
+        field.press("Enter")
+    until(page, "Math.abs(lw.view.pitch) < 1e-6 && lw.view.distance === 2")
+    page.wait_for_timeout(300)
+    box = page.locator(".canvas-box canvas").bounding_box()
+    metre = box["height"] / (2 * 2 * math.tan(math.radians(22.5)))
+
+    def at(x, z):
+        return box["x"] + box["width"] / 2 + x * metre, box["y"] + box["height"] / 2 - z * metre
+
+    page.keyboard.down("Alt")
+    page.mouse.move(*at(0, 0.3))
+    page.wait_for_timeout(300)  # where joints turn is asked for
+    page.mouse.move(*at(0.002, 0.3))
+    page.mouse.down()
+    for step in range(1, 9):
+        angle = 0.8 * step / 8
+        page.mouse.move(*at(0.2 * math.sin(angle), 0.1 + 0.2 * math.cos(angle)))
+        page.wait_for_timeout(30)
+    page.mouse.up()
+    page.keyboard.up("Alt")
+    until(page, "Math.abs(Math.abs(lw.joints.upper_joint) - 0.8) < 0.1")
+    yaw = state(page, "view.yaw")
+
+    # Without Alt the same drag turns the camera.
+    page.mouse.move(*at(0, 0.02))
+    page.mouse.down()
+    page.mouse.move(*at(0.2, 0.02), steps=4)
+    page.mouse.up()
+    until(page, f"Math.abs(lw.view.yaw - {yaw}) > 0.05")

@@ -1,0 +1,310 @@
+"""The live panels: plots, topics, the node graph, parameters, the log and the teleop pad, used in a real browser."""
+
+from __future__ import annotations
+
+import asyncio
+import csv
+import math
+import re
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+
+import pytest
+from playwright.sync_api import Page
+
+from linkwright.graph import ParameterDescriptor
+from linkwright.graph.parameters.parameter import Range
+from linkwright.messages import get_message
+from tests.browser.conftest import until
+from tests.browser.live import LiveViewer, configuration
+
+pytestmark = pytest.mark.browser
+
+FLOAT = get_message("std_msgs/msg/Float64")
+JOINT_STATE = get_message("sensor_msgs/msg/JointState")
+TWIST = get_message("geometry_msgs/msg/Twist")
+GRID = "- Class: rviz_default_plugins/Grid\n  Enabled: true\n  Name: Grid"
+
+
+@dataclass
+class Robot:
+    """Nodes that publish a current at 1 kHz and joints at 50 Hz, have parameters, log, and take velocities."""
+
+    live: LiveViewer
+    driven: list[tuple[float, float]] = field(default_factory=list)
+
+    async def start(self) -> None:
+        graph = self.live.node.graph
+        current = graph.create_node("motor", namespace="/left").create_publisher(FLOAT, "/left/current", 1000)
+        arm = graph.create_node("arm")
+        joints = arm.create_publisher(JOINT_STATE, "/joint_states", 10)
+        graph.create_node("planner").create_subscription(JOINT_STATE, "/joint_states", lambda _: None, 10)
+        graph.create_node("gripper", namespace="/left").create_subscription(FLOAT, "/left/current", lambda _: None, 10)
+        self.base = graph.create_node("base")
+        self.base.create_subscription(TWIST, "/cmd_vel", self._take, 10)
+        limits = ParameterDescriptor(description="Greatest speed", floating_point_range=[Range(0.0, 2.0)])
+        self.base.declare_parameter("speed", 1.5, limits)
+        self.base.declare_parameter("wheels", ["left", "right"])
+        self._task = asyncio.get_running_loop().create_task(self._publish(arm, current, joints))
+
+    async def _publish(self, arm, current, joints) -> None:
+        started, sent = time.monotonic(), 0
+        while True:
+            await asyncio.sleep(0.02)
+            while sent < (time.monotonic() - started) * 1000:
+                current.publish(FLOAT(data=math.sin(sent / 200)))
+                sent += 1
+            message = JOINT_STATE(name=["shoulder", "elbow"], position=[0.25, math.sin(sent / 500)])
+            message.header.stamp = arm.get_clock().now().to_msg()
+            joints.publish(message)
+
+    def _take(self, message) -> None:
+        self.driven.append((message.linear.x, message.angular.z))
+
+    def say(self, *texts: str) -> None:
+        for text in texts:
+            self.live.run(lambda text=text: self.base.get_logger().warning(text))
+
+    async def stop(self) -> None:
+        self._task.cancel()
+
+
+@pytest.fixture
+def robot(live: Callable[..., LiveViewer]) -> Iterator[Robot]:
+    made = Robot(live(configuration(GRID)))
+    made.live.run(made.start)
+    yield made
+    made.live.run(made.stop)
+
+
+@pytest.fixture
+def page(robot: Robot, open_page: Callable[..., Page]) -> Page:
+    return open_page(robot.live, wait=False)
+
+
+def show(page: Page, name: str) -> None:
+    page.get_by_role("button", name="Panels").click()
+    page.get_by_role("menuitemcheckbox", name=name, exact=True).click()
+
+
+def add_series(page: Page, text: str) -> None:
+    page.get_by_role("button", name="Add a series").first.click()
+    page.get_by_role("combobox", name=re.compile("^Topic and field")).fill(text)
+    page.keyboard.press("Enter")
+
+
+def subscribers(robot: Robot, topic: str) -> int:
+    return robot.live.run(lambda: robot.live.node.graph.count_subscribers(topic))
+
+
+def wait_for(condition: Callable[[], bool], seconds: float = 5.0) -> None:
+    deadline = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < deadline, "it did not come to be"
+        time.sleep(0.02)
+
+
+MONITOR = "lw.panels.monitor"
+
+
+def test_numbers_of_topics_are_plotted(page: Page, robot: Robot):
+    show(page, "Plots")
+    # The fields of a topic are offered with the names that its messages give.
+    page.get_by_role("button", name="Add a series").click()
+    page.keyboard.type("/joint")
+    page.get_by_role("option", name="/joint_states").wait_for()
+    page.keyboard.press("Enter")
+    page.get_by_role("option", name="/joint_states.position[shoulder]").click()
+    add_series(page, "/left/current.data")
+    until(page, f"{MONITOR}.plots[0].series.length === 2 && {MONITOR}.plots[0].series[1].samples > 1500")
+    first, second = page.evaluate("window.linkwright.panels.monitor.plots[0].series")
+    assert (first["name"], first["last"]) == ("/joint_states.position[shoulder]", 0.25)
+    assert -1 <= second["last"] <= 1
+    assert len(colors_drawn(page)) == 2
+    # A pause holds the window, while samples are taken on.
+    page.get_by_role("button", name="Pause").first.click()
+    held = page.evaluate("window.linkwright.panels.monitor.window")
+    count = page.evaluate("window.linkwright.panels.monitor.plots[0].series[1].samples")
+    until(page, f"{MONITOR}.plots[0].series[1].samples > {count + 200}")
+    assert page.evaluate("window.linkwright.panels.monitor.window") == held
+    # What is seen is what is saved.
+    with page.expect_download() as download:
+        page.get_by_role("button", name="Save the values of this diagram").click()
+    rows = list(csv.reader(download.value.path().read_text().splitlines()))
+    assert rows[0] == ["time", "/joint_states.position[shoulder]", "/left/current.data"]
+    assert len(rows) > 1500
+    assert all(held[0] - 1e-5 <= float(row[0]) <= held[1] + 1e-5 for row in rows[1:])
+    page.get_by_role("button", name="Resume").click()
+    until(page, f"{MONITOR}.window[1] > {held[1]}")
+    # Each series counts for itself, and closing the panel ends the subscriptions.
+    page.get_by_role("button", name="Remove /joint_states.position[shoulder]").click()
+    wait_for(lambda: subscribers(robot, "/joint_states") == 1)
+    show(page, "Plots")
+    wait_for(lambda: subscribers(robot, "/left/current") == 1)
+
+
+def colors_drawn(page: Page) -> set[str]:
+    """Which of the first two colours of series the canvas of the first plot has."""
+    return set(
+        page.evaluate(
+            """() => {
+                const canvas = document.querySelector(".plot-canvas canvas");
+                const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+                const wanted = ["--plot-1", "--plot-2"].map((name) =>
+                    getComputedStyle(document.documentElement).getPropertyValue(name).trim().slice(1));
+                const found = new Set();
+                for (let at = 0; at < data.length; at += 4) {
+                    const hex = [0, 1, 2].map((part) => data[at + part].toString(16).padStart(2, "0")).join("");
+                    if (data[at + 3] === 255 && wanted.includes(hex)) found.add(hex);
+                }
+                return [...found];
+            }"""
+        )
+    )
+
+
+def test_mistakes_in_a_field_are_told(page: Page):
+    show(page, "Plots")
+    add_series(page, "/left/current.dta")
+    page.get_by_text("did you mean 'data'").wait_for()
+
+
+def test_topics_are_measured_and_opened(page: Page, robot: Robot):
+    show(page, "Topics")
+    row = page.locator("tr[data-topic='/left/current']")
+    row.wait_for()
+    assert [cell.strip() for cell in row.locator("td").all_inner_texts()[1:4]] == ["std_msgs/Float64", "1", "1"]
+    page.get_by_role("checkbox", name="Measure /left/current").check()
+    until(page, f"{MONITOR}.traffic['/left/current']?.rate > 500")
+    traffic = page.evaluate("window.linkwright.panels.monitor.traffic['/left/current']")
+    assert traffic["rate"] == pytest.approx(1000, rel=0.2)
+    assert re.fullmatch(r"\d+ Hz", row.locator("td").nth(4).inner_text())
+    page.get_by_role("button", name="Last message of /joint_states").click()
+    page.get_by_role("button", name="position", exact=True).click()
+    message = page.locator(".topic-message:visible")
+    message.get_by_text("[0]").wait_for()
+    assert "0.25" in message.inner_text()
+    # A number of the message is plotted with a click.
+    message.locator(".message-row", has_text="[0]").hover()
+    message.get_by_role("button", name="Plot this field").first.click()
+    until(page, f"{MONITOR}.plots[0].series[0].name === '/joint_states.position[0]'")
+    until(page, f"{MONITOR}.plots[0].series[0].last === 0.25")
+    # The Topics panel lies behind the plots now, and measures nothing.
+    wait_for(lambda: subscribers(robot, "/left/current") == 1)
+
+
+def test_the_node_graph_shows_who_talks_to_whom(page: Page, robot: Robot):
+    show(page, "Node graph")
+    page.locator(".vertex[data-id='node:/arm']").wait_for()
+    x = {
+        name: page.locator(f".vertex[data-id='{name}']").bounding_box()["x"]
+        for name in ("node:/arm", "topic:/joint_states", "node:/planner")
+    }
+    assert x["node:/arm"] < x["topic:/joint_states"] < x["node:/planner"]
+    page.locator(".vertex[data-id='topic:/joint_states']").click()
+    details = page.locator(".graph-details")
+    assert "sensor_msgs/msg/JointState" in details.inner_text()
+    assert "/planner" in details.inner_text()
+    near = page.locator(".vertex.near").evaluate_all("shapes => shapes.map((each) => each.dataset.id)")
+    assert sorted(near) == ["node:/arm", "node:/planner"]
+    # A node that comes is drawn without being asked for.
+    robot.live.run(lambda: robot.live.node.graph.create_node("late").create_publisher(FLOAT, "/left/current", 10))
+    page.locator(".vertex[data-id='node:/late']").wait_for()
+    page.get_by_role("checkbox", name="Group").check()
+    page.locator(".vertex[data-id='group:/left']").click()
+    page.locator(".vertex[data-id='node:/left/motor']").wait_for()
+    page.locator(".graph-drawing").focus()
+    before = page.locator(".graph-drawing > svg > g").get_attribute("transform")
+    page.keyboard.press("+")
+    assert page.locator(".graph-drawing > svg > g").get_attribute("transform") != before
+
+
+def test_parameters_are_edited(page: Page, robot: Robot):
+    show(page, "Parameters")
+    page.get_by_role("option", name="/base").click()
+    speed = page.get_by_role("textbox", name="speed")
+    speed.fill("0.75")
+    speed.press("Enter")
+    wait_for(lambda: robot.live.run(lambda: robot.base.get_parameter("speed").value) == 0.75)
+    speed.fill("9")
+    speed.press("Enter")
+    page.get_by_text("out of range").wait_for()
+    assert robot.live.run(lambda: robot.base.get_parameter("speed").value) == 0.75
+    wheels = page.get_by_role("textbox", name="wheels")
+    assert wheels.input_value() == '["left", "right"]'
+    wheels.fill('["left", "right, rear"]')
+    wheels.press("Enter")
+    wait_for(lambda: robot.live.run(lambda: list(robot.base.get_parameter("wheels").value)) == ["left", "right, rear"])
+    with page.expect_download() as download:
+        page.get_by_role("button", name="YAML").click()
+    assert download.value.suggested_filename == "base.yaml"
+    assert "    speed: 0.75\n" in download.value.path().read_text()
+
+
+def test_the_log_is_filtered_and_only_what_is_seen_is_in_the_page(page: Page, robot: Robot):
+    show(page, "Log")
+    until(page, f"{MONITOR}.log !== undefined")
+    robot.say(*(f"line {number}" for number in range(300)))
+    until(page, f"{MONITOR}.log.last === 'line 299'")
+    page.locator(".virtual-list").get_by_text("line 299").wait_for()
+    assert page.locator(".virtual-list .log-row").count() < 60
+    page.get_by_role("textbox", name="Filter").fill("line 27")
+    until(page, f"{MONITOR}.log.shown === 11")
+    page.get_by_role("button", name="Warn", exact=True).click()
+    until(page, f"{MONITOR}.log.shown === 0")
+    page.get_by_role("button", name="Warn", exact=True).click()
+    page.locator(".virtual-list").get_by_text("line 277").click()
+    assert "line 277" in page.locator(".log-details").inner_text()
+    page.get_by_role("button", name="Clear").click()
+    until(page, f"{MONITOR}.log.lines === 0")
+
+
+GAMEPAD = """() => {
+    window.testPad = {
+        id: "Test pad", connected: true, axes: [0, -1, 0, 0],
+        buttons: Array.from({ length: 16 }, () => ({ pressed: false })),
+    };
+    navigator.getGamepads = () => [window.testPad];
+}"""
+
+
+def test_the_pad_drives_while_it_is_held(page: Page, robot: Robot):
+    show(page, "Teleop")
+    until(page, f"{MONITOR}.teleop.aim?.subscribers === 1")
+    pad = page.locator(".pad")
+    pad.focus()
+    page.keyboard.down("i")
+    wait_for(lambda: len(robot.driven) >= 4)
+    page.keyboard.down("j")
+    wait_for(lambda: robot.driven[-1] == (0.5, 1.0))
+    page.keyboard.up("i")
+    page.keyboard.up("j")
+    wait_for(lambda: robot.driven[-1] == (0.0, 0.0))
+    robot.driven.clear()
+    # By hand: the corner at the top right is full speed and a turn to the right.
+    box = pad.bounding_box()
+    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    page.mouse.down()
+    page.mouse.move(box["x"] + box["width"], box["y"])
+    wait_for(lambda: (0.5, -1.0) in robot.driven)
+    page.mouse.up()
+    wait_for(lambda: robot.driven[-1] == (0.0, 0.0))
+    robot.driven.clear()
+    # By gamepad: the left stick, while LB is held.
+    page.evaluate(GAMEPAD)
+    page.get_by_role("checkbox", name="Gamepad").check()
+    page.get_by_text("Test pad").wait_for()
+    assert robot.driven == []
+    page.evaluate("window.testPad.buttons[4].pressed = true")
+    wait_for(lambda: (0.5, 0.0) in robot.driven)
+    page.evaluate("window.testPad.buttons[4].pressed = false")
+    wait_for(lambda: robot.driven[-1] == (0.0, 0.0))
+    robot.driven.clear()
+    # Whoever closes the page in the middle of it stops the robot.
+    pad.focus()
+    page.keyboard.down("ArrowUp")
+    wait_for(lambda: len(robot.driven) >= 2)
+    page.close()
+    wait_for(lambda: robot.driven[-1] == (0.0, 0.0))
+    wait_for(lambda: robot.live.run(lambda: robot.live.node.graph.count_publishers("/cmd_vel")) == 0)

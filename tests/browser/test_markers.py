@@ -1,0 +1,154 @@
+"""Markers and interactive markers, drawn and handled in a real browser."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.browser.conftest import until
+from tests.browser.live import configuration
+from tests.viewer.test_interactive_markers import Control, Feedback, Server
+from tests.viewer.test_interactive_markers import marker as interactive_marker
+from tests.viewer.test_markers import ColorRGBA, Marker, MarkerArray, marker
+
+pytestmark = pytest.mark.browser
+
+MARKERS = configuration(
+    """
+- Class: rviz_default_plugins/Grid
+  Enabled: true
+  Name: Grid
+- Class: rviz_default_plugins/MarkerArray
+  Enabled: true
+  Name: Marks
+  Topic:
+    Value: /marks
+""",
+    distance=12,
+)
+CUBE_STL = b"""solid c
+facet normal 0 0 1
+outer loop
+vertex 0 0 0
+vertex 1 0 0
+vertex 0 1 0
+endloop
+endfacet
+endsolid c
+"""
+
+
+def color(r: float, g: float, b: float, a: float = 1.0):
+    return ColorRGBA(r=r, g=g, b=b, a=a)
+
+
+def all_kinds(mesh: Path) -> list[Marker]:
+    """One marker of each type, in a row along y."""
+    triangle = [(0, 0, 0), (1, 0, 0), (0, 0, 1)]
+    rainbow = [color(1.0, 0.0, 0.0), color(0.0, 1.0, 0.0), color(0.0, 0.0, 1.0)]
+    made = [
+        marker(0, kind=Marker.ARROW, color=color(1.0, 0.5, 0.0)),
+        marker(1, kind=Marker.CUBE, color=color(0.0, 1.0, 0.0)),
+        marker(2, kind=Marker.SPHERE, color=color(0.0, 0.0, 1.0, 0.5)),
+        marker(3, kind=Marker.CYLINDER, color=color(1.0, 1.0, 0.0)),
+        marker(4, kind=Marker.LINE_STRIP, points=triangle, colors=rainbow),
+        marker(5, kind=Marker.LINE_LIST, points=[*triangle, (1, 0, 1)], color=color(1.0, 0.0, 1.0)),
+        marker(6, kind=Marker.CUBE_LIST, points=triangle, colors=rainbow),
+        marker(7, kind=Marker.SPHERE_LIST, points=triangle, color=color(0.2, 0.8, 0.8)),
+        marker(8, kind=Marker.POINTS, points=triangle, colors=rainbow),
+        marker(9, kind=Marker.TEXT_VIEW_FACING, text="hello\n你好", color=color(1.0, 1.0, 1.0)),
+        marker(10, kind=Marker.MESH_RESOURCE, mesh_resource=mesh.as_uri(), color=color(1.0, 0.0, 0.0)),
+        marker(11, kind=Marker.TRIANGLE_LIST, points=triangle, colors=rainbow, color=color(1.0, 1.0, 1.0)),
+        marker(12, kind=12, points=[*triangle, (1, 0, 1)], color=color(0.6, 0.3, 1.0)),
+    ]
+    for number, each in enumerate(made):
+        each.pose.position.y = (number - 6) * 1.5
+        small = each.type in (
+            Marker.LINE_STRIP,
+            Marker.LINE_LIST,
+            Marker.CUBE_LIST,
+            Marker.SPHERE_LIST,
+            Marker.POINTS,
+            12,
+        )
+        if small:
+            each.scale.x, each.scale.y, each.scale.z = (0.1, 0.2, 0.2)
+        if each.type == Marker.ARROW:
+            each.scale.y = each.scale.z = 0.2
+    return made
+
+
+def test_markers_of_every_type_are_drawn(live, open_page, tmp_path):
+    mesh = tmp_path / "triangle.stl"
+    mesh.write_bytes(CUBE_STL)
+    viewer = live(MARKERS)
+    page = open_page(viewer, wait=False)
+    viewer.publish("/marks", MarkerArray(markers=all_kinds(mesh)))
+    until(page, "Object.keys(lw.displays[1]?.drawn?.markers ?? {}).length === 13")
+    drawn = page.evaluate("() => window.linkwright.displays[1].drawn")
+    assert drawn["markers"]["a/0"] == "arrow"
+    assert drawn["markers"]["a/12"] == "arrow_strip"
+    low, high = drawn["bounds"]
+    assert low[1] == pytest.approx(-9.2, abs=0.1)
+    assert high[1] == pytest.approx(9.2, abs=0.2)
+    assert {level for level, _ in viewer.status("Marks").values()} == {"ok"}
+    viewer.publish("/marks", MarkerArray(markers=[marker(1, action=Marker.DELETE)]))
+    until(page, "!('a/1' in lw.displays[1].drawn.markers)")
+    viewer.publish("/marks", MarkerArray(markers=[marker(0, ns="", action=Marker.DELETEALL)]))
+    until(page, "Object.keys(lw.displays[1].drawn.markers).length === 0")
+
+
+def test_a_mesh_that_cannot_be_read_is_told(live, open_page, tmp_path):
+    mesh = tmp_path / "broken.glb"
+    mesh.write_text("no mesh")
+    viewer = live(MARKERS)
+    page = open_page(viewer, wait=False)
+    wanted = marker(1, kind=Marker.MESH_RESOURCE, mesh_resource=mesh.as_uri())
+    viewer.publish("/marks", MarkerArray(markers=[wanted]))
+    until(page, "lw.displays[1]?.status.some(row => row.name === 'a/1' && row.level === 'error')")
+    assert "Mesh resource marker [a/1]" in viewer.status("Marks")["a/1"][1]
+
+
+INTERACTIVE = configuration(
+    """
+- Class: rviz_default_plugins/InteractiveMarkers
+  Enabled: true
+  Name: Handles
+  Interactive Markers Namespace: /handles
+""",
+    distance=8,
+    pitch=1.4,
+    yaw=-1.5708,
+)
+
+
+def test_an_interactive_marker_is_dragged_along_its_axis(live, open_page):
+    along_x = Control(name="x", interaction_mode=Control.MOVE_AXIS)
+    viewer = live(INTERACTIVE)
+    server = viewer.run(lambda: Server(viewer._graph, interactive_marker("one", along_x)))
+    page = open_page(viewer, wait=False)
+    until(page, "lw.displays[0]?.drawn?.one !== undefined")
+    page.keyboard.press("i")
+    page.wait_for_timeout(300)
+    box = page.locator("canvas").first.bounding_box()
+    # The eye is above, x to the right: the arrow ends at x = 1.8.
+    middle = (box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    metre = box["height"] / (2 * 8 * 0.4142)
+    start = (middle[0] + 1.4 * metre, middle[1])
+    page.mouse.move(*start)
+    page.mouse.down()
+    page.mouse.move(start[0] + metre / 2, start[1] + 5, steps=4)
+    page.mouse.move(start[0] + metre, start[1] + 10, steps=4)
+    page.mouse.up()
+    until(page, "lw.displays[0].drawn.one.pose[0] > 0.7")
+    pose = page.evaluate("() => window.linkwright.displays[0].drawn.one.pose")
+    assert pose[0] == pytest.approx(1.0, abs=0.15)
+    assert pose[1:3] == [0, 0]
+    events = viewer.run(lambda: [each.event_type for each in server.feedback])
+    assert events[0] == Feedback.MOUSE_DOWN
+    assert events[-1] == Feedback.MOUSE_UP
+    assert Feedback.POSE_UPDATE in events
+    last = viewer.run(lambda: server.feedback[-1])
+    assert last.pose.position.x == pytest.approx(pose[0])
+    assert (last.marker_name, last.control_name) == ("one", "x")

@@ -1,0 +1,302 @@
+"""Clouds, scans, maps and images, published to a viewer and looked at in a real browser."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+import numpy as np
+import pytest
+import yaml
+
+from linkwright.messages import get_message
+from tests.browser.conftest import state, until
+from tests.browser.pixels import color_at
+from tests.viewer.test_cloud_displays import camera_info, placed
+from tests.viewer.test_clouds import cloud, depth_image, scan, xyz
+from tests.viewer.test_images import image
+from tests.viewer.test_map_displays import cell_grid, grid, update
+
+pytestmark = pytest.mark.browser
+
+SCALE = 50.0
+"""Pixels to a metre of the TopDownOrtho view: so each pixel is known in metres."""
+BACKGROUND = (48, 48, 48)
+RED, GREEN, BLUE = (255, 0, 0), (0, 255, 0), (0, 0, 255)
+
+
+def entry(cls: str, **properties: Any) -> dict[str, Any]:
+    named = {name.replace("_", " "): value for name, value in properties.items()}
+    return {"Class": f"rviz_default_plugins/{cls}", "Name": cls, "Enabled": True, **named}
+
+
+def config(*displays: dict[str, Any]) -> str:
+    view = {"Class": "rviz_default_plugins/TopDownOrtho", "Scale": SCALE}
+    options = {"Fixed Frame": "base", "Background Color": "48; 48; 48", "Frame Rate": 30}
+    manager = {"Displays": list(displays), "Global Options": options, "Views": {"Current": view, "Saved": None}}
+    return yaml.safe_dump({"Visualization Manager": manager})
+
+
+def seen(page: Any, x: float, y: float) -> tuple[int, int, int]:
+    """The colour at a point of the fixed frame, seen from above."""
+    box = page.locator(".canvas-box canvas").bounding_box()
+    return color_at(page, box["x"] + box["width"] / 2 + x * SCALE, box["y"] + box["height"] / 2 - y * SCALE)
+
+
+def drawn(page: Any, display: int = 0) -> dict[str, Any]:
+    found: dict[str, Any] = state(page, f"displays[{display}].drawn")
+    return found
+
+
+def three_points(**fields: Any) -> Any:
+    array = xyz([(-2, 0, 0), (0, 0, 0), (2, 0, 0)], ("rgb", "u4"), ("intensity", "f4"))
+    array["rgb"], array["intensity"] = [0xFF0000, 0x00FF00, 0x0000FF], [1, 2, 3]
+    return cloud(array, **fields)
+
+
+def set_property(viewer: Any, display: int, path: tuple[str, ...], value: object) -> None:
+    viewer.run(lambda: viewer.viewer.displays[display].set_property(path, value))
+
+
+def still(page: Any) -> None:
+    """Wait until no more frames are drawn."""
+    page.wait_for_timeout(400)
+    until(page, "lw.displays.length > 0")
+
+
+def test_a_cloud_is_drawn_in_every_style(live, open_page):
+    size = {"Size (m)": 0.6, "Size (Pixels)": 30}
+    viewer = live(config(entry("PointCloud2", Topic={"Value": "/cloud"}, **size)))
+    page = open_page(viewer, wait=False)
+    viewer.place("lidar", 0.0, 1.0, 0.0)
+    viewer.publish("/cloud", three_points(frame="lidar"))
+    until(page, "lw.displays[0]?.drawn?.points === 3")
+    assert drawn(page)["bounds"] == [[-2, 1, 0], [2, 1, 0]]
+    for style in ("Flat Squares", "Points", "Squares", "Spheres", "Boxes", "Tiles"):
+        set_property(viewer, 0, ("Style",), style)
+        until(page, f"lw.displays[0].drawn.style === '{style}'")
+        still(page)
+        assert [seen(page, x, 1.0) for x in (-2.0, 0.0, 2.0)] == [RED, GREEN, BLUE], style
+        inside = 0.2 if style == "Spheres" else 0.26
+        assert seen(page, inside, 1.0)[1] > 100, style
+        assert seen(page, 0.35, 1.0) == BACKGROUND, style
+        corner = seen(page, 0.27, 1.27)
+        assert (corner == BACKGROUND) == (style == "Spheres"), style
+    set_property(viewer, 0, ("Style",), "Flat Squares")
+    set_property(viewer, 0, ("Alpha",), 0.5)
+    still(page)
+    assert seen(page, -2.0, 1.0) == pytest.approx((152, 24, 24), abs=2)
+
+
+def test_a_point_is_selected_and_its_fields_are_shown(live, open_page):
+    viewer = live(config(entry("PointCloud2", Topic={"Value": "/cloud"}, **{"Size (m)": 0.2})))
+    page = open_page(viewer, wait=False)
+    viewer.publish("/cloud", three_points())
+    until(page, "lw.displays[0]?.drawn?.points === 3")
+    page.locator(".dv-tabs-overflow-dropdown-root, .dv-tabs-overflow-dropdown-default").first.click()
+    page.locator(".dv-tabs-overflow-container").get_by_text("Selection", exact=True).click()
+    box = page.locator(".canvas-box canvas").bounding_box()
+    middle = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    page.mouse.click(*middle)
+    page.keyboard.press("s")
+    page.mouse.click(*middle)
+    until(page, "lw.selection.length === 1")
+    assert state(page, "selection")[0]["key"] == ":1"
+    tree = page.get_by_role("tree", name="What is selected")
+    tree.get_by_text("intensity").wait_for()
+    text = tree.inner_text()
+    assert "Point 1" in text
+    assert "0; 255; 0" in text
+
+
+def test_a_large_cloud_keeps_coming(live, open_page):
+    viewer = live(config(entry("PointCloud2", Topic={"Value": "/cloud"}, Color_Transformer="AxisColor")))
+    page = open_page(viewer, wait=False)
+    rng = np.random.default_rng(0)
+    array = np.zeros(100_000, xyz([]).dtype)
+    for name in "xyz":
+        array[name] = rng.uniform(-3, 3, array.size)
+    messages = []
+    for number in range(10):
+        array["x"][0] = 4.0 + number  # the bounds say which message is drawn
+        messages.append(cloud(array))
+    viewer.publish("/cloud", messages[0])
+    until(page, "lw.displays[0]?.drawn?.points === 100000")
+    started = time.monotonic()
+    for message in messages:
+        viewer.publish("/cloud", message)
+        page.wait_for_timeout(100)
+    until(page, "lw.displays[0].drawn.bounds[1][0] === 13", 10)
+    assert time.monotonic() - started < 10
+
+
+def test_a_scan_and_single_numbers_are_drawn(live, open_page):
+    displays = (
+        entry("LaserScan", Topic={"Value": "/scan"}, **{"Size (m)": 0.5}),
+        entry("Temperature", Topic={"Value": "/warm"}, **{"Size (m)": 0.5}),
+        entry("GridCells", Topic={"Value": "/cells"}),
+    )
+    viewer = live(config(*displays))
+    page = open_page(viewer, wait=False)
+    viewer.place("thermometer", 0.0, -2.0, 0.0)
+    viewer.publish("/scan", placed(scan([1.0, 2.0, 3.0], [0.0, 1.0, 2.0])))
+    temperature = get_message("sensor_msgs/msg/Temperature")(temperature=100.0)
+    viewer.publish("/warm", placed(temperature, "thermometer"))
+    viewer.publish("/cells", cell_grid(-1.5, width=1.0, height=0.5))
+    until(page, "lw.displays[0]?.drawn?.points === 3 && lw.displays[1].drawn.points === 1")
+    until(page, "lw.displays[2].drawn.cells === 1")
+    still(page)
+    assert seen(page, 1.0, 0.0) == RED
+    assert seen(page, -3.0, 0.0) == (255, 0, 255)
+    assert seen(page, 0.0, -2.0) == RED
+    assert seen(page, -1.9, 0.2) == (25, 255, 0)
+    assert seen(page, -1.9, 0.3) == BACKGROUND
+
+
+def test_a_map_is_drawn_and_updated(live, open_page):
+    displays = (
+        entry("Map", Topic={"Value": "/map"}, Alpha=1.0),
+        entry("PointCloud2", Topic={"Value": "/cloud"}, **{"Size (m)": 0.2}),
+    )
+    viewer = live(config(*displays))
+    page = open_page(viewer, wait=False)
+    viewer.publish("/map", grid(data=[0, 100, -1, 50, 110, -128]))
+    until(page, "lw.displays[0]?.drawn?.cells === 6")
+    # The corner is at x -1, cells are half a metre wide.
+    places = [(-0.75, 0.25), (-0.25, 0.25), (0.25, 0.25), (-0.75, 0.75), (-0.25, 0.75), (0.25, 0.75)]
+    still(page)
+    shades = [(255, 255, 255), (0, 0, 0), (112, 137, 134), (128, 128, 128), (0, 255, 0), (255, 0, 0)]
+    assert [seen(page, *place) for place in places] == shades
+    set_property(viewer, 0, ("Color Scheme",), "costmap")
+    still(page)
+    assert [seen(page, *place) for place in places[:4]] == [BACKGROUND, (255, 0, 255), (112, 137, 134), (127, 0, 128)]
+    set_property(viewer, 0, ("Color Scheme",), "raw")
+    set_property(viewer, 0, ("Binary representation",), True)
+    set_property(viewer, 0, ("Binary threshold",), 50)
+    still(page)
+    assert [seen(page, *place) for place in places[:4]] == [
+        (0, 0, 0),
+        (255, 255, 255),
+        (255, 255, 255),
+        (255, 255, 255),
+    ]
+    set_property(viewer, 0, ("Binary representation",), False)
+    set_property(viewer, 0, ("Color Scheme",), "map")
+    viewer.publish("/map_updates", update(0, 0, 1, 1, [100]))
+    until(page, "lw.displays[0].drawn.counts[100] === 2")
+    still(page)
+    assert seen(page, *places[0]) == (0, 0, 0)
+
+
+def test_what_a_map_is_drawn_behind_is_seen(live, open_page):
+    displays = (
+        entry("PointCloud2", Topic={"Value": "/cloud"}, **{"Size (m)": 0.4}),
+        entry("Map", Topic={"Value": "/map"}, Alpha=1.0, Draw_Behind=True),
+    )
+    viewer = live(config(*displays))
+    page = open_page(viewer, wait=False)
+    viewer.place("cellar", 0.0, 0.0, -3.0)
+    viewer.publish("/map", grid())
+    viewer.publish("/cloud", three_points(frame="cellar"))
+    until(page, "lw.displays[0]?.drawn?.points === 3 && lw.displays[1].drawn.cells === 6")
+    still(page)
+    assert seen(page, 0.0, 0.0) == GREEN
+    set_property(viewer, 1, ("Draw Behind",), False)
+    still(page)
+    assert seen(page, 0.1, 0.1) != GREEN
+
+
+def test_an_image_has_a_panel_of_its_own(live, open_page):
+    viewer = live(config(entry("Image", Topic={"Value": "/image"})))
+    page = open_page(viewer, wait=False)
+    page.get_by_text("No image").wait_for()
+    pixels = np.zeros((20, 40, 3), np.uint8)
+    pixels[:, :20], pixels[:, 20:] = (255, 0, 0), (0, 0, 255)
+    viewer.publish("/image", image("rgb8", 40, 20, pixels.tobytes()))
+    until(page, "lw.displays[0]?.drawn?.width === 40")
+    assert drawn(page)["corner"] == [255, 0, 0, 255]
+    box = page.locator(".picture-panel canvas").bounding_box()
+    row = box["y"] + box["height"] / 2
+    assert color_at(page, box["x"] + box["width"] * 0.4, row) == RED
+    assert color_at(page, box["x"] + box["width"] * 0.6, row) == BLUE
+    # The shape is kept: above and below the image it is black.
+    assert box["height"] > box["width"] / 2
+    assert color_at(page, box["x"] + box["width"] / 2, box["y"] + 1) == (0, 0, 0)
+
+    page.locator(".panel-tab", has_text="Image").get_by_role("button").click()
+    until(page, "lw.displays[0].enabled === false")
+    page.locator(".picture-panel").wait_for(state="detached")
+    viewer.run(lambda: viewer.viewer.manager.tree.check(viewer.viewer.displays[0], True))
+    page.locator(".picture-panel").wait_for()
+    page.reload()
+    page.locator(".picture-panel").wait_for()
+    assert page.locator(".picture-panel").count() == 1
+
+
+def test_a_compressed_image_is_read_by_the_browser(live, open_page):
+    viewer = live(config(entry("Image", Topic={"Value": "/image/compressed"})))
+    page = open_page(viewer, wait=False)
+    # A picture of one blue pixel.
+    data = page.evaluate(
+        "async () => { const c = new OffscreenCanvas(1, 1); const g = c.getContext('2d'); g.fillStyle = '#0000ff';"
+        " g.fillRect(0, 0, 1, 1); const b = await c.convertToBlob({ type: 'image/png' });"
+        " return [...new Uint8Array(await b.arrayBuffer())]; }"
+    )
+    message = get_message("sensor_msgs/msg/CompressedImage")(format="rgb8; png compressed", data=bytes(data))
+    viewer.publish("/image/compressed", message)
+    until(page, "lw.displays[0]?.drawn?.width === 1 && lw.displays[0].drawn.corner[2] === 255")
+
+
+def test_a_camera_shows_the_scene_over_its_image(live, open_page):
+    displays = (
+        entry("Camera", Topic={"Value": "/eye/image"}, **{"Image Rendering": "background"}),
+        entry("PointCloud2", Topic={"Value": "/cloud"}, Style="Boxes", **{"Size (m)": 0.4}),
+    )
+    viewer = live(config(*displays))
+    page = open_page(viewer, wait=False)
+    # The camera is at the origin and looks along x: its z is ahead, its x right.
+    viewer.place("eye", 0.0, 0.0, 0.0, -0.5, 0.5, -0.5, 0.5)
+    viewer.publish("/eye/camera_info", camera_info(40, 30))
+    info = camera_info(40, 30)
+    info.p = np.array([20.0, 0, 20, 0, 0, 20.0, 15, 0, 0, 0, 1, 0])
+    viewer.publish("/eye/camera_info", info)
+    viewer.publish("/eye/image", placed(image("rgb8", 40, 30, bytes([255, 255, 0]) * 1200), "eye"))
+    until(page, "lw.displays[0]?.drawn?.image?.[0] === 40 && lw.displays[0].drawn.width > 0")
+    assert drawn(page)["middle"] == [255, 255, 0, 255]
+    assert drawn(page)["position"] == pytest.approx([0, 0, 0])
+    viewer.publish("/cloud", three_points())
+    until(page, "lw.displays[0].drawn.middle[0] < 200")
+    assert drawn(page)["middle"][2] > 100  # the blue one, two metres ahead
+    set_property(viewer, 0, ("Visibility", "PointCloud2"), False)
+    until(page, "lw.displays[0].drawn.middle[0] === 255")
+    set_property(viewer, 0, ("Visibility", "PointCloud2"), True)
+    set_property(viewer, 0, ("Image Rendering",), "overlay")
+    set_property(viewer, 0, ("Overlay Alpha",), 1.0)
+    until(page, "lw.displays[0].drawn.middle[1] === 255")
+
+
+def test_a_depth_image_becomes_points(live, open_page):
+    topics = {"Depth Map Topic": "/depth/image", "Color Image Topic": "/color/image"}
+    viewer = live(config(entry("DepthCloud", **topics)))
+    page = open_page(viewer, wait=False)
+    viewer.publish("/depth/camera_info", camera_info(2, 1))
+    viewer.publish("/color/image", placed(image("rgb8", 2, 1, bytes([255, 0, 0, 0, 255, 0]))))
+    viewer.publish("/depth/image", placed(depth_image([[2.0, 4.0]])))
+    until(page, "lw.displays[0]?.drawn?.points === 2")
+    assert drawn(page)["bounds"] == [[0, 0, 2], [2, 0, 4]]
+    still(page)
+    # A pixel is half as wide as it is far: 1 m and 2 m here.
+    assert seen(page, -0.3, 0.0) == RED
+    assert seen(page, 2.8, 0.0) == GREEN
+
+
+def test_nothing_is_drawn_when_nothing_comes(live, open_page):
+    viewer = live(config(entry("PointCloud2", Topic={"Value": "/cloud"}), entry("Map", Topic={"Value": "/map"})))
+    page = open_page(viewer, wait=False)
+    viewer.publish("/cloud", three_points())
+    viewer.publish("/map", grid())
+    until(page, "lw.displays[0]?.drawn?.points === 3 && lw.displays[1].drawn.cells === 6")
+    page.wait_for_timeout(1000)
+    before = state(page, "framesDrawn")
+    page.wait_for_timeout(1000)
+    assert state(page, "framesDrawn") == before

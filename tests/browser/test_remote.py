@@ -1,0 +1,97 @@
+"""Pages far away: what a slow line shows, and that nothing comes from elsewhere."""
+
+from __future__ import annotations
+
+from urllib.parse import urlsplit
+
+import pytest
+
+from tests.browser.conftest import state, until
+from tests.browser.live import configuration
+from tests.viewer.test_slow_lines import cloud, image
+from tests.viewer.throttle import slow_line
+
+pytestmark = pytest.mark.browser
+
+SENSES = configuration(
+    """
+- Class: rviz_default_plugins/PointCloud2
+  Enabled: true
+  Name: Cloud
+  Topic:
+    Value: /cloud
+- Class: rviz_default_plugins/Image
+  Enabled: true
+  Name: Picture
+  Topic:
+    Value: /image
+"""
+)
+
+
+class Through:
+    """The address of a viewer through a slow line."""
+
+    def __init__(self, url: str) -> None:
+        self.url = url
+
+
+def test_a_slow_line_thins_what_is_heavy_and_says_so(live, open_page):
+    viewer = live(SENSES)
+    viewer.place("tip", 1.0, 0.0, 0.0)
+    line = slow_line(viewer.url, 3_000_000.0)
+    page = open_page(Through(viewer.run(line.__aenter__)), wait=False)
+    until(page, "lw.displays.length === 2", seconds=30)
+
+    def publish() -> None:
+        viewer.publish("/cloud", cloud(200_000))
+        viewer.publish("/image", image(1280, 720))
+
+    notice = page.locator(".line-notice")
+    for _ in range(40):
+        publish()
+        page.wait_for_timeout(100)
+        if notice.is_visible() and "WebP" in notice.inner_text() and "points" in notice.inner_text():
+            break
+    text = notice.inner_text()
+    assert "Slow connection" in text
+    assert "Cloud 1 of" in text
+    assert "of 1280 × 720, quality" in text
+    drawn = {each["name"]: each["drawn"] for each in state(page, "displays")}
+    assert drawn["Cloud"]["step"] > 1
+    assert 0 < drawn["Cloud"]["points"] < 200_000
+    assert drawn["Picture"]["width"] == 1280
+    viewer.run(lambda: line.__aexit__(None, None, None))
+
+
+def test_a_line_that_is_quick_says_nothing(live, open_page):
+    viewer = live(SENSES)
+    page = open_page(viewer, wait=False)
+    until(page, "lw.displays.length === 2")
+    for _ in range(20):
+        viewer.publish("/cloud", cloud(100_000))
+        page.wait_for_timeout(100)
+    until(page, "lw.displays[0].drawn?.points === 100000")
+    until(page, "document.querySelector('.line-notice').hidden")
+
+
+def test_nothing_is_fetched_from_outside_of_the_server(live, browser):
+    viewer = live(SENSES)
+    own = urlsplit(viewer.url).netloc
+    context = browser.new_context(viewport={"width": 1280, "height": 800})
+    page = context.new_page()
+    asked: list[str] = []
+    page.on("request", lambda request: asked.append(request.url))
+    page.on("websocket", lambda socket: asked.append(socket.url))
+    page.goto(viewer.url)
+    until(page, "lw.displays.length === 2")
+    viewer.publish("/image", image(64, 64))
+    # Panels that are built when they are opened may ask for more.
+    for name in ("File", "Panels", "Share"):
+        page.get_by_role("button", name=name, exact=True).click()
+        page.keyboard.press("Escape")
+    page.wait_for_timeout(500)
+    context.close()
+    assert len(asked) > 3
+    elsewhere = [url for url in asked if urlsplit(url).netloc != own and not url.startswith(("data:", "blob:"))]
+    assert elsewhere == []

@@ -1,0 +1,210 @@
+"""Tools, selection and time, with the mouse and the keys of a user, and what a node hears of them."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pytest
+
+from linkwright.messages import get_message
+from tests.browser.arm_from_above import TIP, Scene, open_scene
+from tests.browser.conftest import state, until
+
+pytestmark = pytest.mark.browser
+
+
+@pytest.fixture
+def scene(live, open_page) -> Scene:
+    return open_scene(live, open_page)
+
+
+# --- tools -----------------------------------------------------------------------------------------------------------
+
+
+def test_keys_take_tools_in_hand_and_put_them_away(scene):
+    assert state(scene.page, "tool.class").endswith("/Interact")
+    for key, tool in zip(
+        "mcnpgu", ("MoveCamera", "FocusCamera", "Measure", "SetInitialPose", "SetGoal", "PublishPoint"), strict=True
+    ):
+        assert scene.press(key) == tool
+    assert scene.press("u") == "Interact"
+    assert scene.press("g") == "SetGoal"
+    assert scene.press("Escape") == "Interact"
+    assert scene.press("s") == "Select"
+    assert scene.press("m") == "Select"  # it takes all keys, as in RViz
+    assert scene.press("s") == "Interact"
+    scene.page.get_by_role("button", name="Measure", exact=True).click()
+    assert state(scene.page, "tool.class").endswith("/Measure")
+
+
+def test_letters_typed_into_a_field_are_text(scene):
+    field = scene.page.get_by_role("treeitem").filter(has_text="Target Frame").locator("input")
+    field.click()
+    field.fill("")
+    scene.page.keyboard.type("map")
+    assert state(scene.page, "tool.class").endswith("/Interact")
+    assert field.input_value() == "map"
+
+
+def test_a_goal_is_published_where_it_was_dragged(scene):
+    scene.press("g")
+    (x0, y0), (x1, y1) = scene.pixel(-2, 1), scene.pixel(-2, 3)
+    scene.page.mouse.move(x0, y0)
+    scene.page.mouse.down()
+    scene.page.mouse.move(x0, y0 - 20)
+    scene.page.mouse.move(x1, y1)
+    assert state(scene.page, "tool.state")["arrows"] == 1
+    scene.page.mouse.up()
+    until(scene.page, "lw.tool.class.endsWith('/Interact')")
+    goal = scene.only("/goal_pose")
+    assert goal.header.frame_id == "base"
+    assert goal.header.stamp.sec > 0
+    assert (goal.pose.position.x, goal.pose.position.y, goal.pose.position.z) == pytest.approx((-2, 1, 0), abs=0.03)
+    assert (goal.pose.orientation.z, goal.pose.orientation.w) == pytest.approx((math.sqrt(0.5),) * 2, abs=0.01)
+
+
+def test_a_pose_estimate_has_the_covariance_of_the_tool_properties(scene):
+    scene.page.get_by_text("Tool Properties", exact=True).click()
+    row = scene.page.get_by_role("treeitem").filter(has_text="Covariance yaw")
+    row.locator("input").fill("0.5")
+    row.locator("input").press("Enter")
+    scene.press("p")
+    scene.drag((2, -2), (1, -2))
+    estimate = scene.only("/initialpose")
+    pose = estimate.pose.pose
+    assert (pose.position.x, pose.position.y) == pytest.approx((2, -2), abs=0.03)
+    assert (abs(pose.orientation.z), pose.orientation.w) == pytest.approx((1, 0), abs=0.01)
+    covariance = list(estimate.pose.covariance)
+    assert (covariance[0], covariance[7], covariance[35]) == (0.25, 0.25, 0.5)
+    listed = next(each for each in scene.file()["Tools"] if each["Class"].endswith("/SetInitialPose"))
+    assert listed["Covariance yaw"] == 0.5
+
+
+def test_a_clicked_point_is_published_and_drawn(scene):
+    scene.press("u")
+    scene.page.mouse.move(*scene.pixel(-3, -3))
+    assert state(scene.page, "tool.hint") == "Move over an object to select the target point."
+    scene.click(0.25, 0.5)
+    until(scene.page, "lw.tool.class.endsWith('/Interact')")
+    clicked = scene.only("/clicked_point")
+    assert (clicked.point.x, clicked.point.y, clicked.point.z) == pytest.approx((0.25, 0.5, 1.5), abs=0.03)
+    until(scene.page, "lw.displays[2].drawn !== null")
+
+
+def test_measure_shows_the_distance_of_two_points(scene):
+    scene.press("n")
+    scene.click(-0.4, 0)
+    scene.click(0.4, 0.5)
+    length = state(scene.page, "tool.state")["length"]
+    assert length == pytest.approx(math.hypot(0.8, 0.5), abs=0.05)
+    assert state(scene.page, "tool.hint").startswith(f"[Length: {length:.6g}"[:14])
+    scene.click(0.4, 0.5, button="right")
+    assert state(scene.page, "tool.state")["length"] is None
+
+
+def test_focus_camera_looks_at_the_point(scene):
+    scene.press("c")
+    scene.click(0.25, 0.5)
+    until(scene.page, "lw.tool.class.endsWith('/Interact')")
+    values = state(scene.page, "view.values")
+    assert (values["X"], values["Y"]) == pytest.approx((0.25, 0.5), abs=0.03)
+    scene.page.mouse.move(*scene.pixel(-0.25, -0.5))
+    scene.page.keyboard.press("f")
+    until(scene.page, "Math.abs(lw.view.values.X) < 0.03 && Math.abs(lw.view.values.Y) < 0.03")
+
+
+def test_tools_are_added_and_removed(scene):
+    page = scene.page
+    page.get_by_role("button", name="Remove a tool").click()
+    page.get_by_role("menuitem", name="Publish Point").click()
+    until(page, "lw.tools.length === 7")
+    page.get_by_role("button", name="Add a tool").click()
+    page.get_by_role("menuitem", name="Measure").click()
+    until(page, "lw.tools.length === 8")
+    listed = [each["Class"].rpartition("/")[2] for each in scene.file()["Tools"]]
+    assert listed[-2:] == ["SetGoal", "Measure"]
+
+
+# --- selection -------------------------------------------------------------------------------------------------------
+
+
+def test_things_are_selected_one_by_one_and_with_a_box(scene):
+    page = scene.page
+    scene.press("s")
+    scene.click(0, 0)
+    assert scene.selected() == ["base"]
+    page.keyboard.down("Shift")
+    scene.click(*TIP)
+    assert scene.selected() == ["base", "tip"]
+    page.keyboard.up("Shift")
+    page.keyboard.down("Control")
+    scene.click(0, 0)
+    page.keyboard.up("Control")
+    assert scene.selected() == ["tip"]
+    scene.click(-3, -3)
+    assert scene.selected() == []
+    scene.drag((-3, -3), (2, 2))
+    assert scene.selected() == ["base"]
+    scene.drag((-3, -3), (4, 2))
+    assert sorted(scene.selected()) == ["base", "tip"]
+    page.wait_for_timeout(300)
+    assert sorted(scene.selected()) == ["base", "tip"]
+
+
+def test_the_selection_panel_tells_where_links_are(scene):
+    page = scene.page
+    scene.press("s")
+    scene.click(*TIP)
+    scene.viewer.place("tip", *TIP, 0.5)
+    page.locator(".dv-tabs-overflow-dropdown-root, .dv-tabs-overflow-dropdown-default").first.click()
+    page.locator(".dv-tabs-overflow-container").get_by_text("Selection", exact=True).click()
+    tree = page.get_by_role("tree", name="What is selected")
+    tree.get_by_text("Link tip").wait_for()
+    position = tree.get_by_role("treeitem").filter(has_text="Position")
+    page.wait_for_timeout(500)
+    assert "3; 1; 0.5" in position.inner_text()
+
+
+# --- time and keys ---------------------------------------------------------------------------------------------------
+
+
+def test_pause_freezes_what_is_shown(scene):
+    page = scene.page
+    page.get_by_role("button", name="Pause").click()
+    until(page, "lw.time.paused")
+    scene.viewer.place("tip", 5.0, 1.0, 0.0)
+    message = get_message("geometry_msgs/msg/PointStamped")()
+    message.header.frame_id = "base"
+    scene.viewer.publish("/clicked_point", message)
+    page.wait_for_timeout(400)
+    assert state(page, "frames.tip.position")[0] == pytest.approx(TIP[0])
+    assert scene.viewer.run(scene.viewer.viewer.displays[2].data) == []
+    page.get_by_role("button", name="Pause").click()
+    until(page, "lw.frames.tip.position[0] === 5")
+    page.keyboard.press("r")
+    until(page, "!lw.time.paused")
+    assert float(page.locator(".time-panel .figure").nth(1).inner_text()) < 5
+
+
+def test_the_sheet_of_keys_opens_and_closes(scene):
+    page = scene.page
+    page.keyboard.press("?")
+    sheet = page.get_by_role("dialog", name="Keys")
+    sheet.wait_for()
+    assert "2D Goal Pose" in sheet.inner_text()
+    page.keyboard.press("Escape")
+    sheet.wait_for(state="detached")
+    page.keyboard.press("F11")
+    assert poll(page, "document.fullscreenElement?.className ?? null", "scene-box")
+    page.keyboard.press("F11")
+    assert poll(page, "document.fullscreenElement", None)
+
+
+def poll(page: Any, expression: str, wanted: Any) -> bool:
+    """Whether an expression comes to have a value; a page that changes its screen draws no frames to wait by."""
+    for _ in range(60):
+        if page.evaluate(f"() => {expression}") == wanted:
+            return True
+        page.wait_for_timeout(250)
+    return False

@@ -1,0 +1,43 @@
+"""``--foxglove PORT`` of the commands that launch."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.launch import LaunchOptions
+from linkwright.launch import run as launch_run
+from linkwright.launch.description import LaunchDescription
+from linkwright.launch.ros import Node
+from linkwright.workspace import PackageFinder
+
+
+def launched(monkeypatch, options: LaunchOptions) -> list[Node]:
+    seen: list[LaunchDescription] = []
+
+    async def run(description, *_):
+        seen.append(description)
+        return True
+
+    monkeypatch.setattr(launch_run, "_run", run)
+    load = lambda _: (LaunchDescription([]), {})  # noqa: E731 - as launch files are loaded
+    assert launch_run.run_description(load, {}, PackageFinder(), options, "nothing") == 0
+    return [each for each in seen[0].entities if isinstance(each, Node)]
+
+
+def test_it_adds_the_bridge(monkeypatch):
+    (node,) = launched(monkeypatch, LaunchOptions(foxglove=8765))
+    assert (node.node_package, node.node_executable) == ("foxglove_bridge", "foxglove_bridge")
+
+
+def test_without_it_there_is_none(monkeypatch):
+    assert launched(monkeypatch, LaunchOptions()) == []
+
+
+@pytest.mark.parametrize("words", [["view", "robot.urdf"], ["launch", "a.launch.py"], ["run", "package", "talker"]])
+def test_every_command_that_launches_has_it(words):
+    from linkwright.cli.command import parser_for
+
+    arguments = parser_for(words[0]).parse_args(["--foxglove", "9000", *words[1:]])
+    assert arguments.foxglove == 9000
+    with pytest.raises(SystemExit):
+        parser_for(words[0]).parse_args(["--foxglove", "0", *words[1:]])
