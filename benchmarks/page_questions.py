@@ -24,8 +24,13 @@ async ([row, value]) => {
   };
   slider.value = String(value);
   slider.dispatchEvent(new Event("input", { bubbles: true }));
-  const known = await until(() => orientation() !== before);
-  const frames = window.linkwright.framesDrawn;
+  // The frame may be drawn between two looks, and the next one not before the next move.
+  let frames = window.linkwright.framesDrawn;
+  const known = await until(() => {
+    if (orientation() !== before) return true;
+    frames = window.linkwright.framesDrawn;
+    return false;
+  });
   return [known, await until(() => window.linkwright.framesDrawn > frames)];
 }
 """

@@ -1053,7 +1053,7 @@ export interface AskPoint {
   type: "ask_point";
 }
 
-/** PointStamped: the last points in the Fixed Frame, metres, shape (N, 3), oldest first. */
+/** PointStamped: points in the frame of the content, metres, shape (N, 3). */
 export interface PointMarks {
   positions: Float32Array;
   kind: "point_marks";

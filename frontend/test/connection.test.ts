@@ -98,6 +98,19 @@ describe("the connection", () => {
     expect(connection.state).toBe("ended");
   });
 
+  it("says so when a program is there that does not know the page", async () => {
+    const asked = vi.fn<(page: URL) => Promise<{ status: number }>>(() => Promise.resolve({ status: 401 }));
+    vi.stubGlobal("fetch", asked);
+    const { connection, socket } = opened();
+    socket.hello();
+    socket.onclose?.({ code: 1001 });
+    await vi.advanceTimersByTimeAsync(250);
+    Object.assign(FakeSocket.made[1]!, { readyState: 3 }).onclose?.({ code: 1006 });
+    await vi.advanceTimersByTimeAsync(0);
+    expect(asked.mock.calls[0]?.[0].href).toBe("http://127.0.0.1/");
+    expect(connection.state).toBe("refused");
+  });
+
   it("reloads the page once when the server speaks another version", () => {
     const first = opened();
     first.socket.hello(PROTOCOL_VERSION + 1);

@@ -28,3 +28,11 @@ it("keeps what is below a match, closed as it was", () => {
 it("shows nothing where there is nothing", () => {
   expect(filterItems(ITEMS, "camera")).toEqual([]);
 });
+
+it("leaves values live that are read when they are shown", () => {
+  let now = 1;
+  const frame: TreeItem = { ...item("Position", item("X")), get value() { return now; } };
+  const [shown] = filterItems([frame], "x");
+  now = 2;
+  expect(shown?.value).toBe(2);
+});

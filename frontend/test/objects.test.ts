@@ -1,4 +1,16 @@
-import { Box3, Group, Matrix4, Quaternion, Raycaster, Vector3 } from "three";
+import {
+  Box3,
+  Group,
+  Matrix4,
+  PerspectiveCamera,
+  Quaternion,
+  Raycaster,
+  Vector3,
+  type BufferGeometry,
+  type DataTexture,
+  type Mesh,
+  type ShaderMaterial,
+} from "three";
 import { describe, expect, it } from "vitest";
 import { rainbow } from "../src/scene/displays/effort";
 import { alongX, ArrowBatch } from "../src/scene/objects/arrow-batch";
@@ -36,6 +48,26 @@ describe("geometries", () => {
 });
 
 describe("CopyBatch", () => {
+  it("draws copies that can be seen through from the farthest to the nearest, and knows them still", () => {
+    const parent = new Group();
+    const batch = new CopyBatch(parent, cubeGeometry());
+    batch.begin(3);
+    for (const x of [3, 1, 2]) batch.add(new Matrix4().makeTranslation(x, 0, 0), 0, 0.5);
+    batch.end();
+    const mesh = parent.children[0] as Mesh<BufferGeometry, ShaderMaterial>;
+    const camera = new PerspectiveCamera();
+    camera.position.set(10, 0, 0);
+    camera.lookAt(0, 0, 0);
+    camera.updateMatrixWorld();
+    (mesh as unknown as { onBeforeRender(...args: unknown[]): void }).onBeforeRender(null, null, camera);
+    const { slots } = mesh.material.uniforms as { slots: { value: DataTexture } };
+    const data = slots.value.image.data as Float32Array;
+    expect([data[3], data[19], data[35]]).toEqual([1, 2, 3]);
+    expect(batch.pick(new Raycaster(new Vector3(10, 0, 0), new Vector3(-1, 0, 0)))?.copy).toBe(0);
+    expect(batch.pick(new Raycaster(new Vector3(-10, 0, 0), new Vector3(1, 0, 0)))?.copy).toBe(1);
+    batch.dispose();
+  });
+
   it("puts copies where their matrices say", () => {
     const parent = new Group();
     const batch = new CopyBatch(parent, cubeGeometry());

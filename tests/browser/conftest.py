@@ -20,7 +20,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
 
-from tests.browser.live import LiveViewer
+from tests.browser.live import LiveViewer, configuration
 
 _FLAGS = (
     "--no-sandbox",
@@ -31,6 +31,26 @@ _FLAGS = (
     "--disable-sync",
     "--no-first-run",
 )
+
+
+_GROUPED = """
+- Class: rviz_default_plugins/Grid
+  Enabled: true
+  Name: Grid
+  Value: true
+- Class: rviz_common/Group
+  Displays:
+    - Class: rviz_default_plugins/Axes
+      Enabled: true
+      Name: Axes
+      Value: true
+    - Class: my_plugins/Radar
+      Enabled: true
+      Name: Radar
+      Value: true
+  Enabled: true
+  Name: Marks
+"""
 
 
 @pytest.fixture(scope="module")
@@ -154,6 +174,16 @@ def open_page(browser: Browser) -> Iterator[Callable[..., Page]]:
     for context in contexts:
         context.close()
     assert complaints == [], "errors in the page's console"
+
+
+@pytest.fixture
+def grouped(live: Callable[..., LiveViewer], open_page: Callable[..., Page]) -> tuple[LiveViewer, Page]:
+    """A viewer with a grid, and axes and an unknown display in a group, and its page."""
+    viewer = live(configuration(_GROUPED))
+    viewer.place("tip", 1.0, 0.0, 0.0)
+    page = open_page(viewer, wait=False)
+    page.wait_for_selector("[data-key='display-4']")
+    return viewer, page
 
 
 def state(page: Page, name: str) -> Any:

@@ -8,29 +8,8 @@ import pytest
 
 from linkwright.viewer import RvizConfig
 from tests.browser.conftest import state, until
-from tests.browser.live import configuration
 
 pytestmark = pytest.mark.browser
-
-DISPLAYS = """
-- Class: rviz_default_plugins/Grid
-  Enabled: true
-  Name: Grid
-  Value: true
-- Class: rviz_common/Group
-  Displays:
-    - Class: rviz_default_plugins/Axes
-      Enabled: true
-      Name: Axes
-      Value: true
-    - Class: my_plugins/Radar
-      Enabled: true
-      Name: Radar
-      Value: true
-  Enabled: true
-  Name: Marks
-"""
-
 
 ACTIVE = "document.activeElement"
 
@@ -38,16 +17,6 @@ ACTIVE = "document.activeElement"
 @pytest.fixture(autouse=True)
 def _state_of_the_user(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
-
-
-@pytest.fixture
-def opened(live, open_page):
-    """A viewer with some displays, and its page."""
-    viewer = live(configuration(DISPLAYS))
-    viewer.place("tip", 1.0, 0.0, 0.0)
-    page = open_page(viewer, wait=False)
-    page.wait_for_selector("[data-key='display-4']")
-    return viewer, page
 
 
 def names(page) -> list[str]:
@@ -58,8 +27,8 @@ def row(page, identity: str):
     return page.locator(f"[data-key='{identity}'] .row-title")
 
 
-def test_the_file_is_saved_and_opened(opened, tmp_path: Path):
-    _, page = opened
+def test_the_file_is_saved_and_opened(grouped, tmp_path: Path):
+    _, page = grouped
     path = tmp_path / "mine.rviz"
     page.keyboard.press("Control+s")  # it has no file yet
     page.get_by_label("File name").fill(str(path))
@@ -88,8 +57,8 @@ def test_the_file_is_saved_and_opened(opened, tmp_path: Path):
     assert page.get_by_role("menuitem", name="mine.rviz").get_attribute("title") == str(path)
 
 
-def test_the_file_is_downloaded_and_loaded_from_this_computer(opened, tmp_path: Path):
-    viewer, page = opened
+def test_the_file_is_downloaded_and_loaded_from_this_computer(grouped, tmp_path: Path):
+    viewer, page = grouped
     text = viewer.viewer.config.text()
     with page.expect_download() as downloads:
         page.get_by_role("button", name="File", exact=True).click()
@@ -105,8 +74,8 @@ def test_the_file_is_downloaded_and_loaded_from_this_computer(opened, tmp_path: 
     until(page, "lw.displays[3].name === 'Sonar'")
 
 
-def test_a_page_has_displays_of_its_own(opened, open_page):
-    viewer, page = opened
+def test_a_page_has_displays_of_its_own(grouped, open_page):
+    viewer, page = grouped
     other = open_page(viewer, wait=False)
     other.wait_for_selector("[data-key='display-4']")
     other.get_by_role("button", name="Own", exact=True).click()
@@ -124,8 +93,8 @@ def test_a_page_has_displays_of_its_own(opened, open_page):
     assert len(names(other)) == 4
 
 
-def test_the_keyboard_reaches_everything_and_dialogs_keep_it(opened):
-    _, page = opened
+def test_the_keyboard_reaches_everything_and_dialogs_keep_it(grouped):
+    _, page = grouped
     reached = set()
     page.locator("body").click(position={"x": 640, "y": 8})
     for _ in range(40):
@@ -148,8 +117,8 @@ def test_the_keyboard_reaches_everything_and_dialogs_keep_it(opened):
     page.wait_for_selector(".add-dialog", state="detached")
 
 
-def test_the_theme_is_chosen_and_remembered(opened):
-    _, page = opened
+def test_the_theme_is_chosen_and_remembered(grouped):
+    _, page = grouped
     page.emulate_media(color_scheme="dark")
     page.wait_for_function("() => document.documentElement.dataset.theme === 'dark'")
     background = "getComputedStyle(document.body).backgroundColor"

@@ -7,40 +7,10 @@ import yaml
 
 from linkwright.messages import get_message
 from tests.browser.conftest import state, until
-from tests.browser.live import configuration
 
 pytestmark = pytest.mark.browser
 
 PointStamped = get_message("geometry_msgs/msg/PointStamped")
-
-DISPLAYS = """
-- Class: rviz_default_plugins/Grid
-  Enabled: true
-  Name: Grid
-  Value: true
-- Class: rviz_common/Group
-  Displays:
-    - Class: rviz_default_plugins/Axes
-      Enabled: true
-      Name: Axes
-      Value: true
-    - Class: my_plugins/Radar
-      Enabled: true
-      Name: Radar
-      Value: true
-  Enabled: true
-  Name: Marks
-"""
-
-
-@pytest.fixture
-def opened(live, open_page):
-    """A viewer with some displays, and its page."""
-    viewer = live(configuration(DISPLAYS))
-    viewer.place("tip", 1.0, 0.0, 0.0)
-    page = open_page(viewer, wait=False)
-    page.wait_for_selector("[data-key='display-4']")
-    return viewer, page
 
 
 def names(page) -> list[str]:
@@ -55,8 +25,8 @@ def saved(viewer) -> list[dict]:
     return yaml.safe_load(viewer.viewer.config.text())["Visualization Manager"]["Displays"]
 
 
-def test_displays_are_added_by_type_and_taken_back(opened):
-    viewer, page = opened
+def test_displays_are_added_by_type_and_taken_back(grouped):
+    viewer, page = grouped
     row(page, "display-2").click()
     page.keyboard.press("Alt+a")
     page.keyboard.type("points of a cloud")
@@ -75,8 +45,8 @@ def test_displays_are_added_by_type_and_taken_back(opened):
     until(page, "lw.displays.length === 5")
 
 
-def test_displays_are_added_by_topic(opened):
-    viewer, page = opened
+def test_displays_are_added_by_topic(grouped):
+    viewer, page = grouped
     viewer.publish("/found", PointStamped())
     page.get_by_role("button", name="Add", exact=True).click()
     page.get_by_role("tab", name="By topic").click()
@@ -86,8 +56,8 @@ def test_displays_are_added_by_topic(opened):
     assert saved(viewer)[2]["Topic"]["Value"] == "/found"
 
 
-def test_displays_are_renamed_duplicated_and_removed_by_keys(opened):
-    viewer, page = opened
+def test_displays_are_renamed_duplicated_and_removed_by_keys(grouped):
+    viewer, page = grouped
     row(page, "display-3").click()
     page.keyboard.press("F2")
     page.keyboard.type("Origin")
@@ -107,8 +77,8 @@ def test_displays_are_renamed_duplicated_and_removed_by_keys(opened):
     assert not viewer.viewer.manager.history.unsaved
 
 
-def test_a_group_switches_off_what_it_holds(opened):
-    _, page = opened
+def test_a_group_switches_off_what_it_holds(grouped):
+    _, page = grouped
     page.locator("[data-key='display-2'] .check").click()
     until(page, "lw.displays.every((each) => each.enabled === (each.name === 'Grid'))")
     assert page.locator("[data-key='display-3'] .check").is_checked()
@@ -116,8 +86,8 @@ def test_a_group_switches_off_what_it_holds(opened):
     until(page, "lw.displays.every((each) => each.enabled)")
 
 
-def test_displays_are_dragged(opened):
-    viewer, page = opened
+def test_displays_are_dragged(grouped):
+    viewer, page = grouped
     page.locator("[data-key='display-1'] .row-title").drag_to(page.locator("[data-key='display-2']"))
     until(page, "lw.displays[0].name === 'Marks'")
     assert [each["Name"] for each in saved(viewer)[0]["Displays"]] == ["Grid", "Axes", "Radar"]
@@ -129,8 +99,8 @@ def test_displays_are_dragged(opened):
     until(page, "lw.displays[0].name === 'Grid'")
 
 
-def test_the_filter_finds_properties(opened):
-    _, page = opened
+def test_the_filter_finds_properties(grouped):
+    _, page = grouped
     page.get_by_label("Filter displays and properties").fill("cell size")
     page.wait_for_function("() => document.querySelectorAll('.displays-panel .row').length === 2")
     assert page.locator(".displays-panel .row-title").all_inner_texts() == ["Grid", "Cell Size"]
@@ -138,8 +108,8 @@ def test_the_filter_finds_properties(opened):
     page.get_by_text("Nothing has that in its name.").wait_for()
 
 
-def test_a_menu_of_each_display(opened):
-    _, page = opened
+def test_a_menu_of_each_display(grouped):
+    _, page = grouped
     row(page, "display-3").click(button="right")
     page.keyboard.press("r")
     assert "Rename" in page.evaluate("document.activeElement.textContent")

@@ -6,8 +6,6 @@ transform shows in its bounds.
 
 from __future__ import annotations
 
-import struct
-import zlib
 from pathlib import Path
 
 import pytest
@@ -17,6 +15,7 @@ from linkwright.messages import String
 from tests.browser.conftest import state, until
 from tests.browser.live import configuration
 from tests.browser.mesh_writers import SIZE, dae, glb, obj, png, stl_binary, stl_text
+from tests.browser.pixels import color_at
 
 pytestmark = pytest.mark.browser
 
@@ -199,16 +198,7 @@ def box(x: float, color: str, size: float = 0.5) -> str:
 def middle(page) -> tuple[int, int, int]:
     """The colour in the middle of the scene."""
     place = page.locator("canvas").first.bounding_box()
-    at = {"x": place["x"] + place["width"] / 2, "y": place["y"] + place["height"] / 2, "width": 1, "height": 1}
-    image = page.screenshot(clip=at)
-    data, start = b"", 8
-    while start < len(image):
-        (length,) = struct.unpack_from(">I", image, start)
-        if image[start + 4 : start + 8] == b"IDAT":
-            data += image[start + 8 : start + 8 + length]
-        start += 12 + length
-    _, r, g, b, *_ = zlib.decompress(data)  # one pixel: every filter leaves it as it is
-    return r, g, b
+    return color_at(page, place["x"] + place["width"] / 2, place["y"] + place["height"] / 2)
 
 
 # near, far -> what is seen; the eye is on +x, the background 48

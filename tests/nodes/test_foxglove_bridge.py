@@ -264,6 +264,11 @@ async def test_only_meshes_of_packages_that_a_description_names_are_given(tmp_pa
     (share / "secret.py").write_text("secret")
     (tmp_path / "secret.png").write_bytes(b"secret")
     (share / "meshes" / "link.png").symlink_to(tmp_path / "secret.png")
+    source = tmp_path / "src" / "robot"  # as colcon build --symlink-install lays a package out
+    source.mkdir(parents=True)
+    (source / "package.xml").write_text((share / "package.xml").read_text())
+    (source / "b.stl").write_bytes(b"solid b")
+    (share / "meshes" / "b.stl").symlink_to(source / "b.stl")
     monkeypatch.chdir(share)
     async with world() as w, w.client() as client:
         assert (await fetched(client, "package://arm_pkg/meshes/a.stl"))[0] == 1
@@ -272,6 +277,7 @@ async def test_only_meshes_of_packages_that_a_description_names_are_given(tmp_pa
         )
         await w.graph.settle()
         assert await fetched(client, "package://arm_pkg/meshes/a.stl") == (0, b"solid a")
+        assert await fetched(client, "package://arm_pkg/meshes/b.stl") == (0, b"solid b")
         for refused in (
             "package://arm_pkg/secret.py",
             "package://arm_pkg/../secret.png",

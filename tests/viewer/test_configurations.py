@@ -125,8 +125,9 @@ async def test_folders_are_listed(tmp_path):
         assert (".hidden" in folder["folders"], folder["files"]) == (False, ["a.rviz", "b.rviz"])
         await client.send("ask_folder", path="deeper")
         assert (await client.until("folder"))["files"] == []
-        await client.send("ask_folder", path="/nowhere/at/all")
-        assert "cannot list the folder" in (await client.until("configuration_refused"))["message"]
+        for nowhere in ("/nowhere/at/all", "~nobody-at-all", "a\0b"):
+            await client.send("ask_folder", path=nowhere)
+            assert "cannot list the folder" in (await client.until("configuration_refused"))["message"]
 
 
 # --- files of RViz 1 -----------------------------------------------------------------------------------------------

@@ -1,8 +1,12 @@
 from __future__ import annotations
 
+import subprocess
+import sys
+
 import pytest
 
 from linkwright.viewer import RvizConfig
+from linkwright.viewer.displays import display_classes, has_display
 from tests.viewer.scene import ARM, IDENTITY, page, rows_by_id, world
 
 
@@ -26,6 +30,24 @@ async def rows_with(client, identity: str) -> dict[str, dict]:
         rows = rows_by_id((await client.until("display_properties"))["properties"])
         if identity in rows:
             return rows
+
+
+# --- which there are -----------------------------------------------------------------------------------------------
+
+
+def test_each_class_of_display_has_the_name_under_which_it_is_found():
+    for cls in display_classes():
+        assert has_display(cls.CLASS)
+    assert len({cls.CLASS for cls in display_classes()}) == len(display_classes())
+
+
+def test_displays_of_data_are_imported_when_there_are_some():
+    """The program answers a browser sooner without them."""
+    code = "import sys, linkwright.viewer.viewer; print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    rooms = ("clouds", "images", "markers", "displays.topic_display")
+    assert not {f"linkwright.viewer.{room}" for room in rooms} & set(done.stdout.split())
+    assert not {"PIL", "cyclonedds", "rosbags", "linkwright.inertia"} & set(done.stdout.split())
 
 
 # --- Grid ----------------------------------------------------------------------------------------------------------

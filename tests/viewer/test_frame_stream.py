@@ -117,6 +117,21 @@ async def test_no_more_than_the_frame_rate_and_the_last_change_is_never_lost(rig
     assert rig.pose("tip")[0] == x
 
 
+async def test_what_comes_at_the_frame_rate_hardly_waits_though_updates_were_due_at_other_moments(rig):
+    rig.move(-2.0)
+    await rig.settle()
+    rig.move(-1.0)
+    await asyncio.sleep(0.6 / 30)
+    at_once = []
+    for number in range(36):
+        rig.said.clear()
+        rig.move(float(number))
+        await asyncio.sleep(0.01)
+        at_once.append(len(rig.sent()) > 0)
+        await asyncio.sleep(1 / 30 - 0.011)
+    assert sum(at_once[18:]) > 9
+
+
 async def test_equal_transforms_are_not_sent_again(rig):
     rig.move(1.0)
     await rig.settle()

@@ -109,6 +109,19 @@ async def test_markers_of_a_server_come_move_and_go():
         assert sorted(contents(w)) == ["interactive_marker one"]
 
 
+async def test_updates_wait_while_time_is_paused():
+    async with world(RvizConfig.parse(FILE)) as w:
+        server = Server(w.graph, marker("one"))
+        await connected(w)
+        w.viewer.manager.set_time(paused=True, mode="Off", source="")
+        server.update(markers=[marker("two")])
+        server.update(erases=["one"])
+        await w.settle()
+        assert sorted(contents(w)) == ["interactive_marker one"]
+        w.viewer.manager.set_time(paused=False, mode="Off", source="")
+        assert sorted(contents(w)) == ["interactive_marker two"]
+
+
 async def test_a_lost_update_begins_anew():
     async with world(RvizConfig.parse(FILE)) as w:
         server = Server(w.graph, marker("one"))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from linkwright.graph import QoSProfile, ReliabilityPolicy
-from linkwright.viewer import RvizConfig
+from linkwright.viewer import RvizConfig, display_tree
 from tests.viewer.configured import TEXT, PointStamped, edit, entries, names, opened, undo
 from tests.viewer.scene import ARM, page, world
 
@@ -221,6 +221,34 @@ async def test_displays_are_put_into_a_new_group():
         ]
         await undo(client)
         assert made.viewer.config.text() == TEXT
+
+
+async def test_groups_are_nested_only_so_deep_that_the_file_can_be_read_again():
+    async with opened() as (made, client):
+        for depth in range(display_tree.MAXIMUM_NESTING):
+            await edit(client, "group_displays", displays=["display-1"], name=f"Group {depth}")
+        await client.send("group_displays", displays=["display-1"], name="Too deep")
+        assert "nested" in (await client.until("configuration_refused"))["message"]
+        innermost = next(display for display in made.viewer.displays if display.id == "display-1").config.group
+        await client.send("move_displays", displays=["display-2"], group=innermost.identity, before=None)
+        assert "nested" in (await client.until("configuration_refused"))["message"]
+        await client.send("add_display", cls="rviz_common/Group", name="More", group=innermost.identity, topic=None)
+        assert "nested" in (await client.until("configuration_refused"))["message"]
+        assert len(RvizConfig.parse(made.viewer.config.text()).displays) == 3
+
+
+async def test_there_are_only_so_many_displays(monkeypatch):
+    monkeypatch.setattr(display_tree, "MAXIMUM_DISPLAYS", 6)
+    async with opened() as (made, client):
+        await edit(client, "duplicate_displays", displays=["display-2"])  # a group and what it holds
+        for kind, fields in (
+            ("duplicate_displays", {"displays": ["display-1"]}),
+            ("group_displays", {"displays": ["display-1"], "name": "All"}),
+            ("add_display", {"cls": "rviz_default_plugins/Grid", "name": "Grid", "group": None, "topic": None}),
+        ):
+            await client.send(kind, **fields)
+            assert "no more than 6 displays" in (await client.until("configuration_refused"))["message"]
+        assert len(made.viewer.displays) == 6
 
 
 # --- undo of properties --------------------------------------------------------------------------------------------

@@ -58,6 +58,20 @@ async def test_a_page_may_have_displays_of_its_own(monkeypatch):
             assert [each["id"] for each in opening["tree"]["displays"]] != ids
 
 
+async def test_only_some_displays_wait_for_their_pages(monkeypatch):
+    monkeypatch.setattr(managers, "MOST_LINGERING", 2)
+    async with opened() as (made, _):
+        publisher = made.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
+        for number in range(5):
+            async with own_page(made, f"page-number-{number}") as client:
+                await client.opened()
+        await asyncio.sleep(0.1)
+        assert publisher.get_subscription_count() == 3  # for all, and for two that wait
+        async with own_page(made, "page-number-4") as client:
+            opening = await client.opened()
+            assert opening["tree"]["displays"][0]["id"] == "display-21"  # the fifth of four displays each, after four
+
+
 async def test_a_key_that_is_none_shares():
     async with opened() as (made, _):
         for key in ("short", "../../../etc/passwd", "x" * 100):

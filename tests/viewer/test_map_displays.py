@@ -115,6 +115,24 @@ async def test_updates_change_a_part_of_the_map():
         assert cells(w.display("Map")) == [[0, 10, 20], [3, 30, 40]]
 
 
+async def test_updates_wait_while_time_is_paused():
+    async with world(config()) as w:
+        node = w.graph.create_node("map")
+        maps, updates = (
+            node.create_publisher(OccupancyGrid, "/map", 1),
+            node.create_publisher(OccupancyGridUpdate, "/map_updates", 5),
+        )
+        maps.publish(grid(data=[0] * 6))
+        await w.settle()
+        w.viewer.manager.set_time(paused=True, mode="Off", source="")
+        updates.publish(update(0, 0, 1, 1, [99]))
+        await asyncio.sleep(0.2)
+        assert cells(w.display("Map")) == [[0, 0, 0], [0, 0, 0]]
+        w.viewer.manager.set_time(paused=False, mode="Off", source="")
+        await asyncio.sleep(0.2)
+        assert cells(w.display("Map")) == [[99, 0, 0], [0, 0, 0]]
+
+
 async def test_an_updated_map_survives_another_fixed_frame():
     async with world(config()) as w:
         node = w.graph.create_node("map")

@@ -221,6 +221,18 @@ async def test_a_new_description_replaces_the_robot_and_its_frames():
         assert sorted(table["names"]) == ["base", "tip"]
 
 
+async def test_a_new_description_waits_while_time_is_paused():
+    async with world(config()) as made:
+        made.describe(ARM)
+        await made.settle()
+        made.viewer.manager.set_time(paused=True, mode="Off", source="")
+        made.describe(ARM.replace('"mark"', '"point"'))
+        await made.settle()
+        assert "mark" in made.display("RobotModel").robot.links
+        made.viewer.manager.set_time(paused=False, mode="Off", source="")
+        assert "point" in made.display("RobotModel").robot.links
+
+
 async def test_the_same_description_again_changes_nothing():
     async with world(config()) as made:
         made.describe(ARM)

@@ -127,6 +127,17 @@ Visualization Manager:
 """
 
 
+async def test_the_time_panel_of_the_last_rviz_1_is_read_and_stays_one():
+    text = PANEL.replace("    Experimental: true\n", "").replace("rviz_common", "rviz")
+    file = RvizConfig.parse(text)
+    async with world(file) as made, page(made.viewer) as client:
+        state = (await client.opened())["time_state"]
+        assert (state["mode"], state["source"]) == ("Exact", "Clicks")
+        await client.send("set_time", paused=False, mode="Approximate", source="Clicks")
+        await client.until("time_state", mode="Approximate")
+        assert file.text() == text.replace("SyncMode: 1", "SyncMode: 2")
+
+
 async def test_the_time_panel_of_a_file_is_read_and_written():
     file = RvizConfig.parse(PANEL)
     async with world(file) as made, page(made.viewer) as client:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import json
-import struct
+import asyncio
 
 import numpy as np
 import pytest
@@ -11,6 +10,8 @@ import pytest
 from linkwright.graph import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from linkwright.messages import get_message
 from linkwright.viewer import RvizConfig
+from linkwright.viewer.placing import placed
+from tests.viewer.contents import contents
 from tests.viewer.scene import world
 
 PointStamped = get_message("geometry_msgs/msg/PointStamped")
@@ -41,16 +42,10 @@ def point(x: float, frame: str = "base", stamp: int = 0) -> PointStamped:
 
 
 def points(world) -> list[list[float]]:
-    """Of the one frame that a page would be sent."""
-    (frame,) = world.display("PointStamped").data()
-    kind, length, _, _ = struct.unpack_from("<IIII", frame)
-    assert kind == 2
-    header = json.loads(frame[16 : 16 + length])
-    assert header["content"]["kind"] == "point_marks"
-    name, offset, count = header["content"]["positions"]["$"]
-    assert name == "f4"
-    start = -(-(16 + length) // 8) * 8 + offset
-    return np.frombuffer(frame, "<f4", count, start).reshape(-1, 3).tolist()
+    """Of the frames that a page would be sent, in the fixed frame, oldest first."""
+    shown = sorted(contents(world.display("PointStamped")), key=lambda each: each.key)
+    assert all(each.fields["kind"] == "point_marks" for each in shown)
+    return [placed(np.array(each.pose), each.fields["positions"]).tolist() for each in shown]
 
 
 async def test_a_point_is_drawn_where_it_was_in_the_fixed_frame():
@@ -93,7 +88,7 @@ async def test_another_fixed_frame_places_the_last_message_anew():
         assert points(w) == [[0, 0, 0]]
 
 
-@pytest.mark.parametrize(("length", "expected"), [(1, [[3, 0, 0]]), (2, [[2, 0, 0], [3, 0, 0]])])
+@pytest.mark.parametrize(("length", "expected"), [(1, [[3, 0, 0]]), (3, [[1, 0, 0], [2, 0, 0], [3, 0, 0]])])
 async def test_the_history_is_as_long_as_asked_for(length, expected):
     async with world(config(f"      History Length: {length}\n")) as w:
         publisher = w.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
@@ -170,3 +165,25 @@ async def test_a_message_that_a_display_fails_at_is_told_and_is_not_in_the_way(m
         await w.settle()
         assert "Failure" not in w.status("PointStamped")
         assert points(w) == [[3.0, 0.0, 0.0]]
+
+
+async def test_the_last_count_of_messages_is_told_when_no_more_come(monkeypatch):
+    monkeypatch.setattr("linkwright.viewer.displays.topic_display._COUNT_PERIOD", 0.05)
+    async with world(config()) as w:
+        publisher = w.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 10)
+        for x in range(4):
+            publisher.publish(point(float(x)))
+        await asyncio.sleep(0.2)
+        level, text = w.status("PointStamped")["Topic"]
+        assert (level, text.split(" at ")[0]) == ("ok", "4 messages received")
+
+
+async def test_a_topic_of_another_type_is_told(monkeypatch):
+    monkeypatch.setattr("linkwright.viewer.displays.topic_display._COUNT_PERIOD", 0.05)
+    async with world(RvizConfig.parse(FILE.replace("/clicked_point", "/words"))) as w:
+        w.graph.create_node("speaker").create_publisher(get_message("std_msgs/msg/String"), "/words", 1)
+        await asyncio.sleep(0.2)
+        assert w.status("PointStamped")["Topic"] == (
+            "warn",
+            "No messages received: the topic carries std_msgs/msg/String, not geometry_msgs/msg/PointStamped",
+        )

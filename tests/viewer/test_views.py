@@ -5,7 +5,7 @@ import yaml
 
 from linkwright.viewer import RvizConfig
 from linkwright.viewer.protocol import View
-from linkwright.viewer.views import PITCH_LIMIT, VIEW_SCHEMAS, default_view, view_classes
+from linkwright.viewer.views import CURRENT_NAME, ORBIT, PITCH_LIMIT, VIEW_SCHEMAS, view_classes
 from tests.viewer.scene import page, world
 
 FLYING = """\
@@ -42,6 +42,18 @@ Visualization Manager:
 
 def config_of(view: str) -> RvizConfig:
     return RvizConfig.parse(yaml.safe_dump({"Visualization Manager": {"Views": {"Current": yaml.safe_load(view)}}}))
+
+
+def default_view(cls: str = ORBIT) -> View:
+    """A view as a page makes one of a class."""
+    return next(View(each.cls, CURRENT_NAME, each.defaults) for each in view_classes() if each.cls == cls)
+
+
+def test_a_negative_scale_is_kept():
+    """RViz leads to one when its right button is dragged far."""
+    config = config_of("{Class: rviz/TopDownOrtho, Scale: -88.9}")
+    assert config.views.current.values["Scale"] == -88.9
+    assert config.warnings == []
 
 
 def test_the_classes_are_those_of_rviz_with_its_rows():

@@ -3,6 +3,7 @@ from __future__ import annotations
 import json
 from dataclasses import asdict
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -79,6 +80,27 @@ def test_anything_else_is_refused_and_nothing_worse(first, second):
 def test_bad_messages_are_refused(text):
     with pytest.raises(BadMessageError):
         decode(text)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        r'{"type": "set_property", "id": "\ud800", "value": true}',
+        r'{"type": "set_property", "id": "a", "value": "half \udc00"}',
+        r'{"type": "view_changed", "view": {"cls": "a", "name": "b", "values": {"\ud800": 1}}}',
+    ],
+)
+def test_halves_of_characters_are_refused(text):
+    with pytest.raises(BadMessageError):
+        decode(text)
+    assert decode(r'{"type": "set_property", "id": "\ud83e\udd16", "value": true}').id == "\U0001f916"
+
+
+def test_halves_of_characters_are_not_sent():
+    folder = protocol.Folder("/h\u00f6me", None, ["caf\udce9"], [])
+    assert json.loads(encode(folder).encode())["folders"] == ["caf?"]
+    frame = protocol.pack_data("display-1", protocol.PolygonLine(np.zeros((1, 3), np.float32)), frame="caf\udce9")
+    assert b'"frame":"caf?"' in frame
 
 
 def test_whole_numbers_are_floats_where_floats_are_meant():

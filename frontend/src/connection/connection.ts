@@ -4,12 +4,16 @@ import { unpackData, type DisplayData } from "./data";
 import { unpackSamples, type SeriesSamples } from "./samples";
 import { unpackTransforms, type Transforms } from "./transforms";
 
-/** `ended`: the program said goodbye; one with the same token may still come back. `outdated`: a reload did not help. */
-export type ConnectionState = "connecting" | "connected" | "reconnecting" | "ended" | "outdated";
+/**
+ * `ended`: the program said goodbye; one with the same token may still come back. `refused`: there is a program, which
+ * does not know this page's token. `outdated`: a reload did not help.
+ */
+export type ConnectionState = "connecting" | "connected" | "reconnecting" | "ended" | "refused" | "outdated";
 
 const FIRST_RETRY_MS = 250;
 const LONGEST_RETRY_MS = 4000;
 const GOING_AWAY = 1001;
+const UNAUTHORIZED = 401;
 /** Messages of this length, in bytes or characters, are acknowledged: fewer than the server counts on. */
 const LARGE = 1024;
 const RELOADED_KEY = "linkwright.reloaded-for-protocol";
@@ -92,8 +96,22 @@ export class Connection {
     if (this.current === "outdated") return;
     if (code === GOING_AWAY) this.become("ended");
     else if (this.current === "connected") this.become("reconnecting");
+    else if (this.current !== "connecting" && this.receivedCount === 0) void this.askWhy();
     setTimeout(() => this.open(), this.retryMs);
     this.retryMs = Math.min(this.retryMs * 1.6, LONGEST_RETRY_MS);
+  }
+
+  /** A socket that does not open does not tell why; a page that does not come does. */
+  private async askWhy(): Promise<void> {
+    const page = new URL(".", this.url);
+    page.protocol = page.protocol === "wss:" ? "https:" : "http:";
+    page.search = new URL(this.url).search;
+    try {
+      const { status } = await fetch(page, { cache: "no-store" });
+      if (status === UNAUTHORIZED && this.socket?.readyState !== WebSocket.OPEN) this.become("refused");
+    } catch {
+      // Nobody is there.
+    }
   }
 
   /** The server was replaced by another version: its own page is one reload away. */

@@ -20,6 +20,7 @@ export class ConnectionNotice {
       h("span", { class: "pulse" }),
       h("strong", {}, words[state]),
       state === "ended" ? h("span", {}, words.endedHint) : "",
+      state === "refused" ? h("span", {}, words.refusedHint) : "",
     );
   }
 }

@@ -25,6 +25,9 @@ const LIVE_HOME: Home = {
   height: 300,
 };
 
+/** Pixels: a tab and one line. */
+export const TIME_HEIGHT = 66;
+
 /** RViz's places: Displays left, the scene in the middle, everything else right. */
 const HOMES: Readonly<Record<PanelId, Home>> = {
   scene: { beside: [] },
@@ -64,7 +67,7 @@ const HOMES: Readonly<Record<PanelId, Home>> = {
     width: 290,
     inactive: true,
   },
-  time: { beside: [["scene", "below"]], height: 68, minimumHeight: 60 },
+  time: { beside: [["scene", "below"]], height: TIME_HEIGHT, minimumHeight: 60 },
   transformation: {
     beside: [
       ["views", "within"],
@@ -101,10 +104,31 @@ const HOMES: Readonly<Record<PanelId, Home>> = {
   },
 };
 
+/** Narrower than this, in pixels, there is no room for panels beside the scene. */
+const NARROW = 720;
+/** As wide as this panels have the widths that they would like; below it somewhat less. */
+const ROOMY = 1280;
+const LEAST_SHARE = 0.7;
+
+export function isNarrow(api: DockviewApi): boolean {
+  return api.width < NARROW;
+}
+
+/** On a phone: the scene, and below it one group with everything else. */
+function narrowHome(api: DockviewApi, id: PanelId): Home {
+  if (id === "scene") return HOMES.scene;
+  const others = (Object.keys(HOMES) as PanelId[]).filter((each) => each !== "scene" && each !== id);
+  const beside: Home["beside"] = [...others.map((each) => [each, "within"] as const), ["scene", "below"]];
+  return { beside, height: Math.round(api.height * 0.45), inactive: id !== "displays" };
+}
+
 /** Adds panels at their usual places. */
 export function addPanels(api: DockviewApi, ids: readonly PanelId[]): void {
+  const share = Math.max(LEAST_SHARE, Math.min(1, api.width / ROOMY));
   for (const id of ids) {
-    const { beside, width, height, minimumHeight, inactive } = HOMES[id];
+    const home = isNarrow(api) ? narrowHome(api, id) : HOMES[id];
+    const { beside, height, minimumHeight, inactive } = home;
+    const width = home.width === undefined ? undefined : Math.round(home.width * share);
     const found = beside.find(([other]) => api.getPanel(other) !== undefined);
     const options: AddPanelOptions = { id, component: id, tabComponent: id, title: strings.panels[id] };
     if (width !== undefined) options.initialWidth = width;

@@ -6,11 +6,12 @@ import { strings } from "../strings";
 import { AddDialog } from "./add-dialog";
 import type { MenuEntry } from "./menu";
 
-/** What can be done to the display that is selected. */
+/** What can be done to the display that is selected, or to all of them. */
 export class DisplayCommands {
   constructor(
     private readonly session: Session,
     private readonly selected: () => DisplayState | null,
+    private readonly all: () => readonly DisplayState[],
   ) {}
 
   add(): void {
@@ -19,13 +20,13 @@ export class DisplayCommands {
   }
 
   duplicate(): void {
-    const display = this.selected();
-    if (display) this.session.configuration.duplicate([display.id]);
+    const ids = this.ids;
+    if (ids.length > 0) this.session.configuration.duplicate(ids);
   }
 
   remove(): void {
-    const display = this.selected();
-    if (display) this.session.configuration.remove([display.id]);
+    const ids = this.ids;
+    if (ids.length > 0) this.session.configuration.remove(ids);
   }
 
   rename(): void {
@@ -37,8 +38,12 @@ export class DisplayCommands {
   }
 
   group(): void {
-    const display = this.selected();
-    if (display) this.session.configuration.group([display.id], strings.displays.newGroup);
+    const ids = this.ids;
+    if (ids.length > 0) this.session.configuration.group(ids, strings.displays.newGroup);
+  }
+
+  private get ids(): string[] {
+    return this.all().map(({ id }) => id);
   }
 
   /** Moves the display past the one above or below it, into and out of groups on the way as a list would. */
@@ -78,7 +83,9 @@ export class DisplayCommands {
       {
         label: display.checked ? words.disable : words.enable,
         icon: "check",
-        run: () => session.setProperty(display.enabledId, !display.checked),
+        run: () => {
+          for (const each of this.all()) session.setProperty(each.enabledId, !display.checked);
+        },
       },
       { label: words.addHint, icon: "add", keys: keyText(SHORTCUTS.add), separate: true, run: () => this.add() },
       { label: words.duplicate, icon: "duplicate", keys: keyText(SHORTCUTS.duplicate), run: () => this.duplicate() },

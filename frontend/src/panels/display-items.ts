@@ -52,6 +52,7 @@ function displayItem(
     description: describe(display, drawn),
     icon: drawn ? displayIcon(display.cls) : "unknown",
     strong: true,
+    severally: true,
     muted: !drawn || !display.enabled,
     ...(drawn && display.enabled ? { level: worstWithin(session, display) } : {}),
     ...(drawn ? {} : { badge: strings.tree.notDrawn }),
@@ -112,6 +113,7 @@ function statusItem(
     level,
     showLevelIcon: true,
     strong,
+    wide: true,
     expanded: level === "error",
     children: () =>
       worstFirst(rows).map((row) => ({

@@ -1,12 +1,17 @@
 import type { AddPanelOptions, DockviewApi, IContentRenderer } from "dockview-core/dist/esm";
 import { h } from "../dom";
 import type { DisplayPanel, PanelHost } from "../scene/displays/display-panel";
+import { isNarrow } from "./default-layout";
 import { PanelTab } from "./panel-tab";
 
 const PREFIX = "display:";
 const HEIGHT = 220;
+/** The part of the window's height that is a panel's at most. */
+const SHARE = 0.3;
 /** So many panels are put below the Displays panel; the next ones become tabs of these. */
 const MOST_BESIDE = 2;
+/** In a window lower than this, in pixels, only one of them. */
+const LOW = 700;
 
 /** The panels of displays within the dock. A restored arrangement keeps their places until their displays come. */
 export class DisplayPanels implements PanelHost {
@@ -67,13 +72,18 @@ export class DisplayPanels implements PanelHost {
     const { key, title, element } = panel;
     this.host(key).replaceChildren(element);
     const others = this.api().panels.filter(({ id }) => id.startsWith(PREFIX));
-    const options: AddPanelOptions = { id: key, component: key, tabComponent: key, title, initialHeight: HEIGHT };
+    const height = Math.min(HEIGHT, Math.round(this.api().height * SHARE));
+    const options: AddPanelOptions = { id: key, component: key, tabComponent: key, title, initialHeight: height };
     const last = others.at(-1);
-    const crowded = last !== undefined && others.length >= MOST_BESIDE;
+    const crowded = last !== undefined && others.length >= (this.api().height < LOW ? 1 : MOST_BESIDE);
     const beside = crowded ? last.id : ["displays", "scene"].find((id) => this.api().getPanel(id) !== undefined);
-    const direction = crowded ? "within" : "below";
+    const direction = crowded || isNarrow(this.api()) ? "within" : "below";
     const position = beside === undefined ? undefined : { referencePanel: beside, direction } as const;
-    this.api().addPanel(position ? { ...options, floating: false, position } : options);
+    const before = others.map(({ group }) => ({ group, height: group.height }));
+    const { group } = this.api().addPanel(position ? { ...options, floating: false, position } : options);
+    if (direction === "within") return;
+    // The dock takes the room from the others.
+    for (const each of [...before, { group, height }]) each.group.api.setSize({ height: each.height });
   }
 
   private remove(key: string): void {

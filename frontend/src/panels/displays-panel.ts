@@ -28,7 +28,7 @@ export class DisplaysPanel implements Panel {
 
   constructor(private readonly session: Session) {
     this.tree = new TreeView(strings.panels.displays, () => this.items(), () => session.frames.names);
-    this.commands = new DisplayCommands(session, () => this.selected);
+    this.commands = new DisplayCommands(session, () => this.selected, () => this.selectedAll);
     this.nothing.hidden = true;
     this.element = h("div", { class: "panel displays-panel" }, this.toolbar(), this.filterBar(), this.nothing, this.tree.element, this.help);
     this.listen();
@@ -39,6 +39,12 @@ export class DisplaysPanel implements Panel {
   /** The display that the selected row is of or belongs to. */
   private get selected(): DisplayState | null {
     return this.displayOf(this.tree.selection);
+  }
+
+  /** The displays of all selected rows. */
+  private get selectedAll(): DisplayState[] {
+    const displays = this.tree.selections.flatMap((key) => this.displayOf(key) ?? []);
+    return [...new Set(displays)];
   }
 
   private toolbar(): HTMLElement {
@@ -123,7 +129,7 @@ export class DisplaysPanel implements Panel {
       const display = this.displayOf(found?.item.key ?? null);
       if (!found || !display || (event.target instanceof Element && event.target.matches("input[type=text]"))) return;
       event.preventDefault();
-      found.element.focus();
+      if (!tree.selections.includes(found.item.key)) found.element.focus();
       const words = strings.displays;
       const box = found.element.getBoundingClientRect();
       const [x, y] = event.clientX === 0 && event.clientY === 0 ? [box.left + 24, box.bottom] : [event.clientX, event.clientY];

@@ -1,7 +1,7 @@
 // The package's main file writes its styles into the page at run time, which our content security policy forbids.
 import { createDockview, type DockviewApi, type IContentRenderer } from "dockview-core/dist/esm";
 import { strings } from "../strings";
-import { addPanels } from "./default-layout";
+import { addPanels, TIME_HEIGHT } from "./default-layout";
 import { DisplayPanels } from "./display-panels";
 import type { Panel, PanelId } from "./panel";
 import { PanelTab } from "./panel-tab";
@@ -41,9 +41,8 @@ export class Dock {
 
   /** Opens a panel where it belongs, or brings it to the front. */
   open(id: PanelId): void {
-    const panel = this.api.getPanel(id);
-    if (panel) panel.api.setActive();
-    else addPanels(this.api, [id]);
+    if (!this.isOpen(id)) addPanels(this.api, [id]);
+    this.api.getPanel(id)?.api.setActive();
   }
 
   close(id: PanelId): void {
@@ -61,6 +60,8 @@ export class Dock {
     const joints = this.api.getPanel("joints") !== undefined;
     this.api.clear();
     addPanels(this.api, ["scene", "time", "displays", "links", "views", "tool-properties", "selection", "diagnostics", ...(joints ? (["joints"] as const) : [])]);
+    // Added panels take their share of the whole, whatever height they ask for.
+    this.api.getPanel("time")?.group.api.setSize({ height: TIME_HEIGHT });
     this.displayPanels.restore();
   }
 

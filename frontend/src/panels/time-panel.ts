@@ -5,7 +5,8 @@ import { strings } from "../strings";
 import type { Panel } from "./panel";
 import { whenSeen } from "./when-seen";
 
-const REFRESH_MS = 100;
+/** Of the figures. Without a GPU each change of any of them costs as much as half a frame of the scene. */
+const REFRESH_MS = 1000;
 const MODES: readonly SyncMode[] = ["Off", "Exact", "Approximate"];
 const FIGURES: readonly (keyof Times)[] = ["ros", "rosElapsed", "wall", "wallElapsed"];
 
@@ -35,7 +36,7 @@ export class TimePanel implements Panel {
       this.pause,
       labelled(words.sync, this.mode),
       labelled(words.source, this.source),
-      ...this.figures.map(({ name, output }) => labelled(words[name], output)),
+      ...this.figures.map(({ name, output }) => labelled(words[name], output, name)),
       h("span", { class: "spacer" }),
       button(words.resetHint, () => time.reset(), "tool", icon("reset"), words.reset),
     );
@@ -46,6 +47,7 @@ export class TimePanel implements Panel {
       time.watch(seen);
       clearInterval(this.timer);
       if (seen) this.timer = window.setInterval(() => this.tick(), REFRESH_MS);
+      if (seen) this.tick();
     });
   }
 
@@ -58,6 +60,7 @@ export class TimePanel implements Panel {
     this.source.replaceChildren(...["", ...names].map((name) => new Option(name)));
     this.source.value = source;
     this.source.disabled = mode === "Off";
+    this.tick();
   }
 
   private tick(): void {
@@ -70,6 +73,6 @@ export class TimePanel implements Panel {
   }
 }
 
-function labelled(text: string, element: HTMLElement): HTMLElement {
-  return h("label", { class: "labelled-row" }, h("span", {}, text), element);
+function labelled(text: string, element: HTMLElement, name = ""): HTMLElement {
+  return h("label", { class: `labelled-row ${name}` }, h("span", {}, text), element);
 }

@@ -99,6 +99,8 @@ export const en = {
     reconnecting: "Connection lost, trying again",
     ended: "The program has ended",
     endedHint: "Start it again and open the address that it prints.",
+    refused: "The program was started again",
+    refusedHint: "Open the address that it printed.",
     outdated: "This page is of another version than the program. Close it and open the program's address anew.",
   },
   status: {

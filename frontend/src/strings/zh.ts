@@ -92,6 +92,8 @@ export const zh: Strings = {
     reconnecting: "连接中断，正在重试",
     ended: "程序已结束",
     endedHint: "请再次启动程序，并打开它给出的地址。",
+    refused: "程序已重新启动",
+    refusedHint: "请打开它给出的地址。",
     outdated: "本页与程序的版本不同。请关闭本页，重新打开程序给出的地址。",
   },
   status: {

@@ -9,5 +9,7 @@ export function filterItems(items: readonly TreeItem[], text: string): readonly 
 function filtered(item: TreeItem, wanted: string): TreeItem[] {
   if (item.name.toLowerCase().includes(wanted)) return [item];
   const below = (item.children?.() ?? []).flatMap((child) => filtered(child, wanted));
-  return below.length > 0 ? [{ ...item, open: true, children: () => below }] : [];
+  if (below.length === 0) return [];
+  // Its value may be one that is read anew whenever it is shown.
+  return [{ ...item, get value() { return item.value; }, open: true, children: () => below }];
 }

@@ -15,6 +15,10 @@ export interface TreeItem {
   readonly showLevelIcon?: boolean;
   readonly strong?: boolean;
   readonly muted?: boolean;
+  /** Its name takes the whole row. */
+  readonly wide?: boolean;
+  /** Several of such rows can be selected at once. */
+  readonly severally?: boolean;
   /** Shown behind the name, small. */
   readonly badge?: string;
   readonly options?: readonly string[];

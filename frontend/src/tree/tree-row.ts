@@ -31,6 +31,7 @@ export class TreeRow {
     const { classList } = this.element;
     classList.toggle("strong", item.strong === true);
     classList.toggle("muted", item.muted === true);
+    classList.toggle("wide", item.wide === true);
     classList.toggle("warn", item.level === "warn");
     classList.toggle("error", item.level === "error");
     this.twist.classList.toggle("leaf", !item.children);

@@ -21,6 +21,8 @@ export class TreeView {
   private readonly expansion = new Map<string, boolean>();
   private lines: Line[] = [];
   private selectedKey: string | null = null;
+  /** What is selected besides, of the rows that can be selected severally. */
+  private readonly others = new Set<string>();
   private scrollTo: string | null = null;
 
   constructor(
@@ -28,14 +30,15 @@ export class TreeView {
     private readonly items: () => readonly TreeItem[],
     private readonly frames: () => readonly string[],
   ) {
-    this.list = h("div", { class: "tree", role: "tree", aria: { label } });
+    this.list = h("div", { class: "tree", role: "tree", aria: { label, multiselectable: "true" } });
     this.element = h("div", { class: "tree-box" }, this.list, new ColumnSplitter().element);
+    this.list.addEventListener("mousedown", (event) => this.pressed(event));
     this.list.addEventListener("click", (event) => this.clicked(event));
     this.list.addEventListener("dblclick", (event) => this.doubleClicked(event));
     this.list.addEventListener("keydown", (event) => this.keyed(event));
     this.list.addEventListener("focusin", (event) => {
       const key = keyOf(event.target);
-      if (key !== null) this.select(key);
+      if (key !== null && !this.isSelected(key)) this.select(key);
     });
     this.refresh();
   }
@@ -44,6 +47,7 @@ export class TreeView {
   reveal(path: readonly string[]): void {
     for (const key of path.slice(0, -1)) this.expansion.set(key, true);
     this.selectedKey = path.at(-1) ?? null;
+    this.others.clear();
     this.scrollTo = this.selectedKey;
     this.refresh();
   }
@@ -78,6 +82,11 @@ export class TreeView {
     return this.selectedKey !== null && this.rows.has(this.selectedKey) ? this.selectedKey : null;
   }
 
+  /** The keys of all rows that are selected, from the top. */
+  get selections(): string[] {
+    return this.lines.map(({ item }) => item.key).filter((key) => this.isSelected(key));
+  }
+
   /** The row that an event is about. */
   itemAt(target: EventTarget | null): { item: TreeItem; element: HTMLElement } | null {
     const row = this.rows.get(keyOf(target) ?? "");
@@ -96,7 +105,7 @@ export class TreeView {
         this.rows.set(item.key, row);
       }
       row.show(item, expanded);
-      row.selected = item.key === this.selectedKey;
+      row.selected = this.isSelected(item.key);
       keep.add(item.key);
       elements.push(row.element);
     }
@@ -133,23 +142,77 @@ export class TreeView {
     this.refresh();
   }
 
-  private select(key: string): void {
-    if (key === this.selectedKey) return;
-    if (this.selectedKey !== null) {
-      const before = this.rows.get(this.selectedKey);
-      if (before) before.selected = false;
-    }
+  private isSelected(key: string): boolean {
+    return key === this.selectedKey || this.others.has(key);
+  }
+
+  private select(key: string, keep = false): void {
+    if (!keep) this.others.clear();
+    else if (this.selectedKey !== null && this.isSeveral(this.selectedKey)) this.others.add(this.selectedKey);
+    this.others.delete(key);
+    const news = key !== this.selectedKey;
     this.selectedKey = key;
+    this.showSelection();
     const row = this.rows.get(key);
-    if (!row) return;
-    row.selected = true;
-    this.selected.emit(row.item);
+    if (row && news) this.selected.emit(row.item);
+  }
+
+  private showSelection(): void {
+    for (const [key, row] of this.rows) row.selected = this.isSelected(key);
+  }
+
+  private isSeveral(key: string): boolean {
+    return this.rows.get(key)?.item.severally === true;
+  }
+
+  /** Ctrl+click: one more, or one less. */
+  private toggle(key: string): void {
+    if (key !== this.selectedKey && !this.others.delete(key)) this.select(key, true);
+    else if (key === this.selectedKey && this.others.size > 0) {
+      const [next = key] = this.others;
+      this.others.delete(next);
+      this.selectedKey = next;
+    }
+    this.showSelection();
+  }
+
+  /** Shift+click: all from the selected row to this one. */
+  private extend(key: string): void {
+    const [from, to] = [this.selectedKey, key].map((each) => this.lines.findIndex(({ item }) => item.key === each));
+    if (from === undefined || to === undefined || from < 0) return;
+    this.others.clear();
+    for (const { item } of this.lines.slice(Math.min(from, to), Math.max(from, to) + 1)) {
+      if (item.severally === true && item.key !== this.selectedKey) this.others.add(item.key);
+    }
+    this.showSelection();
+  }
+
+  /** Shift and an arrow: the next such row too, which becomes the one with the focus. */
+  private grow(index: number, step: number): void {
+    let at = index + step;
+    while (this.lines[at] && this.lines[at]?.item.severally !== true) at += step;
+    const key = this.lines[at]?.item.key;
+    if (key === undefined) return;
+    this.select(key, true);
+    this.rows.get(key)?.element.focus();
+  }
+
+  /** Adding to what is selected, and the menu of several, must not move the focus: that selects one row alone. */
+  private pressed(event: MouseEvent): void {
+    const key = keyOf(event.target);
+    if (key === null || !this.isSeveral(key)) return;
+    if (adds(event) || (event.button === 2 && this.others.size > 0 && this.isSelected(key))) event.preventDefault();
   }
 
   private clicked(event: MouseEvent): void {
     const target = event.target as HTMLElement;
     const row = this.rows.get(keyOf(target) ?? "");
     if (!row) return;
+    if (adds(event) && row.item.severally === true && this.selectedKey !== null && this.isSeveral(this.selectedKey)) {
+      if (event.shiftKey) this.extend(row.item.key);
+      else this.toggle(row.item.key);
+      return;
+    }
     this.select(row.item.key);
     if (target.closest(".twist")) this.setExpanded(row.item, !this.isExpanded(row.item));
     if (!target.closest(".row-value")) row.element.focus({ preventScroll: true });
@@ -172,10 +235,9 @@ export class TreeView {
     if (!row || !(event.target as HTMLElement).matches("[role=treeitem], .check")) return;
     switch (event.key) {
       case "ArrowDown":
-        this.focusLine(index + 1);
-        break;
       case "ArrowUp":
-        this.focusLine(index - 1);
+        if (event.shiftKey) this.grow(index, event.key === "ArrowDown" ? 1 : -1);
+        else this.focusLine(index + (event.key === "ArrowDown" ? 1 : -1));
         break;
       case "Home":
         this.focusLine(0);
@@ -208,8 +270,16 @@ export class TreeView {
 
   private focusLine(index: number): void {
     const key = this.lines[index]?.item.key;
-    if (key !== undefined) this.rows.get(key)?.element.focus();
+    if (key === undefined) return;
+    this.others.clear();
+    this.rows.get(key)?.element.focus();
+    this.showSelection();
   }
+}
+
+/** Whether a click adds to what is selected. */
+function adds(event: MouseEvent): boolean {
+  return event.shiftKey || event.ctrlKey || event.metaKey;
 }
 
 function keyOf(target: EventTarget | null): string | null {

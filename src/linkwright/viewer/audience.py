@@ -5,8 +5,10 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from typing import TYPE_CHECKING
 
+from linkwright.graph import run_logged
 from linkwright.viewer.line import Line
 from linkwright.viewer.outbox import TRANSFORMS, Made, Outbox, Payload
 from linkwright.viewer.pace import Pace
@@ -253,4 +255,4 @@ class Audience(Circle):
                 if isinstance(decoded, Received):
                     page.received(decoded.count)
                 else:
-                    self._receive(page, decoded)
+                    run_logged(self._logger, f"'{decoded.type}' of a page", partial(self._receive, page, decoded))

@@ -53,9 +53,10 @@ def list_folder(text: str | None, folder: Path) -> Folder:
     Raises:
         LinkwrightError: RVIZ106, it cannot be read.
     """
-    path = Path(os.path.normpath(folder / Path(text or "").expanduser()))
     folders, files = [], []
+    path = folder / (text or "")
     try:
+        path = Path(os.path.normpath(folder / Path(text or "").expanduser()))
         with os.scandir(path) as entries:
             for entry in entries:
                 if entry.name.startswith("."):
@@ -65,7 +66,7 @@ def list_folder(text: str | None, folder: Path) -> Folder:
                         folders.append(entry.name)
                     elif entry.name.endswith(ENDING) and entry.is_file():
                         files.append(entry.name)
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, RuntimeError) as error:  # the last when there is no such user
         reason = getattr(error, "strerror", None) or error
         raise LinkwrightError(Diagnostic("RVIZ106", f"cannot list the folder '{path}': {reason}")) from None
     parent = None if path.parent == path else str(path.parent)

@@ -12,6 +12,12 @@ from linkwright.viewer.protocol import EditKind, EditName
 from linkwright.viewer.rviz_config import Arrangement, RvizConfig
 from linkwright.viewer.yaml_tree import Memory
 
+MAXIMUM_DISPLAYS = 1000
+"""Most displays; pages may add no more."""
+
+MAXIMUM_NESTING = 20
+"""Most groups around a display; pages may put none deeper, so that the file stays one that can be read."""
+
 
 class DisplayTree:
     """The displays, which follow the entries of the configuration.
@@ -91,8 +97,10 @@ class DisplayTree:
             prepare: sets properties before it starts.
 
         Raises:
-            ValueError: the group is none.
+            ValueError: the group is none, or nested too deeply, or there are too many displays.
         """
+        self._check_room([entry])
+        _check_nesting(group, [entry])
         display = self._make(entry)
         if prepare is not None:
             prepare(display)
@@ -100,10 +108,16 @@ class DisplayTree:
         return display
 
     def duplicate(self, displays: Sequence[ViewerDisplay]) -> None:
-        """Show a display alike after each of these."""
+        """Show a display alike after each of these.
+
+        Raises:
+            ValueError: there are too many displays.
+        """
+        entries = _outermost(displays)
+        self._check_room(entries)
 
         def copy() -> None:
-            for entry in _outermost(displays):
+            for entry in entries:
                 siblings = self._config.siblings(entry.group)
                 self._config.insert(self._config.duplicate(entry), entry.group, siblings.index(entry) + 1)
 
@@ -124,11 +138,12 @@ class DisplayTree:
         """Put displays into a group, in front of one of it or last.
 
         Raises:
-            ValueError: the group is none, or inside of one of the displays.
+            ValueError: the group is none, or inside of one of the displays, or nested too deeply.
         """
         moved = _outermost(displays)
         if group is not None and (not group.is_group or any(group in entry.walk() for entry in moved)):
             raise ValueError(f"displays cannot be put into '{group.name}'")
+        _check_nesting(group, moved)
 
         def shift() -> None:
             siblings = self._config.siblings(group)
@@ -141,10 +156,16 @@ class DisplayTree:
         self._rearrange(_named("move", displays), shift)
 
     def gather(self, displays: Sequence[ViewerDisplay], name: str) -> None:
-        """Put displays into a new group, where the first of them is."""
+        """Put displays into a new group, where the first of them is.
+
+        Raises:
+            ValueError: there are too many displays, or the group is nested too deeply.
+        """
         moved = _outermost(displays)
         around, at = moved[0].group, self._config.siblings(moved[0].group).index(moved[0])
         group = self._config.make_group(name)
+        self._check_room([group])
+        _check_nesting(around, moved, more=1)
 
         def put_together() -> None:
             self._config.insert(group, around, at)
@@ -229,9 +250,29 @@ class DisplayTree:
         for message in display.messages():
             self._stage.publish(message)
 
+    def _check_room(self, entries: Sequence[DisplayConfig]) -> None:
+        if len(self.displays) + sum(1 for entry in entries for _ in entry.walk()) > MAXIMUM_DISPLAYS:
+            raise ValueError(f"there can be no more than {MAXIMUM_DISPLAYS} displays")
+
     def _make(self, entry: DisplayConfig) -> ViewerDisplay:
         entry.identity = entry.identity or self._next_id()
         return make_display(self._stage, entry.identity, entry)
+
+
+def _check_nesting(group: DisplayConfig | None, entries: Sequence[DisplayConfig], more: int = 0) -> None:
+    """Raise ValueError if entries have too many groups around them or in them once they are in a group."""
+    if _depth(group) + more + max(map(_height, entries)) > MAXIMUM_NESTING:
+        raise ValueError(f"groups cannot be nested deeper than {MAXIMUM_NESTING}")
+
+
+def _depth(group: DisplayConfig | None) -> int:
+    """How many groups are around what is in a group."""
+    return 0 if group is None else 1 + _depth(group.group)
+
+
+def _height(entry: DisplayConfig) -> int:
+    """How many groups are around the innermost display of an entry, itself among them."""
+    return 1 + max(map(_height, entry.displays), default=0) if entry.is_group else 0
 
 
 def _outermost(displays: Sequence[ViewerDisplay]) -> list[DisplayConfig]:

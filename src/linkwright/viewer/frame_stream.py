@@ -28,9 +28,11 @@ _SHORTEST_PAUSE = 0.004
 """Seconds between two looks at the buffer that find nothing new, so that a flood of equal transforms costs little."""
 
 _AHEAD = 0.8
-"""Part of the time between two updates by which one may come too early: the rate holds for many of them.
+_HURRY = 0.95
+"""Parts of the time between two updates: by which one may come too early, and after which the next one is due.
 
-Transforms that come at the very rate, but at other moments than updates are due, so hardly have to wait.
+Transforms that come at the very rate, but at other moments than updates are due, so hardly have to wait: each of them
+waits a little shorter than the one before.
 """
 
 _AGE_PERIOD = 0.25
@@ -194,7 +196,8 @@ class FrameStream:
 
     def _age(self) -> None:
         self._ageing = self._loop.call_later(_AGE_PERIOD, self._age)
-        if self._settings.fade_time() is not None and self._ages.any():
+        quiet = self._loop.time() - self._looked_at > _AGE_PERIOD / 2
+        if quiet and self._settings.fade_time() is not None and self._ages.any():
             self._wake()
 
     def _look(self) -> None:
@@ -268,7 +271,7 @@ class FrameStream:
         What is sent a little late does not make the next one later: transforms that come at the rate would else wait
         longer and longer, until one of them is left out.
         """
-        period = 1.0 / self._settings.rate()
+        period = _HURRY / self._settings.rate()
         in_time = self._looked_at - self._due < period / 2
         return (self._due if in_time else self._looked_at) + period
 

@@ -12,6 +12,9 @@ from linkwright.viewer.manager import VisualizationManager
 LINGERING = 60.0
 """Seconds that displays of a page's own wait for it: it may be loading anew, or have lost its connection."""
 
+MOST_LINGERING = 8
+"""Of more that wait for their page the one that has waited longest ends."""
+
 _KEY = re.compile(r"[0-9A-Za-z-]{8,64}")
 
 
@@ -66,6 +69,8 @@ class Managers:
         manager.pages.discard(page)
         if manager is not self.shared and not len(manager.pages):
             self._ends[page.own] = asyncio.get_running_loop().call_later(LINGERING, self._drop, page.own)
+            if len(self._ends) > MOST_LINGERING:
+                self._drop(next(iter(self._ends)))
 
     def close(self) -> None:
         """End all of them."""

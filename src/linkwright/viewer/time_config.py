@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from linkwright.viewer.former_names import modern_class
+from linkwright.viewer.former_names import is_former
 from linkwright.viewer.protocol import SyncMode
 from linkwright.viewer.yaml_tree import Section
 
 _PANELS = "Panels"
-_TIME = ("rviz_common/Time", modern_class("rviz/Time"))
+_TIME = ("rviz_common/Time", "rviz/Time")
 _MODES: tuple[SyncMode, ...] = ("Off", "Exact", "Approximate")
 
 
@@ -22,9 +22,9 @@ class Synchronization:
 
 
 def read_synchronization(document: Section) -> Synchronization:
-    """What the Time panel says; RViz looks at it only where ``Experimental`` is on."""
+    """What the Time panel says; RViz looks at it only where ``Experimental`` is on, which RViz 1 at last left out."""
     panel = _panel(document)
-    if panel is None or _text(panel, "Experimental").lower() != "true":
+    if panel is None or not (_text(panel, "Experimental").lower() == "true" or _is_always_on(panel)):
         return Synchronization()
     number = _text(panel, "SyncMode")
     if number not in ("1", "2"):
@@ -39,9 +39,14 @@ def write_synchronization(document: Section, wanted: Synchronization) -> bool:
         return False
     panel.put(("SyncMode",), str(_MODES.index(wanted.mode)))
     panel.put(("SyncSource",), wanted.source, string=True)
-    if wanted.mode != "Off":
+    if wanted.mode != "Off" and not _is_always_on(panel):
         panel.put(("Experimental",), "true")
     return True
+
+
+def _is_always_on(panel: Section) -> bool:
+    """Whether the panel is one of RViz 1 as of Noetic. Without a source its mode is none that could lead time."""
+    return is_former(_text(panel, "Class")) and not _text(panel, "Experimental") and bool(_text(panel, "SyncSource"))
 
 
 def _panel(document: Section) -> Section | None:

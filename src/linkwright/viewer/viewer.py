@@ -221,7 +221,9 @@ class Viewer:
         return [*own, self._configurations, self._joints, self._descriptions, *live_panels(desk)]
 
     def _exports(self) -> PageFeature:
-        return ExportFeature(lambda page, view: self.snapshot(self._managers.of(page), view), self._exported)
+        return ExportFeature(
+            lambda page, view: self.snapshot(self._managers.of(page), view), self._exported, self._node.get_logger()
+        )
 
     def _opening(self, page: Page) -> list[Payload]:
         manager = self._managers.enter(page)

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 from linkwright.viewer.property_store import Path, Schema
-from linkwright.viewer.protocol import Property, PropertyValue, View, ViewClass
+from linkwright.viewer.protocol import Property, PropertyValue, ViewClass
 from linkwright.viewer.schema import FIXED_FRAME, PropertySpec, vector
 
 ORBIT = "rviz_default_plugins/Orbit"
@@ -102,15 +102,6 @@ VIEW_SCHEMAS: dict[str, Schema] = {
 def value_paths(schema: Schema) -> dict[str, Path]:
     """The properties that have a value, by their names joined with ``/``, as `View.values` has them."""
     return {"/".join(path): path for path, spec in _walk(schema, ()) if spec.kind != "group"}
-
-
-def default_view(cls: str = ORBIT) -> View:
-    """A view with RViz's defaults.
-
-    Raises:
-        KeyError: there is no such class.
-    """
-    return View(cls, CURRENT_NAME, _defaults(VIEW_SCHEMAS[cls]))
 
 
 def view_classes() -> list[ViewClass]:

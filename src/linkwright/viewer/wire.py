@@ -20,8 +20,9 @@ class BadMessageError(ValueError):
 
 
 def encode(message: ServerMessage) -> str:
-    """A message as JSON."""
-    return json.dumps(_plain(message), ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+    """A message as JSON. Half characters, as names of files may have that are not in UTF-8, become question marks."""
+    text = json.dumps(_plain(message), ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+    return text if _is_whole(text) else text.encode("utf-8", "replace").decode()
 
 
 def redundancy_key(message: ServerMessage) -> str:
@@ -92,7 +93,7 @@ def _read(expected: Any, value: Any, where: str) -> Any:
         if isinstance(value, list):
             return [_read(arguments[0], item, f"{where}[]") for item in value]
     elif origin is dict:
-        if isinstance(value, dict):
+        if isinstance(value, dict) and all(map(_is_whole, value)):
             return {key: _read(arguments[1], item, f"{where}[]") for key, item in value.items()}
     elif origin in (Union, types.UnionType):
         for argument in arguments:
@@ -118,7 +119,18 @@ def _is_plain(expected: Any, value: Any) -> bool:
         return isinstance(value, (int, float)) and not isinstance(value, bool) and _is_finite(value)
     if expected is int:
         return isinstance(value, int) and not isinstance(value, bool)
-    return isinstance(value, expected)
+    return isinstance(value, expected) and (expected is not str or _is_whole(value))
+
+
+def _is_whole(text: str) -> bool:
+    """Whether a text can be in UTF-8: JSON may name halves of characters, which nothing else can hold."""
+    if text.isascii():
+        return True
+    try:
+        text.encode()
+    except UnicodeEncodeError:
+        return False
+    return True
 
 
 def _is_finite(value: float) -> bool:

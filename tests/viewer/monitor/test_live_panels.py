@@ -316,6 +316,21 @@ async def test_parameters_are_shown_with_what_is_known_of_them():
         assert rows["big"]["values"] == [str(2**60)]
 
 
+async def test_a_node_whose_name_is_none_has_no_parameters():
+    async with opened() as (made, client):
+        tuned(made)
+        await client.send("watch_parameters", listed=True, node="no name")
+        answer = await client.until("node_parameters", node="no name")
+        assert answer["parameters"] == []
+        assert "is not a valid service name" in answer["error"]
+        await client.socket.send_json(
+            {"type": "set_parameter", "node": "no name", "name": "a", "kind": "bool", "values": ["true"]}
+        )
+        await client.send("watch_parameters", listed=False, node="/tuned")
+        assert (await client.until("node_parameters", node="/tuned"))["error"] is None
+        assert "failed" not in made.logged()
+
+
 async def test_parameters_are_set_and_refused_with_the_reason():
     async with opened() as (made, client):
         node = tuned(made)

@@ -7,15 +7,18 @@ import {
   Matrix4,
   Mesh,
   RGBAFormat,
+  Vector3,
+  type Camera,
   type Object3D,
   type Raycaster,
   type ShaderMaterial,
-  type Vector3,
 } from "three";
 import { slotMaterial, SLOTS_PER_ROW, TEXELS_PER_SLOT } from "./slot-material";
 
 const FLOATS_PER_SLOT = TEXELS_PER_SLOT * 4;
 const WHITE = 0xffffff;
+/** More copies than these are drawn in the order in which they were added, though they can be seen through. */
+const MOST_SORTED = 1000;
 /** After everything but labels. */
 const OVERLAY_ORDER = 5;
 
@@ -42,6 +45,8 @@ export class CopyBatch {
   private capacity = 0;
   private count = 0;
   private seeThrough = false;
+  /** Which copy stands in which slot, where they were sorted. */
+  private order: number[] | null = null;
 
   constructor(
     parent: Object3D,
@@ -57,6 +62,7 @@ export class CopyBatch {
       this.mesh.renderOrder = OVERLAY_ORDER;
     }
     this.mesh.visible = false;
+    this.mesh.onBeforeRender = (_renderer, _scene, camera) => this.sort(camera);
     // The copies are all over the place: a bounding sphere of them costs more than drawing them.
     this.mesh.frustumCulled = false;
     this.mesh.matrixAutoUpdate = false;
@@ -73,6 +79,7 @@ export class CopyBatch {
   begin(expected: number): void {
     this.count = 0;
     this.seeThrough = false;
+    this.order = null;
     if (expected <= this.capacity) return;
     this.capacity = Math.ceil((expected * 1.25) / SLOTS_PER_ROW) * SLOTS_PER_ROW;
     this.mesh.geometry.dispose();
@@ -124,7 +131,7 @@ export class CopyBatch {
       this.matrixOf(copy, this.probe.matrixWorld).premultiply(matrixWorld);
       const [hit] = ray.intersectObject(this.probe, false);
       if (hit && (best === null || hit.distance < best.distance)) {
-        best = { copy, distance: hit.distance, point: hit.point };
+        best = { copy: this.order?.[copy] ?? copy, distance: hit.distance, point: hit.point };
       }
     }
     return best;
@@ -136,6 +143,29 @@ export class CopyBatch {
     this.mesh.material.dispose();
     this.slots.value.dispose();
     this.shape.dispose();
+  }
+
+  /** Copies that can be seen through are drawn from the farthest to the nearest. */
+  private sort(camera: Camera): void {
+    if (!this.seeThrough || this.isOverlay || this.count < 2 || this.count > MOST_SORTED) return;
+    if (!this.shape.boundingBox) this.shape.computeBoundingBox();
+    const middle = this.shape.boundingBox?.getCenter(new Vector3()) ?? new Vector3();
+    const view = new Matrix4().multiplyMatrices(camera.matrixWorldInverse, this.mesh.matrixWorld);
+    const matrix = new Matrix4();
+    const at = new Vector3();
+    const heights = Array.from({ length: this.count }, (_, slot) => {
+      return at.copy(middle).applyMatrix4(this.matrixOf(slot, matrix)).applyMatrix4(view).z;
+    });
+    if (heights.every((height, slot) => slot === 0 || (heights[slot - 1] ?? 0) <= height)) return;
+    const sorted = heights.map((_, slot) => slot).sort((a, b) => (heights[a] ?? 0) - (heights[b] ?? 0));
+    const data = this.slots.value.image.data as Float32Array;
+    const before = data.slice(0, this.count * FLOATS_PER_SLOT);
+    sorted.forEach((slot, to) => {
+      data.set(before.subarray(slot * FLOATS_PER_SLOT, (slot + 1) * FLOATS_PER_SLOT), to * FLOATS_PER_SLOT);
+    });
+    const { order } = this;
+    this.order = sorted.map((slot) => order?.[slot] ?? slot);
+    this.slots.value.needsUpdate = true;
   }
 
   private matrixOf(copy: number, matrix: Matrix4): Matrix4 {

@@ -15,7 +15,7 @@ const VERTEX = /* glsl */ `
     return texelFetch(slots, ivec2((index % ${SLOTS_PER_ROW}) * ${TEXELS_PER_SLOT} + part, index / ${SLOTS_PER_ROW}), 0);
   }
   vec3 unpacked(float rgb) {
-    return mod(floor(vec3(rgb / 65536.0, rgb / 256.0, rgb)), 256.0) / 255.0;
+    return vec3((uvec3(rgb) >> uvec3(16u, 8u, 0u)) & 255u) * (1.0 / 255.0);
   }
   void main() {
     vec4 row0 = texel(0), row1 = texel(1), row2 = texel(2), look = texel(3);

@@ -6,7 +6,7 @@ import re
 from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.workspace import PackageFinder
+from linkwright.workspace import PackageFinder, enclosing_package
 
 _PACKAGE = re.compile(r"package://([^/\s\"'%]+)/")
 _ENDINGS = frozenset(
@@ -55,18 +55,20 @@ class Assets:
             share = self._finder.find(found[1])
             if share is None:
                 raise AssetRefusedError(f"there is no package '{found[1]}'")
-            return _content(share, relative)
+            return _content(found[1], share, relative)
         except LinkwrightError as error:
             raise AssetRefusedError(error.diagnostics[0].message) from None
         except OSError as error:
             raise AssetRefusedError(error.strerror or str(error)) from None
 
 
-def _content(share: Path, relative: PurePosixPath) -> bytes:
-    """The file, links followed and checked."""
+def _content(package: str, share: Path, relative: PurePosixPath) -> bytes:
+    """The file, links followed and checked: they may lead into another folder of the package, as colcon lays them."""
     path = (share / relative).resolve(strict=True)
     if not path.is_relative_to(share.resolve(strict=True)):
-        raise AssetRefusedError("a link leads out of the package")
+        enclosing = enclosing_package(path.parent)
+        if enclosing is None or enclosing[0] != package:
+            raise AssetRefusedError("a link leads out of the package")
     if not path.is_file() or path.suffix.lower() not in _ENDINGS:
         raise AssetRefusedError("it is no mesh and no image")
     if path.stat().st_size > _LARGEST:

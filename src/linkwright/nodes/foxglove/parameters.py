@@ -38,6 +38,7 @@ class Parameters:
                 by_node[node] = [*(by_node.get(node) or ()), parameter]
         else:
             by_node = dict.fromkeys(self._nodes())
+        self._forget_the_gone()
         found = await asyncio.gather(*(self._of(node, wanted) for node, wanted in by_node.items()))
         return [each for parameters in found for each in parameters if self._wanted.accepts(each["name"])]
 
@@ -46,7 +47,7 @@ class Parameters:
         for each in told:
             name = str(each.get("name", ""))
             node, _, parameter = name.partition(".")
-            if parameter and self._wanted.accepts(name):
+            if parameter and node in self._nodes() and self._wanted.accepts(name):
                 value = _value(each)
                 await self._answer(self._client(node).set_parameters([Parameter(parameter, value=value)]))
 
@@ -65,7 +66,13 @@ class Parameters:
         }
         return sorted(services - {own})
 
+    def _forget_the_gone(self) -> None:
+        for node in self._clients.keys() - set(self._nodes()):
+            self._clients.pop(node).destroy()
+
     async def _of(self, node: str, wanted: Sequence[str] | None) -> list[dict[str, Any]]:
+        if node not in self._nodes():
+            return []
         client = self._client(node)
         if wanted is None:
             listed = await self._answer(client.list_parameters())

@@ -59,7 +59,7 @@ class CameraDisplay(ImageTopicDisplay):
     def __init__(self, stage: Stage, identity: str, config: DisplayConfig) -> None:
         self._boxes: Schema = ()
         super().__init__(stage, identity, config)
-        self._infos = SideTopic(stage.node, "sensor_msgs/msg/CameraInfo", self._info_received)
+        self._infos = SideTopic(stage, "sensor_msgs/msg/CameraInfo", self._info_received)
         self._info: Any = None
 
     def schema(self) -> Schema:
@@ -101,6 +101,11 @@ class CameraDisplay(ImageTopicDisplay):
         """Show an image, once it is known how the camera looks."""
         camera = self._model(message)
         self.show_image(message, camera, pose)
+
+    def time_changed(self) -> None:
+        """Show what came while time stood still."""
+        self._infos.go_on()
+        super().time_changed()
 
     def reset(self) -> None:
         """Forget image and camera."""

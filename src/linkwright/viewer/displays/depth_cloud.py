@@ -54,8 +54,8 @@ class DepthCloudDisplay(CloudDisplay):
 
     def __init__(self, stage: Stage, identity: str, config: DisplayConfig) -> None:
         super().__init__(stage, identity, config)
-        self._infos = SideTopic(stage.node, "sensor_msgs/msg/CameraInfo", self._info_received)
-        self._colours = SideTopic(stage.node, _IMAGE, self._colour_received)
+        self._infos = SideTopic(stage, "sensor_msgs/msg/CameraInfo", self._info_received)
+        self._colours = SideTopic(stage, _IMAGE, self._colour_received)
         self._builder = DepthCloudBuilder()
         self._info: Any = None
         self._pixel = 0.0
@@ -93,6 +93,12 @@ class DepthCloudDisplay(CloudDisplay):
         super().changed(path)
         if path[0] in (AUTO_SIZE, OCCLUSION):
             self.show_again()
+
+    def time_changed(self) -> None:
+        """Show what came while time stood still."""
+        self._infos.go_on()
+        self._colours.go_on()
+        super().time_changed()
 
     def reset(self) -> None:
         """Forget everything that was covered."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from linkwright.diagnostics import LinkwrightError
@@ -48,6 +50,7 @@ class InteractiveMarkersDisplay(DataDisplay):
         self._markers: dict[str, Any] = {}
         self._poses: dict[str, list[float]] = {}
         self._unplaced: set[str] = set()
+        self._held: list[Callable[[], None]] = []
         self._index = MeshIndex(stage.finder)
 
     @classmethod
@@ -87,6 +90,13 @@ class InteractiveMarkersDisplay(DataDisplay):
         for name in list(self._markers):
             self._show(name)
 
+    def time_changed(self) -> None:
+        """Show what the server said while time stood still."""
+        if not self.stage.time.paused:
+            held, self._held = self._held, []
+            for take in held:
+                take()
+
     def receive(self, message: Any) -> None:
         """Tell the server what was done to a marker."""
         if not isinstance(message, MarkerFeedback) or self._client is None:
@@ -115,7 +125,12 @@ class InteractiveMarkersDisplay(DataDisplay):
             self.say(_CLIENT, "error", "Error connecting: empty namespace")
             return
         self._release = self.stage.history.use(self._transforms_came)
-        events = ClientEvents(self._take_all, self._take_update, self._clear, self._client_status)
+        events = ClientEvents(
+            lambda markers: self._soon(partial(self._take_all, markers)),
+            lambda update: self._soon(partial(self._take_update, update)),
+            self._clear,
+            self._client_status,
+        )
         try:
             self._client = InteractiveMarkerClient(self.stage.node, namespace, events)
         except LinkwrightError as error:
@@ -136,7 +151,15 @@ class InteractiveMarkersDisplay(DataDisplay):
     def _client_status(self, level: StatusLevel, text: str) -> None:
         self.say(_CLIENT, level, text)
 
+    def _soon(self, take: Callable[[], None]) -> None:
+        """Take something from the server, which waits while time is paused."""
+        if self.stage.time.paused:
+            self._held.append(take)
+        else:
+            take()
+
     def _clear(self) -> None:
+        self._held.clear()
         for name in self._markers:
             self.unsay(name)
         self._markers.clear()

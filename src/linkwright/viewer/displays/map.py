@@ -35,7 +35,7 @@ class MapDisplay(TopicDisplay):
 
     def __init__(self, stage: Stage, identity: str, config: DisplayConfig) -> None:
         super().__init__(stage, identity, config)
-        self._updates = SideTopic(stage.node, "map_msgs/msg/OccupancyGridUpdate", self._updated)
+        self._updates = SideTopic(stage, "map_msgs/msg/OccupancyGridUpdate", self._updated)
         self._map: Any = None
         self._cells: NDArray[np.uint8] = np.empty((0, 0), np.uint8)
         self._is_own = False  # else the cells are the message's, which others have too
@@ -75,6 +75,11 @@ class MapDisplay(TopicDisplay):
         frame = self.frame_of(self._map)[0].removeprefix("/")
         problem = self.stage.frames.problem(frame)
         self.say(TRANSFORM, "error" if problem else "ok", problem or "Transform OK")
+
+    def time_changed(self) -> None:
+        """Show the map and the updates that came while time stood still."""
+        super().time_changed()
+        self._updates.go_on()
 
     def reset(self) -> None:
         """Draw nothing; a map whose topic was left is forgotten."""

@@ -59,6 +59,7 @@ class RobotModelDisplay(ViewerDisplay):
             stage.node, stage.library, stage.finder, self.properties, self._described, self._refused
         )
         self._text = ""
+        self._held: str | None = None
         self._description: list[StatusRow] = []
         self._file_problems: dict[str, list[str]] = {}
         self._page_problems: dict[tuple[str, str], str] = {}
@@ -108,6 +109,11 @@ class RobotModelDisplay(ViewerDisplay):
         """Say which links can be placed."""
         self._show_status()
 
+    def time_changed(self) -> None:
+        """Read the description that came while time stood still."""
+        if self._held is not None and not self.stage.time.paused:
+            self._described(self._held)
+
     def messages(self) -> list[ServerMessage]:
         """The robot."""
         return [self.scene]
@@ -144,6 +150,9 @@ class RobotModelDisplay(ViewerDisplay):
     # --- descriptions ------------------------------------------------------------------------------------------
 
     def _described(self, text: str) -> None:
+        self._held = text if self.robot is not None and self.stage.time.paused else None
+        if self._held is not None:
+            return
         if not text.strip():
             self._description = [StatusRow("URDF", "error", "URDF is empty")]
             self._show_status()

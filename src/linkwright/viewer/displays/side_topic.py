@@ -2,34 +2,38 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
 from typing import Any
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.graph import Node, QoSProfile, Subscription
+from linkwright.graph import QoSProfile, Subscription
+from linkwright.viewer.displays.base import Stage
 
 
 class SideTopic:
-    """Listens to a topic that goes along with the display's own.
+    """Listens to a topic that goes along with the display's own. While time is paused its messages wait.
 
     Args:
-        node: to subscribe with.
+        stage: of the display.
         message_type: of its messages.
         on_message: called with each of them.
     """
 
-    def __init__(self, node: Node, message_type: str, on_message: Callable[[Any], None]) -> None:
-        self._node = node
+    def __init__(self, stage: Stage, message_type: str, on_message: Callable[[Any], None]) -> None:
+        self._stage = stage
         self._type = message_type
         self._on_message = on_message
         self._subscription: Subscription[Any] | None = None
+        self._held: deque[Any] = deque()
 
     def listen(self, topic: str, qos: QoSProfile) -> str | None:
         """Listen to a topic, and no more to the one before; RViz's words for why it cannot, or None."""
         self.close()
+        self._held = deque(maxlen=max(1, qos.depth))
         try:
-            self._subscription = self._node.create_subscription(self._type, topic, self._on_message, qos)
+            self._subscription = self._stage.node.create_subscription(self._type, topic, self._received, qos)
         except LinkwrightError as error:
             return f"Error subscribing: {error.diagnostics[0].message}"
         return None
@@ -38,8 +42,20 @@ class SideTopic:
         """Listen no more."""
         if self._subscription is not None:
             with suppress(ValueError):  # the node may have been destroyed before
-                self._node.destroy_subscription(self._subscription)
+                self._stage.node.destroy_subscription(self._subscription)
             self._subscription = None
+        self._held.clear()
+
+    def go_on(self) -> None:
+        """Take what waited, if time goes on."""
+        while self._held and not self._stage.time.paused:
+            self._on_message(self._held.popleft())
+
+    def _received(self, message: Any) -> None:
+        if self._stage.time.paused:
+            self._held.append(message)
+        else:
+            self._on_message(message)
 
 
 def camera_info_topic(image: str) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import time
 import traceback
 from collections import deque
@@ -24,7 +25,7 @@ _FAILURE = "Failure"
 """The status row of a message that a display failed at; RViz has none such."""
 
 _COUNT_PERIOD = 1.0
-"""Seconds between two changes of the row that counts messages."""
+"""Seconds between two changes of the row that counts messages, or says why none come."""
 
 
 class TopicDisplay(DataDisplay):
@@ -61,7 +62,9 @@ class TopicDisplay(DataDisplay):
         self._fixed_frame = ""
         self._failing = False
         self._count = 0
-        self._since = self._counted_at = 0.0
+        self._since = 0.0
+        self._telling: asyncio.TimerHandle | None = None
+        self._incompatibility = ""
 
     # --- what subclasses override ------------------------------------------------------------------------------
 
@@ -160,7 +163,7 @@ class TopicDisplay(DataDisplay):
 
     def _subscribe(self) -> None:
         message, topic, qos = self.subscription()
-        self._count, self._since = 0, time.monotonic()
+        self._count, self._since, self._incompatibility = 0, time.monotonic(), ""
         if not topic:
             self.say(self.TOPIC_ROW, "error", "Error subscribing: Empty topic name")
             return
@@ -177,9 +180,12 @@ class TopicDisplay(DataDisplay):
             return
         if self.TRANSFORMED or self.FOLLOWS_TRANSFORMS:
             self._release = self.stage.history.use(self.transforms_came)
-        self.say(self.TOPIC_ROW, "warn", "No messages received")
+        self._tell_count()
 
     def _unsubscribe(self) -> None:
+        if self._telling is not None:
+            self._telling.cancel()
+            self._telling = None
         if self._subscription is not None:
             with suppress(ValueError):  # the node may have been destroyed before
                 self.stage.node.destroy_subscription(self._subscription)
@@ -192,18 +198,44 @@ class TopicDisplay(DataDisplay):
 
     def _incompatible(self, info: Any) -> None:
         policy = getattr(info.last_policy_kind, "name", str(info.last_policy_kind))
-        self.say(self.TOPIC_ROW, "warn", f"A publisher offers incompatible QoS. Last incompatible policy: {policy}")
+        self._incompatibility = f"A publisher offers incompatible QoS. Last incompatible policy: {policy}"
+        if self._count == 0:
+            self._tell_count()
+
+    def _tell_count(self) -> None:
+        """How many messages came, or why none do; again when there is more to tell, or while there is nothing."""
+        if self._count > 0:
+            seconds = time.monotonic() - self._since
+            rate = f" at {self._count / seconds:.0f} hz." if self._count > 1 and seconds > 0 else ""
+            self.say(self.TOPIC_ROW, "ok", f"{self._count} messages received{rate}")
+            return
+        self.say(self.TOPIC_ROW, "warn", self._incompatibility or self._other_type() or "No messages received")
+        self._tell_count_later()
+
+    def _tell_count_later(self) -> None:
+        def tell() -> None:
+            self._telling = None
+            self._tell_count()
+
+        if self._telling is None:
+            self._telling = asyncio.get_running_loop().call_later(_COUNT_PERIOD, tell)
+
+    def _other_type(self) -> str:
+        """That the topic carries messages of another type, if it carries no others."""
+        message, topic, _ = self.subscription()
+        types = {each.topic_type for each in self.stage.node.get_publishers_info_by_topic(topic)}
+        if not types or message in types:
+            return ""
+        return f"No messages received: the topic carries {', '.join(sorted(types))}, not {message}"
 
     # --- messages ----------------------------------------------------------------------------------------------
 
     def _received(self, message: Any) -> None:
         self._count += 1
-        now = time.monotonic()
-        if self._count == 1 or now - self._counted_at >= _COUNT_PERIOD:
-            self._counted_at = now
-            seconds = now - self._since
-            rate = f" at {self._count / seconds:.0f} hz." if self._count > 1 and seconds > 0 else ""
-            self.say(self.TOPIC_ROW, "ok", f"{self._count} messages received{rate}")
+        if self._count == 1:
+            self._tell_count()
+        else:
+            self._tell_count_later()
         if self.TRANSFORMED:
             self.stage.time.took(self.config.name, self.frame_of(message)[1])
         if self.stage.time.paused:

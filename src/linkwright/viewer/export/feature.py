@@ -6,6 +6,7 @@ import asyncio
 import re
 import secrets
 import time
+import traceback
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
@@ -20,6 +21,7 @@ from linkwright.viewer.features import PageFeature
 from linkwright.viewer.protocol import AskExport, ExportFailed, ExportReady, View
 
 if TYPE_CHECKING:
+    from linkwright.graph import Logger
     from linkwright.viewer.export.snapshot import Snapshot
 
 _KEPT_SECONDS = 60.0
@@ -64,12 +66,14 @@ class ExportFeature(PageFeature):
     Args:
         snapshot: of what a page sees, through the camera that it says.
         files: where they wait.
+        logger: told of faults of ours.
     """
 
     RECEIVES: ClassVar[tuple[type, ...]] = (AskExport,)
 
-    def __init__(self, snapshot: Callable[[Page, View], Snapshot], files: ExportedFiles) -> None:
+    def __init__(self, snapshot: Callable[[Page, View], Snapshot], files: ExportedFiles, logger: Logger) -> None:
         self._snapshot = snapshot
+        self._logger = logger
         self._files = files
         self._working: dict[Page, asyncio.Task[None]] = {}
 
@@ -92,6 +96,10 @@ class ExportFeature(PageFeature):
             data = await asyncio.to_thread(partial(export_snapshot, snapshot, message.format))
         except LinkwrightError as error:
             page.send(ExportFailed("; ".join(each.message for each in translated(error.diagnostics))))
+            return
+        except Exception as error:  # noqa: BLE001  # a fault of ours must not leave the page waiting
+            self._logger.error(f"The export failed:\n{traceback.format_exc()}")  # noqa: TRY400  # no logger of logging
+            page.send(ExportFailed(f"{type(error).__name__}: {error}"))
             return
         name = re.sub(r"[^\w.-]+", "_", snapshot.name).strip("._") or "robot"
         file = ExportedFile(f"{name}.{message.format}", FORMATS[message.format].content_type, data, time.monotonic())

@@ -14,7 +14,6 @@ from linkwright.nodes.joint_layout import layout_of
 from linkwright.nodes.joint_settings import JointSettings
 from linkwright.urdf import Robot
 from linkwright.viewer.export.joint_state import positions_now
-from linkwright.viewer.markers.store import MarkerStore
 from linkwright.viewer.mesh_files import MeshFolders
 from linkwright.viewer.protocol import (
     Display,
@@ -133,6 +132,8 @@ def _whole(payload: Payload) -> bytes | str | None:
 
 
 def _marker_meshes(payloads: Sequence[Payload]) -> list[str]:
+    from linkwright.viewer.markers.store import MarkerStore  # most programs never export
+
     shapes = [shape for payload in payloads if isinstance(payload, MarkerStore) for shape in payload.shapes]
     return [shape.mesh.url for shape in shapes if shape.mesh is not None and shape.mesh.url is not None]
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import MessageInfo
 from linkwright.viewer.audience import Page
 from linkwright.viewer.features import Desk, PageFeature
@@ -71,27 +72,29 @@ class ParametersFeature(PageFeature):
         self._keep()
 
     def _watch(self, page: Page, message: WatchParameters) -> None:
-        self._wishes[page] = _Wish(message.listed, message.node)
-        fresh = message.node is not None and message.node not in self._nodes
+        name = message.node
+        known = self._nodes.get(name) if name is not None else None
+        if name is not None and known is None:
+            try:
+                self._nodes[name] = RemoteNode(self._node, name, self._tell)
+            except LinkwrightError as error:
+                page.send(NodeParameters(name, [], error.diagnostics[0].message))
+                name = None
+        self._wishes[page] = _Wish(message.listed, name)
         self._keep()
         if message.listed:
             self._send_lists()
-        if message.node is None:
-            return
-        node = self._nodes[message.node]
-        if fresh:
-            node.refresh()
-        elif node.known is not None:
-            page.send(node.known)
+        if known is None and name is not None:
+            self._nodes[name].refresh()
+        elif known is not None and known.known is not None:
+            page.send(known.known)
 
     def _keep(self) -> None:
-        """Have the clients and the subscription that pages need, and no others."""
+        """Have no client and no subscription that no page needs, and the subscription that one does."""
         wishes = self._wishes.values()
         wanted = {wish.node for wish in wishes if wish.node is not None}
         for name in self._nodes.keys() - wanted:
             self._nodes.pop(name).close()
-        for name in wanted - self._nodes.keys():
-            self._nodes[name] = RemoteNode(self._node, name, self._tell)
         if wanted and self._events is None:
             self._events = TopicTap(self._node, self._changes, _EVENTS, self._take)
         elif not wanted and self._events is not None:

@@ -81,7 +81,7 @@ def pack_data(
         "pose": None if pose is None else [float(each) for each in pose],
         "content": _plain(content, arrays),
     }
-    text = json.dumps(header, ensure_ascii=False, allow_nan=False, separators=(",", ":")).encode()
+    text = json.dumps(header, ensure_ascii=False, allow_nan=False, separators=(",", ":")).encode("utf-8", "replace")
     parts = [_HEADER.pack(DATA_KIND, len(text), 0, 0), text, _padding(_HEADER.size + len(text))]
     return b"".join([*parts, *arrays.parts])
 

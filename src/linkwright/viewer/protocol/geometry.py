@@ -10,7 +10,7 @@ from linkwright.viewer.protocol.data import Floats
 
 @dataclass(slots=True)
 class PointMarks:
-    """PointStamped: the last points in the Fixed Frame, metres, shape (N, 3), oldest first."""
+    """PointStamped: points in the frame of the content, metres, shape (N, 3)."""
 
     positions: Floats
     kind: Literal["point_marks"] = "point_marks"
