@@ -14,8 +14,8 @@ from typing import Any
 
 from benchmarks import peers
 from benchmarks.dds_sides import HEIGHT, JOINTS, TOPIC, TRANSFORMS, WIDTH, Result, paced
-from linkwright.bag.schema import schema_of
 from linkwright.messages import type_hash
+from linkwright.messages.schema_text import schema_of
 
 TYPES = {
     "joints": "sensor_msgs/msg/JointState",

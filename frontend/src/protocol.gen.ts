@@ -40,6 +40,12 @@ export interface ExportFailed {
   type: "export_failed";
 }
 
+/** Which topics are offered for a row: those of one of the types with one of the words, if any, in their names. */
+export interface TopicOffer {
+  messages: string[];
+  words: string[];
+}
+
 /** One row of a property tree, as RViz shows it. */
 export interface Property {
   id: string;
@@ -54,6 +60,7 @@ export interface Property {
   expanded: boolean;
   children: Property[];
   details: "frame" | "link" | "joint" | "effort" | null;
+  topics: TopicOffer | null;
 }
 
 /** One row below a display's Status. */

@@ -13,6 +13,7 @@ export function property(part: Partial<Property> & Pick<Property, "id" | "name">
     expanded: false,
     children: [],
     details: null,
+    topics: null,
     ...part,
   };
 }

@@ -352,3 +352,15 @@ async def test_a_channel_of_another_length_is_told():
             "error",
             "Channel 'intensity' has 2 values for 1 points.  Dropping message.",
         )
+
+
+async def test_depth_topics_are_offered_by_their_names_unless_that_is_switched_off():
+    async with world(config("DepthCloud")) as w:
+        display = w.display("DepthCloud")
+        rows = store_rows(display)
+        assert (rows["Depth Map Topic"].topics.words, rows["CameraInfo Topic"].topics.messages) == (
+            ["depth"],
+            ["sensor_msgs/msg/CameraInfo"],
+        )
+        display.set_property(("Topic Filter",), False)
+        assert store_rows(display)["Depth Map Topic"].topics.words == []

@@ -43,7 +43,7 @@ function displayItem(
   const within = (): TreeItem[] =>
     session.displays.within(display).map((each) => displayItem(session, each, set));
   const offered = (item: TreeItem): TreeItem =>
-    item.kind === "topic" ? { ...item, ask: (show) => offerTopics(session, display, show) } : item;
+    item.kind === "topic" ? { ...item, ask: (show) => offerTopics(session, display, item.name, show) } : item;
   return {
     key: display.id,
     name: display.name,
@@ -65,14 +65,22 @@ function displayItem(
 /** What descriptions of robots come as. */
 const TEXT = "std_msgs/msg/String";
 
-/** The topics that a display can show. */
-function offerTopics(session: Session, display: DisplayState, show: (names: readonly string[]) => void): void {
+/** The topics that fit a row of a display. */
+function offerTopics(
+  session: Session,
+  display: DisplayState,
+  row: string,
+  show: (names: readonly string[]) => void,
+): void {
   const { configuration } = session;
-  const known = configuration.classes.find((each) => each.cls === display.cls)?.messages ?? [];
+  const own = display.rows.find(row)?.topics;
+  const known = own?.messages ?? configuration.classes.find((each) => each.cls === display.cls)?.messages ?? [];
   const messages = known.length > 0 ? known : [TEXT];
+  const words = own?.words ?? [];
+  const named = (topic: string): boolean => words.length === 0 || words.some((word) => topic.toLowerCase().includes(word));
   const forget = configuration.topicsListed.on((topics) => {
     forget();
-    show(topics.filter(({ message }) => messages.includes(message)).map(({ topic }) => topic));
+    show(topics.filter(({ topic, message }) => messages.includes(message) && named(topic)).map(({ topic }) => topic));
   });
   configuration.askTopics();
 }

@@ -1,4 +1,4 @@
-import type { Property, PropertyKind, PropertyValue, RowDetails } from "../protocol.gen";
+import type { Property, PropertyKind, PropertyValue, RowDetails, TopicOffer } from "../protocol.gen";
 
 /** One row of a property tree; the value changes in place, the rest does not. */
 export class PropertyNode {
@@ -13,6 +13,8 @@ export class PropertyNode {
   readonly children: readonly PropertyNode[];
   /** What the row stands for, if the page shows more of it in rows of its own. */
   readonly details: RowDetails | null;
+  /** Which topics to offer, if not those of the display. */
+  readonly topics: TopicOffer | null;
   value: PropertyValue;
   options: readonly string[];
 
@@ -28,6 +30,7 @@ export class PropertyNode {
     this.readOnly = property.read_only;
     this.expanded = property.expanded;
     this.details = property.details;
+    this.topics = property.topics;
     this.children = property.children.map((child) => new PropertyNode(child));
   }
 

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 
 from linkwright.diagnostics import Diagnostic, Severity
 from linkwright.viewer.former_names import FormerKey
-from linkwright.viewer.protocol import Property, PropertyChanged, PropertyValue
+from linkwright.viewer.protocol import Property, PropertyChanged, PropertyValue, TopicOffer
 from linkwright.viewer.schema import PropertySpec, accept, from_text, to_text
 from linkwright.viewer.yaml_tree import Memory, Scalar, Section, ensure_section
 
@@ -182,6 +182,7 @@ class PropertyStore:
             expanded=spec.expanded,
             children=[self._row(child, path) for child in spec.children if self._shown(child)],
             details=spec.details,
+            topics=TopicOffer(list(spec.messages), list(spec.words)) if spec.messages else None,
         )
 
     def _shown(self, spec: PropertySpec) -> bool:

@@ -40,6 +40,8 @@ class PropertySpec:
         options: of an ``enum``.
         minimum: of an ``int`` or ``float``, inclusive.
         maximum: of an ``int`` or ``float``, inclusive.
+        messages: of a ``topic``, the types of those offered; none for those of the display.
+        words: of a ``topic``, parts of the names of those offered, in lower case; none for any name.
         children: the rows below it.
         when: path within the display and value of the property that must hold for this row to be shown; the conditions
             of that property must hold too.
@@ -57,6 +59,8 @@ class PropertySpec:
     options: tuple[str, ...] = ()
     minimum: float | None = None
     maximum: float | None = None
+    messages: tuple[str, ...] = ()
+    words: tuple[str, ...] = ()
     children: tuple[PropertySpec, ...] = ()
     when: tuple[tuple[str, ...], PropertyValue] | None = None
     expanded: bool = False

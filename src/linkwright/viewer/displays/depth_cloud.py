@@ -18,6 +18,7 @@ from linkwright.viewer.displays.depth_properties import (
     COLOUR_TOPIC,
     COLOUR_TRANSPORT,
     DEPTH_SCHEMA,
+    DEPTH_SCHEMA_UNFILTERED,
     DEPTH_TOPIC,
     DEPTH_TRANSPORT,
     INFO_TOPIC,
@@ -28,10 +29,11 @@ from linkwright.viewer.displays.depth_properties import (
     RELIABILITY,
     SIZE_FACTOR,
     SOURCES,
+    TOPIC_FILTER,
 )
 from linkwright.viewer.displays.side_topic import SideTopic, camera_info_topic
 from linkwright.viewer.images import BadImageError, Picture, RangeFinder, picture_of
-from linkwright.viewer.property_store import Path
+from linkwright.viewer.property_store import Path, Schema
 from linkwright.viewer.rviz_config import DisplayConfig
 
 _IMAGE = "sensor_msgs/msg/Image"
@@ -53,7 +55,9 @@ class DepthCloudDisplay(CloudDisplay):
     TOPIC_ROW: ClassVar[str] = "Depth Map"
 
     def __init__(self, stage: Stage, identity: str, config: DisplayConfig) -> None:
+        self._filters = True
         super().__init__(stage, identity, config)
+        self._filters = self.properties.flag(TOPIC_FILTER)
         self._infos = SideTopic(stage, "sensor_msgs/msg/CameraInfo", self._info_received)
         self._colours = SideTopic(stage, _IMAGE, self._colour_received)
         self._builder = DepthCloudBuilder()
@@ -85,11 +89,18 @@ class DepthCloudDisplay(CloudDisplay):
         self._pending = None
         self._show_depths(message, pose, colour)
 
+    def schema(self) -> Schema:
+        """The properties; ``Topic Filter`` says whether topics are offered by their names."""
+        return DEPTH_SCHEMA if self._filters else DEPTH_SCHEMA_UNFILTERED
+
     def changed(self, path: Path) -> None:
         """Listen to other topics, or show the last depths differently."""
         if path[0] in SOURCES:
             self._restart()
             return
+        if path == (TOPIC_FILTER,):
+            self._filters = self.properties.flag(TOPIC_FILTER)
+            self.publish_properties()
         super().changed(path)
         if path[0] in (AUTO_SIZE, OCCLUSION):
             self.show_again()

@@ -15,7 +15,9 @@ COLOUR_TOPIC, COLOUR_TRANSPORT = "Color Image Topic", "Color Transport Hint"
 QUEUE_SIZE = "Queue Size"
 AUTO_SIZE, SIZE_FACTOR = "Auto Size", "Auto Size Factor"
 OCCLUSION, OCCLUSION_TIMEOUT = "Occlusion Compensation", "Occlusion Time-Out"
+TOPIC_FILTER = "Topic Filter"
 RAW = "raw"
+_IMAGE = "sensor_msgs/msg/Image"
 _TRANSPORTS = (RAW, "compressed", "compressedDepth", "theora")
 
 SOURCES = frozenset((RELIABILITY, DEPTH_TOPIC, DEPTH_TRANSPORT, INFO_TOPIC, COLOUR_TOPIC, COLOUR_TRANSPORT, QUEUE_SIZE))
@@ -29,15 +31,31 @@ DEPTH_SCHEMA: Schema = (
         "Whether every message must arrive.",
         options=("System Default", "Reliable", "Best effort"),
     ),
-    PropertySpec("Topic Filter", "bool", True, "Offer only topics whose names sound like depth and colour images."),
+    PropertySpec(TOPIC_FILTER, "bool", True, "Offer only topics whose names sound like depth and colour images."),
     PropertySpec(
-        DEPTH_TOPIC, "topic", "", "sensor_msgs/msg/Image with depths: 16UC1 in millimetres or 32FC1 in metres."
+        DEPTH_TOPIC,
+        "topic",
+        "",
+        "sensor_msgs/msg/Image with depths: 16UC1 in millimetres or 32FC1 in metres.",
+        messages=(_IMAGE,),
+        words=("depth",),
     ),
     PropertySpec(DEPTH_TRANSPORT, "enum", RAW, "How the depths come; raw is used here.", options=_TRANSPORTS),
     PropertySpec(
-        INFO_TOPIC, "topic", "", "sensor_msgs/msg/CameraInfo of the depths; without one, camera_info beside them."
+        INFO_TOPIC,
+        "topic",
+        "",
+        "sensor_msgs/msg/CameraInfo of the depths; without one, camera_info beside them.",
+        messages=("sensor_msgs/msg/CameraInfo",),
     ),
-    PropertySpec(COLOUR_TOPIC, "topic", "", "sensor_msgs/msg/Image with the colours of the points."),
+    PropertySpec(
+        COLOUR_TOPIC,
+        "topic",
+        "",
+        "sensor_msgs/msg/Image with the colours of the points.",
+        messages=(_IMAGE,),
+        words=("color", "rgb", "bgr", "gray", "mono"),
+    ),
     PropertySpec(COLOUR_TRANSPORT, "enum", RAW, "How the colours come; raw is used here.", options=_TRANSPORTS),
     PropertySpec(QUEUE_SIZE, "int", 5, "How many messages may wait.", minimum=1, maximum=1000),
     PropertySpec(
@@ -76,3 +94,6 @@ DEPTH_SCHEMA: Schema = (
     *STYLE_SPECS,
     *(replace(spec, hidden=True) if spec.name == POSITION_TRANSFORMER else spec for spec in TRANSFORMER_SPECS),
 )
+
+DEPTH_SCHEMA_UNFILTERED: Schema = tuple(replace(spec, words=()) for spec in DEPTH_SCHEMA)
+"""The same where the names of topics do not matter: ``Topic Filter`` is off."""

@@ -26,6 +26,7 @@ MAP_SCHEMA: Schema = (
         UPDATE_TOPIC,
         description="map_msgs/msg/OccupancyGridUpdate: the topic with updates of parts of the map; without one, the "
         "map's topic with '_updates' behind it.",
+        messages=("map_msgs/msg/OccupancyGridUpdate",),
     ),
     alpha("Opacity of the map: 0 is invisible.", 0.7),
     PropertySpec(

@@ -21,6 +21,7 @@ def topic_spec(
     filter_size: int | None = None,
     durability_help: str = "Whether a message published before counts too.",
     when: tuple[Path, str] | None = None,
+    messages: tuple[str, ...] = (),
 ) -> PropertySpec:
     """The property with its parts.
 
@@ -34,6 +35,7 @@ def topic_spec(
         filter_size: default of how many messages wait for their transforms; None where they need none.
         durability_help: the tooltip of ``Durability Policy``.
         when: as `PropertySpec.when`.
+        messages: as `PropertySpec.messages`.
     """
     children = [
         PropertySpec("Depth", "int", depth, "How many messages may wait.", minimum=1, maximum=1000),
@@ -70,7 +72,7 @@ def topic_spec(
                 maximum=1000,
             )
         )
-    return PropertySpec(name, "topic", default, description, children=tuple(children), when=when)
+    return PropertySpec(name, "topic", default, description, messages=messages, children=tuple(children), when=when)
 
 
 def qos_of(properties: PropertyStore, name: str = "Topic", *, lasting: bool | None = None) -> QoSProfile:

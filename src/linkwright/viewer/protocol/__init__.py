@@ -129,6 +129,7 @@ from linkwright.viewer.protocol.parts import (
     RowDetails,
     StatusLevel,
     StatusRow,
+    TopicOffer,
 )
 from linkwright.viewer.protocol.plots import (
     SAMPLES_KIND,
@@ -480,6 +481,7 @@ __all__ = [
     "TopicFigures",
     "TopicList",
     "TopicMessage",
+    "TopicOffer",
     "TopicRow",
     "TopicTraffic",
     "Tree",

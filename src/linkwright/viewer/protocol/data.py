@@ -35,6 +35,9 @@ Ints = NDArray[np.int32]
 """As an Int32Array."""
 
 _TYPES = {"f": ("f4", "<f4"), "u": ("u1", "u1"), "i": ("i4", "<i4")}
+_EMPTY: dict[str, dict[str, list[Any]]] = {kind: {"$": [name, 0, 0]} for kind, (name, _) in _TYPES.items()}
+"""What stands for empty arrays, of which simple markers have three each."""
+
 _PLAIN_TYPES = frozenset((str, float, int, bool, type(None)))
 
 
@@ -99,13 +102,14 @@ class _Arrays:
 
     def put(self, array: NDArray[Any]) -> dict[str, list[Any]]:
         """Add one; what stands for it in the header."""
+        if array.size == 0:
+            return _EMPTY[array.dtype.kind]
         name, wire = _TYPES[array.dtype.kind]
         reference = {"$": [name, self._length, array.size]}
-        if array.size:
-            data = np.ascontiguousarray(array, dtype=wire).tobytes()
-            padding = _padding(len(data))
-            self.parts += [data, padding]
-            self._length += len(data) + len(padding)
+        data = np.ascontiguousarray(array, dtype=wire).tobytes()
+        padding = _padding(len(data))
+        self.parts += [data, padding]
+        self._length += len(data) + len(padding)
         return reference
 
 

@@ -12,6 +12,14 @@ RowDetails = Literal["frame", "link", "joint", "effort"]
 
 
 @dataclass(slots=True)
+class TopicOffer:
+    """Which topics are offered for a row: those of one of the types with one of the words, if any, in their names."""
+
+    messages: list[str]
+    words: list[str]
+
+
+@dataclass(slots=True)
 class Property:
     """One row of a property tree, as RViz shows it.
 
@@ -20,6 +28,8 @@ class Property:
 
     A row with `details` stands for a frame, link or joint of its name. Where that is now the page knows without being
     told again, so it adds read-only rows of its own: RViz's ``Position``, ``Orientation`` and the like.
+
+    For a `topic` without `topics` those are offered that the display can be added for.
     """
 
     id: str
@@ -34,6 +44,7 @@ class Property:
     expanded: bool = False
     children: list[Property] = field(default_factory=list)
     details: RowDetails | None = None
+    topics: TopicOffer | None = None
 
 
 @dataclass(slots=True)
