@@ -77,6 +77,20 @@ def test_displays_are_renamed_duplicated_and_removed_by_keys(grouped):
     assert not viewer.viewer.manager.history.unsaved
 
 
+def test_keys_for_displays_do_nothing_on_rows_of_properties_and_the_keyboard_stays_in_the_tree(grouped):
+    _, page = grouped
+    row(page, "display-1").click()
+    page.keyboard.press("ArrowRight")
+    row(page, "display-1/Alpha").click(position={"x": 30, "y": 8})
+    page.keyboard.press("Delete")
+    page.keyboard.press("Alt+d")
+    row(page, "display-3").click()
+    page.keyboard.press("Delete")
+    until(page, "lw.displays.length === 3")
+    assert names(page) == ["Grid", "Marks", "Radar"]
+    page.wait_for_function("() => document.activeElement?.matches('[role=treeitem]')")
+
+
 def test_a_group_switches_off_what_it_holds(grouped):
     _, page = grouped
     page.locator("[data-key='display-2'] .check").click()

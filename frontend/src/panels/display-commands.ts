@@ -58,8 +58,8 @@ export class DisplayCommands {
     else if (!up && index < siblings.length - 1) configuration.move([display.id], group, siblings[index + 2]?.id ?? null);
   }
 
-  /** Whether a key was one of these. */
-  pressed(event: KeyboardEvent): boolean {
+  /** Whether a key was one of these; on the row of a property only Add is. */
+  pressed(event: KeyboardEvent, onDisplay: boolean): boolean {
     const keys: readonly (readonly [keyof typeof SHORTCUTS, () => void])[] = [
       ["add", () => this.add()],
       ["addToo", () => this.add()],
@@ -70,7 +70,7 @@ export class DisplayCommands {
       ["moveDown", () => this.move(false)],
     ];
     const found = keys.find(([name]) => matches(event, SHORTCUTS[name]));
-    if (!found || (!found[0].startsWith("add") && !this.selected())) return false;
+    if (!found || (!found[0].startsWith("add") && !onDisplay)) return false;
     found[1]();
     return true;
   }

@@ -118,7 +118,8 @@ export class DisplaysPanel implements Panel {
       "keydown",
       (event) => {
         const onRow = event.target instanceof Element && event.target.matches("[role=treeitem], .check");
-        if (!onRow || !commands.pressed(event)) return;
+        const onDisplay = tree.selections.length > 0 && tree.selections.every((key) => session.displays.find(key));
+        if (!onRow || !commands.pressed(event, onDisplay)) return;
         event.preventDefault();
         event.stopPropagation();
       },

@@ -1,4 +1,4 @@
-// The package's main file writes its styles into the page at run time, which our content security policy forbids.
+// The main file of the package writes its styles into the page at run time; ours come with the page, from its css file.
 import { createDockview, type DockviewApi, type IContentRenderer } from "dockview-core/dist/esm";
 import { strings } from "../strings";
 import { addPanels, TIME_HEIGHT } from "./default-layout";

@@ -4,6 +4,7 @@ import { posesOf, srdfOf, standsAs, type NamedPose } from "../state/named-poses"
 import type { Session } from "../state/session";
 import { strings } from "../strings";
 import { openMenu } from "./menu";
+import { saveText } from "./save-file";
 
 /** Named poses of the robot: recalled with a click, saved under a name, taken elsewhere as SRDF. */
 export class PoseBar {
@@ -97,13 +98,7 @@ export class PoseBar {
   }
 
   private export(): void {
-    const text = srdfOf(this.robot, this.session.poses.of(this.robot));
-    const url = URL.createObjectURL(new Blob([text], { type: "application/xml" }));
-    const link = h("a");
-    link.href = url;
-    link.download = `${this.robot || "robot"}.srdf`;
-    link.click();
-    URL.revokeObjectURL(url);
+    saveText(`${this.robot || "robot"}.srdf`, srdfOf(this.robot, this.session.poses.of(this.robot)), "application/xml");
   }
 
   private async take(): Promise<void> {

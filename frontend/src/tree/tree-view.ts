@@ -94,6 +94,7 @@ export class TreeView {
   }
 
   private render(): void {
+    const focused = this.lines.findIndex(({ item }) => this.rows.get(item.key)?.element === document.activeElement);
     this.lines = [];
     this.flatten(this.items(), 0);
     const keep = new Set<string>();
@@ -113,6 +114,10 @@ export class TreeView {
     arrange(this.list, elements);
     const [first] = elements;
     if (first && (this.selectedKey === null || !keep.has(this.selectedKey))) first.tabIndex = 0;
+    // The row with the keyboard was removed: the one in its place takes it.
+    if (focused >= 0 && !this.list.contains(document.activeElement)) {
+      this.focusLine(Math.min(focused, this.lines.length - 1));
+    }
     this.finishReveal();
   }
 
