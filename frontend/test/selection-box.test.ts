@@ -2,6 +2,8 @@ import { BoxGeometry, Mesh, OrthographicCamera, PerspectiveCamera, SphereGeometr
 import { describe, expect, it } from "vitest";
 import { ScreenBox } from "../src/scene/selection-box";
 
+/** Nothing hides anything. */
+const open = (): boolean => true;
 const ALL = [new Vector2(-0.95, -0.95), new Vector2(0.95, 0.95)] as const;
 
 function camera(): PerspectiveCamera {
@@ -20,7 +22,7 @@ function ball(x: number): Mesh {
 
 describe("a rectangle on the screen", () => {
   it("holds what is seen in it", () => {
-    const box = new ScreenBox(camera(), ...ALL);
+    const box = new ScreenBox(camera(), ...ALL, open);
     expect(box.hasPoint(0, 0, 0)).toBe(true);
     expect(box.hasPoint(3.5, 0, 0)).toBe(true);
     expect(box.hasPoint(5, 0, 0)).toBe(false);
@@ -30,23 +32,36 @@ describe("a rectangle on the screen", () => {
   });
 
   it("leaves out what is beside it", () => {
-    const right = new ScreenBox(camera(), new Vector2(0.1, -1), new Vector2(1, 1));
+    const right = new ScreenBox(camera(), new Vector2(0.1, -1), new Vector2(1, 1), open);
     expect(right.hasObject(ball(2))).toBe(true);
     expect(right.hasObject(ball(-2))).toBe(false);
   });
 
   it("within a face holds the object though none of its corners", () => {
-    const small = new ScreenBox(camera(), new Vector2(-0.02, -0.02), new Vector2(0.02, 0.02));
+    const small = new ScreenBox(camera(), new Vector2(-0.02, -0.02), new Vector2(0.02, 0.02), open);
     const wall = new Mesh(new BoxGeometry(4, 4, 0.1));
     wall.updateMatrixWorld(true);
     expect(small.hasObject(wall)).toBe(true);
+  });
+
+  it("leaves out what is hidden", () => {
+    const seen: number[] = [];
+    const box = new ScreenBox(camera(), ...ALL, (x, _, z) => {
+      seen.push(z);
+      return x > 0;
+    });
+    expect(box.hasPoint(1, 0, 0)).toBe(true);
+    expect(box.hasPoint(-1, 0, 0)).toBe(false);
+    expect(box.hasObject(ball(2))).toBe(true);
+    expect(box.hasObject(ball(-2))).toBe(false);
+    expect(seen.every((z) => z > 0.99 && z < 1)).toBe(true);
   });
 
   it("works without perspective", () => {
     const flat = new OrthographicCamera(-4, 4, 4, -4, 0.01, 1000);
     flat.position.set(0, 0, 500);
     flat.updateMatrixWorld(true);
-    const box = new ScreenBox(flat, new Vector2(0, 0), new Vector2(1, 1));
+    const box = new ScreenBox(flat, new Vector2(0, 0), new Vector2(1, 1), open);
     expect([box.hasPoint(2, 2, 0), box.hasPoint(-2, 2, 0)]).toEqual([true, false]);
   });
 });

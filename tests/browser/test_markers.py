@@ -110,6 +110,25 @@ def test_a_mesh_that_cannot_be_read_is_told(live, open_page, tmp_path):
     assert "Mesh resource marker [a/1]" in viewer.status("Marks")["a/1"][1]
 
 
+def test_a_box_selects_what_is_seen_and_not_what_is_behind_it(live, open_page):
+    viewer = live(MARKERS.replace("Pitch: 0.6", "Pitch: 0").replace("Yaw: 0.8", "Yaw: 0"))
+    page = open_page(viewer, wait=False)
+    wall, hidden, beside = (marker(number, kind=Marker.CUBE, color=color(0.0, 1.0, 0.0)) for number in range(3))
+    wall.pose.position.x, wall.scale.y, wall.scale.z = 2.0, 3.0, 3.0
+    beside.pose.position.y = 3.0
+    viewer.publish("/marks", MarkerArray(markers=[wall, hidden, beside]))
+    until(page, "Object.keys(lw.displays[1]?.drawn?.markers ?? {}).length === 3")
+    page.keyboard.press("s")
+    box = page.locator(".canvas-box canvas").bounding_box()
+    page.mouse.move(box["x"] + 20, box["y"] + 20)
+    page.mouse.down()
+    page.mouse.move(box["x"] + box["width"] - 20, box["y"] + box["height"] - 20, steps=5)
+    page.mouse.up()
+    until(page, "JSON.stringify(lw.selection).includes('a/2')")
+    assert "a/0" in (chosen := page.evaluate("() => JSON.stringify(window.linkwright.selection)"))
+    assert "a/1" not in chosen
+
+
 INTERACTIVE = configuration(
     """
 - Class: rviz_default_plugins/InteractiveMarkers

@@ -2,6 +2,7 @@ import { Box3, Raycaster, Vector2, Vector3 } from "three";
 import type { Session } from "../state/session";
 import type { SelectedItem, SelectionMode } from "../state/selection";
 import type { Vector } from "../state/views/vector";
+import { DepthMap } from "./depth-map";
 import type { Drawing } from "./displays/drawing";
 import type { Described, Hit } from "./picking";
 import { ScreenBox } from "./selection-box";
@@ -70,7 +71,9 @@ export class Picker {
   selectBox(from: Vector2, to: Vector2, mode: SelectionMode): void {
     this.viewport.aim(this.session.view);
     const [a, b] = [this.onScreen(from.x, from.y), this.onScreen(to.x, to.y)];
-    const box = new ScreenBox(this.viewport.camera, a.clone().min(b), a.clone().max(b));
+    const depths = new DepthMap(this.viewport);
+    const isSeen = depths.isSeen.bind(depths);
+    const box = new ScreenBox(this.viewport.camera, a.clone().min(b), a.clone().max(b), isSeen);
     const items: SelectedItem[] = [];
     for (const [display, drawing] of this.drawings()) {
       for (const key of drawing.pickBox?.(box) ?? []) items.push({ display, key });

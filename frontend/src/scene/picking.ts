@@ -12,7 +12,7 @@ export interface Hit {
   isGround?: true;
 }
 
-/** A rectangle on the screen, and what is seen in it. Things behind others count too. */
+/** A rectangle on the screen, and what is seen in it; what is behind something else is not. */
 export interface SelectionBox {
   /** Whether a point of the fixed frame is seen in the rectangle. */
   hasPoint(x: number, y: number, z: number): boolean;

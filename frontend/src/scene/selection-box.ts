@@ -14,6 +14,8 @@ export class ScreenBox implements SelectionBox {
     private readonly camera: Camera,
     private readonly low: Vector2,
     private readonly high: Vector2,
+    /** Tells whether a point that is in the rectangle is seen, and not hidden. */
+    private readonly isSeen: (x: number, y: number, z: number) => boolean,
   ) {
     this.toScreen.multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse);
   }
@@ -22,7 +24,8 @@ export class ScreenBox implements SelectionBox {
     const at = this.corner.set(x, y, z, 1).applyMatrix4(this.toScreen);
     if (at.w <= 0 || Math.abs(at.z) > at.w) return false;
     const [u, v] = [at.x / at.w, at.y / at.w];
-    return u >= this.low.x && u <= this.high.x && v >= this.low.y && v <= this.high.y;
+    const inside = u >= this.low.x && u <= this.high.x && v >= this.low.y && v <= this.high.y;
+    return inside && this.isSeen(u, v, at.z / at.w);
   }
 
   hasObject(object: Object3D): boolean {
@@ -51,7 +54,8 @@ export class ScreenBox implements SelectionBox {
       for (const v of [0.5, 0, 1]) {
         const at = new Vector2(this.low.x + (this.high.x - this.low.x) * u, this.low.y + (this.high.y - this.low.y) * v);
         ray.setFromCamera(at, this.camera);
-        if (ray.intersectObjects(meshes, false).length > 0) return true;
+        const [hit] = ray.intersectObjects(meshes, false);
+        if (hit && this.isSeen(at.x, at.y, hit.point.project(this.camera).z)) return true;
       }
     }
     return false;

@@ -11,10 +11,12 @@ export class ScreenQuad {
   private readonly scene = new Scene();
   private readonly camera = new OrthographicCamera();
 
+  private readonly quad: Mesh<PlaneGeometry, ShaderMaterial>;
+
   constructor(material: ShaderMaterial) {
-    const quad = new Mesh(new PlaneGeometry(2, 2), material);
-    quad.frustumCulled = false;
-    this.scene.add(quad);
+    this.quad = new Mesh(new PlaneGeometry(2, 2), material);
+    this.quad.frustumCulled = false;
+    this.scene.add(this.quad);
   }
 
   /** Over what is there already. */
@@ -22,5 +24,10 @@ export class ScreenQuad {
     renderer.autoClear = false;
     renderer.render(this.scene, this.camera);
     renderer.autoClear = true;
+  }
+
+  dispose(): void {
+    this.quad.geometry.dispose();
+    this.quad.material.dispose();
   }
 }

@@ -1,0 +1,78 @@
+import { DepthTexture, ShaderMaterial, UnsignedIntType, Vector2, Vector3, WebGLRenderTarget, type Camera } from "three";
+import { SCREEN_VERTEX, ScreenQuad } from "./objects/screen-quad";
+import type { Viewport } from "./viewport";
+
+/** A surface must be nearer than a point by this part of its distance to hide it. */
+const TOLERANCE = 0.01;
+const FRAGMENT = /* glsl */ `
+  uniform sampler2D depths;
+  varying vec2 vUv;
+  void main() {
+    vec4 parts = fract(texture2D(depths, vUv).r * vec4(1.0, 255.0, 65025.0, 16581375.0));
+    gl_FragColor = parts - parts.yzww * vec4(1.0 / 255.0, 1.0 / 255.0, 1.0 / 255.0, 0.0);
+  }
+`;
+
+/** How far the nearest surface is at each pixel of the scene: what is behind it is hidden. */
+export class DepthMap {
+  private readonly pixels: Uint8Array;
+  private readonly size: Vector2;
+  private readonly camera: Camera;
+  private readonly at = new Vector3();
+
+  /** Draws the scene once more, unseen; the camera must be aimed. What is seen through hides nothing. */
+  constructor({ renderer, scene, camera, size }: Viewport) {
+    this.camera = camera;
+    this.size = new Vector2(size.width, size.height).floor();
+    const { x: width, y: height } = this.size;
+    const drawn = new WebGLRenderTarget(width, height, {
+      depthTexture: new DepthTexture(width, height, UnsignedIntType),
+    });
+    const packed = new WebGLRenderTarget(width, height);
+    const quad = new ScreenQuad(
+      new ShaderMaterial({
+        vertexShader: SCREEN_VERTEX,
+        fragmentShader: FRAGMENT,
+        uniforms: { depths: { value: drawn.depthTexture } },
+        depthTest: false,
+        depthWrite: false,
+      }),
+    );
+    renderer.setRenderTarget(drawn);
+    renderer.render(scene, camera);
+    renderer.setRenderTarget(packed);
+    quad.render(renderer);
+    this.pixels = new Uint8Array(width * height * 4);
+    renderer.readRenderTargetPixels(packed, 0, 0, width, height, this.pixels);
+    renderer.setRenderTarget(null);
+    quad.dispose();
+    drawn.dispose();
+    packed.dispose();
+  }
+
+  /** Whether nothing hides a point, in normalized device coordinates (-1 to 1, y up). */
+  isSeen(x: number, y: number, z: number): boolean {
+    const column = Math.round(((x + 1) / 2) * this.size.x - 0.5);
+    const row = Math.round(((y + 1) / 2) * this.size.y - 0.5);
+    const distance = this.distance(z);
+    // Points on an edge fall beside their surface as often as on it.
+    for (let dy = -1; dy <= 1; dy++) {
+      for (let dx = -1; dx <= 1; dx++) {
+        if (this.surface(column + dx, row + dy) >= distance * (1 - TOLERANCE)) return true;
+      }
+    }
+    return false;
+  }
+
+  /** From the eye to the nearest surface at a pixel, m along the line of sight. */
+  private surface(column: number, row: number): number {
+    if (column < 0 || row < 0 || column >= this.size.x || row >= this.size.y) return 0;
+    const first = (row * this.size.x + column) * 4;
+    const [a = 0, b = 0, c = 0, d = 0] = this.pixels.subarray(first, first + 4);
+    return this.distance(2 * ((a + b / 255 + c / 65025 + d / 16581375) / 255) - 1);
+  }
+
+  private distance(z: number): number {
+    return -this.at.set(0, 0, z).applyMatrix4(this.camera.projectionMatrixInverse).z;
+  }
+}
