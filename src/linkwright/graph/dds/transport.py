@@ -168,7 +168,8 @@ class DdsTransport:
             return
         self._closed = True
         _open_transports.discard(self)
-        self._starter.join()
+        if self._starter.ident is not None:  # Ctrl-C may have come before it was started
+            self._starter.join()
         if self._engine is not None:
             self._engine.close()
             self._engine = None
