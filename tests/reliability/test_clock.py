@@ -46,7 +46,7 @@ class Program(Node):
         self.create_timer(0.02, self.tick)
 
     def tick(self):
-        if not self.clock_.get_subscription_count():
+        if not self.clock_.get_subscription_count() or not self.broadcaster.pub_tf.get_subscription_count():
             return
         self.sent += 1
         if self.sent == 150:

@@ -22,7 +22,11 @@ export class TeleopPanel implements Panel {
   private readonly gamepad: TeleopGamepad;
   private readonly aim = h("div", { class: "teleop-aim", aria: { live: "polite" } });
   private readonly velocity = h("output", { class: "teleop-velocity numeric" });
-  private readonly focus = h("div", { class: "note" });
+  /** Both are laid out and one is seen: a click must not move what is clicked. */
+  private readonly focus = {
+    active: h("span", {}, strings.monitor.teleop.active),
+    inactive: h("span", {}, strings.monitor.teleop.inactive),
+  };
   private readonly gamepadName = h("span", { class: "note" });
   private readonly limits: Record<"linear" | "angular", HTMLInputElement>;
   private seen = false;
@@ -37,7 +41,8 @@ export class TeleopPanel implements Panel {
       angular: numberField(words.angularHint, settings.angular, [0, FASTEST], (angular) => state.configure({ angular })),
     };
     const stop = button(words.stopHint, () => this.pad.letGo(), "tool stop", icon("stop"), words.stop);
-    const side = h("div", { class: "teleop-side" }, this.velocity, stop, this.focus, h("p", { class: "note" }, words.keys));
+    const focus = h("div", { class: "note teleop-focus" }, this.focus.active, this.focus.inactive);
+    const side = h("div", { class: "teleop-side" }, this.velocity, stop, focus, h("p", { class: "note" }, words.keys));
     this.element = h(
       "div",
       { class: "panel monitor" },
@@ -106,7 +111,8 @@ export class TeleopPanel implements Panel {
   }
 
   private showFocus(): void {
-    const words = strings.monitor.teleop;
-    this.focus.textContent = document.activeElement === this.pad.element ? words.active : words.inactive;
+    const active = document.activeElement === this.pad.element;
+    this.focus.active.classList.toggle("unseen", !active);
+    this.focus.inactive.classList.toggle("unseen", active);
   }
 }
