@@ -11,9 +11,9 @@ import pytest
 from linkwright.graph import DESCRIPTION_QOS
 from linkwright.messages import String
 from tests.browser.conftest import state, until
+from tests.browser.golden import link, mesh, robot_of
 from tests.browser.live import configuration
 from tests.browser.mesh_writers import dae, obj, png, stl_binary
-from tests.browser.test_golden_meshes import link, mesh, robot_of
 from tests.viewer.export.robots import GRIPPER
 from tests.viewer.export.test_glb import textured_dae
 

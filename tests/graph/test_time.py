@@ -1,9 +1,8 @@
 import asyncio
-from math import floor
 
 import pytest
 
-from linkwright.graph import Graph, JumpClock, SystemClock, Time
+from linkwright.graph import Graph, JumpClock, SystemClock, Time, TimerInfo
 from linkwright.messages import String
 from linkwright.messages import Time as TimeMessage
 
@@ -139,20 +138,19 @@ def test_points_in_time_become_messages():
 
 async def test_system_timers_neither_drift_nor_run_early():
     graph = Graph(clock=SystemClock(), on_log=print)
-    loop = asyncio.get_running_loop()
-    start = loop.time()
     done = asyncio.Event()
     calls = []
 
-    def tick():
-        calls.append(loop.time() - start)
+    def tick(info: TimerInfo):
+        calls.append((info.expected_call_time.nanoseconds, info.actual_call_time.nanoseconds))
         if len(calls) == 20:
             done.set()
 
     graph.create_node("node").create_timer(0.005, tick)
     await asyncio.wait_for(done.wait(), 5.0)
     await graph.close()
-    # However late a busy machine makes a call, it belongs to the beat before it, and no beat has two.
-    beats = [floor(call / 0.005 + 1e-3) for call in calls]
-    assert beats[0] >= 1
-    assert beats == sorted(set(beats))
+    # However late a busy machine makes the calls, each belongs to a beat of its own that had come.
+    beats = [divmod(expected - calls[0][0], 5_000_000) for expected, _ in calls]
+    assert [rest for _, rest in beats] == [0] * 20
+    assert [beat for beat, _ in beats] == sorted({beat for beat, _ in beats})
+    assert all(actual >= expected for expected, actual in calls)

@@ -34,7 +34,9 @@ def unpack(frame: bytes) -> Content:
         if isinstance(value, dict) and "$" in value:
             name, offset, count = value["$"]
             return np.frombuffer(frame, _TYPES[name], count, start + offset)
-        return value
+        if isinstance(value, dict):
+            return {name: plain(each) for name, each in value.items()}
+        return [plain(each) for each in value] if isinstance(value, list) else value
 
     fields = {name: plain(value) for name, value in header["content"].items()}
     return Content(header["key"], header["frame"], header["pose"], header["stamp"], fields)

@@ -15,8 +15,8 @@ from linkwright.viewer.markers.controls import read_interactive_marker
 from linkwright.viewer.mesh_files import MeshIndex
 from linkwright.viewer.protocol import MarkerFeedback
 from linkwright.workspace import PackageFinder
+from tests.viewer.contents import contents
 from tests.viewer.scene import world
-from tests.viewer.test_markers import unpacked
 
 InteractiveMarker = get_message("visualization_msgs/msg/InteractiveMarker")
 Control = get_message("visualization_msgs/msg/InteractiveMarkerControl")
@@ -72,9 +72,10 @@ class Server:
         self._updates.publish(Update(server_id="s", seq_num=number, type=Update.KEEP_ALIVE))
 
 
-def contents(world) -> dict[str, dict]:
+def shown(world) -> dict[str, dict]:
+    """By kind and name, what a page would be sent."""
     (display,) = world.viewer.displays
-    return {f"{each['kind']} {each['name']}": each for each in map(unpacked, display.data())}
+    return {f"{each.fields['kind']} {each.fields['name']}": each.fields for each in contents(display)}
 
 
 def status(world) -> dict[str, tuple[str, str]]:
@@ -95,18 +96,18 @@ async def test_markers_of_a_server_come_move_and_go():
     async with world(RvizConfig.parse(FILE)) as w:
         server = Server(w.graph, marker("one", x=1))
         await connected(w)
-        assert contents(w)["interactive_marker one"]["pose"] == [1, 0, 0, 0, 0, 0, 1]
+        assert shown(w)["interactive_marker one"]["pose"] == [1, 0, 0, 0, 0, 0, 1]
         server.update(markers=[marker("two", x=2)])
         await w.settle()
-        assert sorted(contents(w)) == ["interactive_marker one", "interactive_marker two"]
+        assert sorted(shown(w)) == ["interactive_marker one", "interactive_marker two"]
         moved = Pose(name="two")
         moved.pose.position.x = 5.0
         server.update(poses=[moved])
         await w.settle()
-        assert contents(w)["interactive_marker_moved two"]["pose"] == [5, 0, 0, 0, 0, 0, 1]
+        assert shown(w)["interactive_marker_moved two"]["pose"] == [5, 0, 0, 0, 0, 0, 1]
         server.update(erases=["two"])
         await w.settle()
-        assert sorted(contents(w)) == ["interactive_marker one"]
+        assert sorted(shown(w)) == ["interactive_marker one"]
 
 
 async def test_updates_wait_while_time_is_paused():
@@ -117,9 +118,9 @@ async def test_updates_wait_while_time_is_paused():
         server.update(markers=[marker("two")])
         server.update(erases=["one"])
         await w.settle()
-        assert sorted(contents(w)) == ["interactive_marker one"]
+        assert sorted(shown(w)) == ["interactive_marker one"]
         w.viewer.manager.set_time(paused=False, mode="Off", source="")
-        assert sorted(contents(w)) == ["interactive_marker two"]
+        assert sorted(shown(w)) == ["interactive_marker two"]
 
 
 async def test_a_lost_update_begins_anew():
@@ -130,9 +131,9 @@ async def test_a_lost_update_begins_anew():
         server.sequence = 7
         server.keep_alive()
         await w.settle()
-        assert contents(w) == {}
+        assert shown(w) == {}
         await connected(w)
-        assert sorted(contents(w)) == ["interactive_marker three"]
+        assert sorted(shown(w)) == ["interactive_marker three"]
 
 
 async def test_what_the_user_does_is_told_to_the_server():
@@ -173,11 +174,11 @@ async def test_a_marker_whose_frame_is_unknown_appears_when_it_is_known():
     async with world(RvizConfig.parse(FILE)) as w:
         Server(w.graph, marker("one", frame="tip"))
         await connected(w)
-        assert contents(w) == {}
+        assert shown(w) == {}
         assert status(w)["one"][0] == "error"
         w.move({("base", "tip"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
         await w.settle()
-        assert sorted(contents(w)) == ["interactive_marker one"]
+        assert sorted(shown(w)) == ["interactive_marker one"]
         assert "one" not in status(w)
 
 
@@ -188,7 +189,7 @@ async def test_a_disabled_display_leaves_the_server():
         (display,) = w.viewer.displays
         display.set_checked(False)
         display.enabled_changed()
-        assert contents(w) == {}
+        assert shown(w) == {}
         assert server._updates.get_subscription_count() == 0
 
 

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
 import math
-import struct
 
 import numpy as np
 import pytest
@@ -14,6 +12,7 @@ from linkwright.viewer import RvizConfig
 from linkwright.viewer.markers import BadMarkerError, MarkerStore, read_marker
 from linkwright.viewer.mesh_files import MeshIndex
 from linkwright.workspace import PackageFinder
+from tests.viewer.contents import unpack
 from tests.viewer.scene import world
 
 Marker = get_message("visualization_msgs/msg/Marker")
@@ -48,20 +47,6 @@ def marker(number: int = 0, *, ns: str = "a", kind: int = Marker.CUBE, frame: st
     return message
 
 
-def unpacked(frame: bytes) -> dict:
-    kind, length, _, _ = struct.unpack_from("<IIII", frame)
-    assert kind == 2
-    start = -(-(16 + length) // 8) * 8
-
-    def revive(value):
-        if "$" in value:
-            name, offset, count = value["$"]
-            return np.frombuffer(frame, {"f4": "<f4", "u1": "u1", "i4": "<i4"}[name], count, start + offset)
-        return value
-
-    return json.loads(frame[16 : 16 + length], object_hook=revive)["content"]
-
-
 class Watcher:
     """A page that has seen what the store had when it looked last."""
 
@@ -74,7 +59,7 @@ class Watcher:
         frame, self.seen = self.store.since(self.seen)
         if frame is None:
             return None
-        content = unpacked(frame)
+        content = unpack(frame).fields
         if content["everything"]:
             self.markers.clear()
         for identity in content["gone"]:

@@ -1,8 +1,8 @@
 import { button, h } from "../dom";
 import { icon } from "../icons";
 import { tickBox } from "../panels/controls";
+import { jointBar } from "../panels/joint-bar";
 import { JointRow } from "../panels/joint-row";
-import { UnitSwitch } from "../panels/unit-switch";
 import type { View } from "../protocol.gen";
 import type { ThemeState } from "../shell/theme";
 import type { DisplayState } from "../state/displays";
@@ -91,7 +91,7 @@ export class Sidebar {
   }
 
   private joints(): HTMLElement {
-    const { joints, angles, connection } = this.session;
+    const { joints, angles } = this.session;
     const words = strings.joints;
     const rows = (joints.controls ?? []).map(
       (joint) => new JointRow(joint, angles, (position) => joints.move({ [joint.name]: position })),
@@ -102,14 +102,7 @@ export class Sidebar {
     joints.positionsChanged.on(update);
     angles.changed.on(() => rows.forEach((row) => row.showUnit()));
     update();
-    const bar = h(
-      "div",
-      { class: "toolbar" },
-      button(words.randomizeHint, () => connection.send({ type: "randomize_joints" }), "tool", icon("shuffle"), words.randomize),
-      button(words.centerHint, () => connection.send({ type: "center_joints" }), "tool", icon("center"), words.center),
-      h("span", { class: "spacer" }),
-      new UnitSwitch(angles).element,
-    );
+    const bar = jointBar(this.session);
     const none = h("p", { class: "empty" }, words.none);
     const content = rows.length > 0 ? [bar, h("div", { class: "joints" }, ...rows.map((row) => row.element))] : [none];
     return h("section", { class: "joint-section", aria: { label: strings.sharing.exported.joints } }, h("h2", {}, strings.sharing.exported.joints), ...content);

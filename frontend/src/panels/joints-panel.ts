@@ -1,12 +1,11 @@
-import { button, h } from "../dom";
-import { icon } from "../icons";
+import { h } from "../dom";
 import type { Session } from "../state/session";
 import { strings } from "../strings";
+import { jointBar } from "./joint-bar";
 import { JointRow } from "./joint-row";
 import type { Panel } from "./panel";
 import { PoseBar } from "./pose-bar";
 import { SweepBar } from "./sweep-bar";
-import { UnitSwitch } from "./unit-switch";
 
 /** From this many joints on a filter helps. */
 const FILTER_FROM = 10;
@@ -23,18 +22,11 @@ export class JointsPanel implements Panel {
 
   constructor(private readonly session: Session) {
     const words = strings.joints;
-    const { joints, angles, connection } = session;
+    const { joints, angles } = session;
     this.filter.placeholder = words.filter;
     this.filter.setAttribute("aria-label", words.filter);
     this.filter.addEventListener("input", () => this.applyFilter());
-    const bar = h(
-      "div",
-      { class: "toolbar" },
-      button(words.randomizeHint, () => connection.send({ type: "randomize_joints" }), "tool", icon("shuffle"), words.randomize),
-      button(words.centerHint, () => connection.send({ type: "center_joints" }), "tool", icon("center"), words.center),
-      h("span", { class: "spacer" }),
-      new UnitSwitch(angles).element,
-    );
+    const bar = jointBar(session);
     this.bars = [new PoseBar(session).element, new SweepBar(joints).element];
     this.element = h("div", { class: "panel" }, bar, ...this.bars, this.filter, this.list);
     joints.controlsChanged.on(() => this.build());

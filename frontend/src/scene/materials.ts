@@ -7,6 +7,8 @@ import {
   NoColorSpace,
   RepeatWrapping,
   TextureLoader,
+  type BufferAttribute,
+  type InterleavedBufferAttribute,
   type Material,
   type Texture,
 } from "three";
@@ -22,8 +24,22 @@ export interface Look {
 
 /** RViz's material for what has none: RVIZ/ShadedRed. */
 export const RVIZ_RED = [1, 0, 0] as const;
-/** From this alpha on RViz blends and stops writing depth. */
-const OPAQUE_FROM = 0.9998;
+/** Below this alpha RViz blends and stops writing depth. */
+export const OPAQUE_FROM = 0.9998;
+
+/** Lets what is behind a surface be seen, or no more. */
+export function blend(material: Material, seeThrough: boolean): void {
+  material.transparent = seeThrough;
+  material.depthWrite = !seeThrough;
+  material.needsUpdate = true;
+}
+
+/** Whether lines are seen through: all of them, or some, by the alpha of their colours r g b a. */
+export function areSeenThrough(opacity: number, colors: BufferAttribute | InterleavedBufferAttribute | undefined): boolean {
+  if (opacity < 1) return true;
+  for (let i = 0; colors && i < colors.count; i++) if (colors.getW(i) < 1) return true;
+  return false;
+}
 
 /** RViz's white of a link without a transform. */
 export const errorMaterial = new MeshBasicMaterial({ color: 0xffffff, side: DoubleSide });

@@ -6,12 +6,17 @@ const position = new Vector3();
 const orientation = new Quaternion();
 const ONE = new Vector3(1, 1, 1);
 
+/** Writes a pose, x y z (m) qx qy qz qw from `at` on, into `matrix`. */
+export function poseMatrix(values: ArrayLike<number>, matrix: Matrix4, at = 0): Matrix4 {
+  position.fromArray(values, at);
+  orientation.fromArray(values, at + 3);
+  return matrix.compose(position, orientation, ONE);
+}
+
 /** Writes the pose of a frame into `matrix`; false, and nothing written, where the frame has no transform. */
 export function framePose(frames: FrameStore, row: number, matrix: Matrix4): boolean {
   if (!frames.has(row)) return false;
-  position.fromArray(frames.poses, row * 7);
-  orientation.fromArray(frames.poses, row * 7 + 3);
-  matrix.compose(position, orientation, ONE);
+  poseMatrix(frames.poses, matrix, row * 7);
   return true;
 }
 
@@ -21,9 +26,7 @@ export function framePose(frames: FrameStore, row: number, matrix: Matrix4): boo
  */
 export function dataPose(frames: FrameStore, data: DisplayData, matrix: Matrix4): boolean {
   if (data.pose) {
-    position.fromArray(data.pose, 0);
-    orientation.fromArray(data.pose, 3);
-    matrix.compose(position, orientation, ONE);
+    poseMatrix(data.pose, matrix);
     return true;
   }
   if (data.frame !== "" && data.frame !== frames.fixedFrame) return framePose(frames, frames.row(data.frame), matrix);

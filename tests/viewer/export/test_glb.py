@@ -9,8 +9,8 @@ import pytest
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.viewer.export import export_snapshot
+from tests.browser.golden import GOLDEN, golden_links, link, mesh, robot_of
 from tests.browser.mesh_writers import dae, png
-from tests.browser.test_golden_meshes import GOLDEN, link, mesh, robot_of
 from tests.viewer.export.robots import GRIPPER, Glb, snapshot
 
 
@@ -54,14 +54,7 @@ def test_every_triangle_faces_outwards():
 
 
 def test_meshes_are_as_large_and_as_coloured_as_the_page_draws_them(tmp_path):
-    links = []
-    for name, (file, content, material, scale, *_) in GOLDEN.items():
-        path = tmp_path / name / file
-        path.parent.mkdir()
-        path.write_bytes(content)
-        (path.parent / "own.mtl").write_text("newmtl paint\nKd 1 0.5 0\nd 0.25\n")
-        links.append(link(name, mesh(path, material, scale)))
-    drawn = {each.link: each for each in Glb(export_snapshot(snapshot(robot_of("".join(links))), "glb")).drawn}
+    drawn = {each.link: each for each in Glb(export_snapshot(snapshot(robot_of(golden_links(tmp_path))), "glb")).drawn}
     wrong = {}
     for name, (_, _, _, _, (least, most), color, opacity) in GOLDEN.items():
         told = drawn[name]

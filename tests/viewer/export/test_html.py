@@ -12,8 +12,8 @@ import pytest
 from linkwright.messages import get_message
 from linkwright.viewer import RvizConfig
 from linkwright.viewer.export import export_snapshot, format_of, html
+from tests.browser.golden import link, mesh, robot_of
 from tests.browser.mesh_writers import dae, glb, obj, png, stl_binary
-from tests.browser.test_golden_meshes import link, mesh, robot_of
 from tests.viewer.export.robots import GRIPPER, snapshot
 from tests.viewer.scene import ARM, world
 

@@ -1,11 +1,13 @@
-import { Box3, Group, Quaternion, type Object3D, type Raycaster } from "three";
+import { Box3, Group, Matrix4, type Object3D, type Raycaster } from "three";
 import type { DisplayData } from "../../connection/data";
 import type { MarkerMenuEntry } from "../../protocol.gen";
 import type { MenuChoice } from "../../state/scene-menu";
 import { strings } from "../../strings";
+import { describedPose } from "../described-pose";
 import type { ControlHandle } from "../interactive/control-handle";
 import { MarkerHandle } from "../interactive/marker-handle";
 import type { Described, Hit, Interaction, ScenePointer } from "../picking";
+import { poseMatrix } from "../pose";
 import type { Drawing, DrawingContext } from "./drawing";
 
 /** Poses told to the server while something is dragged, at most one in so many milliseconds. */
@@ -72,13 +74,10 @@ export class InteractiveMarkersDrawing implements Drawing {
   describe(key: string): Described | null {
     const found = this.find(key);
     if (!found) return null;
-    const [x = 0, y = 0, z = 0, ...turn] = found.marker.values;
-    const text = (values: readonly number[]): string => values.map((each) => each.toFixed(4)).join("; ");
     return {
       name: `Interactive Marker ${found.marker.shape.name}`,
       children: [
-        { name: "Position", value: text([x, y, z]) },
-        { name: "Orientation", value: text(new Quaternion().fromArray(turn).toArray()) },
+        ...describedPose(poseMatrix(found.marker.values, new Matrix4())),
         { name: "Control", value: found.control.control.name },
       ],
     };

@@ -1,10 +1,11 @@
-import { Box3, Group, Matrix4, Quaternion, Vector3, type Object3D, type Raycaster } from "three";
+import { Box3, Group, Matrix4, Vector3, type Object3D, type Raycaster } from "three";
 import type { DisplayData } from "../../connection/data";
 import type { MarkerShape } from "../../protocol.gen";
+import { describedNumbers, describedPose } from "../described-pose";
 import { makeMarkerObject, type MarkerObject } from "../markers/marker-object";
 import { isSolid, SolidMarkers, surfacesOf } from "../markers/solid-markers";
 import type { Described, Hit, SelectionBox } from "../picking";
-import { framePose } from "../pose";
+import { framePose, poseMatrix } from "../pose";
 import type { Drawing, DrawingContext } from "./drawing";
 
 interface Shown {
@@ -12,6 +13,8 @@ interface Shown {
   /** Of the marker in its frame, or in the fixed frame. */
   pose: Matrix4;
   object: MarkerObject | null;
+  /** What a ray meets of a marker that is drawn with others in one call; kept, for the mouse asks with each step. */
+  surfaces: Object3D[] | null;
 }
 
 /** rviz_default_plugins/Marker and MarkerArray */
@@ -69,9 +72,9 @@ export class MarkersDrawing implements Drawing {
 
   pick(ray: Raycaster): Hit | null {
     let best: Hit | null = null;
-    for (const [key, { marker }] of this.shown) {
-      if (this.hidden.has(marker.namespace)) continue;
-      const [hit] = ray.intersectObjects(this.surfacesOf(key), true);
+    for (const [key, shown] of this.shown) {
+      if (this.hidden.has(shown.marker.namespace)) continue;
+      const [hit] = ray.intersectObjects(this.surfacesOf(shown), true);
       if (hit && (best === null || hit.distance < best.distance)) {
         best = { key, distance: hit.distance, point: hit.point };
       }
@@ -80,31 +83,34 @@ export class MarkersDrawing implements Drawing {
   }
 
   pickBox(box: SelectionBox): readonly string[] {
-    return [...this.shown.keys()].filter((key) => this.surfacesOf(key).some((object) => box.hasObject(object)));
+    return [...this.shown]
+      .filter(([, shown]) => this.surfacesOf(shown).some((object) => box.hasObject(object)))
+      .map(([key]) => key);
   }
 
   describe(key: string): Described | null {
-    const marker = this.shown.get(key)?.marker;
-    if (!marker) return null;
-    const [x = 0, y = 0, z = 0, qx = 0, qy = 0, qz = 0, qw = 1] = marker.pose;
-    const text = (...values: number[]): string => values.map((each) => String(Number(each.toFixed(4)))).join("; ");
+    const shown = this.shown.get(key);
+    if (!shown) return null;
+    const { marker } = shown;
+    const [x = 0, y = 0, z = 0] = marker.scale;
+    const [r = 0, g = 0, b = 0, a = 0] = marker.color;
     return {
       name: `Marker ${marker.id}`,
       children: [
-        { name: "Position", value: text(x, y, z) },
-        { name: "Orientation", value: text(qx, qy, qz, qw) },
-        { name: "Scale", value: text(...marker.scale) },
-        { name: "Color", value: text(...marker.color) },
+        ...describedPose(shown.pose),
+        describedNumbers("Scale", { X: x, Y: y, Z: z }),
+        describedNumbers("Color", { R: r, G: g, B: b, A: a }),
       ],
     };
   }
 
   objectsOf(key: string): readonly Object3D[] {
-    const object = this.shown.get(key)?.object;
-    if (object) return [object.root];
+    const shown = this.shown.get(key);
+    if (!shown) return [];
+    if (shown.object) return [shown.object.root];
     let outlined = this.outlined.get(key);
     if (!outlined) {
-      outlined = this.surfacesOf(key);
+      outlined = this.makeSurfaces(shown);
       for (const each of outlined) {
         each.layers.disableAll();
         this.root.add(each);
@@ -134,20 +140,22 @@ export class MarkersDrawing implements Drawing {
   }
 
   /** What a ray meets. */
-  private surfacesOf(key: string): Object3D[] {
-    const shown = this.shown.get(key);
-    if (!shown) return [];
+  private surfacesOf(shown: Shown): Object3D[] {
     if (shown.object) return [shown.object.root];
+    if (shown.marker.frame !== "") return this.makeSurfaces(shown); // it moves
+    return (shown.surfaces ??= this.makeSurfaces(shown));
+  }
+
+  private makeSurfaces({ marker, pose: own }: Shown): Object3D[] {
     const pose = new Matrix4();
-    return this.place(shown.marker, shown.pose, pose) ? surfacesOf(shown.marker, pose) : [];
+    return this.place(marker, own, pose) ? surfacesOf(marker, pose) : [];
   }
 
   private show(marker: MarkerShape): void {
     this.remove(marker.id);
-    const [x = 0, y = 0, z = 0, qx = 0, qy = 0, qz = 0, qw = 1] = marker.pose;
-    const pose = new Matrix4().compose(new Vector3(x, y, z), new Quaternion(qx, qy, qz, qw), new Vector3(1, 1, 1));
+    const pose = poseMatrix(marker.pose, new Matrix4());
     const object = isSolid(marker.shape) ? null : this.makeObject(marker);
-    this.shown.set(marker.id, { marker, pose, object });
+    this.shown.set(marker.id, { marker, pose, object, surfaces: null });
   }
 
   private makeObject(marker: MarkerShape): MarkerObject {

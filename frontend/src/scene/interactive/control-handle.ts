@@ -15,6 +15,7 @@ import type { InteractiveControl, MarkerShape } from "../../protocol.gen";
 import { makeMarkerObject, type MarkerObject } from "../markers/marker-object";
 import { isSolid, SolidMarkers, surfacesOf } from "../markers/solid-markers";
 import type { MeshLibrary } from "../meshes/mesh-library";
+import { poseMatrix } from "../pose";
 
 /** What the mouse is over is this much brighter. */
 const BRIGHTER = 1.4;
@@ -111,8 +112,7 @@ export class ControlHandle {
 }
 
 function poseOf({ pose }: MarkerShape): Matrix4 {
-  const [x = 0, y = 0, z = 0, qx = 0, qy = 0, qz = 0, qw = 1] = pose;
-  return new Matrix4().compose(new Vector3(x, y, z), new Quaternion(qx, qy, qz, qw), new Vector3(1, 1, 1));
+  return poseMatrix(pose, new Matrix4());
 }
 
 function brighten(object: Object3D, bright: boolean): void {

@@ -11,14 +11,12 @@ import {
   type Sprite,
 } from "three";
 import type { MarkerMesh, MarkerShape } from "../../protocol.gen";
-import { loadTexture } from "../materials";
+import { loadTexture, OPAQUE_FROM } from "../materials";
 import type { MeshLibrary } from "../meshes/mesh-library";
 import type { OwnMaterial } from "../meshes/mesh-template";
 import { PointBatch } from "../objects/point-batch";
 import { WideLines } from "../objects/wide-lines";
 import { textSprite } from "./text-sprite";
-
-const OPAQUE_FROM = 0.9998;
 
 /** A marker that is an object of its own: lines, points, text, triangles or a mesh. */
 export interface MarkerObject {

@@ -1,5 +1,6 @@
 import { Color, Matrix4, Mesh, Vector3, type Box3, type BufferGeometry, type Object3D } from "three";
 import type { MarkerShape } from "../../protocol.gen";
+import { OPAQUE_FROM } from "../materials";
 import { alongX, ArrowBatch, type ArrowShape } from "../objects/arrow-batch";
 import { CopyBatch } from "../objects/copy-batch";
 import { paint, unitBox, unitCylinder, unitSphere } from "../objects/geometries";
@@ -9,8 +10,6 @@ const ARROW: ArrowShape = { shaftLength: 0.77, shaftDiameter: 1, headLength: 0.2
 /** Part of an arrow between points that is head when the marker does not say. */
 const HEAD = 0.23;
 const STRIP_HEAD = 0.25;
-const OPAQUE_FROM = 0.9998;
-
 /** Shapes of size one; spheres and cylinders have a radius of one. */
 const SHAPES: Readonly<Record<string, { geometry: BufferGeometry; half: readonly [boolean, boolean, boolean] }>> = {
   cube: { geometry: unitBox, half: [false, false, false] },

@@ -11,6 +11,7 @@ import {
   RedFormat,
   ShaderMaterial,
 } from "three";
+import { OPAQUE_FROM } from "../materials";
 
 /** Cells along a side of a part; every graphics library takes textures of that size. */
 const PART = 4096;
@@ -81,7 +82,7 @@ export class CellPlane {
     this.look = look;
     this.palette.value.image.data?.set(look.palette);
     this.palette.value.needsUpdate = true;
-    const seeThrough = look.alpha < 0.9998 || look.seeThrough;
+    const seeThrough = look.alpha < OPAQUE_FROM || look.seeThrough;
     for (const { material } of this.parts) {
       // What is drawn behind must come before all that hides nothing, too: it is blended, but no see-through material.
       material.transparent = seeThrough && !look.behind;

@@ -9,6 +9,7 @@ import {
   type ShaderMaterial,
   type WebGLRenderer,
 } from "three";
+import { OPAQUE_FROM } from "../materials";
 import { pointMaterial, setLook, type PointLook, type PointVariant } from "./point-material";
 
 /** Up to so many points are drawn with corners, which may be larger than the screen; software renderers are slow at it. */
@@ -56,7 +57,7 @@ export class PointBatch {
       style: look.style,
       tinted: this.colors.length > 0,
       quads: look.style !== "Points" && this.count <= MOST_QUADS,
-      seeThrough: look.alpha < 0.9998 || this.translucent,
+      seeThrough: look.alpha < OPAQUE_FROM || this.translucent,
     };
   }
 

@@ -7,6 +7,7 @@ import {
   type Box3,
   type ColorRepresentation,
 } from "three";
+import { areSeenThrough, blend } from "../materials";
 import { segmentsOf } from "./ribbons";
 
 /** Lines one pixel wide, unlit; the same calls as `WideLines`. */
@@ -58,12 +59,8 @@ export class ThinLines {
   private settle(): void {
     const { material, geometry } = this.root;
     const colors = geometry.attributes["color"];
-    let transparent = this.opacity < 1;
-    for (let i = 0; !transparent && colors && i < colors.count; i++) transparent = colors.getW(i) < 1;
     material.vertexColors = colors !== undefined;
-    material.transparent = transparent;
-    material.depthWrite = !transparent;
-    material.needsUpdate = true;
+    blend(material, areSeenThrough(this.opacity, colors));
   }
 }
 

@@ -8,6 +8,7 @@ import {
   type Box3,
   type ColorRepresentation,
 } from "three";
+import { areSeenThrough, blend } from "../materials";
 import { ribbons, stripsOf } from "./ribbons";
 
 const VERTEX = /* glsl */ `
@@ -98,11 +99,7 @@ export class WideLines {
   private settle(): void {
     const { material, geometry } = this.root;
     const colors = geometry.attributes["rgba"];
-    let transparent = this.opacity < 1;
-    for (let i = 0; !transparent && colors && i < colors.count; i++) transparent = colors.getW(i) < 1;
     material.defines = colors ? { COLORED: "" } : {};
-    material.transparent = transparent;
-    material.depthWrite = !transparent;
-    material.needsUpdate = true;
+    blend(material, areSeenThrough(this.opacity, colors));
   }
 }

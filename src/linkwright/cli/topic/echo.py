@@ -7,10 +7,10 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 from linkwright.cli.lookup import absolute, topic_type
-from linkwright.cli.numbers import positive_float, unsigned_int
+from linkwright.cli.numbers import positive_float
 from linkwright.cli.qos import add_subscription_qos_arguments, fitting_profile
 from linkwright.cli.session import add_session_arguments, run_in_graph
-from linkwright.cli.topic.echo_output import EchoFormat, field_path, lost_text, select
+from linkwright.cli.topic.echo_output import EchoFormat, add_format_arguments, field_path, lost_text, select
 from linkwright.cli.topic.filters import compile_filter
 
 if TYPE_CHECKING:
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 
 HELP = "print the messages of a topic"
 
-_TRUNCATE = 128
 _CLEAR = "\x1b[H\x1b[2J\x1b[3J"
 
 
@@ -28,20 +27,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add_session_arguments(parser)
     parser.add_argument("topic_name", metavar="TOPIC", help="such as /chatter")
     parser.add_argument("message_type", metavar="TYPE", nargs="?", help="such as std_msgs/msg/String; the topic's own")
-    parser.add_argument("--csv", action="store_true", help="print the values separated by commas")
+    add_format_arguments(parser, "print each message on one line")
     parser.add_argument("--field", metavar="NAMES", help="print only a part, such as pose.pose.position")
-    parser.add_argument("-f", "--full-length", action="store_true", help="do not cut long arrays and texts")
-    parser.add_argument(
-        "-l",
-        "--truncate-length",
-        metavar="N",
-        type=unsigned_int,
-        default=_TRUNCATE,
-        help="cut arrays and texts after so many elements (default: %(default)s)",
-    )
-    parser.add_argument("--no-arr", action="store_true", help="do not print the elements of arrays")
-    parser.add_argument("--no-str", action="store_true", help="do not print texts")
-    parser.add_argument("--flow-style", action="store_true", help="print each message on one line")
     parser.add_argument("--lost-messages", action="store_true", help="accepted for ros2's sake; lost ones are told of")
     parser.add_argument("--no-lost-messages", action="store_true", help="do not tell when messages were lost")
     parser.add_argument("--raw", action="store_true", help="print the bytes that travel")
@@ -57,15 +44,8 @@ def run(arguments: argparse.Namespace) -> int:
     """Print messages until the user ends it."""
     name = absolute(arguments.topic_name)
     fits = None if arguments.filter is None else compile_filter(arguments.filter)
-    form = EchoFormat(
-        field=() if arguments.raw else field_path(arguments.field),
-        csv=arguments.csv,
-        truncate_length=None if arguments.full_length else arguments.truncate_length,
-        no_arr=arguments.no_arr,
-        no_str=arguments.no_str,
-        flow_style=arguments.flow_style,
-        message_info=arguments.include_message_info,
-    )
+    field = () if arguments.raw else field_path(arguments.field)
+    form = EchoFormat.of(arguments, field, message_info=arguments.include_message_info)
 
     async def job(session: Session) -> int:
         from linkwright.graph.events import SubscriptionEventCallbacks

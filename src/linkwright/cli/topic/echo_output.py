@@ -2,16 +2,36 @@
 
 from __future__ import annotations
 
+import argparse
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from linkwright.cli.numbers import unsigned_int
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean
 
 if TYPE_CHECKING:
     from linkwright.graph.transport import MessageInfo
 
 _SEPARATOR = "---\n"
+_TRUNCATE = 128
+
+
+def add_format_arguments(parser: argparse.ArgumentParser, flow_help: str) -> None:
+    """Declare how messages are printed, for `EchoFormat.of`; `flow_help` tells what ``--flow-style`` does."""
+    parser.add_argument("--csv", action="store_true", help="print the values separated by commas")
+    parser.add_argument("-f", "--full-length", action="store_true", help="do not cut long arrays and texts")
+    parser.add_argument(
+        "-l",
+        "--truncate-length",
+        metavar="N",
+        type=unsigned_int,
+        default=_TRUNCATE,
+        help="cut arrays and texts after so many elements (default: %(default)s)",
+    )
+    parser.add_argument("--no-arr", action="store_true", help="do not print the elements of arrays")
+    parser.add_argument("--no-str", action="store_true", help="do not print texts")
+    parser.add_argument("--flow-style", action="store_true", help=flow_help)
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,11 +50,26 @@ class EchoFormat:
 
     field: tuple[str, ...] = ()
     csv: bool = False
-    truncate_length: int | None = 128
+    truncate_length: int | None = _TRUNCATE
     no_arr: bool = False
     no_str: bool = False
     flow_style: bool = False
     message_info: bool = False
+
+    @classmethod
+    def of(
+        cls, arguments: argparse.Namespace, field: tuple[str, ...] = (), *, message_info: bool = False
+    ) -> EchoFormat:
+        """As the arguments of `add_format_arguments` say."""
+        return cls(
+            field=field,
+            csv=arguments.csv,
+            truncate_length=None if arguments.full_length else arguments.truncate_length,
+            no_arr=arguments.no_arr,
+            no_str=arguments.no_str,
+            flow_style=arguments.flow_style,
+            message_info=message_info,
+        )
 
     def text(self, message: Any, info: MessageInfo | None = None) -> str:
         """What is printed of a message, which may be one as bytes.
