@@ -125,8 +125,9 @@ class TestAgainstATalker:
             time.sleep(delay)
             process.send_signal(signal.SIGINT)
             out, err = process.communicate(timeout=10)
-            # Before Python has set its handler the signal itself ends the process.
-            assert process.returncode in (130, -signal.SIGINT), (delay, out, err)
+            # On a busy machine the signal may come before our code runs: Python then ends by it, or in its own words.
+            started = "KeyboardInterrupt" not in err or "linkwright" in err
+            assert process.returncode in (130, -signal.SIGINT) or not started, (delay, out, err)
 
     def test_termination_leaves_the_graph_too(self):
         process = begin("topic", "echo", "/chatter")

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -160,3 +161,14 @@ def test_ctrl_c_is_for_the_command(tmp_path: Path) -> None:
         time.sleep(0.1)
         os.killpg(process.pid, signal.SIGINT)
         assert process.wait(timeout=20) == 4
+
+
+def test_termination_while_the_command_is_being_started_is_passed_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Hurried(subprocess.Popen[bytes]):
+        def __init__(self, *words: Any, **options: Any) -> None:
+            super().__init__(*words, **options)
+            os.kill(os.getpid(), signal.SIGTERM)
+
+    monkeypatch.setattr(subprocess, "Popen", Hurried)
+    assert run_shell(["sleep", "60"]) == 128 + signal.SIGTERM
+    assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL

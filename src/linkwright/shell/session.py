@@ -125,17 +125,24 @@ def _run(words: Sequence[str], variables: Mapping[str, str]) -> int:
     """Run it to its end. Ctrl-C reaches it as it reaches us, and is for it; other signals are passed on."""
     import signal
 
-    with subprocess.Popen(words, env=dict(variables)) as child:  # noqa: S603 - the user's own command
+    child: subprocess.Popen[bytes] | None = None
+    early: list[int] = []  # what came while it was being started
 
-        def pass_on(number: int, _frame: object) -> None:
+    def pass_on(number: int, _frame: object) -> None:
+        if child is None:
+            early.append(number)
+        else:
             child.send_signal(number)
 
-        previous = {number: signal.signal(number, pass_on) for number in _passed_signals()}
-        try:
+    previous = {number: signal.signal(number, pass_on) for number in _passed_signals()}
+    try:
+        with subprocess.Popen(words, env=dict(variables)) as child:  # noqa: S603 - the user's own command
+            for number in early:
+                child.send_signal(number)
             status = _wait(child)
-        finally:
-            for number, handler in previous.items():
-                signal.signal(number, handler)
+    finally:
+        for number, handler in previous.items():
+            signal.signal(number, handler)
     return status if status >= 0 else 128 - status
 
 
