@@ -7,6 +7,14 @@ import sys
 import pytest
 
 
+@pytest.fixture(autouse=True, scope="session")
+def _state_of_the_user(tmp_path_factory):
+    """What programs of tests remember for the next time is not the user's own."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("XDG_STATE_HOME", str(tmp_path_factory.mktemp("state")))
+        yield
+
+
 @pytest.fixture(autouse=True)
 def plain_environment(monkeypatch):
     """No workspace, colour or language setting of the machine reaches a test."""

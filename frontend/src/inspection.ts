@@ -1,4 +1,4 @@
-import type { PropertyValue, StatusLevel, StatusRow } from "./protocol.gen";
+import type { PropertyValue, StatusLevel, StatusRow } from "./protocol";
 import type { Stage } from "./scene/stage";
 import type { Toolbox } from "./scene/tools/toolbox";
 import type { FramePose } from "./state/frames";
@@ -9,7 +9,7 @@ import { shortName } from "./state/views/catalog";
 import { number, vector } from "./state/views/view-controller";
 
 /** What tests and curious users read as `window.linkwright`; every value is a copy made when it is read. */
-export interface Inspection {
+interface Inspection {
   /** The robot, its meshes and its first transforms were drawn. */
   readonly ready: boolean;
   /** Pose of every frame in the fixed frame, m and xyzw. */

@@ -17,9 +17,11 @@ import { DiagnosticsPanel } from "./panels/diagnostics-panel";
 import { DiagramPanel } from "./panels/diagram-panel";
 import { DisplaysPanel } from "./panels/displays-panel";
 import { Dock } from "./panels/dock";
+import { FilePanels } from "./panels/file-panels";
 import { fullScreenOnF11 } from "./panels/full-screen";
 import { JointTablePanel } from "./panels/joint-table-panel";
 import { JointsPanel } from "./panels/joints-panel";
+import { Layouts } from "./panels/layouts";
 import { livePanels } from "./panels/live-panels";
 import { LinksPanel } from "./panels/links-panel";
 import { KeySheet } from "./panels/key-sheet";
@@ -79,18 +81,14 @@ function start(app: HTMLElement): void {
     new JointTablePanel(session),
     new DiagnosticsPanel(session),
     ...livePanels(session.monitor, (id) => dock.open(id)),
-  ]);
-  session.joints.controlsChanged.on(() => {
-    if (session.joints.controls === null) dock.close("joints");
-    else if (!dock.isOpen("joints")) dock.open("joints");
-  });
+  ], new Layouts(browserStorage()));
+  keepCurrent(dock, session);
+  new FilePanels(connection, dock);
 
   session.description.placeAsked.on(({ file, line }) => {
     dock.open("source");
     source.reveal(file, line);
   });
-  session.displays.treeChanged.on(() => dock.displayPanels.keep(session.displays.displays.map(({ id }) => id)));
-  session.diagnosticsChanged.on(() => dock.setCount("diagnostics", session.diagnostics.length));
 
   const stage = makeStage(scene.container, session, dock.displayPanels);
   const toolbox = stage && takeTools(stage, session);
@@ -107,6 +105,24 @@ function start(app: HTMLElement): void {
     source: () => source.inspect(),
     diagram: () => diagram.inspect(),
     monitor: () => session.monitor.inspect(),
+  });
+}
+
+/** The panels that depend on what there is, whichever arrangement is shown. */
+function keepCurrent(dock: Dock, session: Session): void {
+  const keepJoints = (): void => {
+    if (session.joints.controls === null) dock.close("joints");
+    else if (!dock.isOpen("joints")) dock.open("joints");
+  };
+  const keepDisplays = (): void => dock.displayPanels.keep(session.displays.displays.map(({ id }) => id));
+  const countFindings = (): void => dock.setCount("diagnostics", session.diagnostics.length);
+  session.joints.controlsChanged.on(keepJoints);
+  session.displays.treeChanged.on(keepDisplays);
+  session.diagnosticsChanged.on(countFindings);
+  dock.rearranged.on(() => {
+    keepJoints();
+    keepDisplays();
+    countFindings();
   });
 }
 

@@ -1,6 +1,6 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection, socketUrl } from "../src/connection/connection";
-import { PROTOCOL_VERSION } from "../src/protocol.gen";
+import { PROTOCOL_VERSION } from "../src/protocol";
 import { packed } from "./messages";
 
 class FakeSocket {

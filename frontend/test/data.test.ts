@@ -31,12 +31,12 @@ test("content comes with its arrays where the header has references", () => {
 
 test("arrays are put into objects in lists, and lists of numbers stay as they are", () => {
   const marker = { id: "a/1", pose: [1, 2, 3], points: { $: ["f4", 0, 3] }, mesh: null };
-  const other = { ...marker, id: "a/2", points: { $: ["i4", 16, 1] }, mesh: { data: { $: ["u1", 0, 0] } } };
+  const other = { ...marker, id: "a/2", points: { $: ["f4", 16, 1] }, mesh: { data: { $: ["u1", 0, 0] } } };
   const header = { display: "d", key: "k", frame: "", stamp: 0, pose: [0, 0, 0, 0, 0, 0, 1], content: { markers: [marker, other] } };
-  const data = unpackData(packed(header, [new Float32Array([4, 5, 6]), new Int32Array([-7])]));
+  const data = unpackData(packed(header, [new Float32Array([4, 5, 6]), new Float32Array([-7])]));
   const markers = [
     { ...marker, points: new Float32Array([4, 5, 6]) },
-    { ...other, points: new Int32Array([-7]), mesh: { data: new Uint8Array(0) } },
+    { ...other, points: new Float32Array([-7]), mesh: { data: new Uint8Array(0) } },
   ];
   expect(data).toEqual({ ...header, content: { markers } });
 });

@@ -1,7 +1,7 @@
 import { Ray, Vector3 } from "three";
 import { beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
-import type { Description, JointDetails, LinkDetails, PageMessage, ServerMessage } from "../src/protocol.gen";
+import type { Description, JointDetails, LinkDetails, PageMessage, ServerMessage } from "../src/protocol";
 import { slideTowards, turnTowards } from "../src/scene/joint-drag";
 import { AngleUnits } from "../src/state/angle-unit";
 import { DescriptionModel } from "../src/state/description-model";

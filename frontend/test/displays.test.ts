@@ -1,6 +1,5 @@
 import { describe, expect, it } from "vitest";
 import { fadeForAge } from "../src/scene/displays/fade";
-import { FrameFilter } from "../src/scene/displays/frame-filter";
 import { gridLines, type GridShape } from "../src/scene/displays/grid-lines";
 
 const GRID: GridShape = { cells: 10, normalCells: 0, cellSize: 1, plane: "XY" };
@@ -43,17 +42,5 @@ describe("the age of a frame", () => {
     expect(fadeForAge(12.5, 15)).toEqual({ grey: 1, alpha: 0.5 });
     expect(fadeForAge(20, 15)).toEqual({ grey: 1, alpha: 0 });
     expect(fadeForAge(NaN, 15)).toEqual({ grey: 0, alpha: 1 });
-  });
-});
-
-describe("TF's filters", () => {
-  it("want the first and not the second", () => {
-    const filter = new FrameFilter("wheel", "left");
-    expect(["left_wheel", "right_wheel", "base"].filter((name) => filter.accepts(name))).toEqual(["right_wheel"]);
-  });
-
-  it("do nothing when empty or half typed", () => {
-    expect(new FrameFilter("", "").accepts("base")).toBe(true);
-    expect(new FrameFilter("(wheel", "[").accepts("base")).toBe(true);
   });
 });

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import type { FrameTable, JointControl, JointScene, LinkScene, RobotScene } from "../src/protocol.gen";
+import type { FrameTable, JointControl, JointScene, LinkScene, RobotScene } from "../src/protocol";
 import { jointPose, MovingRobot } from "../src/export/moving-robot";
 import { RecordedFiles } from "../src/export/recorded-files";
 import { timeText } from "../src/scene/video";

@@ -1,4 +1,4 @@
-import type { Display, Property, RobotScene, Tree } from "../src/protocol.gen";
+import type { Display, Property, RobotScene, Tree } from "../src/protocol";
 
 /** Messages as the server sends them, with only what a test cares about filled in. */
 export function property(part: Partial<Property> & Pick<Property, "id" | "name">): Property {

@@ -1,6 +1,6 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
-import type { LogLine, PageMessage } from "../src/protocol.gen";
+import type { LogLine, PageMessage } from "../src/protocol";
 import { bandwidthText, rateText } from "../src/state/monitor/figure-text";
 import { levelOf, lineText, LogState, MOST_LINES } from "../src/state/monitor/log";
 import { ParametersState } from "../src/state/monitor/parameters";

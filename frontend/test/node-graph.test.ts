@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import type { NodeGraph } from "../src/protocol.gen";
+import type { NodeGraph } from "../src/protocol";
 import { layered, type Layout, type Link } from "../src/state/monitor/graph-layout";
 import { drawnGraph, type GraphOptions } from "../src/state/monitor/graph-model";
 import { isotonic } from "../src/state/monitor/isotonic";

@@ -1,7 +1,7 @@
 import { describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
 import { unpackSamples } from "../src/connection/samples";
-import type { PageMessage } from "../src/protocol.gen";
+import type { PageMessage } from "../src/protocol";
 import { fieldText, parseField, valueText } from "../src/state/monitor/field-text";
 import { csvText, plotTable } from "../src/state/monitor/plot-table";
 import { PlotsState } from "../src/state/monitor/plots";

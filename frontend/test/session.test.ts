@@ -1,6 +1,6 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
-import type { PageMessage, ServerMessage } from "../src/protocol.gen";
+import type { PageMessage, ServerMessage } from "../src/protocol";
 import { Session } from "../src/state/session";
 import { display, property, robot, tree } from "./messages";
 

@@ -1,6 +1,6 @@
 import { beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
-import type { PageMessage, ServerMessage, Tool } from "../src/protocol.gen";
+import type { PageMessage, ServerMessage, Tool } from "../src/protocol";
 import { SelectionState } from "../src/state/selection";
 import { TimeControlState } from "../src/state/time";
 import { ToolsState } from "../src/state/tools";

@@ -140,12 +140,29 @@ def test_properties_act_at_once_and_content_goes_with_its_display(live, open_pag
     change("Click", ("Topic",), "/nothing")
     until(page, "lw.displays.find((each) => each.name === 'Click').drawn.points === 0")
     until(page, "lw.displays.find((each) => each.name === 'Torque').drawn.rings === 0")
+    until(page, "lw.displays.find((each) => each.name === 'Way').drawn.axes === 3")
     told = drawn(page)
     assert told["Pose"]["bounds"]["max"][0] == pytest.approx(3.3, abs=1e-3)
     assert told["Cloud"]["arrows"] == 5
     assert told["Plan"]["wide"] is False
     assert (told["Way"]["arrows"], told["Way"]["axes"]) == (0, 3)
     assert told["Guess"]["bounds"]["max"] == pytest.approx([1.3, 2.05, 1.05], abs=1e-3)
+
+
+def test_only_the_frames_that_the_filters_leave_are_drawn(live, open_page):
+    viewer = live(configuration("- {Class: rviz_default_plugins/TF, Enabled: true, Filter (whitelist): wheel}"))
+    for number, name in enumerate(("left_wheel", "right_wheel", "camera")):
+        viewer.place(name, 0.0, 0.0, 1.0 + number)
+    page = open_page(viewer, wait=False)
+    until(page, "lw.displays[0]?.drawn?.axes === 2")
+
+    def change(name: str, value: str) -> None:
+        viewer.run(lambda: viewer.viewer.displays[0].set_property((name,), value))
+
+    change("Filter (blacklist)", "^left")
+    until(page, "lw.displays[0].drawn.axes === 1")
+    change("Filter (whitelist)", "(")
+    until(page, "lw.displays[0].drawn.axes === 3")
 
 
 ROWS = configuration(

@@ -144,6 +144,25 @@ def test_numbers_of_topics_are_plotted(page: Page, robot: Robot):
     wait_for(lambda: subscribers(robot, "/left/current") == 1)
 
 
+def test_what_draws_diagrams_comes_with_the_first_one_and_with_its_style(page: Page):
+    until(page, "document.querySelectorAll('main canvas').length > 0")
+    fetched = "performance.getEntriesByType('resource').filter(({ name }) => name.includes('plot-library')).length"
+    assert page.evaluate(fetched) == 0
+    # Were it drawn before its style sheet is there, it would be a heap of boxes for a moment.
+    page.evaluate(
+        """() => new MutationObserver((_, observer) => {
+            const drawn = document.querySelector(".u-over");
+            if (!drawn) return;
+            window.positioned = getComputedStyle(drawn).position;
+            observer.disconnect();
+        }).observe(document.body, { childList: true, subtree: true })"""
+    )
+    show(page, "Plots")
+    page.wait_for_function("window.positioned")
+    assert page.evaluate("window.positioned") == "absolute"
+    assert page.evaluate(fetched) == 2
+
+
 def colors_drawn(page: Page) -> set[str]:
     """Which of the first two colours of series the canvas of the first plot has."""
     return set(

@@ -12,6 +12,7 @@ import yaml
 from linkwright.messages import get_message
 from tests.browser.conftest import state, until
 from tests.browser.pixels import color_at
+from tests.viewer.packed_images import depth_message, jpeg, packed
 from tests.viewer.test_cloud_displays import camera_info, placed
 from tests.viewer.test_clouds import cloud, depth_image, scan, xyz
 from tests.viewer.test_images import image
@@ -288,6 +289,24 @@ def test_a_depth_image_becomes_points(live, open_page):
     # A pixel is half as wide as it is far: 1 m and 2 m here.
     assert seen(page, -0.3, 0.0) == RED
     assert seen(page, 2.8, 0.0) == GREEN
+
+
+def test_depths_and_colours_come_by_the_transports_chosen(live, open_page):
+    topics = {"Depth Map Topic": "/depth/image", "Color Image Topic": "/color/image"}
+    hints = {"Depth Map Transport Hint": "theora", "Color Transport Hint": "compressed"}
+    viewer = live(
+        config(entry("DepthCloud", **topics, **hints), entry("Image", Topic={"Value": "/depth/image/compressedDepth"}))
+    )
+    page = open_page(viewer, wait=False)
+    assert "choose raw, compressed" in viewer.status("DepthCloud")["Depth Map Transport Hint"][1]
+    set_property(viewer, 0, ("Depth Map Transport Hint",), "compressedDepth")
+    viewer.publish("/depth/camera_info", camera_info(2, 1))
+    viewer.publish("/color/image/compressed", packed("rgb8; jpeg compressed bgr8", jpeg((0, 0, 255), 2, 1)))
+    viewer.publish("/depth/image/compressedDepth", depth_message(np.array([[2000, 4000]], np.uint16), "rvl"))
+    until(page, "lw.displays[0]?.drawn?.points === 2 && lw.displays[1].drawn?.width === 2")
+    assert drawn(page)["bounds"] == [[0, 0, 2], [2, 0, 4]]
+    assert drawn(page)["firstColor"][2] > 240
+    assert drawn(page, 1)["corner"] == [0, 0, 0, 255]
 
 
 def test_nothing_is_drawn_when_nothing_comes(live, open_page):

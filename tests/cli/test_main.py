@@ -75,3 +75,18 @@ def test_a_reader_that_goes_away_is_no_error(tmp_path):
     done = subprocess.run(["bash", "-o", "pipefail", "-c", command], capture_output=True, text=True, check=False)
     assert done.stdout == '<?xml version="1.0" ?>\n'
     assert done.stderr == ""
+
+
+def test_what_is_imported_at_the_start_is_not_searched_for_garbage():
+    program = (
+        "import gc, sys\n"
+        "sys.argv[1:] = ['--version']\n"
+        "from linkwright.cli import main\n"
+        "main()\n"
+        "print(gc.get_threshold()[0])\n"
+        "gc.collect()\n"
+        "print(gc.get_threshold()[0])\n"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    first, later = map(int, done.stdout.split()[-2:])
+    assert first > later > 700

@@ -38,6 +38,7 @@ def test_a_message_goes_from_process_to_process_once(processes):
 def test_nothing_is_serialised_while_nobody_outside_listens(processes):
     a, b = processes("a"), processes("b")
     publisher = a.node.create_publisher(String, "chatter", 10)
+    assert a.transport.wait_until_ready(10)
     assert publisher.outside is None
     subscription = b.node.create_subscription(String, "chatter", print, 10)
     a.spin_until(lambda: publisher.outside is not None)
@@ -58,6 +59,19 @@ def test_late_comers_get_what_was_published_before_the_domain_was_joined(process
     b.node.create_subscription(String, "described", lambda message: got.append(message.data), LASTING)
     b.spin_until(lambda: len(got) == 3)
     assert got == ["three", "four", "five"]
+
+
+def test_what_is_published_as_soon_as_there_is_a_publisher_goes_to_who_is_known(processes):
+    a, b = processes("a"), processes("b")
+    got: list[str] = []
+    b.node.create_subscription(String, "chatter", lambda message: got.append(message.data), 10)
+    a.spin_until(lambda: a.node.count_subscribers("chatter") == 1)
+    publisher = a.node.create_publisher(String, "chatter", 10)
+    for word in ("one", "two", "three"):
+        publisher.publish(String(data=word))
+    assert publisher.wait_for_all_acked(Duration(seconds=5))
+    b.spin_until(lambda: len(got) == 3)
+    assert got == ["one", "two", "three"]
 
 
 def test_callbacks_learn_where_a_message_comes_from(processes):

@@ -17,7 +17,6 @@ from linkwright.graph.executors import MultiThreadedExecutor
 from linkwright.messages import get_action, get_message
 
 Fibonacci = get_action("example_interfaces/action/Fibonacci")
-GoalInfo = get_message("action_msgs/msg/GoalInfo")
 Time = get_message("builtin_interfaces/msg/Time")
 
 

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import pytest
 
+from linkwright.graph.faults import RclError
 from linkwright.graph.lifecycle.entities import ManagedEntity, SimpleManagedEntity
 from linkwright.graph.lifecycle.node import LifecycleNodeMixin, LifecycleTransitionError
 from linkwright.graph.lifecycle.states import TransitionCallbackReturn
@@ -65,12 +66,14 @@ async def test_the_life_of_a_node(managed):
     ]
     assert [state.state_id for state in states] == [2, 3, 2, 1, 2, 3, 4]
     assert managed.calls[:3] == [("configure", "unconfigured"), ("activate", "inactive"), ("deactivate", "active")]
-    assert managed.trigger_shutdown() is None
+    with pytest.raises(LifecycleTransitionError, match="No transition matching shutdown found"):
+        managed.trigger_shutdown()
 
 
 async def test_what_does_not_begin_here_is_refused(managed):
-    with pytest.raises(LifecycleTransitionError, match="No transition matching activate found for current state") as e:
+    with pytest.raises(RclError, match="No transition matching activate found for current state") as e:
         managed.trigger_activate()
+    assert "Transition is not registered" in str(e.value)
     assert e.value.diagnostics[0].hint == "from here: configure, shutdown"
     assert isinstance(e.value, RuntimeError)
 
@@ -186,8 +189,8 @@ async def test_others_drive_it_through_services(graph, managed, log):
     assert not (await ask("change_state", "ChangeState", label="activate")).success
     assert not (await ask("change_state", "ChangeState", id=77)).success
     assert [record.text for record in log] == [
-        "No transition matching activate found for current state active",
-        "No transition matching 77 found for current state active",
+        "Transition is not registered: No transition matching activate found for current state active",
+        "Transition is not registered: No transition matching 77 found for current state active",
     ]
     states = (await ask("get_available_states", "GetAvailableStates")).available_states
     assert [(each.id, each.label) for each in states] == [

@@ -121,6 +121,35 @@ async def test_what_is_kept_for_late_comers_goes_out_first_and_once(graph):
     assert [message.data for message in sent] == list("bcde")
 
 
+async def test_what_is_published_before_there_is_a_writer_is_held(graph):
+    from linkwright.graph import Duration
+
+    publisher = graph.create_node("node").create_publisher(String, "topic", 2)
+    waited = []
+    publisher.hold_for_outside(lambda seconds: waited.append(seconds) or len(waited) > 1)
+    for text in "abc":
+        publisher.publish(String(text))
+    assert not publisher.wait_for_all_acked(Duration(seconds=1))
+    assert publisher.wait_for_all_acked()
+    assert waited == [1.0, None]
+    sent = []
+    publisher.set_outside(sent.append)
+    publisher.publish(String("d"))
+    assert [message.data for message in sent] == list("bcd")
+    assert publisher.wait_for_all_acked()
+    assert len(waited) == 2
+
+
+async def test_nothing_is_held_when_nobody_listens(graph):
+    publisher = graph.create_node("node").create_publisher(String, "topic", 2)
+    publisher.hold_for_outside(lambda _: True)
+    publisher.publish(String("a"))
+    publisher.set_outside(None)
+    sent = []
+    publisher.set_outside(sent.append)
+    assert sent == []
+
+
 async def test_acknowledgements_are_waited_for(graph):
     from linkwright.graph import Duration
 
@@ -150,6 +179,9 @@ async def test_bytes_that_come_in_are_read_when_their_turn_comes(graph, log):
     assert raw == [data]
     assert told == [(String("hello"), info)]
     assert (info["source_timestamp"], dict(info)["received_timestamp"]) == (1, 2)
+    assert "source_timestamp" in info
+    assert info.get("sender") is None
+    assert len(info) == len(list(info))
     with pytest.raises(KeyError):
         info["sender"]
 
@@ -275,7 +307,7 @@ async def test_what_is_waited_for_comes_from_outside(graph, transport):
 
     graph.attach(transport)
     loop = asyncio.get_running_loop()
-    waiting = loop.run_in_executor(None, graph.wait_for_node, "/far/elsewhere", 10.0)
+    waiting = loop.run_in_executor(None, graph.wait_for_node, "far/elsewhere", 10.0)
     await asyncio.sleep(0.01)
     transport.nodes.append(ELSEWHERE)
     transport.tell()

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from linkwright.kinematics import IDENTITY, compose, invert, matrix_from_pose, pose_from_matrix, quaternion_from_rpy
+from linkwright.kinematics import IDENTITY, compose, invert, matrix_from_pose, quaternion_from_rpy
 
 places = arrays(np.float64, 3, elements=st.floats(-10, 10))
 triples = arrays(np.float64, 3, elements=st.floats(-pi, pi))
@@ -34,12 +34,6 @@ def test_the_identity_changes_nothing(pose):
     np.testing.assert_allclose(compose(IDENTITY, pose), pose, atol=1e-12)
 
 
-@given(poses)
-def test_matrix_and_back(pose):
-    matrix = matrix_from_pose(pose)
-    np.testing.assert_allclose(matrix_from_pose(pose_from_matrix(matrix)), matrix, atol=1e-9)
-
-
 def test_a_place_in_a_turned_frame():
     turned = np.concatenate(([1, 2, 3], quaternion_from_rpy([0, 0, pi / 2])))
     np.testing.assert_allclose(compose(turned, [1, 0, 0, 0, 0, 0, 1])[:3], [1, 3, 3], atol=1e-12)
@@ -61,5 +55,3 @@ def test_the_identity_cannot_be_written():
 def test_wrong_shapes_are_printed(shape):
     with pytest.raises(ValueError, match=r"a pose of shape \("):
         compose(np.zeros(shape), IDENTITY)
-    with pytest.raises(ValueError, match=r"a homogeneous matrix of shape \("):
-        pose_from_matrix(np.zeros((3, 3)))

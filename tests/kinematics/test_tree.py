@@ -14,10 +14,10 @@ from linkwright.kinematics import (
     KinematicTree,
     UnknownNameError,
     matrix_from_pose,
-    quaternion_from_axis_angle,
     quaternion_from_rpy,
 )
 from linkwright.urdf import Robot, load, parent_joints
+from tests.kinematics.rotations import quaternion_about
 from tests.urdf.robots import chain, robot_text, robots
 
 
@@ -30,7 +30,7 @@ def frame_of(robot: Robot, link: str, values: dict[str, float]) -> np.ndarray:
     motion = np.eye(4)
     length = np.linalg.norm(joint.axis)
     if joint.type in ("revolute", "continuous"):
-        turn = quaternion_from_axis_angle(joint.axis, value_of(robot, joint.name, values))
+        turn = quaternion_about(joint.axis, value_of(robot, joint.name, values))
         motion = matrix_from_pose([0, 0, 0, *turn])
     elif joint.type == "prismatic" and length > 0:
         motion[:3, 3] = np.array(joint.axis) / length * value_of(robot, joint.name, values)

@@ -40,7 +40,6 @@ from launch.substitutions import (
 
 from launch import Action, LaunchContext, LaunchDescription, LaunchDescriptionSource
 
-Launch = Callable[..., object]
 Write = Callable[[str, str], Path]
 
 

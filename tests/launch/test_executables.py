@@ -29,20 +29,6 @@ setup(
     entry_points={'console_scripts': ['wave = arm.wave:main', 'nod=arm.nod:Nodder.run', f'shake = {name}.shake:main']},
 )
 """
-WAVE = """
-import sys
-import hand
-
-def main():
-    print(hand.NAME, sys.argv)
-    return 3
-"""
-SETUP_CFG = """
-[options.entry_points]
-console_scripts =
-  a = p.a:main
-  b = p.b:main
-"""
 
 
 @pytest.fixture

@@ -15,7 +15,7 @@ from linkwright.graph import Graph
 from linkwright.graph.lifecycle.node import LifecycleNodeMixin
 from linkwright.nodes import EXECUTABLES, NodeOptions
 
-CONFIGURE, ACTIVATE, DEACTIVATE = 1, 3, 4
+CONFIGURE, DEACTIVATE = 1, 4
 SECONDS = 0.5
 
 

@@ -345,7 +345,7 @@ class TestNavigationSubstitutions:
         assert list(ParseMultiRobotPose("robots").value()) == ["r3"]
 
 
-def test_a_description_can_be_deprecated(caplog: pytest.LogCaptureFixture) -> None:
+def test_a_description_can_be_deprecated() -> None:
     description = LaunchDescription(deprecated_reason="use b.launch.py")
     assert description.deprecated
     assert description.deprecated_reason == "use b.launch.py"

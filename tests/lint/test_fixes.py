@@ -13,7 +13,6 @@ from linkwright.lint.fix import (
     add_attribute,
     element_range,
     is_literal,
-    remove_attribute,
     remove_element,
     rename_attribute,
     rename_element,
@@ -72,11 +71,10 @@ def test_a_value_is_replaced_between_its_quotes():
     assert applied(text, replace_value(element(text, "a"), "x", '"<&')) == "<r><a  x = '&quot;&lt;&amp;'  y=\"2\"/></r>"
 
 
-def test_attributes_are_added_renamed_and_removed():
+def test_attributes_are_added_and_renamed():
     text = '<r><a x="1"\n  y="2" /></r>'
     assert applied(text, add_attribute(element(text, "a"), "z", "3")) == '<r><a x="1"\n  y="2" z="3" /></r>'
     assert applied(text, rename_attribute(element(text, "a"), "y", "z")) == '<r><a x="1"\n  z="2" /></r>'
-    assert applied(text, remove_attribute(element(text, "a"), "y")) == '<r><a x="1" /></r>'
     assert rename_attribute(element(text, "a"), "y", "x") is None
     assert add_attribute(element("<r><a></a></r>", "a"), "z", "3") is not None
 

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from linkwright.messages import find_interfaces_with
 from linkwright.workspace import PackageFinder
+from linkwright.workspace.active import use_finder
 
 _numbers = count(1)
 _MANIFEST = """<?xml version="1.0"?>
@@ -36,6 +36,5 @@ class InterfacePackage:
 @pytest.fixture
 def interface_package(tmp_path):
     package = InterfacePackage(tmp_path, f"test{next(_numbers)}_msgs")
-    find_interfaces_with(PackageFinder(start=tmp_path, environment={}))
-    yield package
-    find_interfaces_with(None)
+    with use_finder(PackageFinder(start=tmp_path, environment={})):
+        yield package

@@ -7,6 +7,7 @@ import pickle
 from array import array
 from collections import UserList, UserString
 from concurrent.futures import ThreadPoolExecutor
+from contextvars import copy_context
 
 import numpy as np
 import pytest
@@ -326,7 +327,8 @@ def test_two_threads_get_one_class(interface_package):
         interface_package.write("msg", f"Shared{number}", "std_msgs/Header header\nfloat64[] values\n")
     names = [f"{interface_package.name}/msg/Shared{number}" for number in range(20)] * 4
     with ThreadPoolExecutor(8) as pool:
-        classes = list(pool.map(get_message, names))
+        asked = [pool.submit(copy_context().run, get_message, name) for name in names]
+        classes = [each.result() for each in asked]
     assert len(set(classes)) == 20
     assert all(issubclass(cls, Message) for cls in classes)
 

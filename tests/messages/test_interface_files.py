@@ -264,9 +264,6 @@ class TestWorkspace:
     def test_the_finder_in_force_is_asked(self, tmp_path, interface_package):
         other = type(interface_package)(tmp_path / "elsewhere", "elsewhere_msgs")
         other.write("msg", "Here", "int8 x\n")
-        from linkwright.messages import find_interfaces_with
-
-        find_interfaces_with(None)
         with use_finder(PackageFinder(start=tmp_path / "elsewhere", environment={})):
             assert get_message("elsewhere_msgs/msg/Here")().x == 0
         assert interface_file(other.folder, "msg", "Here") == other.folder / "msg" / "Here.msg"

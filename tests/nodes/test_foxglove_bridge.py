@@ -366,6 +366,15 @@ async def test_lists_of_names_hide_the_rest():
             assert "may not publish" in (await client.until("status"))["message"]
 
 
+async def test_no_list_of_names_keeps_it_busy():
+    async with world(topic_whitelist=["/(s|ss)+", "/seen"]) as w:
+        w.node.create_publisher(String, "/seen", 10)
+        w.node.create_publisher(String, f"/{'s' * 60}_", 10)
+        await asyncio.sleep(0.2)
+        async with w.client() as client:
+            assert [each["topic"] for each in (await client.until("advertise"))["channels"]] == ["/seen"]
+
+
 async def test_what_it_cannot_start_with_is_said():
     graph = Graph(on_log=lambda _: None)
     with socket.create_server(("127.0.0.1", 0)) as taken:

@@ -7,12 +7,13 @@ from hypothesis import strategies as st
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import DESCRIPTION_QOS, QoSProfile, ReliabilityPolicy
-from linkwright.kinematics import KinematicTree, compose, quaternion_from_axis_angle, quaternion_from_rpy
+from linkwright.kinematics import KinematicTree, compose, quaternion_from_rpy
 from linkwright.messages import Header, JointState, String, TFMessage, Time
 from linkwright.nodes import NodeOptions
 from linkwright.nodes.joint_motion import JointMotion
 from linkwright.nodes.robot_state_publisher import RobotStatePublisher
 from linkwright.urdf import DescriptionLibrary, Joint, Limit, Pose
+from tests.kinematics.rotations import quaternion_about
 from tests.nodes.stage import joint, mimic, robot
 from tests.places import TUTORIAL
 
@@ -51,7 +52,7 @@ def test_joints_move_their_links(cases):
         origin = np.array([*xyz, *quaternion_from_rpy(rpy)])
         motion = np.array([0, 0, 0, 0, 0, 0, 1.0])
         if kind in ("revolute", "continuous"):
-            motion[3:] = quaternion_from_axis_angle(axis, position)
+            motion[3:] = quaternion_about(axis, position)
         elif kind == "prismatic":
             motion[:3] = np.array(axis) / np.linalg.norm(axis) * position
         np.testing.assert_allclose(row, compose(origin, motion), atol=1e-9)

@@ -27,6 +27,7 @@ from rclpy.parameter import Parameter
 from rclpy.qos import QoSDurabilityPolicy, QoSProfile, QoSReliabilityPolicy, qos_profile_sensor_data
 from rclpy.task import Future
 from std_msgs.msg import Int64, String
+from std_srvs.srv import Trigger
 
 
 class Counter(Node):
@@ -320,8 +321,21 @@ class TestNode:
 
     def test_destroying_it_twice(self, node):
         node.destroy_node()
-        with pytest.raises(InvalidHandle):
-            node.destroy_node()
+        node.destroy_node()
+
+    @pytest.mark.parametrize(
+        "make",
+        [
+            lambda node: node.create_publisher(String, "chatter", 1),
+            lambda node: node.create_subscription(String, "chatter", print, 1),
+            lambda node: node.create_client(Trigger, "trigger"),
+            lambda node: node.create_service(Trigger, "trigger", print),
+        ],
+    )
+    def test_nothing_is_made_of_a_destroyed_one(self, node, make):
+        node.destroy_node()
+        with pytest.raises(InvalidHandle, match="destruction was requested"):
+            make(node)
 
     def test_handles(self, node):
         subscription = node.create_subscription(String, "chatter", print, 1)
@@ -388,8 +402,8 @@ class TestNode:
     def test_context_managers(self, ros):
         with rclpy.create_node("managed") as node, node.create_publisher(String, "chatter", 1):
             assert node.count_publishers("chatter") == 1
-        with pytest.raises(InvalidHandle):
-            node.destroy_node()
+        with pytest.raises(InvalidHandle), node.handle:
+            pass
 
     def test_what_it_logs_goes_to_rosout(self, node):
         from rcl_interfaces.msg import Log

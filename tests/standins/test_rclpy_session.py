@@ -54,12 +54,12 @@ class TestContexts:
         with pytest.raises(RuntimeError):
             rclpy.init(args=[], context=context)
         rclpy.shutdown(context=context)
-        with pytest.raises(RuntimeError):
+        with pytest.raises(RCLError, match="it was shut down already"):
             rclpy.shutdown(context=context)
         rclpy.try_shutdown(context=context)
 
     def test_end_without_beginning(self):
-        with pytest.raises(RuntimeError):
+        with pytest.raises(RCLError, match="Context must be initialized before it can be shutdown"):
             rclpy.shutdown()
         rclpy.try_shutdown()
 

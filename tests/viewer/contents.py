@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-_TYPES = {"f4": "<f4", "u1": "u1", "i4": "<i4"}
+_TYPES = {"f4": "<f4", "u1": "u1"}
 
 
 @dataclass

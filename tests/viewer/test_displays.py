@@ -174,7 +174,21 @@ async def test_tf_filters_choose_frames():
         assert await frames_with("Filter (whitelist)", "") == ["base", "tip"]
         await client.set("display-1/Filter (whitelist)", "(")
         status = await client.until("display_status", display="display-1", level="error")
-        assert status["status"][0]["name"] == "Filter (whitelist)"
+        text = "This expression is not used: missing ) at position 1"
+        assert status["status"][0] == {"name": "Filter (whitelist)", "level": "error", "text": text}
+
+
+async def test_a_filter_that_takes_too_long_is_not_used_and_says_so():
+    long = "a" * 200 + "!"
+    async with world(config(tf(", Filter (whitelist): (a|aa)+$"))) as made:
+        made.move({("base", long): IDENTITY})
+        await made.settle()
+        (display,) = (await opened(made))["tree"]["displays"]
+        text = "This expression is not used: it takes too long to look for it in the names of the frames"
+        assert display["status"][0] == {"name": "Filter (whitelist)", "level": "error", "text": text}
+        assert {row["name"] for row in display["status"][1:]} == {"base", long}
+        made.display("TF").set_property(("Filter (whitelist)",), "^b")
+        assert set(made.status("TF")) == {"base"}
 
 
 async def test_a_chain_of_frames_may_be_long():

@@ -37,6 +37,23 @@ async def test_a_group_that_is_switched_off_switches_off_what_it_holds():
         assert made.viewer.config.text() == TEXT
 
 
+@pytest.mark.parametrize("box", ["", "Enabled: true", "Value: true", "Enabled: true, Value: false", "Enabled: no"])
+async def test_a_box_that_is_set_back_leaves_the_file_as_it_was(box):
+    text = f"Visualization Manager:\n  Displays:\n    - {{Class: rviz_default_plugins/Axes, {box}}}\n"
+    async with world(RvizConfig.parse(text)) as made:
+        manager = made.viewer.manager
+        (display,) = manager.displays
+        was = display.config.checked
+        manager.tree.check(display, not was)
+        changed = manager.config.text()
+        assert display.config.checked is not was
+        for _ in range(2):
+            manager.history.undo()
+            assert (manager.config.text(), display.config.checked) == (text, was)
+            manager.history.redo()
+            assert (manager.config.text(), display.config.checked) == (changed, not was)
+
+
 # --- which displays there are --------------------------------------------------------------------------------------
 
 

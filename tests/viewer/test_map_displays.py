@@ -180,6 +180,24 @@ async def test_the_topic_of_updates_goes_with_the_maps():
         assert cells(display)[0][0] == 55
 
 
+async def test_a_file_that_names_no_topic_of_updates_gets_none():
+    async with world(config()) as w, page(w.viewer) as client:
+        await client.opened()
+        manager, display = w.viewer.manager, w.display("Map")
+        text = manager.config.text()
+        assert display.properties.text("Update Topic") == "/map_updates"
+        await client.send("set_property", id=f"{display.id}/Topic", value="/other")
+        await client.until("property_changed", id=f"{display.id}/Update Topic", value="/other_updates")
+        assert manager.config.text() == text.replace("/map", "/other")
+        await client.send("set_property", id=f"{display.id}/Update Topic", value="/mine")
+        await client.until("property_changed", id=f"{display.id}/Update Topic", value="/mine")
+        manager.history.undo()
+        assert display.properties.text("Update Topic") == "/other_updates"
+        manager.history.undo()
+        assert display.properties.text("Update Topic") == "/map_updates"
+        assert manager.config.text() == text
+
+
 async def test_a_map_with_its_timestamp_stays_where_it_was():
     async with world(config()) as w:
         node = w.graph.create_node("map")

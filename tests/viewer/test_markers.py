@@ -119,6 +119,22 @@ async def test_a_marker_appears_once_its_frame_is_known():
         assert "a/0" not in status(display)
 
 
+async def test_so_many_markers_wait_for_their_frames_as_the_filter_size_says():
+    async with world(RvizConfig.parse(FILE.format(cls="Marker"))) as w:
+        publisher, page, display = publisher_and_watcher(w)
+        display.set_property(("Topic", "Filter size"), 2)
+        publisher.publish(marker(0))
+        for number in (1, 2, 3, 1, 4):
+            publisher.publish(marker(number, frame="later"))
+            await w.settle()
+        assert set(status(display)) >= {"a/1", "a/4"}
+        assert not {"a/2", "a/3"} & set(status(display))
+        w.move({("base", "later"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
+        await w.settle()
+        page.look()
+        assert sorted(page.markers) == ["a/0", "a/1", "a/4"]
+
+
 async def test_deleting_one_of_a_namespace_and_all():
     async with world(RvizConfig.parse(FILE.format(cls="MarkerArray"))) as w:
         publisher, page, _ = publisher_and_watcher(w, MarkerArray)

@@ -103,3 +103,41 @@ def test_a_base_is_made_only_when_a_value_is_set():
     assert yaml_tree.write(document) == "a: 1\n"
     store.set(("Alpha",), 0.1)
     assert yaml.safe_load(yaml_tree.write(document)) == {"a": 1, "Manager": {"Options": {"Alpha": 0.1}}}
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "a: 1\n",
+        "a: 1\nManager:\n",
+        "a: 1\nManager: ~\n",
+        "a: 1\nManager: some text\n",
+        "a: 1\nManager:\n  Options: ~\n  Views: 3\n",
+        "a: 1\nManager:\n  Options: some text\n",
+        "a: 1\nManager:\n  Options: {}\n",
+    ],
+)
+def test_a_base_that_was_made_goes_with_the_value_that_is_taken_back(text):
+    document = yaml_tree.parse(text, "x")
+    store = PropertyStore("x", document, lambda: SCHEMA, print, base=("Manager", "Options"))
+    with store.recording() as before:
+        store.set(("Alpha",), 0.1)
+    written = yaml_tree.write(document)
+    for _ in range(2):
+        after = store.memories(before)
+        store.recall(before)
+        assert yaml_tree.same(document, yaml_tree.parse(text, "x"))
+        store.recall(after)
+        assert (yaml_tree.write(document), store.get("Alpha")) == (written, 0.1)
+
+
+@pytest.mark.parametrize(
+    ("text", "value", "told"), [("off", True, 1), ("NO", True, 1), ("0", False, 0), ("yes", True, 0)]
+)
+def test_a_box_says_no_only_in_the_ways_that_rviz_knows(reported, text, value, told):
+    spec = PropertySpec("Selectable", "bool", default=False)
+    section = yaml_tree.parse(f"Selectable: {text}\n", "f.rviz")
+    assert PropertyStore("x", section, lambda: (spec,), reported.append).get("Selectable") is value
+    assert len(reported) == told
+    if told:
+        assert reported[0].message == f"'Selectable': true or false is expected, not '{text}'; True is used"

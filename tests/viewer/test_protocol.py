@@ -9,12 +9,40 @@ import pytest
 
 from linkwright.viewer.protocol import pack_transforms
 from tests.places import REPOSITORY
+from tests.repository_tools import load_tool
+
+protocol_types = load_tool("protocol_types")
 
 
 def test_the_types_of_the_page_are_those_of_the_server():
     script = REPOSITORY / "tools" / "protocol_types.py"
     done = subprocess.run([sys.executable, str(script), "--check"], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
+
+
+def test_types_that_no_module_declares_are_found_and_removed(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(protocol_types, "FOLDER", tmp_path)
+    assert protocol_types.main([]) == 0
+    assert protocol_types.main(["--check"]) == 0
+    (tmp_path / "gone.ts").write_text("export interface Gone {}\n", encoding="utf-8")
+    (tmp_path / "robot.ts").write_text("", encoding="utf-8")
+    assert protocol_types.main(["--check"]) == 1
+    assert [line.split(" ")[0] for line in capsys.readouterr().err.splitlines()] == [
+        str(tmp_path / "gone.ts"),
+        str(tmp_path / "robot.ts"),
+    ]
+    assert protocol_types.main([]) == 0
+    assert protocol_types.main(["--check"]) == 0
+    assert not (tmp_path / "gone.ts").exists()
+
+
+def test_a_file_of_types_imports_what_others_declare():
+    files = protocol_types.generate()
+    assert 'import type { MarkerShape } from "./markers";' in files["interactive-markers.ts"]
+    assert "  markers: MarkerShape[];" in files["interactive-markers.ts"]
+    assert "export interface MarkerShape {" in files["markers.ts"]
+    assert 'export * from "./markers";' in files["index.ts"]
+    assert max(text.count("\n") for text in files.values()) < 400
 
 
 def test_a_binary_frame_is_as_described():

@@ -10,7 +10,7 @@ import pytest
 from linkwright.graph import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from linkwright.messages import get_message
 from linkwright.viewer import RvizConfig
-from linkwright.viewer.placing import placed
+from linkwright.viewer.placing import rotation_matrix
 from tests.viewer.contents import contents
 from tests.viewer.scene import world
 
@@ -45,7 +45,9 @@ def points(world) -> list[list[float]]:
     """Of the frames that a page would be sent, in the fixed frame, oldest first."""
     shown = sorted(contents(world.display("PointStamped")), key=lambda each: each.key)
     assert all(each.fields["kind"] == "point_marks" for each in shown)
-    return [placed(np.array(each.pose), each.fields["positions"]).tolist() for each in shown]
+    return [
+        (each.fields["positions"] @ rotation_matrix(np.array(each.pose)).T + each.pose[:3]).tolist() for each in shown
+    ]
 
 
 async def test_a_point_is_drawn_where_it_was_in_the_fixed_frame():

@@ -121,6 +121,20 @@ def test_an_unknown_class_is_shown_as_an_orbit_and_stays_in_the_file():
     assert config.text() == text
 
 
+def test_a_frame_aligned_view_is_shown_as_one_that_flies_and_stays_what_it_is():
+    text = (
+        "Visualization Manager: {Views: {Current: {Class: rviz/FrameAligned, Name: Current View, "
+        "Point towards: +x axis, Yaw: 1.5, Position: {X: 1, Y: 2, Z: 3}}}}\n"
+    )
+    config = RvizConfig.parse(text)
+    assert [warning.message for warning in config.warnings] == ["the view 'rviz/FrameAligned' is shown as an FPS view"]
+    view = config.views.current
+    assert (view.cls, view.values["Yaw"], view.values["Position/Z"]) == ("rviz_default_plugins/FPS", 1.5, 3.0)
+    view.values["Yaw"] = 2.0
+    config.views.current = view
+    assert config.text() == text.replace("1.5", "2.0")
+
+
 @pytest.mark.parametrize(
     "view",
     [

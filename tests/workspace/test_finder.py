@@ -151,12 +151,6 @@ def test_the_error_is_a_key_error_as_in_ament_index_python(tmp_path: Path) -> No
     assert "package 'no_such_package_at_all' not found" in str(caught.value)
 
 
-def test_package_of_a_file(tmp_path: Path) -> None:
-    arm = make_source(tmp_path / "arm", "arm")
-    assert finder(tmp_path).package_of(arm / "urdf" / "arm.urdf") == "arm"
-    assert finder(tmp_path).package_of(tmp_path / "other.urdf") is None
-
-
 def test_the_finder_in_force(tmp_path: Path) -> None:
     mine = finder(tmp_path)
     with use_finder(mine):

@@ -1,4 +1,4 @@
-import { PROTOCOL_VERSION, type PageMessage, type ServerMessage } from "../protocol.gen";
+import { PROTOCOL_VERSION, type PageMessage, type ServerMessage } from "../protocol";
 import { Signal } from "../state/signal";
 import { unpackData, type DisplayData } from "./data";
 import { unpackSamples, type SeriesSamples } from "./samples";

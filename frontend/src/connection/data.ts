@@ -1,4 +1,4 @@
-import { DATA_KIND, type DataContent } from "../protocol.gen";
+import { DATA_KIND, type DataContent } from "../protocol";
 
 const HEADER_BYTES = 16;
 const ALIGNMENT = 8;
@@ -28,7 +28,7 @@ export function unpackData(buffer: ArrayBuffer): DisplayData | null {
   return restored(JSON.parse(text), (reference) => view(buffer, start, reference)) as DisplayData;
 }
 
-type Reference = readonly ["f4" | "u1" | "i4", number, number];
+type Reference = readonly ["f4" | "u1", number, number];
 
 type Restore = (reference: Reference) => ArrayBufferView;
 
@@ -60,8 +60,6 @@ function view(buffer: ArrayBuffer, start: number, [type, offset, count]: Referen
   switch (type) {
     case "f4":
       return new Float32Array(buffer, start + offset, count);
-    case "i4":
-      return new Int32Array(buffer, start + offset, count);
     case "u1":
       return new Uint8Array(buffer, start + offset, count);
   }

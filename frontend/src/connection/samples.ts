@@ -1,4 +1,4 @@
-import { SAMPLES_KIND } from "../protocol.gen";
+import { SAMPLES_KIND } from "../protocol";
 
 const HEADER_BYTES = 16;
 const SERIES_BYTES = 8;

@@ -1,4 +1,4 @@
-import { TRANSFORMS_KIND } from "../protocol.gen";
+import { TRANSFORMS_KIND } from "../protocol";
 
 const HEADER_BYTES = 24;
 const FLOATS_PER_POSE = 7;

@@ -1,6 +1,6 @@
 import { Matrix4, Quaternion, Vector3 } from "three";
 import type { Transforms } from "../connection/transforms";
-import type { FrameTable, JointControl, JointScene, RobotScene } from "../protocol.gen";
+import type { FrameTable, JointControl, JointScene, RobotScene } from "../protocol";
 
 type Positions = Readonly<Record<string, number>>;
 

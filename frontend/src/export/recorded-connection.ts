@@ -1,5 +1,5 @@
 import { Connection } from "../connection/connection";
-import type { FrameTable, JointControl, PageMessage } from "../protocol.gen";
+import type { FrameTable, JointControl, PageMessage } from "../protocol";
 import { unpackTransforms } from "../connection/transforms";
 import { MovingRobot } from "./moving-robot";
 import { bytesOf, type Recording } from "./recording";

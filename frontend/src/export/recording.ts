@@ -1,4 +1,4 @@
-import type { ServerMessage } from "../protocol.gen";
+import type { ServerMessage } from "../protocol";
 
 /** What the server told when the robot was exported; `viewer/export/html.py` writes it. */
 export interface Recording {

@@ -3,7 +3,7 @@ import { icon } from "../icons";
 import { tickBox } from "../panels/controls";
 import { jointBar } from "../panels/joint-bar";
 import { JointRow } from "../panels/joint-row";
-import type { View } from "../protocol.gen";
+import type { View } from "../protocol";
 import type { ThemeState } from "../shell/theme";
 import type { DisplayState } from "../state/displays";
 import type { Session } from "../state/session";

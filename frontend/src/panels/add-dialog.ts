@@ -1,6 +1,6 @@
 import { button, h } from "../dom";
 import { displayIcon, icon } from "../icons";
-import type { TopicChoice } from "../protocol.gen";
+import type { TopicChoice } from "../protocol";
 import { Dialog } from "../shell/dialog";
 import type { DisplayState } from "../state/displays";
 import type { Session } from "../state/session";
@@ -190,7 +190,7 @@ export class AddDialog {
 }
 
 /** What a class of displays is for, in a sentence. */
-export function aboutDisplay(cls: string): string {
+function aboutDisplay(cls: string): string {
   return (strings.displays.about as Readonly<Record<string, string | undefined>>)[shortName(cls)] ?? cls;
 }
 

@@ -11,6 +11,13 @@ interface Home {
   inactive?: boolean;
 }
 
+/** Right of the scene, above what stands there. */
+const RIGHT: Home["beside"] = [
+  ["joints", "above"],
+  ["diagnostics", "above"],
+  ["scene", "right"],
+];
+
 /** The live panels share a place below the scene. */
 const LIVE_HOME: Home = {
   beside: [
@@ -31,13 +38,9 @@ export const TIME_HEIGHT = 66;
 /** RViz's places: Displays left, the scene in the middle, everything else right. */
 const HOMES: Readonly<Record<PanelId, Home>> = {
   scene: { beside: [] },
-  displays: { beside: [["scene", "left"]], width: 320 },
+  displays: { beside: [["links", "within"], ["scene", "left"]], width: 320 },
   views: {
-    beside: [
-      ["joints", "above"],
-      ["diagnostics", "above"],
-      ["scene", "right"],
-    ],
+    beside: [["tool-properties", "within"], ["selection", "within"], ...RIGHT],
     width: 290,
     height: 290,
   },
@@ -50,21 +53,15 @@ const HOMES: Readonly<Record<PanelId, Home>> = {
     width: 290,
   },
   "tool-properties": {
-    beside: [
-      ["views", "within"],
-      ["selection", "within"],
-      ["scene", "right"],
-    ],
+    beside: [["views", "within"], ["selection", "within"], ...RIGHT],
     width: 290,
+    height: 290,
     inactive: true,
   },
   selection: {
-    beside: [
-      ["views", "within"],
-      ["tool-properties", "within"],
-      ["scene", "right"],
-    ],
+    beside: [["views", "within"], ["tool-properties", "within"], ...RIGHT],
     width: 290,
+    height: 290,
     inactive: true,
   },
   time: { beside: [["scene", "below"]], height: TIME_HEIGHT, minimumHeight: 60 },

@@ -1,4 +1,4 @@
-import type { JointScene } from "../protocol.gen";
+import type { JointScene } from "../protocol";
 import type { DisplayState } from "../state/displays";
 import type { FrameStore } from "../state/frames";
 import { composed, relative, type PoseNumbers } from "../state/pose-numbers";

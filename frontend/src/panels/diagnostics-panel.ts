@@ -1,6 +1,6 @@
 import { button, h } from "../dom";
 import { icon, LEVEL_ICONS } from "../icons";
-import type { DiagnosticItem, DiagnosticNote } from "../protocol.gen";
+import type { DiagnosticItem, DiagnosticNote } from "../protocol";
 import type { Session } from "../state/session";
 import { strings } from "../strings";
 import type { Panel } from "./panel";

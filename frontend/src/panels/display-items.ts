@@ -1,5 +1,5 @@
 import { displayIcon } from "../icons";
-import type { PropertyValue, StatusLevel, StatusRow } from "../protocol.gen";
+import type { PropertyValue, StatusLevel, StatusRow } from "../protocol";
 import type { DisplayState } from "../state/displays";
 import type { Session } from "../state/session";
 import { DRAWINGS } from "../scene/displays/registry";

@@ -1,21 +1,37 @@
 // The main file of the package writes its styles into the page at run time; ours come with the page, from its css file.
 import { createDockview, type DockviewApi, type IContentRenderer } from "dockview-core/dist/esm";
+import type { PanelName } from "../protocol";
+import { Signal } from "../state/signal";
 import { strings } from "../strings";
+import { ColumnWidths } from "./column-widths";
 import { addPanels, TIME_HEIGHT } from "./default-layout";
 import { DisplayPanels } from "./display-panels";
+import { FILE_PANELS } from "./file-panels";
+import type { Layout, Layouts } from "./layouts";
 import type { Panel, PanelId } from "./panel";
 import { PanelTab } from "./panel-tab";
 
-const LAYOUT_KEY = "linkwright.layout.1";
-
-/** The dockable panels; their arrangement is remembered by the browser. */
+/** The dockable panels; their arrangement is remembered by the browser, for each file. */
 export class Dock {
+  /** A panel was opened, closed, moved or brought to the front. */
+  readonly changed = new Signal();
+  /** Another arrangement is there: panels must be titled, and those that depend on something opened or closed. */
+  readonly rearranged = new Signal();
+  /** Which of its panels the file shows, for `reset`; null when it does not say. */
+  listed: readonly PanelName[] | null = null;
+  /** The file that the arrangement is kept for; null until one is known. */
+  file: string | null = null;
   /** The panels of displays. */
   readonly displayPanels = new DisplayPanels(() => this.api);
   private readonly api: DockviewApi;
+  private readonly widths: ColumnWidths;
   private readonly panels: ReadonlyMap<string, Panel>;
 
-  constructor(parent: HTMLElement, panels: readonly Panel[]) {
+  constructor(
+    parent: HTMLElement,
+    panels: readonly Panel[],
+    private readonly layouts: Layouts,
+  ) {
     this.panels = new Map(panels.map((panel) => [panel.id, panel]));
     this.api = createDockview(parent, {
       createComponent: ({ name }) => this.displayPanels.content(name) ?? this.content(name),
@@ -24,10 +40,19 @@ export class Dock {
       disableFloatingGroups: true,
       noPanelsOverlay: "emptyGroup",
     });
+    this.widths = new ColumnWidths(this.api);
     // Panels get their sizes when they are added; the dock's own observer would tell its size only later.
     this.api.layout(parent.clientWidth, parent.clientHeight);
-    if (!this.restore()) this.reset();
-    this.api.onDidLayoutChange(() => this.remember());
+    // Most often the file is the one of the last time: then nothing moves when that is known.
+    const { latest } = layouts;
+    if (latest && this.restore(latest)) this.file = latest.file;
+    else this.reset();
+    this.widths.take();
+    this.api.onDidLayoutChange(() => {
+      this.widths.follow();
+      this.remember();
+      this.changed.emit();
+    });
   }
 
   /** The panels that can be opened and closed. */
@@ -41,7 +66,7 @@ export class Dock {
 
   /** Opens a panel where it belongs, or brings it to the front. */
   open(id: PanelId): void {
-    if (!this.isOpen(id)) addPanels(this.api, [id]);
+    this.add(id);
     this.api.getPanel(id)?.api.setActive();
   }
 
@@ -60,9 +85,52 @@ export class Dock {
     const joints = this.api.getPanel("joints") !== undefined;
     this.api.clear();
     addPanels(this.api, ["scene", "time", "displays", "links", "views", "tool-properties", "selection", "diagnostics", ...(joints ? (["joints"] as const) : [])]);
-    // Added panels take their share of the whole, whatever height they ask for.
-    this.api.getPanel("time")?.group.api.setSize({ height: TIME_HEIGHT });
+    this.keepTimeLow();
     this.displayPanels.restore();
+    this.widths.take();
+    if (this.listed) this.showOnly(this.listed);
+    this.rearranged.emit();
+  }
+
+  /** Shows the arrangement that the browser keeps for a file; false when it keeps none. */
+  arrange(file: string): boolean {
+    const layout = this.layouts.find(file);
+    if (!layout) return false;
+    if (!this.restore(layout)) {
+      this.reset();
+      return false;
+    }
+    this.displayPanels.restore();
+    this.widths.take();
+    this.rearranged.emit();
+    return true;
+  }
+
+  /** Keeps the arrangement for a file from now on. */
+  keepFor(file: string): void {
+    this.file = file;
+    this.remember();
+  }
+
+  /** Of the panels that files know of, opens these and closes the others. */
+  showOnly(panels: readonly PanelName[]): void {
+    for (const id of FILE_PANELS) {
+      if (panels.includes(id)) this.add(id);
+      else this.close(id);
+    }
+    this.widths.follow();
+  }
+
+  private add(id: PanelId): void {
+    if (this.isOpen(id)) return;
+    addPanels(this.api, [id]);
+    if (id === "time") this.keepTimeLow();
+  }
+
+  /** Added panels take their share of the whole, whatever height they ask for. */
+  private keepTimeLow(): void {
+    const group = this.api.getPanel("time")?.group;
+    if (group?.panels.length === 1) group.api.setSize({ height: TIME_HEIGHT });
   }
 
   private content(name: string): IContentRenderer {
@@ -71,11 +139,9 @@ export class Dock {
     return { element: panel.element, init: () => panel.opened?.(), dispose: () => panel.closed?.() };
   }
 
-  private restore(): boolean {
-    const saved = localStorage.getItem(LAYOUT_KEY);
-    if (saved === null) return false;
+  private restore({ arrangement }: Layout): boolean {
     try {
-      this.api.fromJSON(JSON.parse(saved) as Parameters<DockviewApi["fromJSON"]>[0]);
+      this.api.fromJSON(arrangement);
       for (const panel of this.api.panels) if (this.panels.has(panel.id)) panel.api.setTitle(title(panel.id));
       return this.isOpen("scene");
     } catch {
@@ -86,7 +152,7 @@ export class Dock {
   }
 
   private remember(): void {
-    localStorage.setItem(LAYOUT_KEY, JSON.stringify(this.api.toJSON()));
+    if (this.file !== null) this.layouts.keep({ file: this.file, arrangement: this.api.toJSON() });
   }
 }
 

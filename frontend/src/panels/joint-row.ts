@@ -1,6 +1,6 @@
 import { h } from "../dom";
 import { icon } from "../icons";
-import type { JointControl } from "../protocol.gen";
+import type { JointControl } from "../protocol";
 import type { AngleUnits } from "../state/angle-unit";
 import { mimicText } from "../state/joint-table";
 import { strings } from "../strings";

@@ -1,5 +1,5 @@
 import { button, coalesced, h } from "../dom";
-import type { JointDetails } from "../protocol.gen";
+import type { JointDetails } from "../protocol";
 import type { DescriptionModel } from "../state/description-model";
 import { cells, COLUMNS, sorted, type Column } from "../state/joint-table";
 import type { Session } from "../state/session";

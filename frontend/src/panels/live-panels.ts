@@ -7,8 +7,6 @@ import { PlotPanel } from "./plot-panel";
 import { TeleopPanel } from "./teleop-panel";
 import { TopicsPanel } from "./topics-panel";
 
-export const LIVE_PANELS = ["plot", "topics", "graph", "parameters", "log", "teleop"] as const satisfies readonly PanelId[];
-
 /** The panels that show what runs; `open` brings one to the front. */
 export function livePanels(monitor: MonitorState, open: (id: PanelId) => void): Panel[] {
   const { plots, topics } = monitor;

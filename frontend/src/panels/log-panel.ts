@@ -1,6 +1,6 @@
 import { button, coalesced, h } from "../dom";
 import { icon } from "../icons";
-import type { LogLine } from "../protocol.gen";
+import type { LogLine } from "../protocol";
 import { clockText } from "../state/monitor/figure-text";
 import { LEVELS, levelOf, lineText, type LogState } from "../state/monitor/log";
 import { strings } from "../strings";

@@ -1,6 +1,6 @@
 import { button, h } from "../dom";
 import { icon } from "../icons";
-import type { MessageField } from "../protocol.gen";
+import type { MessageField } from "../protocol";
 import { strings } from "../strings";
 
 interface Row {

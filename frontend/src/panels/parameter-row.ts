@@ -1,5 +1,5 @@
 import { h } from "../dom";
-import type { ParameterKind, ParameterRow } from "../protocol.gen";
+import type { ParameterKind, ParameterRow } from "../protocol";
 import { parameterText, parameterValues } from "../state/monitor/parameter-text";
 import { strings } from "../strings";
 

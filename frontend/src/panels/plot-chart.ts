@@ -1,4 +1,4 @@
-import uPlot from "uplot";
+import type uPlot from "uplot";
 import { h } from "../dom";
 import { valueText } from "../state/monitor/field-text";
 import { plotTable } from "../state/monitor/plot-table";
@@ -15,11 +15,13 @@ export function seriesColor(index: number): string {
   return `var(--plot-${(index % COLORS) + 1})`;
 }
 
-/** One diagram, drawn by uPlot. */
+/** One diagram, drawn by uPlot, which is fetched when the first one is to be seen. */
 export class PlotChart {
   readonly element = h("div", { class: "plot-canvas" });
   /** Values under the pointer, by series; null where the pointer is elsewhere. */
   atCursor: readonly (number | null)[] | null = null;
+  private library: typeof uPlot | null = null;
+  private fetching = false;
   private chart: uPlot | null = null;
   private count = -1;
 
@@ -36,7 +38,11 @@ export class PlotChart {
     const { plot, state } = this;
     const [width, height] = [this.element.clientWidth, this.element.clientHeight];
     if (width === 0 || height === 0) return;
-    if (this.count !== plot.series.length) this.rebuild(width, height);
+    if (!this.library) {
+      this.fetch();
+      return;
+    }
+    if (this.count !== plot.series.length) this.rebuild(this.library, width, height);
     const { chart } = this;
     if (!chart) return;
     const [from, to] = state.window ?? [0, state.seconds];
@@ -63,7 +69,20 @@ export class PlotChart {
     this.draw();
   }
 
-  private rebuild(width: number, height: number): void {
+  private fetch(): void {
+    if (this.fetching) return;
+    this.fetching = true;
+    import("./plot-library").then(
+      ({ UPlot }) => {
+        this.library = UPlot;
+        this.draw();
+      },
+      // The program has ended: when it is there again, the next values ask once more.
+      () => (this.fetching = false),
+    );
+  }
+
+  private rebuild(Chart: typeof uPlot, width: number, height: number): void {
     this.dispose();
     this.count = this.plot.series.length;
     const color = (name: string) => () => getComputedStyle(this.element).getPropertyValue(name).trim();
@@ -73,7 +92,7 @@ export class PlotChart {
       grid: { stroke: color("--line"), width: 1 },
       ticks: { show: false },
     };
-    this.chart = new uPlot(
+    this.chart = new Chart(
       {
         width,
         height,

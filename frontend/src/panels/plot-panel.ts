@@ -1,4 +1,3 @@
-import "uplot/dist/uPlot.min.css";
 import { button, coalesced, h } from "../dom";
 import { icon } from "../icons";
 import type { Plot, PlotsState } from "../state/monitor/plots";

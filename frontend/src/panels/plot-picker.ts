@@ -1,5 +1,5 @@
 import { h } from "../dom";
-import type { TopicFields } from "../protocol.gen";
+import type { TopicFields } from "../protocol";
 import { fieldText, parseField, type FieldName } from "../state/monitor/field-text";
 import type { PlotsState } from "../state/monitor/plots";
 import type { TopicsState } from "../state/monitor/topics";

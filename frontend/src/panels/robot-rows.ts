@@ -1,4 +1,4 @@
-import type { JointScene, PropertyValue, RobotScene } from "../protocol.gen";
+import type { JointScene, PropertyValue, RobotScene } from "../protocol";
 import type { DisplayState } from "../state/displays";
 import type { PropertyNode } from "../state/properties";
 import type { Session } from "../state/session";

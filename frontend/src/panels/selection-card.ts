@@ -1,6 +1,6 @@
 import { button, h } from "../dom";
 import { icon } from "../icons";
-import type { LinkScene, LinkStory } from "../protocol.gen";
+import type { LinkScene, LinkStory } from "../protocol";
 import type { Session } from "../state/session";
 import { strings } from "../strings";
 import { placeText, shortPath } from "./place";

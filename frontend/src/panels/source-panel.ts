@@ -1,6 +1,6 @@
 import { button, coalesced, h } from "../dom";
 import { icon } from "../icons";
-import type { CallSite, SourceRange } from "../protocol.gen";
+import type { CallSite, SourceRange } from "../protocol";
 import { EXPANDED, type DescriptionModel } from "../state/description-model";
 import { same } from "../state/element-focus";
 import type { Session } from "../state/session";

@@ -1,6 +1,6 @@
 import { button, h } from "../dom";
 import { icon } from "../icons";
-import type { TwistKind } from "../protocol.gen";
+import type { TwistKind } from "../protocol";
 import { valueText } from "../state/monitor/field-text";
 import type { TeleopState } from "../state/monitor/teleop";
 import { strings } from "../strings";

@@ -1,6 +1,6 @@
 import { button, h } from "../dom";
 import { icon } from "../icons";
-import type { TopicMessage, TopicRow, TopicTraffic } from "../protocol.gen";
+import type { TopicMessage, TopicRow, TopicTraffic } from "../protocol";
 import { bandwidthText, clockText, rateText } from "../state/monitor/figure-text";
 import { strings } from "../strings";
 import { MessageTree } from "./message-tree";

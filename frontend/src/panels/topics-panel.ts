@@ -1,5 +1,5 @@
 import { h } from "../dom";
-import type { TopicRow } from "../protocol.gen";
+import type { TopicRow } from "../protocol";
 import type { TopicsState } from "../state/monitor/topics";
 import { strings } from "../strings";
 import { textField, tickBox } from "./controls";

@@ -1,6 +1,6 @@
 import { button, h } from "../dom";
 import { icon } from "../icons";
-import type { Property, PropertyValue } from "../protocol.gen";
+import type { Property, PropertyValue } from "../protocol";
 import type { Session } from "../state/session";
 import { FIXED_FRAME, type ViewState } from "../state/view";
 import { shortName } from "../state/views/catalog";

@@ -1,5 +1,5 @@
 /** Calls `changed` whenever an element comes into sight or goes out of it: a panel behind another is out of sight. */
-export function watchVisibility(element: HTMLElement, changed: (visible: boolean) => void): void {
+function watchVisibility(element: HTMLElement, changed: (visible: boolean) => void): void {
   let before = false;
   new IntersectionObserver((entries) => {
     const visible = entries.at(-1)?.isIntersecting ?? false;

@@ -1,10 +1,10 @@
 import type { Object3D } from "three";
 import type { Session } from "../state/session";
+import { FLASHING } from "./layers";
 import { Outline } from "./outline";
 import type { Viewport } from "./viewport";
 
 const COLOR = 0xff9d3c;
-const LAYER = 2;
 const FILL = 0.55;
 const LASTS_MS = 1600;
 /** New meshes may take a moment; the flash waits for a part of its time. */
@@ -22,7 +22,7 @@ export class Flash {
     private readonly objectsOf: (display: string, link: string) => readonly Object3D[],
     private readonly invalidate: () => void,
   ) {
-    this.outline = new Outline(viewport, { color: COLOR, layer: LAYER, fill: FILL });
+    this.outline = new Outline(viewport, { color: COLOR, layer: FLASHING, fill: FILL });
     session.description.edited.on(({ display, links, joints }) => {
       const moved = joints.map((name) => session.focus.linkOf({ display, kind: "joint", name }));
       const names = new Set([...links, ...moved.filter((name) => name !== undefined)]);

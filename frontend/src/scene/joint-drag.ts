@@ -1,5 +1,5 @@
 import { Matrix4, Vector3, type Ray } from "three";
-import type { JointDetails } from "../protocol.gen";
+import type { JointDetails } from "../protocol";
 import type { DescriptionModel } from "../state/description-model";
 import type { Session } from "../state/session";
 import { framePose } from "./pose";

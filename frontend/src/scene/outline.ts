@@ -7,17 +7,18 @@ import {
   WebGLRenderTarget,
   type Object3D,
 } from "three";
+import { SELECTED } from "./layers";
 import { SCREEN_VERTEX, ScreenQuad } from "./objects/screen-quad";
 import type { Viewport } from "./viewport";
 
 /** How an outline looks; each needs a layer of its own, and `fill` is how much of the objects is tinted, 0 to 1. */
-export interface OutlineLook {
+interface OutlineLook {
   color: number;
   layer: number;
   fill: number;
 }
 
-const SELECTION: OutlineLook = { color: 0x5db0ff, layer: 1, fill: 0.16 };
+const SELECTION: OutlineLook = { color: 0x5db0ff, layer: SELECTED, fill: 0.16 };
 const FRAGMENT = /* glsl */ `
   uniform sampler2D mask;
   uniform vec2 texel;

@@ -4,6 +4,7 @@ import type { SelectedItem, SelectionMode } from "../state/selection";
 import type { Vector } from "../state/views/vector";
 import { DepthMap } from "./depth-map";
 import type { Drawing } from "./displays/drawing";
+import { TOUCHED } from "./layers";
 import type { Described, Hit } from "./picking";
 import { ScreenBox } from "./selection-box";
 import type { Viewport } from "./viewport";
@@ -28,6 +29,7 @@ export class Picker {
   rayAt(x: number, y: number): Raycaster {
     this.viewport.aim(this.session.view);
     const ray = new Raycaster();
+    ray.layers.enable(TOUCHED);
     ray.setFromCamera(this.onScreen(x, y), this.viewport.camera);
     return ray;
   }

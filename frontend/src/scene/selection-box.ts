@@ -1,4 +1,5 @@
 import { Matrix4, Mesh, Raycaster, Vector2, Vector3, Vector4, type BufferAttribute, type Camera, type Object3D } from "three";
+import { TOUCHED } from "./layers";
 import type { SelectionBox } from "./picking";
 
 /** Of larger geometries only so many corners are looked at. */
@@ -50,6 +51,7 @@ export class ScreenBox implements SelectionBox {
   /** A rectangle within a large face has none of its corners in it. */
   private meetsRay(meshes: Mesh[]): boolean {
     const ray = new Raycaster();
+    ray.layers.enable(TOUCHED);
     for (const u of [0.5, 0, 1]) {
       for (const v of [0.5, 0, 1]) {
         const at = new Vector2(this.low.x + (this.high.x - this.low.x) * u, this.low.y + (this.high.y - this.low.y) * v);

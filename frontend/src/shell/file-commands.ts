@@ -1,4 +1,4 @@
-import type { ConfigurationRefused, EditName } from "../protocol.gen";
+import type { ConfigurationRefused, EditName } from "../protocol";
 import type { ConfigurationState } from "../state/configuration";
 import { strings } from "../strings";
 import { saveText } from "../panels/save-file";

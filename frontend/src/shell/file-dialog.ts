@@ -1,6 +1,6 @@
 import { button, h } from "../dom";
 import { icon } from "../icons";
-import type { Folder } from "../protocol.gen";
+import type { Folder } from "../protocol";
 import type { ConfigurationState } from "../state/configuration";
 import { strings } from "../strings";
 import { Dialog } from "./dialog";

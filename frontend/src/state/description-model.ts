@@ -1,4 +1,4 @@
-import type { Description, JointDetails, LinkDetails, SourceRange, Written } from "../protocol.gen";
+import type { Description, JointDetails, LinkDetails, SourceRange, Written } from "../protocol";
 
 /** A link or joint of the robot of one display. */
 export interface ElementName {

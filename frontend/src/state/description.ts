@@ -1,5 +1,5 @@
 import type { Connection } from "../connection/connection";
-import type { DescriptionChanged, InertiaFinding, InertiaFindings } from "../protocol.gen";
+import type { DescriptionChanged, InertiaFinding, InertiaFindings } from "../protocol";
 import { DescriptionModel } from "./description-model";
 import { Signal } from "./signal";
 

@@ -1,4 +1,4 @@
-import type { JointDetails } from "../protocol.gen";
+import type { JointDetails } from "../protocol";
 import type { DescriptionModel, ElementName } from "./description-model";
 import { general } from "./number-text";
 import { tidyTree, type TreeNode } from "./tidy-tree";
@@ -90,6 +90,6 @@ function build(
 }
 
 /** As urdf_to_graphviz writes it: metres, and radians that came through the quaternion. */
-export function originText({ xyz, rpy }: Pick<JointDetails, "xyz" | "rpy">): [string, string] {
+function originText({ xyz, rpy }: Pick<JointDetails, "xyz" | "rpy">): [string, string] {
   return [`xyz: ${xyz.map(general).join(" ")}`, `rpy: ${rpy.map(general).join(" ")}`];
 }

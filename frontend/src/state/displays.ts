@@ -1,4 +1,4 @@
-import type { Display, Property, PropertyValue, StatusLevel, StatusRow, Tree } from "../protocol.gen";
+import type { Display, Property, PropertyValue, StatusLevel, StatusRow, Tree } from "../protocol";
 import { PropertyNode, PropertyRows } from "./properties";
 import { Signal } from "./signal";
 

@@ -1,4 +1,4 @@
-import type { RobotScene } from "../protocol.gen";
+import type { RobotScene } from "../protocol";
 import type { ElementName } from "./description-model";
 import type { SelectionState } from "./selection";
 import { Signal } from "./signal";

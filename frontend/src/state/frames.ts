@@ -1,4 +1,4 @@
-import type { FrameTable } from "../protocol.gen";
+import type { FrameTable } from "../protocol";
 import type { Transforms } from "../connection/transforms";
 import { Signal } from "./signal";
 

@@ -1,4 +1,4 @@
-import type { JointDetails } from "../protocol.gen";
+import type { JointDetails } from "../protocol";
 import type { AngleUnits } from "./angle-unit";
 import { general } from "./number-text";
 

@@ -1,5 +1,5 @@
 import type { Connection } from "../connection/connection";
-import type { JointControl } from "../protocol.gen";
+import type { JointControl } from "../protocol";
 import { Signal } from "./signal";
 
 /** Joints in one message: the server takes messages of 64 KiB. */

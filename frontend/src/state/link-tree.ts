@@ -1,4 +1,4 @@
-import type { JointDetails, LinkDetails } from "../protocol.gen";
+import type { JointDetails, LinkDetails } from "../protocol";
 import type { DescriptionModel } from "./description-model";
 
 /** A link in the tree, and the joint it hangs from. */

@@ -1,4 +1,4 @@
-import type { Property, PropertyKind, PropertyValue, RowDetails, TopicOffer } from "../protocol.gen";
+import type { Property, PropertyKind, PropertyValue, RowDetails, TopicOffer } from "../protocol";
 
 /** One row of a property tree; the value changes in place, the rest does not. */
 export class PropertyNode {

@@ -1,5 +1,5 @@
 import type { Connection } from "../connection/connection";
-import type { DiagnosticItem, Hello, LinkStory, PropertyValue, RobotScene } from "../protocol.gen";
+import type { DiagnosticItem, Hello, LinkStory, PropertyValue, RobotScene } from "../protocol";
 import { AngleUnits } from "./angle-unit";
 import { ConfigurationState } from "./configuration";
 import { DisplayDataStore } from "./display-data";

@@ -1,4 +1,4 @@
-import type { JointControl } from "../protocol.gen";
+import type { JointControl } from "../protocol";
 
 export type SweepOrder = "one" | "all";
 
@@ -32,12 +32,6 @@ export class Sweep {
         return [joint.name, moves ? roundTrip(joint, start, round % 1) : start];
       }),
     );
-  }
-
-  /** The joint that moves now, when they go one after another. */
-  movingAt(seconds: number): string | null {
-    if (this.order === "all") return null;
-    return this.joints[Math.floor(seconds / ROUND_S) % Math.max(1, this.joints.length)]?.name ?? null;
   }
 }
 

@@ -7,7 +7,7 @@ export interface TreeNode {
 }
 
 /** Where the middle of a node is; y grows downwards. */
-export interface PlacedNode {
+interface PlacedNode {
   readonly node: TreeNode;
   readonly x: number;
   readonly y: number;

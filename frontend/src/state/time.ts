@@ -1,5 +1,5 @@
 import type { Connection } from "../connection/connection";
-import type { Clock, TimeState } from "../protocol.gen";
+import type { Clock, TimeState } from "../protocol";
 import { Signal } from "./signal";
 
 export type SyncMode = TimeState["mode"];

@@ -1,5 +1,5 @@
 import type { Connection } from "../connection/connection";
-import type { PropertyValue, Tool, ToolClass } from "../protocol.gen";
+import type { PropertyValue, Tool, ToolClass } from "../protocol";
 import { PropertyNode, PropertyRows } from "./properties";
 import { Signal } from "./signal";
 

@@ -1,4 +1,4 @@
-import type { Property, PropertyValue, SavedView, View, ViewClass } from "../protocol.gen";
+import type { Property, PropertyValue, SavedView, View, ViewClass } from "../protocol";
 import type { Connection } from "../connection/connection";
 import type { FrameStore } from "./frames";
 import { Signal } from "./signal";

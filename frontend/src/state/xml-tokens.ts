@@ -1,5 +1,5 @@
 /** What a piece of XML text is, for its colour. */
-export type TokenKind = "text" | "tag" | "attribute" | "value" | "expression" | "comment" | "punctuation";
+type TokenKind = "text" | "tag" | "attribute" | "value" | "expression" | "comment" | "punctuation";
 
 export interface Token {
   readonly kind: TokenKind;

@@ -1,5 +1,5 @@
 import { h } from "../dom";
-import type { PropertyValue } from "../protocol.gen";
+import type { PropertyValue } from "../protocol";
 import { strings } from "../strings";
 import { formatColor, parseColor } from "./colors";
 import { NameEditor } from "./name-editor";

@@ -1,6 +1,6 @@
 import { button, h } from "../dom";
 import { icon } from "../icons";
-import type { PropertyValue } from "../protocol.gen";
+import type { PropertyValue } from "../protocol";
 import { strings } from "../strings";
 import type { Editor } from "./editors";
 import { TextEditor } from "./text-editor";

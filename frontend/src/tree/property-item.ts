@@ -1,4 +1,4 @@
-import type { PropertyValue } from "../protocol.gen";
+import type { PropertyValue } from "../protocol";
 import type { PropertyNode } from "../state/properties";
 import type { TreeItem } from "./tree-item";
 

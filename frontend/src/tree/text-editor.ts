@@ -1,5 +1,5 @@
 import { h } from "../dom";
-import type { PropertyValue } from "../protocol.gen";
+import type { PropertyValue } from "../protocol";
 import type { Editor } from "./editors";
 import type { TreeItem } from "./tree-item";
 

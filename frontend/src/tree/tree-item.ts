@@ -1,5 +1,5 @@
 import type { IconName } from "../icons";
-import type { PropertyKind, PropertyValue, StatusLevel } from "../protocol.gen";
+import type { PropertyKind, PropertyValue, StatusLevel } from "../protocol";
 
 /** One row of a property tree, as the tree draws it. */
 export interface TreeItem {

@@ -8,6 +8,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Coroutine
 from dataclasses import dataclass, field
+from functools import partial
 from types import CoroutineType
 from typing import TYPE_CHECKING, Any
 
@@ -72,7 +73,7 @@ class LoopDispatcher:
     def call_at(self, steady_ns: int, callback: Callable[[], None]) -> Alarm:
         """Call something once at a count of the timebase."""
         if threading.get_ident() == self._thread:
-            return self._timebase.call_at(self._loop, steady_ns, callback)
+            return self._timebase.call_at(self._loop, steady_ns, partial(self._alarmed, callback))
         return _AlarmFromElsewhere(self, steady_ns, callback)
 
     def call_threadsafe(self, callback: Callable[[], None]) -> None:
@@ -126,6 +127,17 @@ class LoopDispatcher:
         self._waking = False
         if self._ready and not self._is_scheduled:
             self._schedule()
+
+    def _alarmed(self, callback: Callable[[], None]) -> None:
+        """Do what an alarm is for, and what it makes ready in the same breath: no callback runs when an alarm comes."""
+        if self._is_scheduled:
+            callback()
+            return
+        self._is_scheduled = True
+        try:
+            callback()
+        finally:
+            self._run_turn()
 
     def _schedule(self) -> None:
         if not self._closed:

@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 
+class RclError(RuntimeError):
+    """What the C library below rclpy complains about (rclpy ``RCLError``)."""
+
+
 class InvalidHandleError(RuntimeError):
     """Something is used that was destroyed (rclpy ``InvalidHandle``)."""
 
@@ -17,7 +21,7 @@ class InterruptedWaitError(Exception):
         super().__init__(text)
 
 
-class NodeNotFoundError(RuntimeError):
+class NodeNotFoundError(RclError):
     """There is no node of a name (rclpy ``NodeNameNonExistentError``)."""
 
     def __init__(self, name: str, namespace: str) -> None:

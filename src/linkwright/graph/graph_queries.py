@@ -178,9 +178,10 @@ class GraphQueries:
                 self._changed.wait(_LONGEST_WAIT_S if left is None else min(left, _LONGEST_WAIT_S))
 
     def wait_for_node(self, full_name: str, timeout_sec: float | None = None) -> bool:
-        """Block the calling thread until a node is there; whether it is."""
+        """Block the calling thread until a node is there; whether it is. Its name may lack the slash in front."""
+        wanted = full_name if full_name.startswith("/") else f"/{full_name}"
         return self.wait_until(
-            lambda: any(join(each.namespace, each.name) == full_name for each in self.identities()), timeout_sec
+            lambda: any(join(each.namespace, each.name) == wanted for each in self.identities()), timeout_sec
         )
 
     def _of_node(self, name: str, namespace: str) -> list[EndpointInfo]:

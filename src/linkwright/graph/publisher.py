@@ -61,6 +61,8 @@ class Publisher(TopicEndpoint[M]):
         self._lock = threading.RLock()
         keeps = qos_profile.durability is DurabilityPolicy.TRANSIENT_LOCAL
         self._kept: deque[tuple[int, Any]] | None = deque(maxlen=qos_profile.queue_length) if keeps else None
+        self._held: deque[Any] | None = None
+        self._sent: Callable[[float | None], bool] = lambda _: True
         self._copies = node.copies_messages
         self._is_plain = not keeps and not self._copies
 
@@ -115,10 +117,10 @@ class Publisher(TopicEndpoint[M]):
         Returns:
             Whether they have.
         """
-        if self._acknowledged is None:
-            return True
         seconds = None if timeout is None or timeout.nanoseconds < 0 else timeout.nanoseconds / 1e9
-        return self._acknowledged(seconds)
+        if self._held is not None and not self._sent(seconds):
+            return False
+        return self._acknowledged is None or self._acknowledged(seconds)
 
     def destroy(self) -> None:
         """Leave the topic and the node; what was sent is still delivered."""
@@ -167,6 +169,21 @@ class Publisher(TopicEndpoint[M]):
         """Tell `events` of every message from now on."""
         self._is_plain = False
 
+    def hold_for_outside(self, sent: Callable[[float | None], bool]) -> None:
+        """For the transport, which will call `set_outside` soon: keep what is published until then.
+
+        A writer takes a moment to be made. Who listens outside may be known already, and gets under ROS what is
+        published as soon as there is a publisher.
+
+        Args:
+            sent: waits, for so many seconds at most (None for any time), until that was called; whether it was.
+        """
+        with self._lock:
+            if self._kept is None and self.outside is None:
+                self._sent = sent
+                self._held = deque(maxlen=self.qos_profile.queue_length)
+                self.outside = self._held.append
+
     def set_outside(
         self,
         send: Callable[[Any], None] | None,
@@ -174,7 +191,7 @@ class Publisher(TopicEndpoint[M]):
     ) -> None:
         """For the transport: have messages taken out of the process, or no longer.
 
-        What is kept for late comers is sent first, so that nothing is lost and nothing comes twice.
+        What is held, or kept for late comers, is sent first, so that nothing is lost and nothing comes twice.
 
         Args:
             send: called with each message, or with its CDR bytes where it was published so, in the thread that
@@ -183,8 +200,9 @@ class Publisher(TopicEndpoint[M]):
                 and says whether they have.
         """
         with self._lock:
-            if send is not None and self.outside is None:
-                for message in self._still_valid():
+            held, self._held = self._held, None
+            if send is not None and (self.outside is None or held is not None):
+                for message in self._still_valid() if held is None else held:
                     send(message)
             self.outside = send
             self._acknowledged = acknowledged if send is not None else None

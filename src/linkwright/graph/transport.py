@@ -6,7 +6,7 @@ is called only for what somebody outside listens to.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
 from enum import Enum
 from typing import TYPE_CHECKING, Any, Protocol
@@ -69,7 +69,7 @@ class EndpointInfo:
 
 
 @dataclass(slots=True)
-class MessageInfo:
+class MessageInfo(Mapping[str, Any]):
     """What is known of a message beside its content; its values are found as attributes and, as in rclpy, by name.
 
     Attributes:
@@ -93,9 +93,11 @@ class MessageInfo:
             raise KeyError(name)
         return getattr(self, name)
 
-    def keys(self) -> tuple[str, ...]:
-        """The names of the values."""
-        return _INFO_NAMES
+    def __iter__(self) -> Iterator[str]:
+        return iter(_INFO_NAMES)
+
+    def __len__(self) -> int:
+        return len(_INFO_NAMES)
 
 
 _INFO_NAMES = tuple(field.name for field in fields(MessageInfo))

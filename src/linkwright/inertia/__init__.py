@@ -5,7 +5,7 @@ from linkwright.inertia.mesh_library import MeshLibrary
 from linkwright.inertia.meshes import MESH_ENDINGS, TriangleMesh, read_mesh
 from linkwright.inertia.properties import MassProperties, PrincipalAxes, combine, from_inertial, to_inertial
 from linkwright.inertia.shapes import shape_properties
-from linkwright.inertia.validity import is_physical, is_plausible_density, problems
+from linkwright.inertia.validity import problems
 
 __all__ = [
     "DEFAULT_DENSITY",
@@ -19,8 +19,6 @@ __all__ = [
     "combine",
     "estimate",
     "from_inertial",
-    "is_physical",
-    "is_plausible_density",
     "problems",
     "read_mesh",
     "shape_properties",

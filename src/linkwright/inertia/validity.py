@@ -45,11 +45,6 @@ def triangle_excess(tensor: Array) -> float:
     return float((large - small - middle) / large) if large > 0 else 0.0
 
 
-def is_physical(tensor: Array, tolerance: float = TOLERANCE) -> bool:
-    """Whether a body can have the tensor: positive definite, and the triangle inequality holds up to rounding."""
-    return is_positive_definite(tensor) and triangle_excess(tensor) <= tolerance
-
-
 def excessive_products(tensor: Array, tolerance: float = TOLERANCE) -> list[tuple[str, float]]:
     """Products of inertia that are larger than the moments on the diagonal allow, with the largest allowed.
 
@@ -68,11 +63,6 @@ def excessive_products(tensor: Array, tolerance: float = TOLERANCE) -> list[tupl
         if abs(float(tensor[i, j])) > limit * (1 + tolerance):
             found.append((name, limit))
     return found
-
-
-def is_plausible_density(mass: float, volume: float) -> bool:
-    """Whether a material of some kind may fill a volume in m3 with a mass in kg."""
-    return volume > 0 and LIGHTEST_DENSITY <= mass / volume <= HEAVIEST_DENSITY
 
 
 def largest_moment_within(center: Array, low: Array, high: Array, mass: float) -> float:

@@ -1,15 +1,13 @@
 """Transforms, and forward kinematics for one or many configurations."""
 
-from linkwright.kinematics.poses import IDENTITY, compose, invert, matrix_from_pose, pose_from_matrix
+from linkwright.kinematics.poses import IDENTITY, compose, invert, matrix_from_pose
 from linkwright.kinematics.quaternions import (
-    quaternion_from_axis_angle,
     quaternion_from_matrix,
     quaternion_from_rpy,
     quaternion_inverse,
     quaternion_multiply,
     rotate,
     rotation_matrix,
-    rpy_from_quaternion,
 )
 from linkwright.kinematics.tree import KinematicTree, UnknownNameError
 
@@ -20,13 +18,10 @@ __all__ = [
     "compose",
     "invert",
     "matrix_from_pose",
-    "pose_from_matrix",
-    "quaternion_from_axis_angle",
     "quaternion_from_matrix",
     "quaternion_from_rpy",
     "quaternion_inverse",
     "quaternion_multiply",
     "rotate",
     "rotation_matrix",
-    "rpy_from_quaternion",
 ]

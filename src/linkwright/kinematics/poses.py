@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike
 from linkwright.kinematics.quaternions import (
     Array,
     last_axis,
-    quaternion_from_matrix,
     quaternion_inverse,
     quaternion_multiply,
     rotate,
@@ -54,11 +53,3 @@ def matrix_from_pose(pose: ArrayLike) -> Array:
     matrix[..., :3, 3] = given[..., :3]
     matrix[..., 3, 3] = 1.0
     return matrix
-
-
-def pose_from_matrix(matrix: ArrayLike) -> Array:
-    """Poses of homogeneous matrices; shape (..., 4, 4) to (..., 7), with qw >= 0."""
-    given = np.asarray(matrix, dtype=np.float64)
-    if given.shape[-2:] != (4, 4):
-        raise ValueError(f"a homogeneous matrix of shape {given.shape}; (..., 4, 4) is expected")
-    return np.concatenate((given[..., :3, 3], quaternion_from_matrix(given[..., :3, :3])), axis=-1)

@@ -48,42 +48,6 @@ def quaternion_from_rpy(rpy: ArrayLike) -> Array:
     )
 
 
-def rpy_from_quaternion(quaternion: ArrayLike) -> Array:
-    """Roll, pitch and yaw of a rotation; where pitch is +-90 degrees roll is 0.
-
-    Args:
-        quaternion: shape (..., 4).
-
-    Returns:
-        Shape (..., 3), radians; roll and yaw in [-pi, pi], pitch in [-pi/2, pi/2].
-    """
-    x, y, z, w = np.moveaxis(last_axis(quaternion, 4, "a quaternion"), -1, 0)
-    sin_pitch = np.clip(2 * (w * y - x * z), -1.0, 1.0)
-    locked = np.abs(sin_pitch) > 1 - 1e-12
-    roll = np.where(locked, 0.0, np.arctan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y)))
-    yaw = np.where(locked, 2 * np.arctan2(z, w), np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)))
-    return np.stack((roll, np.arcsin(sin_pitch), yaw), axis=-1)
-
-
-def quaternion_from_axis_angle(axis: ArrayLike, angle: ArrayLike) -> Array:
-    """The rotation about an axis by an angle.
-
-    Args:
-        axis: shape (..., 3), of any length but zero; a zero axis gives no rotation.
-        angle: shape (...), radians; broadcast against the axis.
-
-    Returns:
-        Shape (..., 4).
-    """
-    direction = last_axis(axis, 3, "an axis")
-    length = np.linalg.norm(direction, axis=-1, keepdims=True)
-    half = np.asarray(angle, dtype=np.float64)[..., None] / 2
-    sine = np.where(length > 0, np.sin(half) / np.where(length > 0, length, 1.0), 0.0)
-    vector = direction * sine
-    scalar = np.where(length > 0, np.cos(half), 1.0)
-    return np.concatenate((vector, np.broadcast_to(scalar, (*vector.shape[:-1], 1))), axis=-1)
-
-
 def quaternion_multiply(first: ArrayLike, second: ArrayLike) -> Array:
     """The rotation that does `second`, then `first`: the product first * second.
 

@@ -62,19 +62,6 @@ def rename_attribute(element: Element, old: str, new: str, *, safe: bool = True)
     return None if found is None else Fix((Edit(source.name, *found, new),), safe)
 
 
-def remove_attribute(element: Element, attribute: str, *, safe: bool = True) -> Fix | None:
-    """Take an attribute out, with the blank before it; None where it is not written in the file."""
-    source = element.source
-    if source is None:
-        return None
-    name = attribute_name_range(source.text, element.offset, attribute)
-    value = attribute_value_range(source.text, element.offset, attribute)
-    if name is None or value is None:
-        return None
-    start = len(source.text[: name[0]].rstrip())
-    return Fix((Edit(source.name, start, value[1] + 1, ""),), safe)
-
-
 def add_attribute(element: Element, attribute: str, value: str, *, safe: bool = True) -> Fix | None:
     """Write an attribute behind those there are; None where the element is not written in a file."""
     source = element.source

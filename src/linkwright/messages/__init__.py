@@ -6,9 +6,8 @@ from linkwright.messages.cdr import deserialize, serialize
 from linkwright.messages.classes import get_action, get_interface, get_message, get_service
 from linkwright.messages.conversion import to_csv, to_dict
 from linkwright.messages.errors import DefinitionError, FieldValueError, InterfaceNotFoundError, MessageDataError
-from linkwright.messages.field_values import from_dict, set_fields
+from linkwright.messages.field_values import set_fields
 from linkwright.messages.hashing import type_hash
-from linkwright.messages.library import find_interfaces_with
 from linkwright.messages.message import ActionType, Message, ServiceType, definition_of
 from linkwright.messages.presentation import definition_text, interface_names, prototype
 from linkwright.messages.transforms import TFMessage, TransformBatch
@@ -17,8 +16,6 @@ from linkwright.messages.wellknown import (
     FloatSequence,
     Header,
     JointState,
-    Point,
-    Pose,
     Quaternion,
     String,
     Time,
@@ -39,8 +36,6 @@ __all__ = [
     "JointState",
     "Message",
     "MessageDataError",
-    "Point",
-    "Pose",
     "Quaternion",
     "ServiceType",
     "String",
@@ -54,8 +49,6 @@ __all__ = [
     "definition_of",
     "definition_text",
     "deserialize",
-    "find_interfaces_with",
-    "from_dict",
     "get_action",
     "get_interface",
     "get_message",

@@ -23,13 +23,6 @@ StampSetter = Callable[[Any], None]
 """Sets a field to a builtin_interfaces/msg/Time."""
 
 
-def from_dict(message_class: type[Any], values: Mapping[str, Any]) -> Any:
-    """A message of a class with these values; other fields have their defaults. Errors are those of `set_fields`."""
-    message = message_class()
-    set_fields(message, values)
-    return message
-
-
 def set_fields(
     message: Message, values: Mapping[str, Any], *, expand_header_auto: bool = False, expand_time_now: bool = False
 ) -> list[StampSetter]:

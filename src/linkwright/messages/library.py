@@ -33,15 +33,11 @@ class Library:
     """All interfaces that are known, read when they are asked for; safe to use from several threads.
 
     An interface that comes with Linkwright is taken from there, even if the workspace has one of the same name; others
-    are read from the interface files of the packages that the finder finds, without a build. What neither has may be
-    known by a text that data brought along.
-
-    Args:
-        finder: where packages are; the finder in force at the time of each question when left out.
+    are read from the interface files of the packages that the finder in force finds, without a build. What neither has
+    may be known by a text that data brought along.
     """
 
-    def __init__(self, finder: PackageFinder | None = None) -> None:
-        self.finder = finder
+    def __init__(self) -> None:
         self._definitions: dict[str, Definition] = {}
         self._sources: dict[str, SourceText] = {}
         self._carried: dict[str, SourceText] = {}
@@ -195,7 +191,7 @@ class Library:
 
     def _finder(self) -> PackageFinder:
         """The finder in force. One of our own is kept for a while: it has read the folders of the workspace."""
-        finder = self.finder or active_finder()
+        finder = active_finder()
         if finder is None:
             now, folder = time.monotonic(), os.getcwd()  # noqa: PTH109
             if self._own is None or folder != self._own_folder or now > self._own_until:
@@ -312,8 +308,3 @@ def _recursive(source: SourceText, way: tuple[str, ...]) -> Diagnostic:
 
 LIBRARY = Library()
 """The interfaces of this process. Classes are made of it once, so a message is the same class everywhere."""
-
-
-def find_interfaces_with(finder: PackageFinder | None) -> None:
-    """Look for packages of interfaces with this finder from now on; with None, with the one in force at each time."""
-    LIBRARY.finder = finder

@@ -35,23 +35,12 @@ class Vector3(Message):
     y: float
     z: float
 
-class Point(Message):
-    def __init__(self, x: float = ..., y: float = ..., z: float = ...) -> None: ...
-    x: float
-    y: float
-    z: float
-
 class Quaternion(Message):
     def __init__(self, x: float = ..., y: float = ..., z: float = ..., w: float = ...) -> None: ...
     x: float
     y: float
     z: float
     w: float
-
-class Pose(Message):
-    def __init__(self, position: Point = ..., orientation: Quaternion = ...) -> None: ...
-    position: Point
-    orientation: Quaternion
 
 class Transform(Message):
     def __init__(self, translation: Vector3 = ..., rotation: Quaternion = ...) -> None: ...

@@ -21,7 +21,7 @@ from linkwright.nodes.options import NodeOptions, SingleNode, create_node
 
 _BUFFER_SECONDS = 120.0
 _CHECK_SECONDS = 0.01
-_NO_ERROR, _OTHER_ERROR = 0, 6
+_OTHER_ERROR = 6
 _NUMBERS: dict[type[TransformException], int] = {
     LookupException: 1,
     ConnectivityException: 2,

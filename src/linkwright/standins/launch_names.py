@@ -6,11 +6,7 @@ that complete imports wrote ``from launch.launch_introspector import ExecuteProc
 
 from __future__ import annotations
 
-import importlib
-import sys
-from collections.abc import Callable
-from importlib.machinery import PathFinder
-from typing import Any
+from linkwright.standins.imported_names import imported_from
 
 _PACKAGES = (
     "launch",
@@ -32,27 +28,5 @@ _PACKAGES = (
 )
 """Where names are looked for, in this order."""
 
-
-def submodules_of(package: str) -> Callable[[str], Any]:
-    """The ``__getattr__`` of a package: its submodules, imported when somebody asks for one."""
-
-    def submodule(name: str) -> Any:
-        if not name.startswith("__") and PathFinder.find_spec(f"{package}.{name}", sys.modules[package].__path__):
-            return importlib.import_module(f"{package}.{name}")
-        raise AttributeError(f"module '{package}' has no attribute '{name}'")
-
-    return submodule
-
-
-def imported_there(name: str) -> Any:
-    """The ``__getattr__`` of a module within a package: what the module of ROS imports itself, it offers as well.
-
-    Raises:
-        AttributeError: no package of the launch system has such a name.
-    """
-    if not name.startswith("_"):
-        for package in _PACKAGES:
-            found = vars(importlib.import_module(package)).get(name)
-            if found is not None:
-                return found
-    raise AttributeError(f"no module of the launch system has a name '{name}'")
+imported_there = imported_from(_PACKAGES, "the launch system")
+"""The ``__getattr__`` of a module within a package: what the module of ROS imports itself, it offers as well."""

@@ -6,7 +6,6 @@ the table and the reader together. Source: urdfdom 3.0.1 for URDF 1.0, urdfdom 6
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 
@@ -89,16 +88,6 @@ class ElementRule:
     def child(self, tag: str) -> ElementRule | None:
         """The rule of one child element, or None."""
         return next((rule for rule in self.children if rule.tag == tag), None)
-
-
-def rule_at(path: Sequence[str]) -> ElementRule | None:
-    """The rule at a path of tags from the root, such as ``("robot", "joint", "limit")``; None where there is none."""
-    if not path or path[0] != ROBOT.tag:
-        return None
-    rule: ElementRule | None = ROBOT
-    for tag in path[1:]:
-        rule = rule.child(tag) if rule else None
-    return rule
 
 
 def _number(

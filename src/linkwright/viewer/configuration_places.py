@@ -94,7 +94,16 @@ class RecentFiles:
     def add(self, path: Path) -> None:
         """Remember a file as the newest; that it cannot be kept for the next time does no harm."""
         name = str(path)
-        self._paths = [name, *(other for other in self._read() if other != name)][:_MOST_RECENT]
+        self._write([name, *(other for other in self._read() if other != name)][:_MOST_RECENT])
+
+    def remove(self, path: Path) -> None:
+        """Forget a file that is there no more."""
+        paths = self._read()
+        if str(path) in paths:
+            self._write([other for other in paths if other != str(path)])
+
+    def _write(self, paths: list[str]) -> None:
+        self._paths = paths
         with suppress(OSError):
             self._store.parent.mkdir(parents=True, exist_ok=True)
             self._store.write_text(json.dumps(self._paths), encoding="utf-8")

@@ -37,6 +37,7 @@ from linkwright.viewer.protocol import (
     ServerMessage,
     Undo,
 )
+from linkwright.viewer.recovery import forget_unsaved
 from linkwright.viewer.rviz_config import RvizConfig
 from linkwright.viewer.schema import MAXIMUM_TEXT
 
@@ -214,7 +215,9 @@ class ConfigurationFeature(PageFeature):
             if path != config.path and configuration_file.state_of(path) is not None:
                 self._ask(asked.page, "exists", f"'{path}' is there already", str(path))
                 return
+        former = config.path
         config.save(path)
+        forget_unsaved(former, config, self._recent)
         asked.page.send(ConfigurationSaved(str(path)))
         asked.manager.history.saved()
         self._remember(asked.manager, path)

@@ -7,10 +7,11 @@ from collections.abc import Callable, Iterator
 from linkwright.diagnostics import Diagnostic, Severity
 from linkwright.viewer import yaml_tree
 from linkwright.viewer.former_names import GROUP, modern_class
-from linkwright.viewer.yaml_tree import Section
+from linkwright.viewer.schema import is_on
+from linkwright.viewer.yaml_tree import Memory, Section
 
 _KEY = "Displays"
-_TRUE = ("true", "1", "yes", "on")
+_BOX = ("Enabled", "Value")
 
 
 class DisplayConfig:
@@ -63,15 +64,25 @@ class DisplayConfig:
         text = self.section.text("Enabled")
         if text is None:
             text = self.section.text("Value")
-        return text is not None and text.strip().lower() in _TRUE
+        return text is not None and is_on(text)
 
     @checked.setter
     def checked(self, value: bool) -> None:
         if value == self.checked:
             return
-        present = [key for key in ("Enabled", "Value") if self.section.scalar(key)]
-        for key in present or ["Enabled"]:
+        present = [key for key in _BOX if self.section.scalar(key)]
+        for key in present or _BOX[:1]:
             self.section.put((key,), "true" if value else "false")
+
+    @property
+    def box(self) -> list[Memory]:
+        """What the file says of its own box."""
+        return [self.section.memory(key) for key in _BOX]
+
+    @box.setter
+    def box(self, memories: list[Memory]) -> None:
+        for memory in memories:
+            self.section.recall(memory)
 
     @property
     def enabled(self) -> bool:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 
 from linkwright.viewer.display_config import DisplayConfig
 from linkwright.viewer.displays import Stage, ViewerDisplay, make_display
-from linkwright.viewer.edits import BoxEdit, SwapEdit
+from linkwright.viewer.edits import SwapEdit
 from linkwright.viewer.history import History
 from linkwright.viewer.protocol import EditKind, EditName
 from linkwright.viewer.rviz_config import Arrangement, RvizConfig
@@ -79,9 +80,13 @@ class DisplayTree:
 
     def check(self, display: ViewerDisplay, value: bool) -> None:
         """Switch a display on or off, and with it what is in it."""
-        if value != display.config.checked:
-            self.set_checked(display.id, value)
-            self._history.add(BoxEdit(self.set_checked, display))
+        if value == display.config.checked:
+            return
+        before, enabled = display.config.box, self._enabled()
+        display.config.checked = value
+        self._box_set(display, enabled)
+        name = EditName("enable" if value else "disable", display.config.name)
+        self._history.add(SwapEdit(partial(self._swap_box, display.id), before, name))
 
     def add(
         self,
@@ -196,13 +201,19 @@ class DisplayTree:
 
     # --- what edits do -----------------------------------------------------------------------------------------
 
-    def set_checked(self, identity: str, value: bool) -> None:
-        """Set the box of a display."""
+    def _swap_box(self, identity: str, box: list[Memory]) -> list[Memory]:
+        """Have the file say of a display's box what it said; returns what it says now."""
         display = self.find(identity)
         if display is None:
-            return
-        enabled = self._enabled()
-        display.set_checked(value)
+            return box
+        now, enabled = display.config.box, self._enabled()
+        display.config.box = box
+        self._box_set(display, enabled)
+        return now
+
+    def _box_set(self, display: ViewerDisplay, enabled: dict[DisplayConfig, bool]) -> None:
+        """A display's box was set: tell pages, and what is on or off with it; `enabled` is what was on before."""
+        display.set_checked(display.config.checked)
         for other in self.displays:
             if other.enabled != enabled[other.config]:
                 other.enabled_changed()

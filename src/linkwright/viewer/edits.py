@@ -9,7 +9,6 @@ from linkwright.viewer.history import Edit
 from linkwright.viewer.protocol import EditName
 
 if TYPE_CHECKING:
-    from linkwright.viewer.displays import ViewerDisplay
     from linkwright.viewer.manager import VisualizationManager
     from linkwright.viewer.yaml_tree import Memory
 
@@ -39,28 +38,6 @@ class ValueEdit(Edit):
         self._other = now
 
     redo = undo
-
-
-class BoxEdit(Edit):
-    """A display was switched on or off.
-
-    Args:
-        check: sets the box of the display with an id.
-        display: as it is now.
-    """
-
-    def __init__(self, check: Callable[[str, bool], None], display: ViewerDisplay) -> None:
-        self._id, self._checked = display.id, display.config.checked
-        super().__init__(EditName("enable" if self._checked else "disable", display.config.name))
-        self._check = check
-
-    def undo(self) -> None:
-        """Switch it back."""
-        self._check(self._id, not self._checked)
-
-    def redo(self) -> None:
-        """Switch it again."""
-        self._check(self._id, self._checked)
 
 
 class SwapEdit(Edit, Generic[State]):

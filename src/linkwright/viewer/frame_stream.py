@@ -100,7 +100,9 @@ class FrameStream:
         self._clock = node.get_clock()
         self._buffer = TransformBuffer(node.get_logger().warning)
         self._loop = asyncio.get_running_loop()
-        self._soon: asyncio.Handle | None = None
+        self._next_look = node.create_guard_condition(self._look_if_wanted)
+        self._wanted = False
+        self._later: asyncio.TimerHandle | None = None
         self._ageing: asyncio.Handle | None = None
         self._due = self._looked_at = float("-inf")
         self._stamp_ns = 0
@@ -125,10 +127,11 @@ class FrameStream:
 
     def close(self) -> None:
         """Send no more."""
-        for handle in (self._soon, self._ageing):
+        for handle in (self._later, self._ageing):
             if handle is not None:
                 handle.cancel()
-        self._soon = self._ageing = None
+        self._later = self._ageing = None
+        self._next_look.destroy()
         if self._release is not None:
             self._release()
             self._release = None
@@ -164,8 +167,8 @@ class FrameStream:
 
     def refresh(self) -> None:
         """Look now, whoever watches: the Fixed Frame or the robot is another, or a page opens."""
-        if self._soon is not None:
-            self._soon.cancel()
+        if self._later is not None:
+            self._later.cancel()
         self._look()
 
     @property
@@ -185,14 +188,15 @@ class FrameStream:
         self._wake()
 
     def _wake(self) -> None:
-        if self._soon is not None or not self._settings.watched():
+        if self._wanted or not self._settings.watched():
             return
+        self._wanted = True
         ahead = _AHEAD / self._settings.rate()
         due = max(self._due - ahead, self._looked_at + _SHORTEST_PAUSE)
         if due <= self._loop.time():
-            self._soon = self._loop.call_soon(self._look)
+            self._next_look.trigger()
         else:
-            self._soon = self._loop.call_at(due, self._look)
+            self._later = self._loop.call_at(due, self._look)
 
     def _age(self) -> None:
         self._ageing = self._loop.call_later(_AGE_PERIOD, self._age)
@@ -200,8 +204,12 @@ class FrameStream:
         if quiet and self._settings.fade_time() is not None and self._ages.any():
             self._wake()
 
+    def _look_if_wanted(self) -> None:
+        if self._wanted:
+            self._look()
+
     def _look(self) -> None:
-        self._soon = None
+        self._wanted, self._later = False, None
         self._looked_at = self._loop.time()
         fixed_frame = self._settings.fixed_frame()
         snapshot = self._buffer.snapshot(fixed_frame, self._paused_ns or self._clock.now_ns())

@@ -1,4 +1,4 @@
-"""Points and poses taken from a frame to the Fixed Frame, many at once."""
+"""How poses that messages gave turn what is in their frames."""
 
 from __future__ import annotations
 
@@ -20,17 +20,3 @@ def rotation_matrix(pose: NDArray[Any]) -> NDArray[np.float64]:
             [s * (x * z - y * w), s * (y * z + x * w), 1 - s * (x * x + y * y)],
         ]
     )
-
-
-def placed(pose: NDArray[Any], points: NDArray[Any]) -> NDArray[Any]:
-    """Points given in the frame of a pose, in the frame that the pose is in.
-
-    Args:
-        pose: shape (7,).
-        points: shape (3,) or (N, 3), metres.
-
-    Returns:
-        An array like `points`.
-    """
-    moved: NDArray[Any] = points @ rotation_matrix(pose).T + np.asarray(pose[:3], dtype=np.float64)
-    return moved

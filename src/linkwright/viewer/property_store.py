@@ -8,8 +8,8 @@ from contextlib import contextmanager
 from linkwright.diagnostics import Diagnostic, Severity
 from linkwright.viewer.former_names import FormerKey
 from linkwright.viewer.protocol import Property, PropertyChanged, PropertyValue, TopicOffer
-from linkwright.viewer.schema import PropertySpec, accept, from_text, to_text
-from linkwright.viewer.yaml_tree import Memory, Scalar, Section, ensure_section
+from linkwright.viewer.schema import PropertySpec, accept, from_text, in_place_of, to_text
+from linkwright.viewer.yaml_tree import Made, Memory, Scalar, Section, make_section, unmake
 
 Path = tuple[str, ...]
 Schema = tuple[PropertySpec, ...]
@@ -51,6 +51,7 @@ class PropertyStore:
         self._frames = frames
         self._former = former or {}
         self._recorded: list[Memory] | None = None
+        self._made: list[Made] = []
         self._values: dict[Path, PropertyValue] = {}
 
     def get(self, *path: str) -> PropertyValue:
@@ -122,8 +123,10 @@ class PropertyStore:
     def recall(self, memories: Iterable[Memory]) -> list[Path]:
         """Make the file say what it said; the paths of the values that are others now."""
         keys = {memory.key for memory in memories}
+        place = self._place()
         for memory in memories:
-            self._place().recall(memory)
+            place.recall(memory)
+        self._made = unmake(self._made)
         old = {path: value for path, value in self._values.items() if self._key(path) in keys and self._is_kept(path)}
         for path in old:
             del self._values[path]
@@ -210,9 +213,10 @@ class PropertyStore:
         try:
             return from_text(spec, scalar.text)
         except ValueError as error:
-            message = f"'{spec.name}': {error}; {spec.default!r} is used"
+            value = in_place_of(spec)
+            message = f"'{spec.name}': {error}; {value!r} is used"
             self._report(Diagnostic("RVIZ201", message, scalar.span, Severity.WARNING, source=self._section.source))
-            return spec.default
+            return value
 
     def _scalar(self, path: Path) -> Scalar | None:
         scalar = self._section.scalar(*self._base, *path)
@@ -231,14 +235,17 @@ class PropertyStore:
             string = string and text not in ("true", "false")  # of Unreliable, which is a policy today
         if self._recorded is not None and path[0] not in (memory.key for memory in self._recorded):
             self._recorded.append(self._place().memory(path[0]))
-        self._section.put((*self._base, *path), text, string=string, nested=nested)
+        self._place().put(path, text, string=string, nested=nested)
 
     def _former_key(self, path: Path) -> FormerKey | None:
         """Where RViz 1 kept a value, unless the file has it where it is kept today."""
         return self._former.get(path) if self._section.scalar(*self._base, *path) is None else None
 
     def _place(self) -> Section:
-        return ensure_section(self._section, *self._base) if self._base else self._section
+        """The mapping with the values, made where it is missing."""
+        place, made = make_section(self._section, *self._base)
+        self._made += made
+        return place
 
     def _key(self, path: Path) -> str:
         former = self._former_key(path)

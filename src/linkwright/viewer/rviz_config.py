@@ -11,11 +11,12 @@ from linkwright.viewer import configuration_file, yaml_tree
 from linkwright.viewer.configuration_file import FileForm, FileState
 from linkwright.viewer.display_config import DisplayConfig, displace, place, read_displays
 from linkwright.viewer.former_names import GROUP
+from linkwright.viewer.panels_config import PanelsConfig
 from linkwright.viewer.property_store import PropertyStore
 from linkwright.viewer.schema import PropertySpec
 from linkwright.viewer.tools_config import ToolsConfig
 from linkwright.viewer.views_config import ViewsConfig
-from linkwright.viewer.yaml_tree import Entries, Section
+from linkwright.viewer.yaml_tree import Arranged, Made, Section
 
 __all__ = ["GLOBAL_OPTIONS", "Arrangement", "DisplayConfig", "RvizConfig"]
 
@@ -46,8 +47,14 @@ _DEFAULT = """\
 Panels:
   - Class: rviz_common/Displays
     Name: Displays
+  - Class: rviz_common/Selection
+    Name: Selection
+  - Class: rviz_common/Tool Properties
+    Name: Tool Properties
   - Class: rviz_common/Views
     Name: Views
+  - Class: rviz_common/Time
+    Name: Time
 Visualization Manager:
   Class: ""
   Displays:
@@ -89,7 +96,7 @@ class Arrangement:
     """Which displays there were, in which order and groups: what stood under ``Displays`` of each holder."""
 
     displays: dict[DisplayConfig | None, list[DisplayConfig]]
-    memories: dict[DisplayConfig | None, Entries]
+    memories: dict[DisplayConfig | None, Arranged]
 
 
 class RvizConfig:
@@ -106,6 +113,7 @@ class RvizConfig:
         options: the Global Options.
         views: the current view and the saved ones.
         tools: the tools.
+        panels: which panels are open.
         warnings: what the file says that cannot be used.
     """
 
@@ -114,6 +122,7 @@ class RvizConfig:
         self.warnings: list[Diagnostic] = []
         self.document = document
         self._form = form or FileForm()
+        self._made: list[Made] = []
         self._state: FileState | None = configuration_file.state_of(path) if path else None
         self.options = PropertyStore(
             "global",
@@ -128,6 +137,7 @@ class RvizConfig:
         )
         self.views = ViewsConfig(document, self.warnings.append)
         self.tools = ToolsConfig(document, self.warnings.append)
+        self.panels = PanelsConfig(document, self.warnings.append)
 
     @classmethod
     def load(cls, path: str | Path) -> RvizConfig:
@@ -230,7 +240,7 @@ class RvizConfig:
         groups = [None, *(display for display in self.walk() if display.is_group)]
         return Arrangement(
             {group: list(self.siblings(group)) for group in groups},
-            {group: yaml_tree.entries(self._parent(group), "Displays") for group in groups},
+            {group: self._arranged(group) for group in groups},
         )
 
     def arrange(self, arrangement: Arrangement) -> None:
@@ -239,18 +249,24 @@ class RvizConfig:
             self.siblings(group)[:] = displays
             for display in displays:
                 display.group = group
-            yaml_tree.set_entries(self._parent(group), "Displays", arrangement.memories[group])
+            yaml_tree.rearrange(self._parent(group), "Displays", arrangement.memories[group])
+        self._made = yaml_tree.unmake(self._made)
 
     def siblings(self, group: DisplayConfig | None) -> list[DisplayConfig]:
         """What a group holds; the outermost displays for None."""
         return self.displays if group is None else group.displays
 
-    def _parent(self, group: DisplayConfig | None) -> Section:
-        return group.section if group is not None else self._manager()
+    def _arranged(self, group: DisplayConfig | None) -> Arranged:
+        holder = group.section if group is not None else self.document.section(_MANAGER)
+        return yaml_tree.arranged(holder, "Displays") if holder is not None else Arranged(None, None)
 
-    def _manager(self) -> Section:
-        """The section that has ``Displays``; made where it is missing when something is put into it."""
-        return self.document.section(_MANAGER) or yaml_tree.ensure_section(self.document, _MANAGER)
+    def _parent(self, group: DisplayConfig | None) -> Section:
+        """The section that has ``Displays``; that of the outermost is made where it is missing."""
+        if group is not None:
+            return group.section
+        manager, made = yaml_tree.make_section(self.document, _MANAGER)
+        self._made += made
+        return manager
 
     # --- file --------------------------------------------------------------------------------------------------
 

@@ -25,7 +25,7 @@ _RVIZ_COLOUR = re.compile(r"([+-]?\d{1,6})\s*;\s*([+-]?\d{1,6})\s*;\s*([+-]?\d{1
 _YAML_NUMBER = re.compile(r"[+-]?\.(inf|nan)", re.IGNORECASE)
 _INFINITE = 3.4028234663852886e38
 """What stands for infinity, which pages cannot be told: the largest of RViz's numbers, which are of 32 bits."""
-_BOOLEANS = dict.fromkeys(("true", "1", "yes", "on"), True) | dict.fromkeys(("false", "", "0", "no", "off"), False)
+_BOOLEANS = dict.fromkeys(("true", "1", "yes", "on"), True) | dict.fromkeys(("false", "", "0"), False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,6 +98,19 @@ def from_text(spec: PropertySpec, text: str) -> PropertyValue:
         ValueError: when it stands for none; the text says what is expected.
     """
     return accept(spec, _converted(spec, text.strip()))
+
+
+def in_place_of(spec: PropertySpec) -> PropertyValue:
+    """What stands where a file has a text that means nothing: true for a box, as in RViz, else the default.
+
+    To Qt, and so to RViz, every text is true but ``false``, ``0`` and none: ``no`` and ``off`` are.
+    """
+    return True if spec.kind == "bool" else spec.default
+
+
+def is_on(text: str) -> bool:
+    """Whether the text of a box in a file means true to RViz, see `in_place_of`."""
+    return _BOOLEANS.get(text.strip().lower(), True)
 
 
 def to_text(spec: PropertySpec, value: PropertyValue) -> str:
@@ -174,6 +187,8 @@ def _converted(spec: PropertySpec, text: str) -> object:
 
 
 def _spelt_number(spec: PropertySpec, text: str) -> object:
+    if "_" in text or not text.isascii():
+        return text  # numbers to Python, not to Qt
     try:
         number = float(text.replace(".", "", 1) if _YAML_NUMBER.fullmatch(text) else text)
     except ValueError:

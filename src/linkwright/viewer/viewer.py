@@ -28,6 +28,7 @@ from linkwright.viewer.managers import Managers
 from linkwright.viewer.mesh_files import MeshFolders
 from linkwright.viewer.monitor import live_panels
 from linkwright.viewer.outbox import Payload
+from linkwright.viewer.panels_feature import PanelsFeature
 from linkwright.viewer.point_inquiry import PointInquiry
 from linkwright.viewer.protocol import (
     PROTOCOL_VERSION,
@@ -41,6 +42,7 @@ from linkwright.viewer.protocol import (
     View,
     ViewState,
 )
+from linkwright.viewer.recovery import keep_unsaved
 from linkwright.viewer.rviz_config import RvizConfig
 from linkwright.viewer.time_feature import TimeFeature
 from linkwright.viewer.tools_feature import ToolsFeature
@@ -161,6 +163,10 @@ class Viewer:
             self._server = None
         self._node.destroy_node()
 
+    def keep_unsaved(self) -> list[Diagnostic]:
+        """Keep what pages edited and did not save, before the program ends; what there is to be said of it."""
+        return keep_unsaved(self._managers.all())
+
     @property
     def url(self) -> str:
         """What to open in a browser, token included; empty before `start`."""
@@ -217,7 +223,8 @@ class Viewer:
 
     def _make_features(self, desk: Desk) -> list[PageFeature]:
         """What pages can ask for besides displays."""
-        own = [ViewsFeature(desk), ToolsFeature(desk), TimeFeature(desk), PointInquiry(desk), self._exports()]
+        views = [ViewsFeature(desk), PanelsFeature(desk), ToolsFeature(desk), TimeFeature(desk)]
+        own = [*views, PointInquiry(desk), self._exports()]
         return [*own, self._configurations, self._joints, self._descriptions, *live_panels(desk)]
 
     def _exports(self) -> PageFeature:

@@ -14,6 +14,7 @@ from linkwright.viewer.protocol import Property, PropertyValue, ViewClass
 from linkwright.viewer.schema import FIXED_FRAME, PropertySpec, vector
 
 ORBIT = "rviz_default_plugins/Orbit"
+FPS = "rviz_default_plugins/FPS"
 CURRENT_NAME = "Current View"
 PITCH_LIMIT = math.pi / 2 - 0.001
 
@@ -90,13 +91,16 @@ _TOP_DOWN_ORTHO: Schema = (
 )
 
 VIEW_SCHEMAS: dict[str, Schema] = {
-    "rviz_default_plugins/FPS": _FPS,
+    FPS: _FPS,
     ORBIT: _ORBIT,
     "rviz_default_plugins/ThirdPersonFollower": _ORBIT,
     "rviz_default_plugins/TopDownOrtho": _TOP_DOWN_ORTHO,
     "rviz_default_plugins/XYOrbit": _ORBIT,
 }
 """The properties of each class, in the order in which RViz lists the classes."""
+
+STAND_INS = {"rviz_default_plugins/FrameAligned": FPS}
+"""Classes that are shown as another that looks alike: a FrameAligned is an FPS that can be aligned and locked."""
 
 
 def value_paths(schema: Schema) -> dict[str, Path]:

@@ -9,7 +9,7 @@ from linkwright.viewer.former_names import modern_class
 from linkwright.viewer.property_store import Path, PropertyStore, Schema
 from linkwright.viewer.protocol import View
 from linkwright.viewer.schema import MAXIMUM_TEXT
-from linkwright.viewer.views import CURRENT_NAME, ORBIT, VIEW_SCHEMAS, value_paths
+from linkwright.viewer.views import CURRENT_NAME, ORBIT, STAND_INS, VIEW_SCHEMAS, value_paths
 from linkwright.viewer.yaml_tree import (
     Memory,
     Section,
@@ -32,8 +32,8 @@ Report = Callable[[Diagnostic], None]
 class ViewEntry:
     """One view of the file. What this program does not know of it is kept.
 
-    A view of another class than those in `VIEW_SCHEMAS` is shown as an Orbit, and stays as it is in the file until a
-    value is set.
+    A view of another class than those in `VIEW_SCHEMAS` is shown as an Orbit, or as what stands in for it, and stays as
+    it is in the file until a value is set.
 
     Args:
         section: the file, or the view's part of it.
@@ -83,7 +83,8 @@ class ViewEntry:
     def _write_class(self, cls: str) -> None:
         """Another class: keys that only the one before has go."""
         scalar = self._section.scalar(*self._base, "Class")
-        if scalar is not None and modern_class(scalar.text) == cls:
+        written = modern_class(scalar.text) if scalar else ""
+        if cls in (written, STAND_INS.get(written)):
             return
         section = ensure_section(self._section, *self._base)
         known = {spec.name for spec in VIEW_SCHEMAS[cls]}
@@ -114,9 +115,10 @@ class ViewEntry:
         cls = modern_class(scalar.text)
         if cls in VIEW_SCHEMAS:
             return cls
-        message = f"the view '{scalar.text}' is shown as an Orbit view"
+        shown = STAND_INS.get(cls, ORBIT)
+        message = f"the view '{scalar.text}' is shown as an {shown.rpartition('/')[2]} view"
         self._report(Diagnostic("RVIZ203", message, scalar.span, Severity.WARNING, source=self._section.source))
-        return ORBIT
+        return shown
 
 
 class ViewsConfig:

@@ -215,26 +215,72 @@ def remove_section(parent: Section, key: str, section: Section) -> None:
         sequence.value[:] = [item for item in sequence.value if item is not section.node]
 
 
-Entries = list[yaml.Node] | None
-"""The items of a sequence, which are not copied; None where there is no sequence."""
-
-
-def entries(parent: Section, key: str) -> Entries:
-    """What the sequence under a key holds now, for `set_entries`."""
+def entries(parent: Section, key: str) -> list[yaml.Node] | None:
+    """The items of the sequence under a key, which are not copied; None where there is no sequence."""
     sequence = _child(parent.node, key)
     return list(sequence.value) if isinstance(sequence, yaml.SequenceNode) else None
 
 
-def set_entries(parent: Section, key: str, entries: Entries) -> None:
-    """Have the sequence under a key hold what it held."""
-    if entries is None:
+@dataclass(frozen=True, slots=True)
+class Arranged:
+    """What stood under the key of a sequence, and its items if it was one; neither is copied."""
+
+    node: yaml.Node | None
+    items: list[yaml.Node] | None
+
+
+def arranged(parent: Section, key: str) -> Arranged:
+    """What stands under the key of a sequence now, for `rearrange`."""
+    return Arranged(_child(parent.node, key), entries(parent, key))
+
+
+def rearrange(parent: Section, key: str, arranged: Arranged) -> None:
+    """Have under the key of a sequence what stood there, with the items that it held."""
+    if arranged.node is None:
         parent.recall(Memory(key, None))
         return
-    sequence = _child(parent.node, key)
-    if not isinstance(sequence, yaml.SequenceNode):
-        sequence = yaml.SequenceNode(_SEQUENCE, [], flow_style=False)
-        _set(parent.node, key, sequence)
-    sequence.value[:] = entries
+    if isinstance(arranged.node, yaml.SequenceNode):
+        arranged.node.value[:] = arranged.items or []
+    _set(parent.node, key, arranged.node)
+
+
+@dataclass(frozen=True, slots=True)
+class Made:
+    """A mapping that was made where there was none, for `unmake`.
+
+    Attributes:
+        holder: the mapping that has it.
+        memory: what the holder said before.
+        section: the mapping itself.
+        keys: what it had at once.
+    """
+
+    holder: Section
+    memory: Memory
+    section: Section
+    keys: list[str]
+
+
+def make_section(section: Section, *path: str) -> tuple[Section, list[Made]]:
+    """The mapping at a path, made where it is missing, and which were made on the way to it, itself included."""
+    made = []
+    for key in path:
+        there = section.section(key)
+        if there is None:
+            memory = section.memory(key)
+            there = ensure_section(section, key)
+            made.append(Made(section, memory, there, there.keys()))
+        section = there
+    return section, made
+
+
+def unmake(made: list[Made]) -> list[Made]:
+    """Take mappings away that hold no more than they did when they were made; returns those that do."""
+    left = list(made)
+    while left and left[-1].section.keys() == left[-1].keys:
+        gone = left.pop()
+        gone.holder.recall(gone.memory)
+    return left
 
 
 def ensure_section(section: Section, *path: str) -> Section:

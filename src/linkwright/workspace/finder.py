@@ -105,11 +105,6 @@ class PackageFinder:
         self._known.clear()
         self._scans.clear()
 
-    def package_of(self, path: str | Path) -> str | None:
-        """The name of the package that a file lies in (installed or source), or None."""
-        found = enclosing_package(_absolute(path))
-        return found[0] if found else None
-
     # --- the places -----------------------------------------------------------------------------------------
 
     def _places(self, name: str) -> Iterator[Path | None]:

@@ -279,17 +279,6 @@ class Expander:
             self.fail(fault)
         self.session.frame = frame
 
-    def pay(self, node: Element) -> None:
-        """Count an element or a macro call.
-
-        Raises:
-            LinkwrightError: XAC602 when there are too many.
-        """
-        budget = self.session.budget
-        budget.elements -= 1
-        if budget.elements < 0:
-            self._too_many(node)
-
     def _pay_text(self, node: Element | Text, text: str) -> None:
         try:
             self.session.budget.text(len(text))

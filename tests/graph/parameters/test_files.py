@@ -100,6 +100,7 @@ talker:
         ("/ns/*/talker", ["/ns/x/talker"], ["/ns/talker", "/other/x/talker"]),
         ("/ns/**", ["/ns/a", "/ns/a/b"], ["/a"]),
         ("talker", ["/talker"], ["/a/talker"]),
+        ("/**" * 300 + "/talker", ["/talker", "/a/b/talker"], ["/a/b/c/listener"]),
     ],
 )
 def test_wildcards(pattern, fits, misses):

@@ -379,3 +379,13 @@ async def test_misuse_is_told(graph):
 async def test_nothing_is_logged_for_a_node_with_simulated_time(graph, log):
     graph.create_node("node", parameters={"use_sim_time": True})
     assert [record for record in log if record.level >= LogLevel.WARN] == []
+
+
+async def test_a_callback_without_a_verdict_rejects(graph):
+    node = graph.create_node("node")
+    node.declare_parameter("a", 1)
+    node.add_on_set_parameters_callback(lambda _: None)
+    with pytest.warns(UserWarning, match="it should return SetParametersResult: .*<lambda>"):
+        verdict = node.set_parameters_atomically([Parameter("a", value=2)])
+    assert (verdict.successful, verdict.reason) == (False, "Callback returned an invalid type")
+    assert node.get_parameter("a").value == 1

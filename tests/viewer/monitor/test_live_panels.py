@@ -304,7 +304,6 @@ async def test_parameters_are_shown_with_what_is_known_of_them():
             "description": "how fast",
             "constraints": "",
             "read_only": False,
-            "dynamic": False,
             "minimum": "0.0",
             "maximum": "2.0",
             "step": "0.5",

@@ -1,6 +1,6 @@
 import { Camera, Group, Matrix4 } from "three";
 import type { DisplayData } from "../../connection/data";
-import type { CameraModel } from "../../protocol.gen";
+import type { CameraModel } from "../../protocol";
 import { strings } from "../../strings";
 import { cameraInImageFrame, imageZoom, projection } from "../pictures/camera-projection";
 import { OwnPanel } from "../pictures/own-panel";

@@ -1,4 +1,4 @@
-import type { PointFields } from "../../protocol.gen";
+import type { PointFields } from "../../protocol";
 import type { Described } from "../picking";
 
 const DIGITS = 6;

@@ -1,6 +1,6 @@
 import { Box3, Group, Matrix4 } from "three";
 import type { DisplayData } from "../../connection/data";
-import type { DataContent } from "../../protocol.gen";
+import type { DataContent } from "../../protocol";
 import { dataPose } from "../pose";
 import type { Drawing, DrawingContext } from "./drawing";
 

@@ -21,13 +21,6 @@ export class EffortDrawing extends ContentDrawing<"effort_rings"> {
     this.root.add(this.rings.root);
   }
 
-  /** The last effort of a joint and its limit, N m; null for one that is not drawn. */
-  effortOf(joint: string): { effort: number; limit: number } | null {
-    const content = this.latest;
-    const i = content?.joints.indexOf(joint) ?? -1;
-    return content && i >= 0 ? { effort: content.efforts[i] ?? 0, limit: content.limits[i] ?? 0 } : null;
-  }
-
   dispose(): void {
     this.rings.dispose();
     this.heads.dispose();

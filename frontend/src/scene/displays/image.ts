@@ -1,6 +1,6 @@
 import { Group } from "three";
 import type { DisplayData } from "../../connection/data";
-import type { ImageFrame } from "../../protocol.gen";
+import type { ImageFrame } from "../../protocol";
 import { strings } from "../../strings";
 import { OwnPanel } from "../pictures/own-panel";
 import { PictureCanvas } from "../pictures/picture-canvas";

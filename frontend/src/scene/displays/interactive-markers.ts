@@ -1,6 +1,6 @@
 import { Box3, Group, Matrix4, type Object3D, type Raycaster } from "three";
 import type { DisplayData } from "../../connection/data";
-import type { MarkerMenuEntry } from "../../protocol.gen";
+import type { MarkerMenuEntry } from "../../protocol";
 import type { MenuChoice } from "../../state/scene-menu";
 import { strings } from "../../strings";
 import { describedPose } from "../described-pose";

@@ -1,6 +1,6 @@
 import { Group, Matrix4, Plane, Quaternion, Vector3, type Raycaster } from "three";
 import type { DisplayData } from "../../connection/data";
-import type { OccupancyMap } from "../../protocol.gen";
+import type { OccupancyMap } from "../../protocol";
 import { CellPlane } from "../objects/cell-plane";
 import type { Hit } from "../picking";
 import { dataPose } from "../pose";

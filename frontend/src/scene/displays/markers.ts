@@ -1,6 +1,6 @@
 import { Box3, Group, Matrix4, Vector3, type Object3D, type Raycaster } from "three";
 import type { DisplayData } from "../../connection/data";
-import type { MarkerShape } from "../../protocol.gen";
+import type { MarkerShape } from "../../protocol";
 import { describedNumbers, describedPose } from "../described-pose";
 import { makeMarkerObject, type MarkerObject } from "../markers/marker-object";
 import { isSolid, SolidMarkers, surfacesOf } from "../markers/solid-markers";

@@ -1,4 +1,4 @@
-import type { PointFields } from "../../protocol.gen";
+import type { PointFields } from "../../protocol";
 import type { DrawingContext } from "./drawing";
 
 /** The fields of selected points, asked of the server when they are wanted. */

@@ -1,5 +1,5 @@
 import { Matrix4, Vector3, type Box3, type Raycaster } from "three";
-import type { PoseMarks } from "../../protocol.gen";
+import type { PoseMarks } from "../../protocol";
 import { describedNumbers } from "../described-pose";
 import { ArrowBatch } from "../objects/arrow-batch";
 import { AxesBatch } from "../objects/axes-batch";

@@ -1,5 +1,5 @@
 import { Group, Matrix4, Vector3, type Object3D, type Raycaster } from "three";
-import type { RobotScene } from "../../protocol.gen";
+import type { RobotScene } from "../../protocol";
 import { framePose } from "../pose";
 import { RobotDrawing } from "../robot/robot-drawing";
 import type { Described, Hit, SelectionBox } from "../picking";

@@ -6,7 +6,6 @@ import type { Described, Hit, SelectionBox } from "../picking";
 import { framePose } from "../pose";
 import type { Drawing, DrawingContext } from "./drawing";
 import { fadeForAge, type Fade } from "./fade";
-import { FrameFilter } from "./frame-filter";
 import { FrameMarkers } from "./frame-markers";
 
 const SHAFT_DIAMETER = 0.01;
@@ -31,8 +30,8 @@ export class TfDrawing implements Drawing {
   private readonly markers = new FrameMarkers(this.root, FINE_SEGMENTS);
   private readonly names = new LabelBatch();
   private readonly forget: (() => void)[];
-  private filter = new FrameFilter("", "");
-  private hidden = new Set<string>();
+  /** The frames that the server's filters leave and whose boxes are on. */
+  private wanted = new Set<string>();
   private ageing = "";
   private named = 0;
   /** The frames that have axes, in the order of the copies. */
@@ -47,9 +46,8 @@ export class TfDrawing implements Drawing {
 
   propertiesChanged(): void {
     const { rows } = this.context.display;
-    this.filter = new FrameFilter(rows.text("", "Filter (whitelist)"), rows.text("", "Filter (blacklist)"));
     const frames = rows.find("Frames")?.children ?? [];
-    this.hidden = new Set(frames.filter((row) => row.value === false).map((row) => row.name));
+    this.wanted = new Set(frames.filter((row) => row.value === true).map((row) => row.name));
   }
 
   update(): void {
@@ -165,7 +163,7 @@ export class TfDrawing implements Drawing {
     const timeout = this.context.display.rows.number(15, "Frame Timeout");
     const result: (readonly [number, Fade])[] = [];
     frames.names.forEach((name, row) => {
-      if (!frames.has(row) || this.hidden.has(name) || !this.filter.accepts(name)) return;
+      if (!frames.has(row) || !this.wanted.has(name)) return;
       const fade = fadeForAge(frames.ages[row] ?? 0, timeout);
       if (fade.alpha > 0) result.push([row, fade]);
     });

@@ -62,7 +62,7 @@ export class DepthMarks {
 }
 
 /** 0xrrggbb */
-export function levelColor(depth: number): number {
+function levelColor(depth: number): number {
   return new Color().setHSL((0.58 + depth * HUE_STEP) % 1, 0.85, 0.6).getHex();
 }
 

@@ -1,5 +1,5 @@
 import { Matrix4, Quaternion, Vector3 } from "three";
-import type { JointDetails } from "../../protocol.gen";
+import type { JointDetails } from "../../protocol";
 import type { DescriptionModel } from "../../state/description-model";
 import type { FrameStore } from "../../state/frames";
 import { framePose } from "../pose";

@@ -1,5 +1,5 @@
 import { Matrix4, Vector3, type Object3D } from "three";
-import type { JointDetails } from "../../protocol.gen";
+import type { JointDetails } from "../../protocol";
 import { jointPose, type InspectedRobot } from "./inspected-robot";
 import { VertexStream } from "./vertex-stream";
 
@@ -122,7 +122,7 @@ export class JointMarks {
 }
 
 /** Two directions across an axis: angle 0 is along the first. The axis that is farthest from it stays in the plane. */
-export function across(axis: Vector3): [Vector3, Vector3] {
+function across(axis: Vector3): [Vector3, Vector3] {
   const parts = axis.toArray().map(Math.abs);
   const helper = new Vector3().setComponent(parts.indexOf(Math.min(...parts)), 1);
   const u = helper.addScaledVector(axis, -helper.dot(axis)).normalize();

@@ -1,5 +1,5 @@
 import { BufferAttribute, Matrix4, Quaternion, Vector3, type BufferGeometry, type Object3D } from "three";
-import type { LinkInertia } from "../../protocol.gen";
+import type { LinkInertia } from "../../protocol";
 import { CopyBatch } from "../objects/copy-batch";
 import { ballGeometry, cubeGeometry } from "../objects/geometries";
 import { LabelBatch } from "../objects/label-batch";

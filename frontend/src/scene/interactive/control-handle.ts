@@ -11,7 +11,7 @@ import {
   type Object3D,
   type Raycaster,
 } from "three";
-import type { InteractiveControl, MarkerShape } from "../../protocol.gen";
+import type { InteractiveControl, MarkerShape } from "../../protocol";
 import { makeMarkerObject, type MarkerObject } from "../markers/marker-object";
 import { isSolid, SolidMarkers, surfacesOf } from "../markers/solid-markers";
 import type { MeshLibrary } from "../meshes/mesh-library";

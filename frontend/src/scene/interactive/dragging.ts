@@ -1,5 +1,5 @@
 import { Plane, Quaternion, Ray, Vector3 } from "three";
-import type { InteractiveControl } from "../../protocol.gen";
+import type { InteractiveControl } from "../../protocol";
 
 /** Where an interactive marker is in its reference frame. */
 export interface MarkerPose {

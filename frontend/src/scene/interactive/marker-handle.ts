@@ -1,6 +1,6 @@
 import { Group, Matrix4, Quaternion, Ray, Vector3, type Camera, type Raycaster, type Sprite } from "three";
 import type { DisplayData } from "../../connection/data";
-import type { InteractiveMarkerShape, MarkerFeedback } from "../../protocol.gen";
+import type { InteractiveMarkerShape, MarkerFeedback } from "../../protocol";
 import type { FrameStore } from "../../state/frames";
 import { textSprite } from "../markers/text-sprite";
 import type { MeshLibrary } from "../meshes/mesh-library";

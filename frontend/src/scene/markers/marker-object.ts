@@ -10,7 +10,7 @@ import {
   type Object3D,
   type Sprite,
 } from "three";
-import type { MarkerMesh, MarkerShape } from "../../protocol.gen";
+import type { MarkerMesh, MarkerShape } from "../../protocol";
 import { loadTexture, OPAQUE_FROM } from "../materials";
 import type { MeshLibrary } from "../meshes/mesh-library";
 import type { OwnMaterial } from "../meshes/mesh-template";

@@ -1,5 +1,5 @@
 import { Color, Matrix4, Mesh, Vector3, type Box3, type BufferGeometry, type Object3D } from "three";
-import type { MarkerShape } from "../../protocol.gen";
+import type { MarkerShape } from "../../protocol";
 import { OPAQUE_FROM } from "../materials";
 import { alongX, ArrowBatch, type ArrowShape } from "../objects/arrow-batch";
 import { CopyBatch } from "../objects/copy-batch";

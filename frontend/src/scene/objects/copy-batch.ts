@@ -81,11 +81,11 @@ export class CopyBatch {
     this.seeThrough = false;
     this.order = null;
     if (expected <= this.capacity) return;
-    this.capacity = Math.ceil((expected * 1.25) / SLOTS_PER_ROW) * SLOTS_PER_ROW;
+    this.capacity = Math.ceil(expected * 1.25);
     this.mesh.geometry.dispose();
     this.mesh.geometry = copies(this.shape, this.capacity);
     this.slots.value.dispose();
-    this.slots.value = slotTexture(this.capacity / SLOTS_PER_ROW);
+    this.slots.value = slotTexture(Math.ceil(this.capacity / SLOTS_PER_ROW));
   }
 
   /** `matrix` in the parent's frame; `grey` 1 is all grey; `color` is 0xrrggbb. */

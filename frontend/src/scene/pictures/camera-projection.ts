@@ -1,5 +1,5 @@
 import { Matrix4 } from "three";
-import type { CameraModel } from "../../protocol.gen";
+import type { CameraModel } from "../../protocol";
 
 const NEAR = 0.01;
 

@@ -1,4 +1,4 @@
-import type { ImageFrame } from "../../protocol.gen";
+import type { ImageFrame } from "../../protocol";
 
 /** The newest image of a display, on a canvas of its size. */
 export class PictureCanvas {

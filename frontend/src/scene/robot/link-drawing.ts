@@ -1,10 +1,11 @@
-import { Group, type Matrix4, type Mesh, type Object3D } from "three";
-import type { LinkScene } from "../../protocol.gen";
+import { Group, Matrix4, type Mesh, type Object3D } from "three";
+import type { LinkScene } from "../../protocol";
 import type { FrameStore } from "../../state/frames";
 import type { MaterialPool } from "../materials";
 import { framePose } from "../pose";
 import { LinkTrail } from "./link-trail";
 import { ShapeDrawing, type ShapeTold } from "./shape-drawing";
+import type { SolidKind, Solids } from "./solids";
 
 /** How a link is to be drawn: the display's properties and the link's own, together. */
 export interface LinkStyle {
@@ -22,6 +23,8 @@ export interface LinkStyle {
 const PALE = 0.3;
 const COLLISION_COLOR = [1, 0.55, 0.1] as const;
 const COLLISION_ALPHA = 0.55;
+
+const scratch = new Matrix4();
 
 /** One link: its visuals and collisions in the frame of its name. */
 export class LinkDrawing {
@@ -64,14 +67,21 @@ export class LinkDrawing {
     return this.posed ? this.root.matrix : null;
   }
 
-  /** The meshes that can be seen now. */
+  /** The meshes of what can be seen now. */
   get visibleMeshes(): Mesh[] {
-    if (!this.root.visible) return [];
-    const shown = [
-      ...(this.visualGroup.visible ? this.visuals : []),
-      ...(this.collisionGroup.visible ? this.collisions : []),
-    ];
-    return shown.flatMap((each) => each.meshes);
+    return this.shown.flatMap((each) => each.meshes);
+  }
+
+  /** Counts what `addSolids` adds. */
+  countSolids(counts: Map<SolidKind, number>): void {
+    for (const { solid } of this.shown) if (solid) counts.set(solid.kind, (counts.get(solid.kind) ?? 0) + 1);
+  }
+
+  /** Adds what is drawn together with the shapes of other links. */
+  addSolids(solids: Solids): void {
+    for (const { solid } of this.shown) {
+      if (solid) solids.add(solid.kind, scratch.multiplyMatrices(this.root.matrix, solid.matrix), solid.color);
+    }
   }
 
   setStyle(style: LinkStyle): void {
@@ -118,6 +128,12 @@ export class LinkDrawing {
     this.root.removeFromParent();
     this.showTrail(false);
     for (const each of [...this.visuals, ...this.collisions]) each.dispose();
+  }
+
+  private get shown(): readonly ShapeDrawing[] {
+    if (!this.root.visible) return [];
+    const visuals = this.visualGroup.visible ? this.visuals : [];
+    return this.collisionGroup.visible ? [...visuals, ...this.collisions] : visuals;
   }
 
   private showTrail(show: boolean): void {

@@ -1,5 +1,5 @@
 import { Group, type Object3D, type Raycaster } from "three";
-import type { RobotScene } from "../../protocol.gen";
+import type { RobotScene } from "../../protocol";
 import type { PropertyRows } from "../../state/properties";
 import type { FrameStore } from "../../state/frames";
 import type { Described, Hit, SelectionBox } from "../picking";
@@ -9,6 +9,7 @@ import type { MeshLibrary } from "../meshes/mesh-library";
 import { LinkDrawing } from "./link-drawing";
 import { RobotExtras } from "./robot-extras";
 import type { ShapeDrawing } from "./shape-drawing";
+import { Solids, type SolidKind } from "./solids";
 
 /** Told once for each mesh of each link: `error` is null when all of it is drawn. */
 export type MeshReport = (link: string, url: string, error: string | null) => void;
@@ -21,6 +22,7 @@ export class RobotDrawing {
   private readonly pool = new MaterialPool();
   private readonly links: ReadonlyMap<string, LinkDrawing>;
   private readonly extras: RobotExtras;
+  private readonly solids: Solids;
   private readonly linkOf = new Map<number, string>();
   private loading: number;
 
@@ -28,6 +30,7 @@ export class RobotDrawing {
     this.links = new Map(scene.links.map((link) => [link.name, new LinkDrawing(link, this.pool, this.root)]));
     for (const link of this.links.values()) this.root.add(link.root);
     this.extras = new RobotExtras(scene, this.root);
+    this.solids = new Solids(this.root);
     const loads: Promise<void>[] = [];
     for (const link of this.links.values()) {
       for (const shape of [...link.visuals, ...link.collisions]) {
@@ -56,7 +59,14 @@ export class RobotDrawing {
   }
 
   place(frames: FrameStore): void {
-    for (const link of this.links.values()) link.place(frames);
+    const counts = new Map<SolidKind, number>();
+    for (const link of this.links.values()) {
+      link.place(frames);
+      link.countSolids(counts);
+    }
+    this.solids.begin(counts);
+    for (const link of this.links.values()) link.addSolids(this.solids);
+    this.solids.end();
     this.extras.place((name) => this.links.get(name)?.pose ?? null);
   }
 
@@ -86,7 +96,7 @@ export class RobotDrawing {
   /** What is drawn, for tests: the shapes of each link, and what stands beside them. */
   tell(): object {
     const links = [...this.links.values()].map((link) => [link.link.name, link.tell()] as const);
-    return { ...this.extras.counts, links: Object.fromEntries(links) };
+    return { ...this.extras.counts, drawnTogether: this.solids.size, links: Object.fromEntries(links) };
   }
 
   objectsOf(link: string): readonly Object3D[] {
@@ -96,6 +106,7 @@ export class RobotDrawing {
   dispose(): void {
     for (const link of this.links.values()) link.dispose();
     this.extras.dispose();
+    this.solids.dispose();
     this.root.removeFromParent();
     this.pool.dispose();
   }

@@ -1,5 +1,5 @@
 import { Matrix4, Quaternion, Vector3, type Box3, type Object3D } from "three";
-import type { JointScene, LinkInertia, RobotScene } from "../../protocol.gen";
+import type { JointScene, LinkInertia, RobotScene } from "../../protocol";
 import type { PropertyNode, PropertyRows } from "../../state/properties";
 import { alongX, ArrowBatch } from "../objects/arrow-batch";
 import { AxesBatch } from "../objects/axes-batch";

@@ -1,14 +1,27 @@
-import { Box3, Group, Mesh, type BufferGeometry, type Material, type MeshLambertMaterial, type Texture } from "three";
-import type { Shape } from "../../protocol.gen";
-import { errorMaterial, loadTexture, RVIZ_RED, type Look, type MaterialPool } from "../materials";
+import { Box3, Color, Group, Matrix4, Mesh, type BufferGeometry, type Material, type MeshLambertMaterial, type Texture } from "three";
+import type { Shape } from "../../protocol";
+import { TOUCHED } from "../layers";
+import { errorMaterial, loadTexture, OPAQUE_FROM, RVIZ_RED, type Look, type MaterialPool } from "../materials";
 import type { MeshLibrary } from "../meshes/mesh-library";
 import { UNCOLOURED_GREY, type MeshTemplate, type OwnMaterial } from "../meshes/mesh-template";
 import { capsule, unitBox, unitCylinder, unitSphere } from "../objects/geometries";
+import { isSolid, type SolidKind } from "./solids";
+
+type Colour = readonly [number, number, number];
 
 /** A part of a shape: what is drawn, and with which materials of the file's own. */
 interface Part {
   mesh: Mesh;
   own: readonly (OwnMaterial | null)[];
+}
+
+/** What is drawn together with others of its kind instead of by a mesh of its own. */
+export interface Solid {
+  readonly kind: SolidKind;
+  /** From the shape of size one to the link. */
+  readonly matrix: Matrix4;
+  /** 0xrrggbb */
+  readonly color: number;
 }
 
 /** See `ShapeDrawing.tell`. */
@@ -24,6 +37,7 @@ export class ShapeDrawing {
   private parts: Part[] = [];
   private texture: Texture | null = null;
   private problem: string | null = null;
+  private together: Solid | null = null;
 
   constructor(readonly shape: Shape) {
     const [x = 0, y = 0, z = 0] = shape.position;
@@ -38,6 +52,11 @@ export class ShapeDrawing {
   /** False for a mesh that is not there (yet). */
   get drawn(): boolean {
     return this.parts.length > 0;
+  }
+
+  /** How it is drawn together with others; its mesh is then there for rays and outlines only. */
+  get solid(): Solid | null {
+    return this.together;
   }
 
   get meshes(): readonly Mesh[] {
@@ -68,13 +87,18 @@ export class ShapeDrawing {
    *
    * @param instead a colour that takes the place of all others, r g b from 0 to 1.
    */
-  paint(pool: MaterialPool, alpha: number, lost: boolean, instead: readonly [number, number, number] | null = null): void {
+  paint(pool: MaterialPool, alpha: number, lost: boolean, instead: Colour | null = null): void {
     for (const { mesh, own } of this.parts) {
-      const look = (each: OwnMaterial | null): Look =>
-        instead ? { color: [...instead], map: null, vertexColors: false, alpha, doubleSided: true } : this.look(each, alpha);
-      const materials = own.map((each) => (lost ? errorMaterial : pool.get(look(each))));
+      const materials = own.map((each) => (lost ? errorMaterial : pool.get(this.look(each, alpha, instead))));
       const [only = errorMaterial] = materials;
       mesh.material = materials.length === 1 ? only : materials;
+    }
+    this.together = lost ? null : this.asSolid(instead, alpha);
+    for (const { mesh } of this.parts) {
+      if (this.together) {
+        mesh.layers.disable(0);
+        mesh.layers.enable(TOUCHED);
+      } else mesh.layers.enable(0);
     }
   }
 
@@ -136,6 +160,18 @@ export class ShapeDrawing {
     return mesh;
   }
 
+  private asSolid(instead: Colour | null, alpha: number): Solid | null {
+    const { kind } = this.shape;
+    const [part] = this.parts;
+    const look = this.look(null, alpha, instead);
+    if (!isSolid(kind) || !part || look.map || look.alpha < OPAQUE_FROM) return null;
+    return {
+      kind,
+      matrix: new Matrix4().multiplyMatrices(this.root.matrix, part.mesh.matrix),
+      color: new Color(...look.color).getHex(),
+    };
+  }
+
   private freeze(): void {
     for (const { mesh } of this.parts) {
       mesh.updateMatrix();
@@ -148,7 +184,8 @@ export class ShapeDrawing {
    * RViz's red and another mesh the grey that RViz's mesh reader puts in. How opaque a part is says the URDF alone:
    * RViz does not read it from mesh files, where exporters often write it wrongly.
    */
-  private look(own: OwnMaterial | null, alpha: number): Look {
+  private look(own: OwnMaterial | null, alpha: number, instead: Colour | null): Look {
+    if (instead) return { color: instead, map: null, vertexColors: false, alpha, doubleSided: true };
     const doubleSided = this.shape.kind === "mesh";
     if (own) {
       const { color, map, vertexColors } = own;

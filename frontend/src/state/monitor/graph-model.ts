@@ -1,4 +1,4 @@
-import type { GraphTopic, NodeGraph } from "../../protocol.gen";
+import type { GraphTopic, NodeGraph } from "../../protocol";
 
 export type GraphMode = "nodes" | "active" | "all";
 
@@ -21,7 +21,7 @@ export interface GraphVertex {
   count: number;
 }
 
-export interface GraphEdge {
+interface GraphEdge {
   from: string;
   to: string;
   /** Topics that the edge stands for, where they are not vertices. */

@@ -1,5 +1,5 @@
 import type { Connection } from "../../connection/connection";
-import type { LogLine } from "../../protocol.gen";
+import type { LogLine } from "../../protocol";
 import { Signal } from "../signal";
 
 /** Records that are kept; the oldest go, a tenth at a time. */

@@ -1,5 +1,5 @@
 import type { Connection } from "../../connection/connection";
-import type { NodeGraph } from "../../protocol.gen";
+import type { NodeGraph } from "../../protocol";
 import { Signal } from "../signal";
 
 /** The nodes and topics of the graph while somebody looks at them. */

@@ -1,4 +1,4 @@
-import type { ParameterKind } from "../../protocol.gen";
+import type { ParameterKind } from "../../protocol";
 
 /** A parameter's values as one text: alone, or as a list in brackets, where texts stand in quotes. */
 export function parameterText(kind: ParameterKind, values: readonly string[]): string {

@@ -1,5 +1,5 @@
 import type { Connection } from "../../connection/connection";
-import type { NodeParameters, ParameterDump, ParameterKind, ParameterResult } from "../../protocol.gen";
+import type { NodeParameters, ParameterDump, ParameterKind, ParameterResult } from "../../protocol";
 import { Signal } from "../signal";
 
 /** The nodes that have parameters, and the parameters of the one that is chosen. */

@@ -3,7 +3,7 @@ export type TimeSource = "received" | "stamp";
 
 const FIRST_CAPACITY = 1024;
 /** Ten minutes of a topic of 1 kHz. */
-export const MOST_SAMPLES = 600_000;
+const MOST_SAMPLES = 600_000;
 /** Stamps that go back by more than this began anew: simulated time was reset, or a recording starts over. */
 const RESET_SECONDS = 1;
 

@@ -1,5 +1,5 @@
 import type { Connection } from "../../connection/connection";
-import type { TeleopState as Aim, TwistKind } from "../../protocol.gen";
+import type { TeleopState as Aim, TwistKind } from "../../protocol";
 import { Signal } from "../signal";
 import { isStill, STILL, together, type Motion } from "./teleop-keys";
 

@@ -1,5 +1,5 @@
 import type { Connection } from "../../connection/connection";
-import type { TopicMessage, TopicRow, TopicTraffic } from "../../protocol.gen";
+import type { TopicMessage, TopicRow, TopicTraffic } from "../../protocol";
 import { Signal } from "../signal";
 
 /** The topics, and what is known of those that somebody watches. */

@@ -1,4 +1,4 @@
-import type { PropertyValue } from "../../protocol.gen";
+import type { PropertyValue } from "../../protocol";
 import type { Camera, Target, ViewSize } from "./camera";
 import type { Vector } from "./vector";
 
@@ -55,7 +55,7 @@ export interface ViewController {
   hint(shift: boolean): MouseHint;
 }
 
-export const PITCH_LIMIT = Math.PI / 2 - 0.001;
+const PITCH_LIMIT = Math.PI / 2 - 0.001;
 export const RADIANS_PER_PIXEL = 0.005;
 
 export function number(values: ViewValues, name: string, fallback: number): number {

@@ -40,7 +40,6 @@ export const description = {
     made: "Made by",
     call: (macro: string | null, place: string): string => (macro === null ? `included at ${place}` : `macro ${macro}, called at ${place}`),
     long: (count: number): string => `… ${count} more characters`,
-    line: (line: number): string => `line ${line}`,
   },
   table: {
     name: "Joint",
@@ -90,7 +89,6 @@ export const description = {
     framesHint: "The links' frames, each level of the tree in a colour of its own",
     depth: "Down to level",
     scale: "Size of marks",
-    nothing: "Nothing",
     mass: (kg: string): string => `Mass of the robot: ${kg} kg`,
     implausible: (count: number): string => (count === 1 ? "1 link is implausible:" : `${count} links are implausible:`),
     plausible: "No mass or inertia is implausible.",

@@ -65,6 +65,5 @@ export const displays = {
   showAll: "Show topics that no display shows, too",
   noTopics: "Nothing publishes on any topic yet.",
   notFound: "Nothing found.",
-  others: "Other displays of the file are kept, but not drawn.",
   topics: "Known topics",
 };

@@ -1,4 +1,4 @@
-import type { EditName } from "../../protocol.gen";
+import type { EditName } from "../../protocol";
 
 const edits: Readonly<Record<EditName["kind"], (name: string) => string>> = {
   set: (name) => `changing ${name}`,
@@ -18,7 +18,6 @@ export const shell = {
   cancel: "Cancel",
   menu: "Main menu",
   file: "File",
-  edit: "Edit",
   panels: "Panels",
   resetLayout: "Reset layout",
   newFile: "New",
@@ -29,8 +28,6 @@ export const shell = {
   saveAs: "Save as…",
   download: "Download",
   revert: "Revert to the saved file",
-  recent: "Open recent",
-  noRecent: "No files were opened yet.",
   undo: "Undo",
   redo: "Redo",
   undoing: (what: string): string => `Undo ${what}`,
@@ -38,7 +35,6 @@ export const shell = {
   edits,
   untitled: "untitled",
   unsaved: "unsaved changes",
-  savedTo: (path: string): string => `Saved to ${path}`,
   unsavedTitle: "Unsaved changes",
   unsavedQuestion: (name: string): string => `${name} has changes that are not saved. They would be lost.`,
   saveFirst: "Save",
@@ -63,7 +59,6 @@ export const shell = {
   themes: { system: "As the system", dark: "Dark", light: "Light" },
   displays: "Displays",
   sharedDisplays: "Shared with all pages",
-  ownDisplays: "This page's own",
   ownHint: "A copy of the displays that only this page sees. It ends when the page is closed.",
   shared: "Shared",
   own: "Own",

@@ -76,7 +76,6 @@ export const tools = {
     wallElapsed: "Wall Elapsed",
     reset: "Reset",
     resetHint: "Clear what displays keep of messages, and count anew (R)",
-    paused: "Paused",
   },
   transformation: {
     hint: "How data comes into the Fixed Frame.",

@@ -41,7 +41,6 @@ export const description: DescriptionStrings = {
     made: "来自",
     call: (macro, place) => (macro === null ? `${place} 处包含` : `宏 ${macro}，调用于 ${place}`),
     long: (count) => `… 还有 ${count} 个字符`,
-    line: (line) => `第 ${line} 行`,
   },
   table: {
     name: "关节",
@@ -91,7 +90,6 @@ export const description: DescriptionStrings = {
     framesHint: "各连杆的坐标系，树的每一层用一种颜色",
     depth: "显示到第几层",
     scale: "标记大小",
-    nothing: "都不显示",
     mass: (kg) => `机器人总质量：${kg} kg`,
     implausible: (count) => `${count} 个连杆不合理：`,
     plausible: "没有发现不合理的质量或惯量。",

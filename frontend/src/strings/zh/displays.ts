@@ -62,6 +62,5 @@ export const displays: typeof english = {
   showAll: "也列出没有显示项能显示的话题",
   noTopics: "目前还没有节点在任何话题上发布消息。",
   notFound: "没有找到。",
-  others: "文件中的其他显示项会保留，但不绘制。",
   topics: "已知话题",
 };

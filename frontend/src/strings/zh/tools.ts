@@ -70,7 +70,6 @@ export const tools: typeof english = {
     wallElapsed: "系统已用",
     reset: "重置",
     resetHint: "清除显示项保留的消息，并重新计时（R）",
-    paused: "已暂停",
   },
   transformation: { hint: "数据如何变换到固定坐标系。", tf: "TF" },
   keys: {

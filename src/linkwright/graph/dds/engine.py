@@ -121,7 +121,11 @@ class Engine:
 
     def open_publisher(self, publisher: Any) -> None:
         """Mirror a publisher."""
-        topic = OutgoingTopic(publisher, self._domain, self._on_mismatch)
+        try:
+            topic = OutgoingTopic(publisher, self._domain, self._on_mismatch)
+        except BaseException:
+            publisher.set_outside(None)
+            raise
         self._outgoing[publisher] = topic
         self._control.attach(topic.entity, topic.on_status)
         self._is_told = False

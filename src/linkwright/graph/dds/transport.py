@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph.dds.remote import RemoteGraph
-from linkwright.graph.dds.settings import Range, Settings
+from linkwright.graph.dds.settings import Settings
 from linkwright.graph.dds.trouble import tell
 from linkwright.graph.log.logger import Logger
 from linkwright.graph.transport import EndpointInfo, NodeIdentity
@@ -65,11 +65,6 @@ class DdsTransport:
         """The DDS domain."""
         return self._settings.domain_id
 
-    @property
-    def reaches_network(self) -> bool:
-        """Whether other machines are looked for."""
-        return self._settings.range in (Range.SUBNET, Range.SYSTEM_DEFAULT)
-
     def wait_until_ready(self, timeout: float | None = None) -> bool:
         """Block until the domain is joined and all that was asked for so far is made.
 
@@ -120,6 +115,8 @@ class DdsTransport:
 
     def open_publisher(self, publisher: Publisher[Any]) -> None:
         """Mirror a publisher."""
+        if self._engine is not None:
+            publisher.hold_for_outside(self.wait_until_ready)
         self._do(lambda engine: engine.open_publisher(publisher))
 
     def close_publisher(self, publisher: Publisher[Any]) -> None:

@@ -62,11 +62,6 @@ class MutuallyExclusiveCallbackGroup(CallbackGroup):
         self._active: Any = None
         self._lock = threading.Lock()
 
-    @property
-    def active_entity(self) -> Any:
-        """The member that runs; None when none does."""
-        return self._active
-
     def can_execute(self, entity: Any) -> bool:  # noqa: ARG002
         """Whether no member runs."""
         return self._active is None

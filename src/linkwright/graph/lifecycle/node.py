@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean
+from linkwright.graph.faults import RclError
 from linkwright.graph.lifecycle.entities import LifecyclePublisher, ManagedEntity
 from linkwright.graph.lifecycle.states import (
     ACTIVATING,
@@ -36,15 +37,14 @@ _CALLBACKS = {
 }
 
 
-class LifecycleTransitionError(LinkwrightError, RuntimeError):
-    """A transition is asked for that does not begin where the node stands."""
+class LifecycleTransitionError(LinkwrightError, RclError):
+    """A transition is asked for that does not begin where the node stands; rcl's two texts about it are its message."""
 
     def __init__(self, asked: object, state: LifecycleState, available: Iterable[str]) -> None:
         names = list(dict.fromkeys(available))
         hint = did_you_mean(str(asked), names) or ("from here: " + ", ".join(names) if names else None)
-        super().__init__(
-            Diagnostic("GRAPH231", f"No transition matching {asked} found for current state {state.label}", hint=hint)
-        )
+        text = f"Transition is not registered: No transition matching {asked} found for current state {state.label}"
+        super().__init__(Diagnostic("GRAPH231", text, hint=hint))
 
 
 class LifecycleNodeMixin(ManagedEntity):
@@ -107,10 +107,8 @@ class LifecycleNodeMixin(ManagedEntity):
         """Deactivate the node; see `trigger_configure`."""
         return self._change_by_label("deactivate")
 
-    def trigger_shutdown(self) -> TransitionCallbackReturn | None:
-        """Shut the node down; None where it is in a state from which that cannot be, such as a second time."""
-        if self._state_machine.by_label("shutdown") is None:
-            return None
+    def trigger_shutdown(self) -> TransitionCallbackReturn:
+        """Shut the node down; see `trigger_configure`."""
         return self._change_by_label("shutdown")
 
     def add_managed_entity(self, entity: ManagedEntity) -> None:

@@ -14,7 +14,7 @@ from linkwright.graph.log.filters import CallFilter
 from linkwright.graph.log.format import console_line
 from linkwright.graph.log.levels import LogLevel, LogLevels
 
-__all__ = ["LogLevel", "LogRecord", "LogSink", "Logger", "console_line", "print_to_console", "skip_callers_in"]
+__all__ = ["LogLevel", "LogRecord", "LogSink", "Logger", "console_line", "print_to_console"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,13 +41,6 @@ class LogRecord:
 
 
 LogSink = Callable[[LogRecord], None]
-
-_skipped_files = {__file__}
-
-
-def skip_callers_in(file: str) -> None:
-    """Have records not name this source file as their place, but its caller: for modules that wrap a logger."""
-    _skipped_files.add(file)
 
 
 class Logger:
@@ -181,8 +174,8 @@ class Logger:
 
 
 def _caller() -> FrameType:
-    """The frame that called a logger: the first one outside of the modules that make one up."""
+    """The frame that called a logger: the first one outside of this module."""
     frame = sys._getframe(2)
-    while frame.f_code.co_filename in _skipped_files and frame.f_back is not None:
+    while frame.f_code.co_filename == __file__ and frame.f_back is not None:
         frame = frame.f_back
     return frame

@@ -28,6 +28,7 @@ _EMPTIED = (
     "parameter list cannot be empty, this might be due to pre_set_parameters_callback modifying the original "
     "parameters list."
 )
+_NO_VERDICT = "Callback returned an invalid type"
 _ONLY_A_NAME = (
     "when declaring parameter named '{}', declaring a parameter only providing its name is deprecated. You have to "
     'either:\n\t- Pass a name and a default value different to "PARAMETER NOT SET" (and optionally a descriptor).\n'
@@ -230,6 +231,10 @@ class ParameterStore:
                 return SetParametersResult(successful=False, reason=reason)
         for callback in tuple(self.on_set):
             verdict = callback(parameters)
+            if not hasattr(verdict, "successful"):
+                name = getattr(callback, "__qualname__", callback)
+                warnings.warn(f"{_NO_VERDICT}, it should return SetParametersResult: {name}", stacklevel=5)
+                return SetParametersResult(successful=False, reason=_NO_VERDICT)
             if not verdict.successful:
                 return verdict
         change = ParameterChange()

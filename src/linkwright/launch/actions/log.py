@@ -63,7 +63,11 @@ class Log(Action):
                 problem = (
                     "The action log now expects a log level. Either provide one or switch to using the log_info action"
                 )
-                warnings.warn(problem, stacklevel=2)
+                place = entity.place
+                if place is None:
+                    warnings.warn(problem, stacklevel=2)
+                else:
+                    warnings.warn_explicit(problem, UserWarning, place.file, place.span().line)
             level = "INFO"
         kwargs["level"] = parser.parse_substitution(level)
         return cls, kwargs

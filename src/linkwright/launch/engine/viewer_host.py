@@ -59,14 +59,14 @@ class ViewerHost:
         Raises:
             LinkwrightError: why it cannot start.
         """
-        from linkwright.viewer import Viewer
+        from linkwright.viewer import Viewer, find_unsaved
 
         session = self._session
         if plan.viewer_config is not None:
             config, findings = plan.viewer_config(), list[Diagnostic]()
         else:
             config, findings = read_viewer_config(plan.arguments)
-        session.log.diagnostics(findings)
+        session.log.diagnostics([*findings, *find_unsaved(config)])
         viewer = Viewer(
             graph,
             library=session.descriptions.library,
@@ -94,7 +94,8 @@ class ViewerHost:
         return self._viewers.pop(plan.process_name)[1]
 
     async def stop(self, plan: HostedPlan, viewer: Viewer) -> None:
-        """End a viewer."""
+        """End a viewer; what was not saved is kept first, before anything can take its time."""
+        self._session.log.diagnostics(viewer.keep_unsaved())
         try:
             await asyncio.wait_for(viewer.close(), _CLOSE_SECONDS)
         except asyncio.TimeoutError:

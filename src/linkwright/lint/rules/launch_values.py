@@ -204,7 +204,7 @@ class FixedFrameUnknown(PackageRule):
             if source is None or match is None:
                 continue
             frame = match["name"].strip("'\"")
-            if frame in names or frame in _USUAL_FRAMES or any(each.fullmatch(frame) for each in patterns):
+            if frame in names or frame in _USUAL_FRAMES or any(_fits(frame, each) for each in patterns):
                 continue
             like = next(iter(nearest(frame, names, 1)), None)
             if like is not None:
@@ -221,10 +221,10 @@ def _elements(document: Document) -> Iterator[Element]:
         stack.extend(element.elements())
 
 
-def _link_names(package: PackageContext) -> tuple[set[str], list[re.Pattern[str]]]:
-    """The names of links as they are written in the package's descriptions: plain ones, and patterns of others."""
+def _link_names(package: PackageContext) -> tuple[set[str], list[list[str]]]:
+    """The names of links as they are written in the package's descriptions: plain ones, and the parts of others."""
     names: set[str] = set()
-    patterns: list[re.Pattern[str]] = []
+    patterns: list[list[str]] = []
     for document in package.descriptions.values():
         for element in _elements(document):
             included = element.attributes.get("filename", "") if element.tag == "xacro:include" else ""
@@ -236,9 +236,24 @@ def _link_names(package: PackageContext) -> tuple[set[str], list[re.Pattern[str]
             if "$" not in name:
                 names.add(name)
                 continue
-            pieces = re.split(r"\$\{[^}]*\}|\$\([^)]*\)", name)
-            patterns.append(re.compile(".*".join(map(re.escape, pieces))))
+            patterns.append(re.split(r"\$\{[^}]*\}|\$\([^)]*\)", name))
     return names, patterns
+
+
+def _fits(name: str, parts: list[str]) -> bool:
+    """Whether a name has these parts, in their order, with anything between them."""
+    first, last = parts[0], parts[-1]
+    if len(parts) == 1:
+        return name == first
+    at, end = len(first), len(name) - len(last)
+    if at > end or not (name.startswith(first) and name.endswith(last)):
+        return False
+    for part in parts[1:-1]:
+        found = name.find(part, at, end)
+        if found < 0:
+            return False
+        at = found + len(part)
+    return True
 
 
 def _is_program(node: ast.expr, python: PythonFile) -> bool:

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.graph.expressions import Expression, ExpressionError, TooCostlyError
+
+_MOST_KNOWN = 10_000
+"""Names of which it is remembered whether they are wanted; clients may ask for as many as they like."""
 
 
 class NameFilter:
-    """Names that match one of some expressions as a whole, as ECMAScript's `regex_match`.
+    """Names that match one of some expressions as a whole. One with which it takes too long to tell is used no more.
 
     Args:
         parameter: whose value they are, for messages.
@@ -20,16 +23,29 @@ class NameFilter:
     """
 
     def __init__(self, parameter: str, expressions: Sequence[str]) -> None:
-        self._patterns = [_compiled(parameter, expression) for expression in expressions]
+        self._expressions = [_read(parameter, expression) for expression in expressions]
+        self._known: dict[str, bool] = {}
 
     def accepts(self, name: str) -> bool:
         """Whether a name is wanted."""
-        return any(pattern.fullmatch(name) for pattern in self._patterns)
+        known = self._known.get(name)
+        if known is None:
+            if len(self._known) == _MOST_KNOWN:
+                self._known.clear()
+            known = self._known[name] = any(self._matches(expression, name) for expression in tuple(self._expressions))
+        return known
+
+    def _matches(self, expression: Expression, name: str) -> bool:
+        try:
+            return expression.matches(name)
+        except TooCostlyError:
+            self._expressions.remove(expression)
+            return False
 
 
-def _compiled(parameter: str, expression: str) -> re.Pattern[str]:
+def _read(parameter: str, expression: str) -> Expression:
     try:
-        return re.compile(expression)
-    except re.error as error:
+        return Expression(expression)
+    except ExpressionError as error:
         message = f"parameter '{parameter}': '{expression}' is no regular expression: {error}"
         raise LinkwrightError(Diagnostic("NODE701", message)) from None

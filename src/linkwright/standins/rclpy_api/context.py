@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import Graph
+from linkwright.graph.faults import RclError
 from linkwright.graph.log.setup import Logging, set_up
 from linkwright.graph.ros_arguments import RosArguments, parse
 from linkwright.standins.rclpy_api import logging
@@ -138,12 +139,12 @@ class Context:
         """End: executors stop spinning, the nodes leave the graph, nothing of it stays behind.
 
         Raises:
-            RuntimeError: it was not initialised, or is shut down already, other than by a signal.
+            RclError: it was not initialised, or is shut down already, other than by a signal.
         """
         if not self._initialized:
-            raise RuntimeError("Context must be initialized before it can be shutdown")
+            raise RclError("Context must be initialized before it can be shutdown")
         if not self._ok and not self._ended_by_signal:
-            raise RuntimeError("Context must be initialized before it can be shutdown: it was shut down already")
+            raise RclError("Context must be initialized before it can be shutdown: it was shut down already")
         self._ended_by_signal = False
         self._end()
 

@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
+from linkwright.graph.faults import NodeNotFoundError as NodeNameNonExistentError
+from linkwright.graph.faults import RclError as RCLError
+
+__all__ = [
+    "NoTypeSupportImportedException",
+    "NodeNameNonExistentError",
+    "RCLError",
+    "RCLInvalidROSArgsError",
+    "TimerCancelledError",
+    "UnknownROSArgsError",
+    "UnsupportedEventTypeError",
+]
+
 
 class NoTypeSupportImportedException(Exception):
     """An interface class cannot be used."""
 
     def __init__(self) -> None:
         super().__init__("no type_support imported")
-
-
-class RCLError(RuntimeError):
-    """What the C libraries below rclpy complain about."""
-
-
-class NodeNameNonExistentError(RCLError):
-    """There is no node of a name."""
 
 
 class RCLInvalidROSArgsError(RCLError):

@@ -133,6 +133,17 @@ class Node:
         return self.__core
 
     @property
+    def __living(self) -> GraphNode:
+        """The node of the graph, for what needs one that lives.
+
+        Raises:
+            InvalidHandleError: the node was destroyed.
+        """
+        if self.__destroyed:
+            raise InvalidHandleError
+        return self.__core
+
+    @property
     def context(self) -> Context:
         """What the node belongs to."""
         return self.__context
@@ -208,15 +219,15 @@ class Node:
 
     def get_name(self) -> str:
         """The name without namespace."""
-        return self.__core.get_name()
+        return self.__living.get_name()
 
     def get_namespace(self) -> str:
         """The namespace, absolute."""
-        return self.__core.get_namespace()
+        return self.__living.get_namespace()
 
     def get_fully_qualified_name(self) -> str:
         """Namespace and name."""
-        return self.__core.get_fully_qualified_name()
+        return self.__living.get_fully_qualified_name()
 
     def get_clock(self) -> ROSClock:
         """The node's clock, which follows ``/clock`` when the parameter ``use_sim_time`` says so."""
@@ -252,7 +263,7 @@ class Node:
         """
         check_is_valid_msg_type(msg_type)
         qos = self.__overridden("publisher", topic, qos_profile, qos_overriding_options)
-        return self.__core.create_publisher(
+        return self.__living.create_publisher(
             msg_type,
             topic,
             qos,
@@ -292,7 +303,7 @@ class Node:
         """
         check_is_valid_msg_type(msg_type)
         qos = self.__overridden("subscription", topic, qos_profile, qos_overriding_options)
-        return self.__core.create_subscription(
+        return self.__living.create_subscription(
             msg_type,
             topic,
             callback,
@@ -321,7 +332,7 @@ class Node:
         """
         check_is_valid_srv_type(srv_type)
         group = callback_group or self.__default_callback_group
-        return self.__core.create_client(srv_type, srv_name, qos_profile=qos_profile, callback_group=group)
+        return self.__living.create_client(srv_type, srv_name, qos_profile=qos_profile, callback_group=group)
 
     def create_service(
         self,
@@ -343,7 +354,7 @@ class Node:
         """
         check_is_valid_srv_type(srv_type)
         group = callback_group or self.__default_callback_group
-        return self.__core.create_service(srv_type, srv_name, callback, qos_profile=qos_profile, callback_group=group)
+        return self.__living.create_service(srv_type, srv_name, callback, qos_profile=qos_profile, callback_group=group)
 
     def create_timer(
         self,
@@ -404,13 +415,7 @@ class Node:
     destroy_rate = to_graph_node(GraphNode.destroy_rate)
 
     def destroy_node(self) -> None:
-        """Take the node and all it made out of the graph.
-
-        Raises:
-            InvalidHandleError: that has happened before.
-        """
-        if self.__destroyed:
-            raise InvalidHandleError
+        """Take the node and all it made out of the graph; a second call does nothing."""
         self.__destroyed = True
         self.__core.destroy_node()
 

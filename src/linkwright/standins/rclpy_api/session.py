@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
-from linkwright.graph.faults import NotInitializedError
+from linkwright.graph.faults import NotInitializedError, RclError
 from linkwright.graph.future import Future
 from linkwright.standins.rclpy_api.context import Context
 from linkwright.standins.rclpy_api.signals import (
@@ -62,12 +62,14 @@ def get_default_context(*, shutting_down: bool = False) -> Context:
         shutting_down: forget it; the next call gives a new one.
 
     Raises:
-        RuntimeError: there is none to be shut down.
+        RclError: there is none to be shut down.
     """
     with _lock:
         if shutting_down:
             if _Defaults.context is None:
-                raise RuntimeError("Can not shut down: rclpy.init() has not been called")
+                raise RclError(
+                    "Context must be initialized before it can be shutdown: rclpy.init() has not been called"
+                )
             context, _Defaults.context = _Defaults.context, None
             return context
         if _Defaults.context is None:
@@ -132,7 +134,7 @@ def shutdown(*, context: Context | None = None, uninstall_handlers: bool | None 
         uninstall_handlers: whether signals are handled as before `init` again; when None, with the default context.
 
     Raises:
-        RuntimeError: it is not initialised, or shut down already.
+        RclError: it is not initialised, or shut down already.
     """
     _end_global_executor(context)
     is_default = context is None or context is _Defaults.context

@@ -97,7 +97,7 @@ class CameraDisplay(ImageTopicDisplay):
         """RViz's number; the display has no property for it."""
         return _MOST_WAITING
 
-    def take(self, message: Any, pose: Pose | None) -> None:
+    def take_image(self, message: Any, pose: Pose | None) -> None:
         """Show an image, once it is known how the camera looks."""
         camera = self._model(message)
         self.show_image(message, camera, pose)

@@ -25,18 +25,16 @@ from linkwright.viewer.displays.depth_properties import (
     OCCLUSION,
     OCCLUSION_TIMEOUT,
     QUEUE_SIZE,
-    RAW,
     RELIABILITY,
     SIZE_FACTOR,
     SOURCES,
     TOPIC_FILTER,
 )
 from linkwright.viewer.displays.side_topic import SideTopic, camera_info_topic
-from linkwright.viewer.images import BadImageError, Picture, RangeFinder, picture_of
+from linkwright.viewer.images import BadImageError, ImageSource, RangeFinder, Unpacker, picture_of
 from linkwright.viewer.property_store import Path, Schema
 from linkwright.viewer.rviz_config import DisplayConfig
 
-_IMAGE = "sensor_msgs/msg/Image"
 _SYNC_NS = 500_000_000
 """A colour image farther from the depths in time does not belong to them."""
 
@@ -49,7 +47,7 @@ class DepthCloudDisplay(CloudDisplay):
     """The points of a depth image, coloured by a colour image where there is one."""
 
     CLASS = "rviz_default_plugins/DepthCloud"
-    MESSAGE = _IMAGE
+    MESSAGE = "sensor_msgs/msg/Image"
     SCHEMA = DEPTH_SCHEMA
     TOPIC = (DEPTH_TOPIC,)
     TOPIC_ROW: ClassVar[str] = "Depth Map"
@@ -59,7 +57,9 @@ class DepthCloudDisplay(CloudDisplay):
         super().__init__(stage, identity, config)
         self._filters = self.properties.flag(TOPIC_FILTER)
         self._infos = SideTopic(stage, "sensor_msgs/msg/CameraInfo", self._info_received)
-        self._colours = SideTopic(stage, _IMAGE, self._colour_received)
+        self._colours: SideTopic | None = None
+        self._depth_unpacker = Unpacker()
+        self._colour_unpacker = Unpacker()
         self._builder = DepthCloudBuilder()
         self._info: Any = None
         self._pixel = 0.0
@@ -68,8 +68,9 @@ class DepthCloudDisplay(CloudDisplay):
         self._camera_pose: Pose | None = None
 
     def subscription(self) -> tuple[str, str, QoSProfile]:
-        """The depth map."""
-        return _IMAGE, self.properties.text(DEPTH_TOPIC).strip(), self._qos()
+        """The depth map, as its transport has it."""
+        source = self._depth_source()
+        return source.message_type, source.topic, self._qos()
 
     def most_waiting(self) -> int:
         """How many depth maps may wait for their transforms."""
@@ -108,7 +109,8 @@ class DepthCloudDisplay(CloudDisplay):
     def time_changed(self) -> None:
         """Show what came while time stood still."""
         self._infos.go_on()
-        self._colours.go_on()
+        if self._colours is not None:
+            self._colours.go_on()
         super().time_changed()
 
     def reset(self) -> None:
@@ -131,26 +133,38 @@ class DepthCloudDisplay(CloudDisplay):
             reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
         )
 
+    def _depth_source(self) -> ImageSource:
+        return ImageSource.of(self.properties.text(DEPTH_TOPIC), self.properties.text(DEPTH_TRANSPORT))
+
+    def _colour_source(self) -> ImageSource:
+        return ImageSource.of(self.properties.text(COLOUR_TOPIC), self.properties.text(COLOUR_TRANSPORT))
+
     def _subscribe(self) -> None:
-        super()._subscribe()
-        depth, colour = self.properties.text(DEPTH_TOPIC).strip(), self.properties.text(COLOUR_TOPIC).strip()
-        if not depth:
+        depth, colour = self._depth_source(), self._colour_source()
+        for name, source in ((DEPTH_TRANSPORT, depth), (COLOUR_TRANSPORT, colour)):
+            if not source.is_read:
+                choice = "choose raw, compressed or compressedDepth"
+                self.say(name, "error", f"Images of transport '{source.transport}' are not read: {choice}")
+        if not (depth.is_read and colour.is_read):
             return
-        for name in (DEPTH_TRANSPORT, COLOUR_TRANSPORT):
-            if (transport := self.properties.text(name)) != RAW:
-                self.say(name, "warn", f"Images of transport '{transport}' are not read; raw ones are listened to")
-        info = self.properties.text(INFO_TOPIC).strip() or camera_info_topic(depth)
+        super()._subscribe()
+        if not depth.topic:
+            return
+        info = self.properties.text(INFO_TOPIC).strip() or camera_info_topic(depth.base)
         problem = self._infos.listen(info, self._qos())
         self.say("Depth Camera Info", "error" if problem else "warn", problem or f"No CameraInfo received on [{info}]")
-        if colour and (problem := self._colours.listen(colour, self._qos())):
-            self.say("Message", "error", problem)
-        if colour:
+        if colour.topic:
+            self._colours = SideTopic(self.stage, colour.message_type, self._colour_received)
+            if problem := self._colours.listen(colour.topic, self._qos()):
+                self.say("Message", "error", problem)
             self.choose_transformer("RGB8")
 
     def _unsubscribe(self) -> None:
         super()._unsubscribe()
         self._infos.close()
-        self._colours.close()
+        if self._colours is not None:
+            self._colours.close()
+            self._colours = None
 
     def _info_received(self, info: Any) -> None:
         self._info = info
@@ -181,13 +195,13 @@ class DepthCloudDisplay(CloudDisplay):
     # --- points ------------------------------------------------------------------------------------------------
 
     def _show_depths(self, message: Any, pose: Pose, colour: Any) -> None:
-        self.say("Depth Image Size", "ok", f"{message.width} x {message.height}")
-        if colour is not None:
-            self.say("Image Size", "ok", f"{colour.width} x {colour.height}")
         try:
             points = self._points(message, pose, colour)
         except BadCloudError as error:
             self.say("Message", "error", str(error))
+            return
+        except BadImageError as error:
+            self.say("Message", "error", f"Error updating depth cloud: {error}")
             return
         frames = (message.header.frame_id, colour.header.frame_id if colour is not None else message.header.frame_id)
         if frames[0] != frames[1]:
@@ -198,18 +212,19 @@ class DepthCloudDisplay(CloudDisplay):
         self.show(points, pose, self.frame_of(message)[1])
 
     def _points(self, message: Any, pose: Pose, colour: Any) -> Points:
-        camera = DepthCamera.of(self._info, message.width, message.height)
-        self._pixel = camera.pixel
-        picture: Picture | None = None
+        depth = self._depth_unpacker.image(message, self._depth_source().transport)
+        self.say("Depth Image Size", "ok", f"{depth.width} x {depth.height}")
+        picture = None
         if colour is not None:
-            try:
-                picture = picture_of(colour, RangeFinder())
-            except BadImageError as error:
-                raise BadCloudError(f"Error updating depth cloud: {error}") from None
+            colour = self._colour_unpacker.image(colour, self._colour_source().transport)
+            self.say("Image Size", "ok", f"{colour.width} x {colour.height}")
+            picture = picture_of(colour, RangeFinder())
+        camera = DepthCamera.of(self._info, depth.width, depth.height)
+        self._pixel = camera.pixel
         keep = self.properties.number(OCCLUSION, OCCLUSION_TIMEOUT) if self.properties.flag(OCCLUSION) else None
         if keep is not None and self._has_moved(pose):
             self._builder.reset()
-        return self._builder.points(message, camera, picture, keep_covered=keep, now=time.monotonic())
+        return self._builder.points(depth, camera, picture, keep_covered=keep, now=time.monotonic())
 
     def _has_moved(self, pose: Pose) -> bool:
         before = self._camera_pose

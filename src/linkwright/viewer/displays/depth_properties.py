@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from linkwright.viewer.displays.cloud_properties import POSITION_TRANSFORMER, STYLE_SPECS, TRANSFORMER_SPECS
+from linkwright.viewer.images import RAW, TRANSPORTS
 from linkwright.viewer.property_store import Schema
 from linkwright.viewer.schema import PropertySpec
 
@@ -16,9 +17,7 @@ QUEUE_SIZE = "Queue Size"
 AUTO_SIZE, SIZE_FACTOR = "Auto Size", "Auto Size Factor"
 OCCLUSION, OCCLUSION_TIMEOUT = "Occlusion Compensation", "Occlusion Time-Out"
 TOPIC_FILTER = "Topic Filter"
-RAW = "raw"
 _IMAGE = "sensor_msgs/msg/Image"
-_TRANSPORTS = (RAW, "compressed", "compressedDepth", "theora")
 
 SOURCES = frozenset((RELIABILITY, DEPTH_TOPIC, DEPTH_TRANSPORT, INFO_TOPIC, COLOUR_TOPIC, COLOUR_TRANSPORT, QUEUE_SIZE))
 """The properties that say where messages come from."""
@@ -40,7 +39,7 @@ DEPTH_SCHEMA: Schema = (
         messages=(_IMAGE,),
         words=("depth",),
     ),
-    PropertySpec(DEPTH_TRANSPORT, "enum", RAW, "How the depths come; raw is used here.", options=_TRANSPORTS),
+    PropertySpec(DEPTH_TRANSPORT, "enum", RAW, "How the depths come: raw, or compressedDepth.", options=TRANSPORTS),
     PropertySpec(
         INFO_TOPIC,
         "topic",
@@ -56,7 +55,7 @@ DEPTH_SCHEMA: Schema = (
         messages=(_IMAGE,),
         words=("color", "rgb", "bgr", "gray", "mono"),
     ),
-    PropertySpec(COLOUR_TRANSPORT, "enum", RAW, "How the colours come; raw is used here.", options=_TRANSPORTS),
+    PropertySpec(COLOUR_TRANSPORT, "enum", RAW, "How the colours come: raw, or compressed.", options=TRANSPORTS),
     PropertySpec(QUEUE_SIZE, "int", 5, "How many messages may wait.", minimum=1, maximum=1000),
     PropertySpec(
         AUTO_SIZE,

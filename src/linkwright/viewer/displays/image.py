@@ -28,7 +28,9 @@ _RANGE_SPECS: Schema = (
         when=((_NORMALIZE,), True),
     ),
 )
-_TOPIC_SPEC = topic_spec(description="sensor_msgs/msg/Image, or the topic of its compressed form.")
+_TOPIC_SPEC = topic_spec(
+    description="sensor_msgs/msg/Image, or one below it with /compressed or /compressedDepth at its end."
+)
 
 
 class ImageDisplay(ImageTopicDisplay):
@@ -49,7 +51,7 @@ class ImageDisplay(ImageTopicDisplay):
             return self.SCHEMA
         return (_TOPIC_SPEC, *(replace(spec, hidden=True) for spec in _RANGE_SPECS))
 
-    def take(self, message: Any, pose: Pose | None) -> None:  # noqa: ARG002 - images have no place
+    def take_image(self, message: Any, pose: Pose | None) -> None:  # noqa: ARG002 - images have no place
         """Show an image."""
         ranged = has_range(getattr(message, "encoding", ""))
         if ranged != self._ranged:

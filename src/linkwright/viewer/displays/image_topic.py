@@ -10,19 +10,32 @@ import numpy as np
 from linkwright.graph import QoSProfile
 from linkwright.viewer.displays.base import Stage
 from linkwright.viewer.displays.data_display import Pose
-from linkwright.viewer.displays.topic_display import TopicDisplay
-from linkwright.viewer.images import BadImageError, ImageCompressor, RangeFinder, picture_of
+from linkwright.viewer.displays.topic_display import TOPIC, TopicDisplay
+from linkwright.viewer.images import (
+    COMPRESSED,
+    BadImageError,
+    ImageCompressor,
+    ImageSource,
+    RangeFinder,
+    Unpacker,
+    encoding_of,
+    has_range,
+    picture_of,
+)
 from linkwright.viewer.protocol import CameraModel, ImageFrame
 from linkwright.viewer.rviz_config import DisplayConfig
 
-COMPRESSED = "/compressed"
 _ENCODINGS: dict[int, Literal["grey", "rgb", "rgba"]] = {1: "grey", 3: "rgb", 4: "rgba"}
 MOST_PIXELS = 2_100_000
 """Pages are sent no more pixels of an image than Full HD has: panels are smaller, and pixels are not compressed."""
 
 
 class ImageTopicDisplay(TopicDisplay):
-    """Shows the images of a topic; one whose name ends with ``/compressed`` carries files that browsers read."""
+    """Shows the images of a topic, whose transport is the one that its name ends with, as in RViz.
+
+    Those of ``/compressed`` are files that browsers read, and go to the page as they are, unless their values have more
+    than 8 bits.
+    """
 
     MESSAGE = "sensor_msgs/msg/Image"
 
@@ -30,6 +43,7 @@ class ImageTopicDisplay(TopicDisplay):
         super().__init__(stage, identity, config)
         self.ranges = RangeFinder()
         self._compressor = ImageCompressor()
+        self._unpacker = Unpacker()
 
     @classmethod
     def messages_shown(cls) -> tuple[str, ...]:
@@ -38,8 +52,26 @@ class ImageTopicDisplay(TopicDisplay):
 
     def subscription(self) -> tuple[str, str, QoSProfile]:
         """As the transport of the topic has it."""
-        message, topic, qos = super().subscription()
-        return "sensor_msgs/msg/CompressedImage" if topic.endswith(COMPRESSED) else message, topic, qos
+        source = self._source()
+        return source.message_type, source.topic, super().subscription()[2]
+
+    def take(self, message: Any, pose: Pose | None) -> None:
+        """Show an image, or say why it cannot be unpacked."""
+        try:
+            image = self._image_of(message)
+        except BadImageError as error:
+            self.say("Image", "error", str(error))
+            return
+        self.take_image(image, pose)
+
+    def take_image(self, message: Any, pose: Pose | None) -> None:
+        """An image to show.
+
+        Args:
+            message: with the fields of a sensor_msgs/msg/Image, or a sensor_msgs/msg/CompressedImage for browsers.
+            pose: see `take`.
+        """
+        raise NotImplementedError
 
     def reset(self) -> None:
         """Forget the image."""
@@ -57,6 +89,23 @@ class ImageTopicDisplay(TopicDisplay):
         frame, stamp_ns = TopicDisplay.frame_of(self, message)
         shrink = partial(self._compressor.compressed, content)
         self.send(content, frame=frame.removeprefix("/"), pose=pose, stamp_ns=stamp_ns, shrink=shrink)
+
+    def _source(self) -> ImageSource:
+        return ImageSource.of(self.properties.text(TOPIC))
+
+    def _subscribe(self) -> None:
+        source = self._source()
+        if source.is_read:
+            super()._subscribe()
+        else:
+            choice = f"choose {source.base} or {source.base}/{COMPRESSED}"
+            self.say(TOPIC, "error", f"Images of transport '{source.transport}' are not read: {choice}")
+
+    def _image_of(self, message: Any) -> Any:
+        transport = self._source().transport
+        if transport == COMPRESSED and not has_range(encoding_of(message)):
+            return message
+        return self._unpacker.image(message, transport)
 
     def _frame(self, message: Any, camera: CameraModel | None) -> ImageFrame:
         if not hasattr(message, "encoding"):

@@ -42,6 +42,7 @@ class MapDisplay(TopicDisplay):
         self._pose: Pose | None = None
         self._sent_at = 0.0
         self._sending: asyncio.TimerHandle | None = None
+        self._follow_topic(file_too=False)
 
     def frame_of(self, message: Any) -> tuple[str, int]:
         """The map's frame, ``map`` where it names none; the latest time unless the timestamp is to be used."""
@@ -58,14 +59,18 @@ class MapDisplay(TopicDisplay):
     def changed(self, path: Path) -> None:
         """Follow another topic, other updates, or the timestamp."""
         if path == (TOPIC,):
-            topic = self.properties.text(TOPIC).strip()
-            taken = self.properties.set((UPDATE_TOPIC,), topic + "_updates" if topic else "")
-            self.stage.publish(PropertyChanged(self.property_id((UPDATE_TOPIC,)), taken))
+            self._follow_topic(file_too=True)
+            self.stage.publish(PropertyChanged(self.property_id((UPDATE_TOPIC,)), self.properties.text(UPDATE_TOPIC)))
         super().changed(path)
         if path[0] == UPDATE_TOPIC:
             self._restart()
         elif path == (USE_TIMESTAMP,):
             self.show_again()
+
+    def recalled(self) -> None:
+        """Updates of which the file says nothing again come from beside the topic."""
+        super().recalled()
+        self._follow_topic(file_too=False)
 
     def frames_changed(self) -> None:
         """Say whether the map can be placed now."""
@@ -96,6 +101,15 @@ class MapDisplay(TopicDisplay):
         if self._sending is not None:
             self._sending.cancel()
             self._sending = None
+
+    def _follow_topic(self, *, file_too: bool) -> None:
+        """Have the updates come from beside the topic, as RViz does; a file that names no topic of theirs gets none."""
+        topic = self.properties.text(TOPIC).strip()
+        updates = f"{topic}_updates" if topic else ""
+        if self.config.section.text(UPDATE_TOPIC) is None:
+            self.properties.tell((UPDATE_TOPIC,), updates)
+        elif file_too:
+            self.properties.set((UPDATE_TOPIC,), updates)
 
     def _subscribe(self) -> None:
         super()._subscribe()

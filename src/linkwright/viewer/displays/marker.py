@@ -44,12 +44,13 @@ class _Marker:
 class MarkerDisplay(TopicDisplay):
     """Markers of one topic.
 
-    A marker whose frame cannot be placed yet appears as soon as it can; RViz drops it.
+    A marker whose frame cannot be placed yet appears as soon as it can; of those that wait since they came, the last
+    stay, as many as ``Filter size`` says.
     """
 
     CLASS = "rviz_default_plugins/Marker"
     MESSAGE = "visualization_msgs/msg/Marker"
-    SCHEMA = (topic_spec(default="visualization_marker", description="visualization_msgs/msg/Marker"),)
+    SCHEMA = (topic_spec(default="visualization_marker", description="visualization_msgs/msg/Marker", filter_size=10),)
     TRANSFORMED = False
     FOLLOWS_TRANSFORMS = True
 
@@ -59,6 +60,7 @@ class MarkerDisplay(TopicDisplay):
         self._store = MarkerStore(identity)
         self._markers: dict[str, _Marker] = {}
         self._unplaced: set[str] = set()
+        self._arriving: dict[str, None] = {}  # those that could not be placed since they came, the first of them first
         self._frame_poses: dict[tuple[str, int], FramePose] = {}  # of this moment: an array has thousands of a kind
         self._meshes = MeshIndex(stage.finder)
         self._expiry: asyncio.TimerHandle | None = None
@@ -77,6 +79,8 @@ class MarkerDisplay(TopicDisplay):
     def take(self, message: Any, pose: Pose | None) -> None:  # noqa: ARG002
         """Do what a marker says."""
         self._do(message)
+        while len(self._arriving) > self.most_waiting():
+            self._remove(next(iter(self._arriving)))
         self._show()
 
     def changed(self, path: Path) -> None:
@@ -92,6 +96,7 @@ class MarkerDisplay(TopicDisplay):
         """Forget the markers."""
         self._markers.clear()
         self._unplaced.clear()
+        self._arriving.clear()
         self._store.clear()
         self._meshes = MeshIndex(self.stage.finder)
         self._show()
@@ -159,10 +164,14 @@ class MarkerDisplay(TopicDisplay):
         if expires_ns is not None:
             self._watch_expiry()
         self._place_marker(identity, marker)
+        self._arriving.pop(identity, None)
+        if identity in self._unplaced:
+            self._arriving[identity] = None
 
     def _remove(self, identity: str) -> None:
         self._markers.pop(identity, None)
         self._unplaced.discard(identity)
+        self._arriving.pop(identity, None)
         self._store.remove(identity)
         self.unsay(identity)
 
@@ -179,6 +188,7 @@ class MarkerDisplay(TopicDisplay):
             self._store.remove(identity)
             return
         self._unplaced.discard(identity)
+        self._arriving.pop(identity, None)
         if marker.reading.warning:
             self.say(identity, "warn", marker.reading.warning)
         else:
@@ -223,7 +233,7 @@ class MarkerDisplay(TopicDisplay):
 
 
 class MarkerArrayDisplay(MarkerDisplay):
-    """Markers that come many at a time."""
+    """Markers that come many at a time; any number of them may wait for their frames, which RViz drops."""
 
     CLASS = "rviz_default_plugins/MarkerArray"
     MESSAGE = "visualization_msgs/msg/MarkerArray"

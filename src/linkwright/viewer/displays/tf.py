@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import re
-
-from linkwright.viewer.displays.base import ViewerDisplay
+from linkwright.viewer.display_config import DisplayConfig
+from linkwright.viewer.displays.base import Stage, ViewerDisplay
+from linkwright.viewer.displays.frame_filter import FrameFilter
 from linkwright.viewer.property_store import Path, Schema
 from linkwright.viewer.protocol import PropertyChanged, StatusRow
 from linkwright.viewer.schema import PropertySpec
 
+_WHITELIST, _BLACKLIST = "Filter (whitelist)", "Filter (blacklist)"
 _STATIC = (
     PropertySpec("Show Names", "bool", False, "Write each frame's name beside it."),
     PropertySpec("Show Axes", "bool", True, "Draw each frame's axes: x red, y green, z blue."),
@@ -22,14 +23,10 @@ _STATIC = (
         "Seconds until a frame that is heard of no more is gone: grey from the first third on, away from the second.",
         minimum=1.0,
     ),
-    PropertySpec(
-        "Filter (whitelist)", "string", "", "A regular expression: only frames in whose name it is found are shown."
-    ),
-    PropertySpec(
-        "Filter (blacklist)", "string", "", "A regular expression: frames in whose name it is found are not shown."
-    ),
+    PropertySpec(_WHITELIST, "string", "", "A regular expression: only frames in whose name it is found are shown."),
+    PropertySpec(_BLACKLIST, "string", "", "A regular expression: frames in whose name it is found are not shown."),
 )
-_FILTERS = (("Filter (whitelist)",), ("Filter (blacklist)",))
+_FILTERS = ((_WHITELIST,), (_BLACKLIST,))
 _ALL = ("Frames", "All Enabled")
 _DEEPEST = 60
 """Rows of the Tree nest no deeper, so that no chain of frames is too long for the page's JSON."""
@@ -43,9 +40,13 @@ class TfDisplay(ViewerDisplay):
 
     CLASS = "rviz_default_plugins/TF"
 
-    _shown: tuple[str, ...] = ()
-    _parents: tuple[tuple[str, str | None], ...] = ()
-    _schema: Schema | None = None
+    def __init__(self, stage: Stage, identity: str, config: DisplayConfig) -> None:
+        self._shown: tuple[str, ...] = ()
+        self._parents: tuple[tuple[str, str | None], ...] = ()
+        self._schema: Schema | None = None
+        self._only = FrameFilter()
+        self._without = FrameFilter()
+        super().__init__(stage, identity, config)
 
     def schema(self) -> Schema:
         """The fixed properties, a box for each frame, and the tree of frames."""
@@ -73,9 +74,7 @@ class TfDisplay(ViewerDisplay):
     def frames_changed(self) -> None:
         """List the frames anew, and say which of them can be placed."""
         frames = self.stage.frames
-        problems: list[StatusRow] = []
-        accepts = self._filter(problems)
-        shown = tuple(sorted(name for name in frames.names if accepts(name)))
+        shown = tuple(sorted(self._filtered(set(frames.names))))
         above = {
             name: frames.names[parent] if parent >= 0 else None
             for name, parent in zip(frames.names, frames.parents, strict=True)
@@ -84,22 +83,25 @@ class TfDisplay(ViewerDisplay):
         if (shown, parents) != (self._shown, self._parents):
             self._shown, self._parents, self._schema = shown, parents, None
             self.publish_properties()
+        filters = ((_WHITELIST, self._only), (_BLACKLIST, self._without))
+        problems = [StatusRow(name, "error", each.problem) for name, each in filters if each.problem]
         self.set_status(problems + [self._frame_status(name) for name in shown])
 
     def _frame_status(self, name: str) -> StatusRow:
         problem = self.stage.frames.problem(name)
         return StatusRow(name, "warn", problem) if problem else StatusRow(name, "ok", "Transform OK")
 
-    def _filter(self, problems: list[StatusRow]) -> _FrameFilter:
-        patterns: list[re.Pattern[str] | None] = []
-        for (name,) in _FILTERS:
-            text = self.properties.text(name)
-            try:
-                patterns.append(re.compile(text) if text else None)
-            except re.error as error:
-                problems.append(StatusRow(name, "error", f"Not a regular expression: {error}"))
-                patterns.append(None)
-        return _FrameFilter(*patterns)
+    def _filtered(self, names: set[str]) -> set[str]:
+        """The names that the filters leave; one that is not used leaves all."""
+        only, without = (self.properties.text(*path) for path in _FILTERS)
+        if only != self._only.text:
+            self._only = FrameFilter(only)
+        if without != self._without.text:
+            self._without = FrameFilter(without)
+        found = self._only.found_in(names)
+        if self._only.is_used:
+            names = found
+        return names - self._without.found_in(names)
 
     def _boxes(self) -> list[str]:
         return [name for name in self._shown if name != _ALL[1]]
@@ -118,17 +120,6 @@ class TfDisplay(ViewerDisplay):
             below.setdefault(parent if parent in shown else None, []).append(name)
         roots = tuple(_tree(name, below, 1) for name in below.get(None, ()))
         return PropertySpec("Tree", "group", description="How the frames hang together.", children=roots)
-
-
-class _FrameFilter:
-    def __init__(self, only: re.Pattern[str] | None, without: re.Pattern[str] | None) -> None:
-        self._only = only
-        self._without = without
-
-    def __call__(self, name: str) -> bool:
-        if self._only is not None and not self._only.search(name):
-            return False
-        return self._without is None or not self._without.search(name)
 
 
 def _tree(name: str, below: dict[str | None, list[str]], depth: int) -> PropertySpec:

@@ -2,6 +2,22 @@
 
 from linkwright.viewer.images.compression import ImageCompressor
 from linkwright.viewer.images.decoding import BadImageError, Picture, has_range, picture_of
+from linkwright.viewer.images.image_files import encoding_of
 from linkwright.viewer.images.ranges import Range, RangeFinder
+from linkwright.viewer.images.transports import COMPRESSED, RAW, TRANSPORTS, ImageSource, Unpacker
 
-__all__ = ["BadImageError", "ImageCompressor", "Picture", "Range", "RangeFinder", "has_range", "picture_of"]
+__all__ = [
+    "COMPRESSED",
+    "RAW",
+    "TRANSPORTS",
+    "BadImageError",
+    "ImageCompressor",
+    "ImageSource",
+    "Picture",
+    "Range",
+    "RangeFinder",
+    "Unpacker",
+    "encoding_of",
+    "has_range",
+    "picture_of",
+]

@@ -14,6 +14,9 @@ _STEPS = ((1, 85), (1, 70), (1, 50), (2, 70), (2, 50), (3, 50), (4, 50), (6, 45)
 """Of how many pixels of a row one is left, and the quality of the WebP: each is about two thirds of the one before."""
 
 _MOST_TRIES = 3
+_MOST_PIXELS = 1 << 26
+"""Of a file that is unpacked to be made smaller; a small file can say that it is as large as it likes."""
+
 _ROOMY = 2.5
 """With so much room left the next image may be better."""
 
@@ -58,6 +61,8 @@ def _opened(frame: ImageFrame) -> Any:
 
     if frame.encoding == "file":
         file = Image.open(BytesIO(frame.data.tobytes()), formats=("JPEG", "PNG", "GIF", "BMP", "WEBP"))
+        if file.width * file.height > _MOST_PIXELS:
+            raise ValueError("too many pixels")
         return file.convert("L" if file.mode in ("1", "L", "I;16") else "RGB")
     channels = {"grey": (), "rgb": (3,), "rgba": (4,)}[frame.encoding]
     image = Image.fromarray(frame.data.reshape(frame.rows, frame.columns, *channels))

@@ -36,7 +36,6 @@ def parameter_row(descriptor: Any, value: Any) -> ParameterRow:
         description=descriptor.description,
         constraints=descriptor.additional_constraints,
         read_only=descriptor.read_only,
-        dynamic=descriptor.dynamic_typing,
         minimum=minimum,
         maximum=maximum,
         step=step,

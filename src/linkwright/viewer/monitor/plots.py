@@ -46,7 +46,6 @@ class _Channel:
 
     def __init__(self, desk: Desk, changes: GraphChanges, topic: str, came: Callable[[], None]) -> None:
         self._came = came
-        self._came_from: type | None = None
         self.series: list[_Series] = []
         self.changed = False
         self.tap = TopicTap(desk.node, changes, topic, self._take, changed=self._class_changed)

@@ -1,9 +1,9 @@
 """What the server and the page say to each other, declared once.
 
-Control messages are JSON objects with a ``type``; the TypeScript types in ``frontend/src/protocol.gen.ts`` are
-generated from this package by ``tools/protocol_types.py``. Transforms travel as one binary frame, packed by
-`pack_transforms`, and so does what displays draw of messages, packed by `pack_data`. Lengths are metres, angles
-radians, quaternions x, y, z, w, colours 0 to 1.
+Control messages are JSON objects with a ``type``; the TypeScript types in ``frontend/src/protocol/`` are generated from
+this package by ``tools/protocol_types.py``. Transforms travel as one binary frame, packed by `pack_transforms`, and so
+does what displays draw of messages, packed by `pack_data`. Lengths are metres, angles radians, quaternions x, y, z, w,
+colours 0 to 1.
 
 The page opens one WebSocket at ``/ws`` (same origin; the cookie set with the page lets it in). `Hello` comes first,
 then `Tree`, the `RobotScene` of every RobotModel, `ViewState`, `Joints`, `JointPositions`, `Diagnostics`, `FrameTable`
@@ -55,7 +55,6 @@ from linkwright.viewer.protocol.data import (
     Bytes,
     DisplayForgotten,
     Floats,
-    Ints,
     pack_data,
 )
 from linkwright.viewer.protocol.description import (
@@ -110,6 +109,7 @@ from linkwright.viewer.protocol.joints import (
 from linkwright.viewer.protocol.log import LogLine, LogLines, WatchLog
 from linkwright.viewer.protocol.markers import MarkerKind, MarkerMesh, MarkersChanged, MarkerShape
 from linkwright.viewer.protocol.node_graph import GraphTopic, NodeGraph, WatchNodeGraph
+from linkwright.viewer.protocol.panels import PanelName, Panels, ShowPanels
 from linkwright.viewer.protocol.parameters import (
     DumpParameters,
     NodeParameters,
@@ -247,6 +247,7 @@ ServerMessage = (
     | LogLines
     | TeleopState
     | PointFields
+    | Panels
 )
 
 PageMessage = (
@@ -302,6 +303,7 @@ PageMessage = (
     | AimTeleop
     | Drive
     | AskPoint
+    | ShowPanels
 )
 
 DataContent = (
@@ -386,7 +388,6 @@ __all__ = [
     "InteractiveControl",
     "InteractiveMarkerMoved",
     "InteractiveMarkerShape",
-    "Ints",
     "JointControl",
     "JointDetails",
     "JointMimic",
@@ -416,6 +417,8 @@ __all__ = [
     "OpenConfiguration",
     "OrientationMode",
     "PageMessage",
+    "PanelName",
+    "Panels",
     "ParameterDump",
     "ParameterKind",
     "ParameterNodes",
@@ -463,6 +466,7 @@ __all__ = [
     "SetToolProperty",
     "Shape",
     "ShapeKind",
+    "ShowPanels",
     "SourceRange",
     "StatusLevel",
     "StatusRow",

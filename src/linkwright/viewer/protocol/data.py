@@ -2,8 +2,8 @@
 
 A frame is four uint32 (kind 2, bytes of the header, 0, 0), the header as JSON in UTF-8, and the arrays; the header and
 each array are padded to a multiple of 8 bytes. The header is ``{"display", "key", "frame", "stamp", "pose",
-"content"}``; where the content has an array the JSON has ``{"$": [type, offset, count]}``: the type is one of ``f4``,
-``u1`` and ``i4``, little endian, and the offset counts bytes from the end of the padded header.
+"content"}``; where the content has an array the JSON has ``{"$": [type, offset, count]}``: the type is ``f4``, little
+endian, or ``u1``, and the offset counts bytes from the end of the padded header.
 """
 
 from __future__ import annotations
@@ -31,10 +31,7 @@ Floats = NDArray[np.float32]
 Bytes = NDArray[np.uint8]
 """As a Uint8Array."""
 
-Ints = NDArray[np.int32]
-"""As an Int32Array."""
-
-_TYPES = {"f": ("f4", "<f4"), "u": ("u1", "u1"), "i": ("i4", "<i4")}
+_TYPES = {"f": ("f4", "<f4"), "u": ("u1", "u1")}
 _EMPTY: dict[str, dict[str, list[Any]]] = {kind: {"$": [name, 0, 0]} for kind, (name, _) in _TYPES.items()}
 """What stands for empty arrays, of which simple markers have three each."""
 

@@ -29,7 +29,6 @@ class ParameterRow:
     description: str
     constraints: str
     read_only: bool
-    dynamic: bool
     minimum: str
     maximum: str
     step: str

@@ -28,7 +28,6 @@ class Shape:
     texture: str | None = None
     url: str | None = None
     format: str | None = None
-    name: str = ""
 
 
 @dataclass(slots=True)

@@ -23,7 +23,7 @@ from linkwright.launch.introspector import LaunchIntrospector
 from linkwright.launch.service import LaunchService
 from linkwright.launch.sources import LaunchDescriptionSource
 from linkwright.launch.substitution import SomeSubstitutionsType, SomeSubstitutionsType_types_tuple, Substitution
-from linkwright.standins.launch_names import submodules_of
+from linkwright.standins.imported_names import submodules_of
 
 __all__ = [
     "Action",

@@ -11,7 +11,7 @@ from launch_ros import (
     substitutions,
     utilities,
 )
-from linkwright.standins.launch_names import submodules_of
+from linkwright.standins.imported_names import submodules_of
 
 __all__ = [
     "actions",

@@ -3,6 +3,7 @@
 from linkwright.graph.executors import Task
 from linkwright.graph.future import Future
 from linkwright.graph.parameters.parameter import Parameter
+from linkwright.standins.imported_names import submodules_of
 from linkwright.standins.rclpy_api.context import Context
 from linkwright.standins.rclpy_api.node import Node
 from linkwright.standins.rclpy_api.session import (
@@ -19,7 +20,6 @@ from linkwright.standins.rclpy_api.session import (
     try_shutdown,
 )
 from linkwright.standins.rclpy_api.signals import SignalHandlerOptions, uninstall_signal_handlers
-from linkwright.standins.rclpy_api.submodules import submodule as __getattr__
 from linkwright.standins.rclpy_api.utilities import get_rmw_implementation_identifier
 
 __all__ = [
@@ -43,3 +43,5 @@ __all__ = [
     "try_shutdown",
     "uninstall_signal_handlers",
 ]
+
+__getattr__ = submodules_of(__name__)

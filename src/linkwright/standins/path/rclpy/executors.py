@@ -12,6 +12,7 @@ from linkwright.standins.rclpy_api.executors import (
     SingleThreadedExecutor,
     await_or_execute,
 )
+from linkwright.standins.rclpy_api.imported_names import imported_there as __getattr__
 
 __all__ = [
     "ConditionReachedException",

@@ -10,6 +10,7 @@ from linkwright.graph.service import Service
 from linkwright.graph.subscription import Subscription
 from linkwright.graph.timer import Timer
 from linkwright.standins.rclpy_api.errors import NodeNameNonExistentError
+from linkwright.standins.rclpy_api.imported_names import imported_there as __getattr__
 from linkwright.standins.rclpy_api.node import Node
 from linkwright.standins.rclpy_api.type_support import (
     MsgType,

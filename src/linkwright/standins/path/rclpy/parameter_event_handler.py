@@ -5,5 +5,6 @@ from linkwright.graph.parameters.events import (
     ParameterEventCallbackHandle,
     ParameterEventHandler,
 )
+from linkwright.standins.rclpy_api.imported_names import imported_there as __getattr__
 
 __all__ = ["ParameterCallbackHandle", "ParameterEventCallbackHandle", "ParameterEventHandler"]

@@ -45,6 +45,7 @@ from linkwright.graph.qos import (
     InvalidQoSProfileError as InvalidQoSProfileException,
 )
 from linkwright.graph.qos_compatibility import QoSCompatibility, qos_check_compatible
+from linkwright.standins.rclpy_api.imported_names import imported_there as __getattr__
 from linkwright.standins.rclpy_api.qos import add_old_names
 
 add_old_names()

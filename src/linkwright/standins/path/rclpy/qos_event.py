@@ -17,6 +17,7 @@ from linkwright.graph.events import (
     SubscriptionEventCallbacks,
 )
 from linkwright.standins.rclpy_api.errors import UnsupportedEventTypeError
+from linkwright.standins.rclpy_api.imported_names import imported_there as __getattr__
 
 __all__ = [
     "EventHandler",

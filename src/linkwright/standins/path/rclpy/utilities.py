@@ -1,5 +1,6 @@
 """Stands in for ``rclpy.utilities``."""
 
+from linkwright.standins.rclpy_api.imported_names import imported_there as __getattr__
 from linkwright.standins.rclpy_api.session import get_default_context, ok, shutdown, try_shutdown
 from linkwright.standins.rclpy_api.utilities import (
     get_available_rmw_implementations,

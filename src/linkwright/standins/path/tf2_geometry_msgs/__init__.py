@@ -1,5 +1,6 @@
 """Stands in for ``tf2_geometry_msgs``."""
 
+from linkwright.standins.tf2_api.imported_names import imported_for_messages as __getattr__
 from tf2_geometry_msgs.tf2_geometry_msgs import (
     do_transform_point,
     do_transform_polygon_stamped,

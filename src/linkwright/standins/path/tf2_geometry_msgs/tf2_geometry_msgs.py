@@ -12,6 +12,7 @@ from linkwright.graph.transforms.geometry import (
 )
 from linkwright.standins.tf2_api.geometry import from_msg_msg, to_msg_msg
 from linkwright.standins.tf2_api.geometry import register as _register
+from linkwright.standins.tf2_api.imported_names import imported_for_messages as __getattr__
 
 _register()
 

@@ -20,6 +20,7 @@ from linkwright.standins.tf2_api.conversion import (
     TypeException,
     convert,
 )
+from linkwright.standins.tf2_api.imported_names import imported_there as __getattr__
 from linkwright.standins.tf2_api.interface import BufferInterface
 from linkwright.standins.tf2_api.listener import StaticTransformListener, TransformListener
 

@@ -35,7 +35,7 @@ from linkwright.launch.actions import (
     UnsetEnvironmentVariable,
     UnsetLaunchConfiguration,
 )
-from linkwright.standins.launch_names import submodules_of
+from linkwright.standins.imported_names import submodules_of
 
 __all__ = [
     "AppendEnvironmentVariable",

@@ -8,7 +8,7 @@ from linkwright.launch.conditions import (
     UnlessCondition,
     evaluate_condition_expression,
 )
-from linkwright.standins.launch_names import submodules_of
+from linkwright.standins.imported_names import submodules_of
 
 __all__ = [
     "IfCondition",

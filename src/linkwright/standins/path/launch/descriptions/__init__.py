@@ -1,7 +1,7 @@
 """Stands in for ``launch.descriptions``."""
 
 from linkwright.launch.executable import Executable
-from linkwright.standins.launch_names import submodules_of
+from linkwright.standins.imported_names import submodules_of
 
 __all__ = ["Executable"]
 

@@ -9,7 +9,7 @@ from linkwright.launch.event_handlers import (
     OnProcessStart,
     OnShutdown,
 )
-from linkwright.standins.launch_names import submodules_of
+from linkwright.standins.imported_names import submodules_of
 
 __all__ = [
     "OnActionEventBase",

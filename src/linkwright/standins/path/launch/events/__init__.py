@@ -2,7 +2,7 @@
 
 from launch.events import process
 from linkwright.launch.events import ExecutionComplete, IncludeLaunchDescription, Shutdown, TimerEvent, matches_action
-from linkwright.standins.launch_names import submodules_of
+from linkwright.standins.imported_names import submodules_of
 
 __all__ = ["ExecutionComplete", "IncludeLaunchDescription", "Shutdown", "TimerEvent", "matches_action", "process"]
 

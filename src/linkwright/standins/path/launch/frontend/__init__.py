@@ -6,7 +6,7 @@ from linkwright.launch.frontend.entity import Entity
 from linkwright.launch.frontend.expose import expose_action, expose_substitution
 from linkwright.launch.frontend.parser import Parser
 from linkwright.launch.invalid_file import InvalidFrontendLaunchFileError
-from linkwright.standins.launch_names import submodules_of
+from linkwright.standins.imported_names import submodules_of
 
 __all__ = [
     "Entity",

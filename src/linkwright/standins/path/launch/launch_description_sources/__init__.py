@@ -14,7 +14,7 @@ from linkwright.launch.sources import (
     FrontendLaunchDescriptionSource,
     PythonLaunchDescriptionSource,
 )
-from linkwright.standins.launch_names import submodules_of
+from linkwright.standins.imported_names import submodules_of
 
 __all__ = [
     "AnyLaunchDescriptionSource",

@@ -13,7 +13,7 @@ from linkwright.launch.engine.user_logging import (
     log_launch_config,
     reset,
 )
-from linkwright.standins.launch_names import submodules_of
+from linkwright.standins.imported_names import submodules_of
 
 __all__ = [
     "LaunchConfig",

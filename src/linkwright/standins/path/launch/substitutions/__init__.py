@@ -31,7 +31,7 @@ from linkwright.launch.substitutions import (
     ThisLaunchFile,
     ThisLaunchFileDir,
 )
-from linkwright.standins.launch_names import submodules_of
+from linkwright.standins.imported_names import submodules_of
 
 __all__ = [
     "AllSubstitution",

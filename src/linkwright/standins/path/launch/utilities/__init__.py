@@ -12,7 +12,7 @@ from linkwright.launch.class_checks import (
 from linkwright.launch.entity import as_entities as normalize_to_list_of_entities
 from linkwright.launch.signal_manager import AsyncSafeSignalManager
 from linkwright.launch.substitution import normalize_to_list_of_substitutions, perform_substitutions
-from linkwright.standins.launch_names import submodules_of
+from linkwright.standins.imported_names import submodules_of
 
 __all__ = [
     "AsyncSafeSignalManager",

@@ -17,7 +17,7 @@ from linkwright.launch.ros import (
 from linkwright.launch.ros import PushRosNamespace as PushROSNamespace
 from linkwright.launch.ros import RosTimer as ROSTimer
 from linkwright.launch.ros import SetROSLogDir as SetRosLogDir
-from linkwright.standins.launch_names import submodules_of
+from linkwright.standins.imported_names import submodules_of
 
 __all__ = [
     "ComposableNodeContainer",

@@ -1,7 +1,7 @@
 """Stands in for ``launch_ros.descriptions``."""
 
 from linkwright.launch.ros import ComposableLifecycleNode, ComposableNode, Parameter, ParameterFile, ParameterValue
-from linkwright.standins.launch_names import submodules_of
+from linkwright.standins.imported_names import submodules_of
 
 __all__ = ["ComposableLifecycleNode", "ComposableNode", "Parameter", "ParameterFile", "ParameterValue"]
 

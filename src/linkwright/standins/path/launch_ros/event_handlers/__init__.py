@@ -1,7 +1,7 @@
 """Stands in for ``launch_ros.event_handlers``."""
 
 from linkwright.launch.ros import OnStateTransition
-from linkwright.standins.launch_names import submodules_of
+from linkwright.standins.imported_names import submodules_of
 
 __all__ = ["OnStateTransition"]
 

@@ -2,7 +2,7 @@
 
 from launch_ros.events import lifecycle
 from launch_ros.events.matchers import matches_node_name
-from linkwright.standins.launch_names import submodules_of
+from linkwright.standins.imported_names import submodules_of
 
 __all__ = ["lifecycle", "matches_node_name"]
 

@@ -2,7 +2,7 @@
 
 from linkwright.launch.ros import ExecutableInPackage, FindPackage, FindPackagePrefix, FindPackageShare
 from linkwright.launch.ros import ParameterSubstitution as Parameter
-from linkwright.standins.launch_names import submodules_of
+from linkwright.standins.imported_names import submodules_of
 
 __all__ = ["ExecutableInPackage", "FindPackage", "FindPackagePrefix", "FindPackageShare", "Parameter"]
 

@@ -15,7 +15,7 @@ from launch_ros.utilities.normalize_parameters import normalize_parameter_dict, 
 from launch_ros.utilities.normalize_remap_rule import normalize_remap_rule, normalize_remap_rules
 from launch_ros.utilities.to_parameters_list import to_parameters_list
 from launch_ros.utilities.track_node_names import add_node_name, get_node_name_count
-from linkwright.standins.launch_names import submodules_of
+from linkwright.standins.imported_names import submodules_of
 
 __all__ = [
     "LifecycleEventManager",

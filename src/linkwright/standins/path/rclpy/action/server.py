@@ -7,6 +7,7 @@ from linkwright.graph.actions.server import (
     default_handle_accepted_callback,
 )
 from linkwright.standins.rclpy_api.action import ActionServer
+from linkwright.standins.rclpy_api.imported_names import imported_there as __getattr__
 
 __all__ = [
     "ActionServer",

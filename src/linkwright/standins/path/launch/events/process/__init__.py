@@ -15,7 +15,7 @@ from linkwright.launch.events import (
     matches_name,
     matches_pid,
 )
-from linkwright.standins.launch_names import submodules_of
+from linkwright.standins.imported_names import submodules_of
 
 __all__ = [
     "ProcessExited",

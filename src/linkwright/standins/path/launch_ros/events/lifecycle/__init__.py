@@ -1,7 +1,7 @@
 """Stands in for ``launch_ros.events.lifecycle``."""
 
 from linkwright.launch.ros import ChangeState, StateTransition, matches_node_name
-from linkwright.standins.launch_names import submodules_of
+from linkwright.standins.imported_names import submodules_of
 
 __all__ = ["ChangeState", "StateTransition", "matches_node_name"]
 

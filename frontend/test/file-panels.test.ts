@@ -1,0 +1,173 @@
+import { beforeEach, describe, expect, it, vi } from "vitest";
+import { Connection } from "../src/connection/connection";
+import { FilePanels, type Arrangement } from "../src/panels/file-panels";
+import { Layouts, type Layout } from "../src/panels/layouts";
+import type { PanelId } from "../src/panels/panel";
+import type { Configuration, PageMessage, PanelName, ServerMessage } from "../src/protocol";
+import { Signal } from "../src/state/signal";
+
+/** A dock without a picture: what the browser keeps is a list of panels for each file. */
+class BareDock implements Arrangement {
+  readonly changed = new Signal();
+  readonly kept = new Map<string, readonly PanelId[]>();
+  file: string | null = null;
+  listed: readonly PanelName[] | null = null;
+  open: readonly PanelId[] = ["displays", "views", "time", "links"];
+
+  isOpen(id: PanelId): boolean {
+    return this.open.includes(id);
+  }
+
+  arrange(file: string): boolean {
+    const found = this.kept.get(file);
+    if (found) this.open = found;
+    return found !== undefined;
+  }
+
+  keepFor(file: string): void {
+    this.file = file;
+    this.kept.set(file, this.open);
+  }
+
+  showOnly(panels: readonly PanelName[]): void {
+    this.open = [...panels, "links"];
+  }
+
+  /** What the user does. */
+  use(open: readonly PanelId[]): void {
+    this.open = open;
+    if (this.file !== null) this.kept.set(this.file, open);
+    this.changed.emit();
+  }
+}
+
+let sent: PageMessage[];
+let connection: Connection;
+let dock: BareDock;
+
+function receive(...messages: ServerMessage[]): void {
+  for (const message of messages) connection.message.emit(message);
+}
+
+function hello(): void {
+  receive({ type: "hello", protocol: 0, version: "", title: "" });
+}
+
+function configuration(part: Partial<Configuration>): Configuration {
+  return { type: "configuration", path: null, opened: 1, unsaved: false, undo: null, redo: null, own: false, recent: [], ...part };
+}
+
+/** What a page is told when it opens, or when another configuration is opened. */
+function tell(opened: number, path: string | null, shown: PanelName[] | null, origin = "<default>"): void {
+  receive({ type: "panels", opened, origin, shown }, configuration({ opened, path }));
+}
+
+beforeEach(() => {
+  sent = [];
+  connection = new Connection("ws://localhost/ws");
+  vi.spyOn(connection, "send").mockImplementation((message) => void sent.push(message));
+  dock = new BareDock();
+  new FilePanels(connection, dock);
+  hello();
+});
+
+describe("the panels of a file", () => {
+  it("are open when the browser sees the file for the first time", () => {
+    tell(1, "/a.rviz", ["displays", "views"]);
+    expect(dock.open).toEqual(["displays", "views", "links"]);
+    expect([dock.file, dock.listed]).toEqual(["/a.rviz", ["displays", "views"]]);
+    expect(sent).toEqual([]);
+  });
+
+  it("stay as they are where the file says nothing", () => {
+    tell(1, "/a.rviz", null);
+    expect(dock.open).toEqual(["displays", "views", "time", "links"]);
+  });
+
+  it("are the user's when the browser knows the file", () => {
+    dock.kept.set("/a.rviz", ["time", "plot"]);
+    tell(1, "/a.rviz", ["displays", "views"]);
+    expect(dock.open).toEqual(["time", "plot"]);
+    expect(sent).toEqual([]);
+  });
+
+  it("are the file's again when it is opened from the menu", () => {
+    dock.kept.set("/b.rviz", ["time", "plot"]);
+    tell(1, "/a.rviz", ["displays"]);
+    tell(2, "/b.rviz", ["views"]);
+    expect(dock.open).toEqual(["views", "links"]);
+    dock.use(["plot"]);
+    tell(3, "/b.rviz", ["views"]);
+    expect(dock.open).toEqual(["views", "links"]);
+  });
+
+  it("are known of when both messages about a configuration came, whichever is first", () => {
+    tell(1, "/a.rviz", ["displays"]);
+    receive(configuration({ opened: 2, path: "/b.rviz" }));
+    expect(dock.file).toBe("/a.rviz");
+    receive({ type: "panels", opened: 2, origin: "", shown: ["time"] });
+    expect([dock.file, dock.open]).toEqual(["/b.rviz", ["time", "links"]]);
+  });
+});
+
+describe("what the user does", () => {
+  it("is told once, and only of panels that files know", () => {
+    tell(1, "/a.rviz", ["displays", "views"]);
+    dock.use(["displays", "views", "links", "plot"]);
+    expect(sent).toEqual([]);
+    dock.use(["displays", "plot"]);
+    dock.use(["displays", "log"]);
+    expect(sent).toEqual([{ type: "show_panels", shown: ["displays"] }]);
+  });
+
+  it("is nothing to the file before it is known", () => {
+    dock.use(["displays"]);
+    expect(sent).toEqual([]);
+  });
+
+  it("goes on under the name that the file is saved under", () => {
+    tell(1, null, ["displays"]);
+    expect(dock.file).toBe("<default>");
+    dock.use(["displays", "time"]);
+    receive(configuration({ opened: 1, path: "/new.rviz" }));
+    expect([dock.file, dock.open]).toEqual(["/new.rviz", ["displays", "time"]]);
+    expect(dock.kept.get("/new.rviz")).toEqual(["displays", "time"]);
+  });
+
+  it("stays when the connection is made anew", () => {
+    tell(1, "/a.rviz", ["displays", "views"]);
+    dock.use(["time"]);
+    hello();
+    tell(1, "/a.rviz", ["time"]);
+    expect(dock.open).toEqual(["time"]);
+    hello(); // another program
+    tell(1, "/c.rviz", ["views"]);
+    expect(dock.open).toEqual(["views", "links"]);
+    expect(sent).toHaveLength(1);
+  });
+});
+
+describe("the arrangements that the browser keeps", () => {
+  const texts = new Map<string, string>();
+  const layouts = new Layouts({ getItem: (key) => texts.get(key) ?? null, setItem: (key, text) => void texts.set(key, text) });
+  const layout = (file: string): Layout => ({ file, arrangement: { panels: {} } as Layout["arrangement"] });
+
+  beforeEach(() => texts.clear());
+
+  it("are of the last files, the newest first", () => {
+    expect([layouts.latest, layouts.find("/0.rviz")]).toEqual([null, null]);
+    for (let i = 0; i < 20; i++) layouts.keep(layout(`/${i}.rviz`));
+    expect(layouts.latest?.file).toBe("/19.rviz");
+    expect(layouts.find("/8.rviz")?.file).toBe("/8.rviz");
+    expect(layouts.find("/7.rviz")).toBeNull();
+    layouts.keep(layout("/8.rviz"));
+    expect(layouts.latest?.file).toBe("/8.rviz");
+  });
+
+  it("are none where something else is kept", () => {
+    for (const text of ["{", "7", '{"file": 1}', "[null, 3, {}]"]) {
+      texts.set("linkwright.layouts.1", text);
+      expect(layouts.latest).toBeNull();
+    }
+  });
+});

@@ -1,0 +1,93 @@
+import { Box3, Raycaster, Vector3 } from "three";
+import { describe, expect, it } from "vitest";
+import type { LinkScene, Shape } from "../src/protocol";
+import { TOUCHED } from "../src/scene/layers";
+import { MeshLibrary } from "../src/scene/meshes/mesh-library";
+import { RobotDrawing } from "../src/scene/robot/robot-drawing";
+import { FrameStore } from "../src/state/frames";
+import { PropertyNode, PropertyRows } from "../src/state/properties";
+import { property } from "./messages";
+
+const meshes = new MeshLibrary();
+
+function shape(part: Partial<Shape> & Pick<Shape, "kind" | "size">): Shape {
+  return {
+    position: [0, 0, 0],
+    quaternion: [0, 0, 0, 1],
+    color: [0, 0, 1, 1],
+    texture: null,
+    url: null,
+    format: null,
+    ...part,
+  };
+}
+
+function link(name: string, ...visuals: Shape[]): LinkScene {
+  return { name, frame: name, parent_joint: null, visuals, collisions: [], place: null, inertia: null };
+}
+
+/** A robot whose links stand in a row along y, one metre apart. */
+function robot(links: LinkScene[]): { drawing: RobotDrawing; frames: FrameStore } {
+  const frames = new FrameStore();
+  const names = links.map(({ name }) => name);
+  frames.setTable({ type: "frame_table", revision: 1, names, parents: names.map(() => -1) });
+  const poses = new Float32Array(links.flatMap((_, row) => [0, row, 0, 0, 0, 0, 1]));
+  frames.setTransforms({ revision: 1, stamp: 0, poses, ages: new Float32Array(links.length) });
+  const scene = { type: "robot_scene" as const, display: "1", revision: 1, name: "row", links, joints: [] };
+  const drawing = new RobotDrawing(scene, meshes, () => undefined, () => undefined);
+  return { drawing, frames };
+}
+
+function draw({ drawing, frames }: ReturnType<typeof robot>, rows = new PropertyRows([])): Record<string, unknown> {
+  drawing.style(rows, false);
+  drawing.place(frames);
+  return drawing.tell() as Record<string, unknown>;
+}
+
+const ROW = [
+  link("box", shape({ kind: "box", size: [0.2, 0.4, 0.6], position: [1, 0, 0] })),
+  link("glass", shape({ kind: "box", size: [1, 1, 1], color: [1, 1, 1, 0.5] })),
+  link("can", shape({ kind: "cylinder", size: [0.1, 0.5] }), shape({ kind: "sphere", size: [0.3] })),
+  link("pill", shape({ kind: "capsule", size: [0.1, 0.5] })),
+];
+
+describe("RobotDrawing", () => {
+  it("draws the solid shapes together, where their links are", () => {
+    const row = robot(ROW);
+    expect(draw(row)["drawnTogether"]).toBe(3);
+    const box = new Box3();
+    row.drawing.root.traverse((object) => {
+      if (object.parent === row.drawing.root && "computeBoundingBox" in object) box.union(new Box3().setFromObject(object));
+    });
+    const round = (vector: Vector3): number[] => vector.toArray().map((each) => Math.round(each * 100) / 100);
+    expect(round(box.min)).toEqual([-0.3, -0.2, -0.3]);
+    expect(round(box.max)).toEqual([1.1, 2.3, 0.3]);
+  });
+
+  it("draws what is seen through, white for want of a transform, or switched off, otherwise or not at all", () => {
+    const row = robot(ROW);
+    const rows = (name: string, value: number | boolean): PropertyRows => {
+      return new PropertyRows([new PropertyNode(property({ id: name, name, value }))]);
+    };
+    expect(draw(row, rows("Alpha", 0.5))["drawnTogether"]).toBe(0);
+    expect(draw(row, rows("Visual Enabled", false))["drawnTogether"]).toBe(0);
+    expect(draw(row)["drawnTogether"]).toBe(3);
+    row.frames.setTable({ type: "frame_table", revision: 2, names: ["can"], parents: [-1] });
+    expect(draw(row)["drawnTogether"]).toBe(2);
+  });
+
+  it("lets rays meet what is drawn together, and cameras see it once", () => {
+    const row = robot(ROW);
+    draw(row);
+    row.drawing.root.updateMatrixWorld(true);
+    const ray = new Raycaster(new Vector3(5, 0, 0), new Vector3(-1, 0, 0));
+    expect(row.drawing.pick(ray)).toBeNull();
+    ray.layers.enable(TOUCHED);
+    const hit = row.drawing.pick(ray);
+    expect(hit?.key).toBe("box");
+    expect(hit?.point.x).toBeCloseTo(1.1);
+    const [mesh] = row.drawing.objectsOf("box");
+    expect(mesh?.layers.isEnabled(0)).toBe(false);
+    expect(row.drawing.objectsOf("pill")[0]?.layers.isEnabled(0)).toBe(true);
+  });
+});

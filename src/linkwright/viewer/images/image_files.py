@@ -1,0 +1,114 @@
+"""Images that come as files: the transport `compressed`, and the files inside of `compressedDepth`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from io import BytesIO
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.viewer.images.decoding import BadImageError
+
+MOST_PIXELS = 1 << 24
+"""No image with more pixels is unpacked here: a small file can say that it is as large as it likes."""
+
+_PNG, _JPEG = b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff"
+
+
+@dataclass(frozen=True, slots=True)
+class RawImage:
+    """An image that was unpacked, with the fields of a sensor_msgs/msg/Image.
+
+    Attributes:
+        header: of the message it came in.
+        width: in pixels.
+        height: in pixels.
+        encoding: of the pixels.
+        data: the pixels, row by row, little-endian.
+        step: bytes of a row.
+        is_bigendian: 0.
+    """
+
+    header: Any
+    width: int
+    height: int
+    encoding: str
+    data: NDArray[np.uint8]
+    step: int
+    is_bigendian: int = 0
+
+    @classmethod
+    def of(cls, header: Any, encoding: str, values: NDArray[Any]) -> RawImage:
+        """An image of values, shape (height, width) or (height, width, channels)."""
+        height, width = values.shape[:2]
+        data = np.ascontiguousarray(values, values.dtype.newbyteorder("<")).view(np.uint8).ravel()
+        return cls(header, width, height, encoding, data, data.size // max(1, height))
+
+
+def file_pixels(data: NDArray[np.uint8]) -> NDArray[Any]:
+    """The pixels of a PNG or JPEG, shape (height, width): uint8 or uint16; or uint8, (height, width, 3 or 4).
+
+    Raises:
+        BadImageError: it is neither, has too many pixels, or is broken.
+    """
+    from PIL import JpegImagePlugin, PngImagePlugin
+
+    start = data[:8].tobytes()
+    if not start.startswith((_PNG, _JPEG)):
+        raise BadImageError("The image is neither a PNG nor a JPEG")
+    reader = PngImagePlugin.PngImageFile if start == _PNG else JpegImagePlugin.JpegImageFile
+    try:
+        # Not by Image.open: that one knows more formats, and warns of sizes that are refused below.
+        file = reader(BytesIO(data.tobytes()))
+        width, height = file.size
+        if width * height <= MOST_PIXELS:
+            return _plain(file)
+    except Exception as error:  # noqa: BLE001 - a file from a message may be broken in any way
+        raise BadImageError(f"The {file_kind(start)} cannot be read: {error or type(error).__name__}") from None
+    raise BadImageError(
+        f"The {file_kind(start)} has {width} x {height} pixels; no more than {MOST_PIXELS} are unpacked"
+    )
+
+
+def file_kind(start: bytes) -> str:
+    """What a file is, PNG or JPEG, by how it begins."""
+    return "PNG" if start.startswith(_PNG) else "JPEG"
+
+
+def unpacked(message: Any) -> RawImage:
+    """The image of a message of the transport `compressed`.
+
+    The encoding is that of the file. Of pixels with 16 bits (depths), the format of the message says what they are, and
+    a JPEG has their upper 8 bits, as with compressed_image_transport.
+
+    Args:
+        message: sensor_msgs/msg/CompressedImage, whose format begins with the encoding of the raw image.
+
+    Raises:
+        BadImageError: see `file_pixels`.
+    """
+    pixels = file_pixels(np.frombuffer(message.data, np.uint8))
+    encoding = encoding_of(message)
+    if pixels.ndim == 3:
+        return RawImage.of(message.header, {3: "rgb8", 4: "rgba8"}[pixels.shape[2]], pixels)
+    if encoding not in ("16UC1", "mono16"):
+        encoding = "mono16" if pixels.dtype == np.uint16 else "mono8"
+    elif pixels.dtype == np.uint8:
+        pixels = pixels.astype(np.uint16) << 8
+    return RawImage.of(message.header, encoding, pixels)
+
+
+def encoding_of(message: Any) -> str:
+    """The encoding of the image that a sensor_msgs/msg/CompressedImage was made of, as its format says."""
+    encoding: str = message.format.partition(";")[0].strip()
+    return encoding
+
+
+def _plain(file: Any) -> NDArray[Any]:
+    """The pixels of a file in one of the modes that `file_pixels` promises."""
+    if file.mode in ("I;16", "L", "RGB", "RGBA"):
+        return np.asarray(file)
+    transparent = file.mode in ("LA", "PA") or "transparency" in file.info
+    return np.asarray(file.convert("L" if file.mode == "1" else "RGBA" if transparent else "RGB"))

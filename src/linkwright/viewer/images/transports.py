@@ -1,0 +1,76 @@
+"""Where the images of a topic come from: image_transport's transports, by their names.
+
+A transport other than raw has a topic of its own below the image's, `/camera/image/compressed`. RViz takes the name of
+the transport from the end of a topic where there is no property for it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from linkwright.viewer.images.compressed_depth import unpacked_depth
+from linkwright.viewer.images.image_files import unpacked
+
+RAW, COMPRESSED, COMPRESSED_DEPTH, _THEORA = "raw", "compressed", "compressedDepth", "theora"
+TRANSPORTS = (RAW, COMPRESSED, COMPRESSED_DEPTH, _THEORA)
+_IMAGE, _COMPRESSED_IMAGE = "sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage"
+
+
+@dataclass(frozen=True, slots=True)
+class ImageSource:
+    """The images of a topic as one of the transports brings them.
+
+    Attributes:
+        base: the topic of the raw images.
+        transport: the name of the transport.
+    """
+
+    base: str
+    transport: str = RAW
+
+    @classmethod
+    def of(cls, topic: str, hint: str = RAW) -> ImageSource:
+        """What a topic and a transport hint name; a transport at the end of the topic counts more than the hint."""
+        topic = topic.strip()
+        base, slash, last = topic.rpartition("/")
+        if slash and last in TRANSPORTS[1:]:
+            return cls(base, last)
+        return cls(topic, hint if topic and hint else RAW)
+
+    @property
+    def topic(self) -> str:
+        """The topic that the messages come on; empty when there is none."""
+        return self.base if self.transport == RAW else f"{self.base}/{self.transport}"
+
+    @property
+    def message_type(self) -> str:
+        """The type of the messages."""
+        return _IMAGE if self.transport == RAW else _COMPRESSED_IMAGE
+
+    @property
+    def is_read(self) -> bool:
+        """Whether images of this transport can be unpacked here."""
+        return self.transport in (RAW, COMPRESSED, COMPRESSED_DEPTH)
+
+
+class Unpacker:
+    """Makes raw images of the messages of a transport; remembers the last, which may be shown more than once."""
+
+    def __init__(self) -> None:
+        self._message: Any = None
+        self._image: Any = None
+
+    def image(self, message: Any, transport: str) -> Any:
+        """The image of a message, with the fields of a sensor_msgs/msg/Image.
+
+        Raises:
+            BadImageError: it cannot be unpacked.
+        """
+        if transport == RAW:
+            return message
+        if message is not self._message:
+            self._message = None
+            self._image = unpacked_depth(message) if transport == COMPRESSED_DEPTH else unpacked(message)
+            self._message = message
+        return self._image

@@ -1,0 +1,112 @@
+"""Which panels are open: the file's when it is new to the browser, and the user's from then on."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from linkwright.viewer import RvizConfig
+from tests.browser.live import configuration
+from tests.viewer.panels import RVIZ_PANELS, panels_of, window_state
+
+pytestmark = pytest.mark.browser
+
+GRID = "- Class: rviz_default_plugins/Grid\n  Enabled: true\n  Name: Grid\n  Value: true"
+OURS = {"Links", "Diagnostics"}
+USUAL = ("Displays", "Views", "Tool Properties", "Selection", "Time")
+
+
+@pytest.fixture(autouse=True)
+def _state_of_the_user(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+
+
+def settled(page, *names: str) -> None:
+    """Waits until these are the panels that are open, beside the scene and those that RViz never had."""
+    wanted = sorted({*names, *OURS})
+    page.wait_for_function(
+        """wanted => {
+          const tabs = [...document.querySelectorAll('.panel-tab')].map(tab => tab.textContent.split(' (')[0].trim());
+          const others = tabs.filter(name => name !== '3D View');
+          return JSON.stringify([...new Set(others)].sort()) === JSON.stringify(wanted);
+        }""",
+        arg=wanted,
+        timeout=10_000,
+    )
+
+
+def close(page, name: str) -> None:
+    page.locator(".panel-tab", has_text=name).get_by_role("button").click()
+
+
+def choose(page, name: str) -> None:
+    page.get_by_role("button", name="Panels", exact=True).click()
+    page.get_by_role("menuitemcheckbox", name=name, exact=True).click()
+
+
+def opened(page, path: Path) -> None:
+    page.keyboard.press("Control+o")
+    page.get_by_label("File name").fill(str(path))
+    page.keyboard.press("Enter")
+    page.wait_for_function(f"() => document.querySelector('.file-name').textContent === {path.name!r}")
+
+
+def column_width(page, name: str) -> float:
+    group = page.locator(".dv-groupview", has=page.locator(".panel-tab", has_text=name))
+    return group.bounding_box()["width"]
+
+
+def is_unsaved(page) -> bool:
+    return page.locator(".file-name .unsaved").count() == 1
+
+
+def test_a_file_of_rviz_opens_with_the_panels_that_rviz_shows(live, open_page, tmp_path: Path):
+    path, other = tmp_path / "robot.rviz", tmp_path / "other.rviz"
+    path.write_text(RVIZ_PANELS + configuration(GRID) + window_state(Selection=False, **{"Tool Properties": False}))
+    other.write_text("Panels:\n  - {Class: rviz_common/Time, Name: Time}\n" + configuration(GRID))
+    viewer = live(configuration(GRID))
+    page = open_page(viewer, wait=False)
+    settled(page, *USUAL)  # the file says nothing of panels
+    opened(page, path)
+    settled(page, "Displays", "Views")
+    opened(page, other)
+    settled(page, "Time")
+    opened(page, path)
+    settled(page, "Displays", "Views")
+    # What the others leave is the scene's.
+    widths = [column_width(page, each) for each in ("Displays", "Views", "Diagnostics")]
+    assert widths == pytest.approx([320, 290, 290], abs=3)
+    assert not is_unsaved(page)
+    page.keyboard.press("Control+s")
+    assert viewer.run(viewer.viewer.config.text) == path.read_text()
+
+
+def test_what_the_user_opens_and_closes_is_remembered_and_saved(live, open_page, tmp_path: Path):
+    path = tmp_path / "robot.rviz"
+    path.write_text(RVIZ_PANELS + configuration(GRID) + window_state(Selection=False, **{"Tool Properties": False}))
+    viewer = live(configuration(GRID))
+    page = open_page(viewer, wait=False)
+    settled(page, *USUAL)
+    opened(page, path)
+    settled(page, "Displays", "Views")
+    neighbour = open_page(viewer, wait=False)
+    settled(neighbour, "Displays", "Views")
+    close(page, "Views")
+    choose(page, "Selection")
+    settled(page, "Displays", "Selection")
+    page.locator(".file-name .unsaved").wait_for()
+    choose(page, "Plots")  # none of RViz's
+    page.reload()
+    page.locator(".panel-tab", has_text="Plots").wait_for()
+    close(page, "Plots")
+    settled(page, "Displays", "Selection")
+    # Nobody else's panels come or go, and whoever comes later begins with the file's.
+    settled(neighbour, "Displays", "Views")
+    settled(open_page(viewer, wait=False), "Displays", "Selection")
+    page.keyboard.press("Control+s")
+    page.locator(".file-name .unsaved").wait_for(state="detached")
+    assert panels_of(RvizConfig.load(path)) == ["displays", "selection"]
+    page.get_by_role("button", name="Panels", exact=True).click()
+    page.get_by_role("menuitem", name="Reset layout").click()
+    settled(page, "Displays", "Selection")

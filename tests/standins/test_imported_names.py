@@ -1,0 +1,47 @@
+"""What modules offer only because those of ROS import it: many programs take it from there."""
+
+from __future__ import annotations
+
+import importlib
+import typing
+
+import geometry_msgs.msg
+import pytest
+import rclpy
+import tf2_ros
+from action_msgs.msg import GoalStatus
+from rcl_interfaces.msg import ParameterType
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
+from rclpy.duration import Duration
+from rclpy.task import Future
+
+
+@pytest.mark.parametrize(
+    ("module", "name", "origin"),
+    [
+        ("rclpy.time", "Duration", Duration),
+        ("rclpy.qos", "Duration", Duration),
+        ("rclpy.executors", "Future", Future),
+        ("rclpy.client", "Future", Future),
+        ("rclpy.action.client", "GoalStatus", GoalStatus),
+        ("rclpy.node", "MutuallyExclusiveCallbackGroup", MutuallyExclusiveCallbackGroup),
+        ("rclpy.node", "Optional", typing.Optional),
+        ("rclpy.parameter", "ParameterType", ParameterType),
+        ("tf2_ros", "TransformStamped", geometry_msgs.msg.TransformStamped),
+        ("tf2_ros", "Duration", Duration),
+        ("tf2_geometry_msgs", "PoseStamped", geometry_msgs.msg.PoseStamped),
+    ],
+)
+def test_names_that_come_from_elsewhere(module, name, origin):
+    assert getattr(importlib.import_module(module), name) is origin
+
+
+def test_modules_after_the_package_alone():
+    assert rclpy.qos.QoSProfile is importlib.import_module("rclpy.qos").QoSProfile
+    assert tf2_ros.transform_listener.TransformListener is tf2_ros.TransformListener
+
+
+@pytest.mark.parametrize("module", ["rclpy.time", "rclpy", "tf2_ros", "tf2_geometry_msgs"])
+def test_what_nobody_has(module):
+    assert not hasattr(importlib.import_module(module), "Durations")
+    assert not hasattr(importlib.import_module(module), "_private")

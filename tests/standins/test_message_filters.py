@@ -1,0 +1,139 @@
+"""Messages of several topics matched by their time: ``message_filters``."""
+
+from __future__ import annotations
+
+import pytest
+import rclpy
+from message_filters import ApproximateTimeSynchronizer, Cache, SimpleFilter, Subscriber, TimeSynchronizer
+from rclpy.clock import ClockType
+from rclpy.time import Time
+from sensor_msgs.msg import CameraInfo, Image
+from std_msgs.msg import Header, String
+
+
+@pytest.fixture
+def node(monkeypatch):
+    monkeypatch.setenv("LINKWRIGHT_DDS", "0")
+    with rclpy.init(args=[]):
+        yield rclpy.create_node("matching")
+
+
+def image(seconds):
+    return Image(header=Header(stamp=Time(seconds=seconds).to_msg()))
+
+
+def at(seconds):
+    return Time(seconds=seconds, clock_type=ClockType.ROS_TIME)
+
+
+def stamp(message):
+    return message.header.stamp.sec + message.header.stamp.nanosec / 1e9
+
+
+class Matches(list):
+    """The stamps of the sets that a synchronizer puts out."""
+
+    def __init__(self, synchronizer):
+        super().__init__()
+        synchronizer.registerCallback(lambda *messages: self.append([stamp(each) for each in messages]))
+
+
+def test_subscribers_of_a_node(node):
+    got = []
+    picture = Subscriber(node, Image, "image", qos_profile=5)
+    camera = Subscriber(node, CameraInfo, "camera_info")
+    TimeSynchronizer([picture, camera], 10).registerCallback(lambda *each: got.append(each), "more")
+    assert (picture.getTopic(), picture.topic_name, camera.qos_profile.depth) == ("image", "/image", 10)
+    sent = image(2.5), CameraInfo(header=Header(stamp=Time(seconds=2.5).to_msg()))
+    node.create_publisher(Image, "image", 1).publish(sent[0])
+    node.create_publisher(CameraInfo, "camera_info", 1).publish(sent[1])
+    rclpy.spin_once(node, timeout_sec=1.0)
+    rclpy.spin_once(node, timeout_sec=1.0)
+    assert got == [(*sent, "more")]
+    with pytest.raises(AttributeError):
+        picture.nothing  # noqa: B018
+
+
+def test_the_same_stamps():
+    left, right = SimpleFilter(), SimpleFilter()
+    synchronizer = TimeSynchronizer([left, right], queue_size=2)
+    got = Matches(synchronizer)
+    for seconds in (1, 2, 3):
+        left.signalMessage(image(seconds))
+    right.signalMessage(image(1))
+    assert got == []
+    right.signalMessage(image(3))
+    right.signalMessage(image(2))
+    assert got == [[3, 3], [2, 2]]
+    assert [list(each) for each in synchronizer.queues] == [[], [10**9]]
+
+
+def test_a_callback_that_feeds_the_filter_again():
+    source = SimpleFilter()
+    synchronizer = TimeSynchronizer([source], 1)
+    got = Matches(synchronizer)
+    synchronizer.registerCallback(lambda each: source.signalMessage(image(2)) if stamp(each) < 2 else None)
+    source.signalMessage(image(1))
+    assert got == [[1], [2]]
+
+
+@pytest.mark.parametrize(
+    ("slop", "expected"),
+    [(0.05, []), (0.2, [[1.0, 1.1]]), (0.3, [[1.0, 1.1], [1.5, 1.3]])],
+)
+def test_near_stamps(slop, expected):
+    left, right = SimpleFilter(), SimpleFilter()
+    got = Matches(ApproximateTimeSynchronizer([left, right], 10, slop))
+    left.signalMessage(image(1.0))
+    left.signalMessage(image(0.8))
+    right.signalMessage(image(1.1))
+    right.signalMessage(image(1.3))
+    left.signalMessage(image(1.5))
+    assert got == expected
+
+
+def test_three_topics_are_within_the_slop_of_each_other():
+    inputs = [SimpleFilter() for _ in range(3)]
+    got = Matches(ApproximateTimeSynchronizer(inputs, 10, 0.15))
+    inputs[0].signalMessage(image(0.9))
+    inputs[0].signalMessage(image(1.05))
+    inputs[1].signalMessage(image(1.1))
+    inputs[2].signalMessage(image(1.0))
+    assert got == [[1.05, 1.1, 1.0]]
+
+
+def test_messages_without_a_stamp(node, capfd):
+    plain, other = SimpleFilter(), SimpleFilter()
+    got = []
+    ApproximateTimeSynchronizer([plain, other], 10, 0.1).registerCallback(lambda *each: got.append(each))
+    plain.signalMessage(String(data="now"))
+    assert got == []
+    assert "[message_filters_approx]: can not use message filters messages without" in capfd.readouterr().err
+    ApproximateTimeSynchronizer([plain, other], 10, 60.0, True).registerCallback(lambda *each: got.append(each))
+    plain.signalMessage(String(data="now"))
+    other.signalMessage(String(data="too"))
+    assert got == [(String(data="now"), String(data="too"))]
+
+
+def test_the_time_of_arrival():
+    left, right = SimpleFilter(), SimpleFilter()
+    got = Matches(ApproximateTimeSynchronizer([left, right], 10, 60.0, sync_arrival_time=True))
+    left.signalMessage(image(1))
+    right.signalMessage(image(1000))
+    assert got == [[1, 1000]]
+
+
+def test_a_cache():
+    source = SimpleFilter()
+    cache = Cache(source, cache_size=3)
+    got = Matches(cache)
+    assert (cache.getLast(), cache.getOldestTime(), cache.getLatestTime()) == (None, None, None)
+    for seconds in (1, 2, 3, 4):
+        source.signalMessage(image(seconds))
+    assert got == [[1], [2], [3], [4]]
+    assert (cache.getOldestTime(), cache.getLastestTime()) == (at(2), at(4))
+    assert [stamp(each) for each in cache.getInterval(at(1.5), at(3))] == [2, 3]
+    assert stamp(cache.getElemAfterTime(at(2.5))) == 3
+    assert stamp(cache.getElemBeforeTime(at(2.5))) == 2
+    assert cache.getElemAfterTime(at(5)) is cache.getElemBeforeTime(at(1)) is None
+    assert stamp(cache.getLast()) == 4

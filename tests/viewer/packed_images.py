@@ -1,0 +1,97 @@
+"""Images as image_transport's plugins pack them, by an encoder of the tests' own."""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from io import BytesIO
+
+import numpy as np
+from PIL import Image as Pictures
+
+from linkwright.messages import get_message
+
+CompressedImage = get_message("sensor_msgs/msg/CompressedImage")
+
+
+def chunk(kind: bytes, data: bytes) -> bytes:
+    """A chunk of a PNG."""
+    return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+
+def png(values: np.ndarray, *, says: tuple[int, int] | None = None) -> bytes:
+    """A grey PNG of 8 or 16 bits; it may say that it has another width and height than it has."""
+    height, width = values.shape
+    rows = values.astype(values.dtype.newbyteorder(">"))
+    data = b"".join(b"\0" + row.tobytes() for row in rows)
+    header = struct.pack(">IIBBBBB", *(says or (width, height)), 8 * values.itemsize, 0, 0, 0, 0)
+    parts = chunk(b"IHDR", header), chunk(b"IDAT", zlib.compress(data)), chunk(b"IEND", b"")
+    return b"\x89PNG\r\n\x1a\n" + b"".join(parts)
+
+
+def jpeg(colour: tuple[int, int, int] | int, width: int, height: int) -> bytes:
+    """A JPEG of one colour, or one grey."""
+    file = BytesIO()
+    Pictures.new("L" if isinstance(colour, int) else "RGB", (width, height), colour).save(file, "JPEG", quality=95)
+    return file.getvalue()
+
+
+def rvl(values: np.ndarray) -> bytes:
+    """The numbers of an RVL stream, four bits at a time, of which eight make a word."""
+    groups: list[int] = []
+
+    def put(number: int) -> None:
+        while number > 7:
+            groups.append(8 | number & 7)
+            number >>= 3
+        groups.append(number)
+
+    left, before = [int(value) for value in values.ravel()], 0
+    while left:
+        zeros = next((at for at, value in enumerate(left) if value), len(left))
+        others = next((at for at, value in enumerate(left[zeros:]) if not value), len(left) - zeros)
+        put(zeros)
+        put(others)
+        for value in left[zeros : zeros + others]:
+            step, before = value - before, value
+            put(2 * step if step >= 0 else -2 * step - 1)
+        left = left[zeros + others :]
+    groups += [0] * (-len(groups) % 8)
+    words = [
+        sum(group << (28 - 4 * at) for at, group in enumerate(groups[i : i + 8])) for i in range(0, len(groups), 8)
+    ]
+    return struct.pack(f"<{len(words)}I", *words)
+
+
+def sized_rvl(values: np.ndarray, *, says: tuple[int, int] | None = None) -> bytes:
+    """An RVL stream behind its columns and rows."""
+    height, width = values.shape
+    return struct.pack("<II", *(says or (width, height))) + rvl(values)
+
+
+def header(first: float = 0.0, second: float = 0.0) -> bytes:
+    """What stands before the depths of `compressedDepth`."""
+    return struct.pack("<iff", 0, first, second)
+
+
+def depth_message(values, packing: str = "png", frame: str = "base"):
+    """A message of `compressedDepth` of depths: whole millimetres (uint16), or metres (float), at most 10 of them."""
+    values = np.asarray(values)
+    scale = header()
+    encoding = "16UC1"
+    if values.dtype.kind == "f":
+        encoding, first = "32FC1", 100.0 * 101.0
+        second = 1.0 - first / 10.0
+        scale = header(first, second)
+        near = values < 10.0
+        values = np.where(near, first / np.where(near, values, 1.0) + second, 0.0)
+    pixels = values.astype(np.uint16)
+    data = png(pixels) if packing == "png" else sized_rvl(pixels)
+    return packed(f"{encoding}; compressedDepth {packing}", scale + data, frame)
+
+
+def packed(form: str, data: bytes, frame: str = "base"):
+    """A sensor_msgs/msg/CompressedImage."""
+    message = CompressedImage(format=form, data=data)
+    message.header.frame_id = frame
+    return message
