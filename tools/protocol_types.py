@@ -61,7 +61,9 @@ def generate() -> dict[str, str]:
     names = [each.name for each in pkgutil.iter_modules(protocol.__path__)]
     modules = {name: importlib.import_module(f"{protocol.__name__}.{name}") for name in names}
     homes = {own: _file(name) for name, module in modules.items() for own in _own_names(module)}
-    files = {f"{_file(name)}.ts": _module_text(name, module, homes) for name, module in modules.items()}
+    files = {
+        f"{_file(name)}.ts": _module_text(name, module, homes) for name, module in modules.items() if _own_names(module)
+    }
     return {**files, _INDEX: _index_text(homes)}
 
 

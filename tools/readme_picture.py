@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 import chromium
@@ -17,7 +19,14 @@ FLAGS = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader
 
 def main() -> int:
     """Start the program, turn a wheel, select the link, take the picture."""
-    program = subprocess.Popen([sys.executable, "-m", "linkwright", *COMMAND], stdout=subprocess.PIPE, text=True)
+    with tempfile.TemporaryDirectory() as state:  # the program keeps there what is not saved
+        return 0 if take({**os.environ, "XDG_STATE_HOME": state}) == 130 else 1
+
+
+def take(environment: dict[str, str]) -> int:
+    """The same in an environment; the exit status of the program."""
+    command = [sys.executable, "-m", "linkwright", *COMMAND]
+    program = subprocess.Popen(command, stdout=subprocess.PIPE, env=environment, text=True)
     assert program.stdout is not None
     url = next(line.split()[1] for line in program.stdout if line.startswith("Viewer: "))
     with sync_playwright() as playwright:
@@ -44,7 +53,7 @@ def main() -> int:
         page.screenshot(path=str(TARGET))
         browser.close()
     program.send_signal(signal.SIGINT)
-    return 0 if program.wait(timeout=10) == 130 else 1
+    return program.wait(timeout=10)
 
 
 if __name__ == "__main__":

@@ -18,6 +18,7 @@ function shape(part: Partial<Shape> & Pick<Shape, "kind" | "size">): Shape {
     texture: null,
     url: null,
     format: null,
+    name: "",
     ...part,
   };
 }

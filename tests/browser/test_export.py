@@ -120,14 +120,16 @@ def test_sliders_move_the_robot_and_what_mimics(open_file, tmp_path):
     slider = page.get_by_role("slider", name="open", exact=True)
     slider.focus()
     slider.fill("0.4")
+    until(page, "lw.joints.open > 0.39")  # positions count from the next frame on
     assert state(page, "joints") == pytest.approx({"turn": 0.0, "open": 0.4, "open_too": -0.75})
     assert state(page, "frames")["right"]["position"] == pytest.approx([0.95, 0, 1.25], abs=1e-5)
     field = page.get_by_role("textbox").first
     field.fill("1.2")
     field.press("Enter")
+    until(page, "lw.joints.turn > 1.19")
     assert state(page, "joints")["turn"] == pytest.approx(1.2)
     page.get_by_role("button", name="Reset").click()
-    assert state(page, "joints")["turn"] == pytest.approx(0.0)
+    until(page, "lw.joints.turn < 0.01")
     assert state(page, "frames")["base"]["position"] == pytest.approx([0, 0, 0])
 
 

@@ -135,6 +135,7 @@ INTERACTIVE = configuration(
   Enabled: true
   Name: Handles
   Interactive Markers Namespace: /handles
+  Show Visual Aids: true
 """,
     distance=8,
     pitch=1.4,
@@ -159,7 +160,9 @@ def test_an_interactive_marker_is_dragged_along_its_axis(live, open_page):
     page.mouse.down()
     page.mouse.move(start[0] + metre / 2, start[1] + 5, steps=4)
     page.mouse.move(start[0] + metre, start[1] + 10, steps=4)
+    until(page, "lw.displays[0].drawn.one.aided")
     page.mouse.up()
+    until(page, "!lw.displays[0].drawn.one.aided")
     until(page, "lw.displays[0].drawn.one.pose[0] > 0.7")
     pose = page.evaluate("() => window.linkwright.displays[0].drawn.one.pose")
     assert pose[0] == pytest.approx(1.0, abs=0.15)

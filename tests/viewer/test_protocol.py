@@ -7,7 +7,7 @@ import sys
 import numpy as np
 import pytest
 
-from linkwright.viewer.protocol import pack_transforms
+from linkwright.viewer.protocol import StatusRow, pack_transforms
 from tests.places import REPOSITORY
 from tests.repository_tools import load_tool
 
@@ -43,6 +43,17 @@ def test_a_file_of_types_imports_what_others_declare():
     assert "export interface MarkerShape {" in files["markers.ts"]
     assert 'export * from "./markers";' in files["index.ts"]
     assert max(text.count("\n") for text in files.values()) < 400
+
+
+def test_records_are_compared_and_printed_as_dataclasses_are():
+    row = StatusRow("Topic", "ok", "OK")
+    assert row == StatusRow("Topic", "ok", "OK")
+    assert row != StatusRow("Topic", "warn", "OK")
+    assert row != ("Topic", "ok", "OK")
+    assert repr(row) == "StatusRow(name='Topic', level='ok', text='OK')"
+    assert not hasattr(row, "__dict__")
+    with pytest.raises(TypeError, match="unhashable"):
+        hash(row)
 
 
 def test_a_binary_frame_is_as_described():

@@ -31,6 +31,11 @@ def test_names_attributes_and_children_are_as_written() -> None:
     assert root.text() == "t"
 
 
+def test_a_walk_goes_through_all_elements_in_the_order_of_the_text() -> None:
+    root = parse("<r><a><b/>text<c><d/></c></a><!-- e --><f/></r>", "x").root
+    assert [element.tag for element in root.walk()] == ["r", "a", "b", "c", "d", "f"]
+
+
 def test_every_node_knows_where_it_was_written() -> None:
     text = (
         '<?xml version="1.0"?>\n<!-- 前 -->\n<robot name="轮">\n  <!--c-->文<a\n b="é">x &lt; y</a><?pi d?>'

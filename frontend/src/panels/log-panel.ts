@@ -69,11 +69,6 @@ export class LogPanel implements Panel {
     this.state.setOpen(false);
   }
 
-  /** How many rows are in the page, for tests. */
-  get drawnRows(): number {
-    return this.list.drawnRows;
-  }
-
   private levels(): HTMLElement {
     const group = h("div", { class: "segmented", role: "group", aria: { label: strings.monitor.log.level } });
     for (const level of LEVELS) {

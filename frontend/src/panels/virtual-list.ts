@@ -25,11 +25,6 @@ export class VirtualList<T> {
     new ResizeObserver(() => this.draw()).observe(this.element);
   }
 
-  /** How many rows are in the page. */
-  get drawnRows(): number {
-    return this.rows.childElementCount;
-  }
-
   show(items: readonly T[]): void {
     this.items = items;
     this.first = -1;

@@ -26,10 +26,6 @@ export class VirtualRows {
     new ResizeObserver(() => this.draw(false)).observe(this.element);
   }
 
-  get length(): number {
-    return this.count;
-  }
-
   /** The rows are others, or look other than before. */
   refresh(count = this.count): void {
     this.count = count;

@@ -15,6 +15,7 @@ export interface Shape {
   texture: string | null;
   url: string | null;
   format: string | null;
+  name: string;
 }
 
 /** A link to draw in the frame of its name. */

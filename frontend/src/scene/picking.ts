@@ -36,16 +36,10 @@ export interface ScenePointer {
   readonly y: number;
   readonly dx: number;
   readonly dy: number;
-  /** 120 a notch, positive away from the user. */
-  readonly wheel: number;
   /** The button that went down or up. */
   readonly button: "left" | "middle" | "right" | null;
-  readonly left: boolean;
-  readonly middle: boolean;
-  readonly right: boolean;
   readonly shift: boolean;
   readonly ctrl: boolean;
-  readonly alt: boolean;
   /** From the eye through the pointer. */
   readonly ray: Raycaster;
   /** What of the drawing the ray meets; while something is held, what it met when it was taken. */

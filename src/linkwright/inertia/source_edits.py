@@ -77,7 +77,7 @@ def _written_element(link: Link) -> Element:
     if macro is not None:
         raise NotWritableError(f"it is written by the macro '{macro}'")
     document = parse(element.source.text, element.source.name)
-    written = next((each for each in _walk(document.root) if each.offset == element.offset), None)
+    written = next((each for each in document.root.walk() if each.offset == element.offset), None)
     if written is None or written.tag != "link":
         raise NotWritableError("it is not written as a plain <link>")
     dynamic = next((child.tag for child in written.elements() if child.tag.startswith("xacro:")), None)
@@ -157,18 +157,10 @@ def _says_the_same(written: str, value: str) -> bool:
     return len(there) == len(wanted) and all(isclose(a, b, rel_tol=1e-5) for a, b in zip(there, wanted, strict=True))
 
 
-def _walk(root: Element) -> Iterator[Element]:
-    waiting = [root]
-    while waiting:
-        element = waiting.pop()
-        yield element
-        waiting.extend(element.elements())
-
-
 def _holds(element: Element, pattern: re.Pattern[str]) -> bool:
     """Whether the pattern is found in an attribute of an element or below it, or a child is left to xacro."""
     return any(
-        each.tag.startswith("xacro:") or any(map(pattern.search, each.attributes.values())) for each in _walk(element)
+        each.tag.startswith("xacro:") or any(map(pattern.search, each.attributes.values())) for each in element.walk()
     )
 
 

@@ -58,10 +58,7 @@ def _end_of_root(error: LinkwrightError) -> int | None:
 
 
 def _restore_blanks(root: Element, text: str) -> None:
-    elements = [root]
-    while elements:
-        element = elements.pop()
-        elements.extend(element.elements())
+    for element in root.walk():
         for attribute in element.attributes:
             found = attribute_value_range(text, element.offset, attribute)
             if found is None:

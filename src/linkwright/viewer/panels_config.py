@@ -54,7 +54,7 @@ class PanelsConfig:
         others = [section for section in self._order if section.scalar("Class") and _panel(section) is None]
         if others:
             names = ", ".join(f"'{section.text('Name') or section.text('Class')}'" for section in others)
-            message = f"panels of other packages are kept in the file and not shown: {names}"
+            message = f"panels that the page does not have are kept in the file: {names}"
             report(Diagnostic("RVIZ204", message, others[0].span(), Severity.WARNING, source=document.source))
 
     @property

@@ -80,6 +80,7 @@ class SceneBuilder:
             quaternion=list(quaternion_of(part.origin)),
             color=list(material.rgba) if material and material.rgba else None,
             texture=self._texture(link, material),
+            name=part.name,
         )
         if isinstance(geometry, Box):
             shape.kind, shape.size = "box", list(geometry.size)

@@ -114,7 +114,7 @@ class _Session(ObservedSession):
 
     def expect(self, document: Document) -> None:
         """Take the defaults that a document declares for what may be missing before it is declared."""
-        for element in _elements(document.root):
+        for element in document.root.walk():
             if element.tag == "xacro:arg" and "name" in element.attributes:
                 default = element.attributes.get("default", "")
                 self._defaults.setdefault(element.attributes["name"], "" if "$" in default else default)
@@ -149,7 +149,7 @@ class _Findings:
 
     def __post_init__(self) -> None:
         for document in self.session.documents.values():
-            for element in _elements(document.root):
+            for element in document.root.walk():
                 if element.tag == "xacro:arg" and "name" in element.attributes:
                     self.elsewhere.setdefault(element.attributes["name"], element)
                 for name, span in _uses(element):
@@ -216,7 +216,7 @@ def _follow_includes(session: _Session) -> None:
     while pending and len(seen) < _MOST_FILES:
         file, document = pending.pop()
         session.file = file
-        for element in _elements(document.root):
+        for element in document.root.walk():
             if element.tag != "xacro:include":
                 continue
             try:
@@ -242,15 +242,6 @@ def _uses(element: Element) -> Iterator[tuple[str, Span | None]]:
 
 def _found(text: str) -> Iterator[re.Match[str]]:
     return _USE.finditer(text) if "arg" in text else iter(())
-
-
-def _elements(root: Element) -> Iterator[Element]:
-    """An element and all elements inside, in document order."""
-    pending = [root]
-    while pending:
-        element = pending.pop()
-        yield element
-        pending.extend(reversed(list(element.elements())))
 
 
 def arguments_data(arguments: tuple[Argument, ...]) -> list[dict[str, Any]]:

@@ -107,7 +107,7 @@ def stories(inputs: Inputs, name: str) -> tuple[Story, ...]:
     root = expansion.document.root
     named = [element for element in root.elements() if element.attributes.get("name") == name]
     if not named:
-        named = [element for element in _walk(root) if element.attributes.get("name") == name]
+        named = [element for element in root.walk() if element.attributes.get("name") == name]
     if not named:
         raise LinkwrightError(_unknown(name, path, root))
     teller = _Teller(inputs, root)
@@ -135,7 +135,7 @@ class _Teller:
         session = ObservedSession(inputs)
         self._again = expand_observed(inputs, session, self._recorder.directives, self._recorder.call)
         self._twins: dict[int, Element] = {}
-        for ours, theirs in zip(_walk(root), _walk(self._again.root), strict=False):
+        for ours, theirs in zip(root.walk(), self._again.root.walk(), strict=False):
             if ours.tag != theirs.tag or ours.attributes != theirs.attributes:
                 break
             self._twins[id(ours)] = theirs
@@ -196,15 +196,6 @@ def _texts(element: Element, moment: Moment) -> Iterator[TextStory]:
 
 def _where(text: Text) -> tuple[str, int]:
     return (text.source.name if text.source else "", text.offset)
-
-
-def _walk(root: Element) -> Iterator[Element]:
-    """An element and all elements inside, in document order."""
-    pending = [root]
-    while pending:
-        element = pending.pop()
-        yield element
-        pending.extend(reversed(list(element.elements())))
 
 
 def _unknown(name: str, file: str, root: Element) -> Diagnostic:

@@ -83,6 +83,14 @@ class Element:
             if isinstance(child, Element) and (tag is None or child.tag == tag):
                 yield child
 
+    def walk(self) -> Iterator[Element]:
+        """The element itself and all elements inside, in document order."""
+        pending = [self]
+        while pending:
+            element = pending.pop()
+            yield element
+            pending.extend(reversed(list(element.elements())))
+
     def first(self, tag: str) -> Element | None:
         """The first child element of a tag, or None."""
         return next(self.elements(tag), None)

@@ -51,6 +51,7 @@ export class InteractiveMarkersDrawing implements Drawing {
       marker.update(session.frames, camera(), {
         descriptions: display.rows.bool(true, "Show Descriptions"),
         axes: display.rows.bool(false, "Show Axes"),
+        aids: display.rows.bool(false, "Show Visual Aids"),
         interactive: this.interaction.enabled && !others,
       });
     }
@@ -126,7 +127,8 @@ export class InteractiveMarkersDrawing implements Drawing {
     return Object.fromEntries(
       [...this.markers].map(([name, marker]) => {
         const box = new Box3().setFromObject(marker.root);
-        return [name, { pose: marker.values, controls: marker.controls.length, bounds: [box.min.toArray(), box.max.toArray()] }];
+        const bounds = [box.min.toArray(), box.max.toArray()];
+        return [name, { pose: marker.values, controls: marker.controls.length, aided: marker.isAided, bounds }];
       }),
     );
   }

@@ -9,6 +9,7 @@ import type { ScenePointer } from "../picking";
 import { dataPose } from "../pose";
 import { ControlHandle } from "./control-handle";
 import { Drag, type MarkerPose } from "./dragging";
+import { VisualAid } from "./visual-aid";
 
 const AXES_LENGTH = 1;
 const AXES_RADIUS = 0.05;
@@ -20,6 +21,8 @@ const TITLE_ABOVE = 1.4;
 export interface MarkerOptions {
   descriptions: boolean;
   axes: boolean;
+  /** The line that a control is dragged along, or turned about, shows. */
+  aids: boolean;
   /** The Interact tool is in hand: controls that are not always visible show. */
   interactive: boolean;
 }
@@ -30,6 +33,7 @@ export class MarkerHandle {
   readonly controls: readonly ControlHandle[];
   private readonly frame = new Group();
   private readonly axes: AxesBatch;
+  private readonly aid = new VisualAid(this.frame);
   private readonly title: Sprite | null;
   private readonly pose: MarkerPose = { position: new Vector3(), orientation: new Quaternion() };
   private drag: { drag: Drag; control: ControlHandle } | null = null;
@@ -54,6 +58,11 @@ export class MarkerHandle {
 
   get isHeld(): boolean {
     return this.drag !== null;
+  }
+
+  /** Whether the line is drawn that a control is dragged along, or turned about. */
+  get isAided(): boolean {
+    return this.aid.shown;
   }
 
   get settled(): boolean {
@@ -86,6 +95,9 @@ export class MarkerHandle {
     this.axes.begin(1);
     if (options.axes) this.axes.add(new Matrix4().compose(position, orientation, new Vector3(1, 1, 1)));
     this.axes.end();
+    const held = this.drag?.control;
+    if (held && options.aids) this.aid.show(held.control, position, held.orientation);
+    else this.aid.hide();
     if (this.title) {
       this.title.visible = options.descriptions;
       this.title.position.copy(position).add(new Vector3(0, 0, TITLE_ABOVE * this.shape.scale));
@@ -156,6 +168,7 @@ export class MarkerHandle {
     this.root.removeFromParent();
     for (const control of this.controls) control.dispose();
     this.axes.dispose();
+    this.aid.dispose();
     this.title?.material.map?.dispose();
     this.title?.material.dispose();
   }

@@ -122,7 +122,7 @@ export class RobotExtras {
 }
 
 /** A joint's frame in that of its parent link, at position zero. */
-export function jointOrigin({ position, quaternion }: JointScene): Matrix4 {
+function jointOrigin({ position, quaternion }: JointScene): Matrix4 {
   return new Matrix4().compose(new Vector3().fromArray(position), new Quaternion().fromArray(quaternion), ONE);
 }
 

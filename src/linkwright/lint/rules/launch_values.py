@@ -13,7 +13,6 @@ from linkwright.lint.package import PackageContext
 from linkwright.lint.python_values import PythonFile, argument_of, called_name
 from linkwright.lint.rules.launch_files import LaunchRule
 from linkwright.lint.rules.package_manifest import PackageRule
-from linkwright.xmltree import Document, Element
 
 _FIXED_FRAME = re.compile(r"^( *)Fixed Frame:[ \t]*(?P<name>\S[^\n#]*?)[ \t]*$", re.MULTILINE)
 _USUAL_FRAMES = frozenset({"map", "odom", "world", "earth", "base_link", "base_footprint"})
@@ -213,20 +212,12 @@ class FixedFrameUnknown(PackageRule):
                 yield self.report(message, span=span, source=source, hint=f"did you mean '{like}'?")
 
 
-def _elements(document: Document) -> Iterator[Element]:
-    stack = [document.root]
-    while stack:
-        element = stack.pop()
-        yield element
-        stack.extend(element.elements())
-
-
 def _link_names(package: PackageContext) -> tuple[set[str], list[list[str]]]:
     """The names of links as they are written in the package's descriptions: plain ones, and the parts of others."""
     names: set[str] = set()
     patterns: list[list[str]] = []
     for document in package.descriptions.values():
-        for element in _elements(document):
+        for element in document.root.walk():
             included = element.attributes.get("filename", "") if element.tag == "xacro:include" else ""
             if "$(find" in included and f"$(find {package.name})" not in included:
                 return set(), []  # links from elsewhere

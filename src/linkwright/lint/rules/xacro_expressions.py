@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import islice
 
 from linkwright.diagnostics import Diagnostic
 from linkwright.lint.fix import Edit, Fix
@@ -103,7 +104,7 @@ class ConstantCondition(Rule):
         if subject.expansion is None:
             return
         for file in xacro_facts(subject).own.values():
-            for element in elements_below(file.document.root):
+            for element in islice(file.document.root.walk(), 1, None):
                 if element.tag not in ("xacro:if", "xacro:unless"):
                     continue
                 value = element.attributes.get("value", "")
@@ -161,13 +162,3 @@ class UndeclaredArgument(Rule):
                         message = f"nothing declares the argument '{name}', which a branch not taken uses"
                         hint = f'declare it: <xacro:arg name="{name}" default="..."/>'
                         yield self.report(message, use.element, use.attribute, hint=hint)
-
-
-def elements_below(root: Element) -> Iterator[Element]:
-    """All elements inside an element, in document order."""
-    waiting = [root]
-    while waiting:
-        element = waiting.pop()
-        if element is not root:
-            yield element
-        waiting.extend(reversed(list(element.elements())))

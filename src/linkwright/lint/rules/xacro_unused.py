@@ -277,16 +277,13 @@ def _used_inside(macro: Element, file: FileFacts) -> tuple[set[str], set[str], b
             names |= use.found.names
             is_open = is_open or use.found.is_open or bool(use.found.pasted)
     blocks: set[str] = set()
-    stack = [macro]
-    while stack:
-        element = stack.pop()
+    for element in macro.walk():
         if element.tag == "xacro:insert_block":
             blocks.add(element.attributes.get("name", ""))
         if element.tag == "xacro:call" or element.tag == "xacro:element":
             is_open = True
         if element.tag == "xacro:macro" and element is not macro:
             names |= {parameter.name for parameter in file.parameters(element) if parameter.forward}
-        stack.extend(element.elements())
     return names, blocks, is_open
 
 

@@ -11,7 +11,7 @@ from linkwright.lint.suppression import Suppressions
 from linkwright.urdf import Reading, Robot
 from linkwright.viewer.protocol import InertiaFinding
 from linkwright.workspace import PackageFinder
-from linkwright.xmltree import Document, Element
+from linkwright.xmltree import Document
 
 _RULES = "LW3"
 """The rules about masses and inertias."""
@@ -49,11 +49,8 @@ def _owners(robot: Robot) -> dict[int, str]:
     """Identity of every element inside of a link -> the link."""
     owners: dict[int, str] = {}
     for link in robot.links.values():
-        pending: list[Element] = [] if link.element is None else [link.element]
-        while pending:
-            element = pending.pop()
-            owners[id(element)] = link.name
-            pending.extend(element.elements())
+        if link.element is not None:
+            owners.update((id(element), link.name) for element in link.element.walk())
     return owners
 
 

@@ -50,7 +50,7 @@ def _sources(root: Element | None) -> dict[str, SourceText]:
     """The texts in which the elements, and the calls that brought them, are written."""
     found: dict[str, SourceText] = {}
     known: set[int] = set()
-    for element in _walk(root):
+    for element in root.walk() if root is not None else ():
         for source in (element.source, *_sites(element, known)):
             if source is not None and not source.name.startswith("<"):
                 found.setdefault(source.name, source)
@@ -64,11 +64,3 @@ def _sites(element: Element, known: set[int]) -> Iterator[SourceText | None]:
     known.add(id(innermost))
     for frame in frames(innermost):
         yield frame.site.source
-
-
-def _walk(root: Element | None) -> Iterator[Element]:
-    pending = [] if root is None else [root]
-    while pending:
-        element = pending.pop()
-        yield element
-        pending.extend(reversed(list(element.elements())))

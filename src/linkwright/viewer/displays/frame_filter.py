@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Collection
+from typing import TYPE_CHECKING
 
-from linkwright.graph.expressions import Expression, ExpressionError, TooCostlyError
+if TYPE_CHECKING:
+    from linkwright.graph.expressions import Expression
 
 _NOT_USED = "This expression is not used"
 
@@ -23,13 +25,16 @@ class FrameFilter:
     def __init__(self, text: str = "") -> None:
         self.text = text
         self.problem: str | None = None
-        self._expression: Expression | None = None
+        self._expression: Expression | None = None  # what reads one is imported for the few who write one
         self._known: set[str] = set()
         self._found: set[str] = set()
-        try:
-            self._expression = Expression(text) if text else None
-        except ExpressionError as error:
-            self.problem = f"{_NOT_USED}: {error}"
+        if text:
+            from linkwright.graph.expressions import Expression, ExpressionError
+
+            try:
+                self._expression = Expression(text)
+            except ExpressionError as error:
+                self.problem = f"{_NOT_USED}: {error}"
 
     @property
     def is_used(self) -> bool:
@@ -39,6 +44,8 @@ class FrameFilter:
     def found_in(self, names: Collection[str]) -> set[str]:
         """Those names in which the expression is found; with one that takes too long there is none from now on."""
         if self._expression is not None:
+            from linkwright.graph.expressions import TooCostlyError
+
             try:
                 found = self._expression.among(name for name in names if name not in self._known)
                 self._found = found | self._found.intersection(names)

@@ -39,7 +39,7 @@ class InteractiveMarkersDisplay(DataDisplay):
         PropertySpec(_NAMESPACE, "string", "", "The namespace of the interactive marker server."),
         PropertySpec("Show Descriptions", "bool", True, "Show the description above each marker."),
         PropertySpec("Show Axes", "bool", False, "Show the axes of each marker."),
-        PropertySpec("Show Visual Aids", "bool", False, "Show lines that help while a marker is moved or turned."),
+        PropertySpec("Show Visual Aids", "bool", False, "Show the line that a marker is moved along or turned about."),
         PropertySpec(_TRANSPARENCY, "bool", True, "Whether arrows and rings that a server left out are seen through."),
     )
 

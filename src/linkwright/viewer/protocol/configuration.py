@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal
+
+from linkwright.viewer.protocol.record import record
 
 EditKind = Literal["set", "enable", "disable", "add", "duplicate", "rename", "remove", "move", "group"]
 Question = Literal["unsaved", "exists", "changed_on_disk"]
@@ -12,7 +13,7 @@ Question = Literal["unsaved", "exists", "changed_on_disk"]
 # --- server to page ------------------------------------------------------------------------------------------------
 
 
-@dataclass(slots=True)
+@record
 class EditName:
     """What undo or redo would do: the kind of edit, and the name of the property or display."""
 
@@ -20,7 +21,7 @@ class EditName:
     name: str
 
 
-@dataclass(slots=True)
+@record
 class Configuration:
     """The configuration that the page sees.
 
@@ -44,7 +45,7 @@ class Configuration:
     type: Literal["configuration"] = "configuration"
 
 
-@dataclass(slots=True)
+@record
 class DisplayClass:
     """A class of displays that can be added, and the types of the topics that it shows."""
 
@@ -52,7 +53,7 @@ class DisplayClass:
     messages: list[str]
 
 
-@dataclass(slots=True)
+@record
 class DisplayClasses:
     """All classes of displays that can be added."""
 
@@ -60,7 +61,7 @@ class DisplayClasses:
     type: Literal["display_classes"] = "display_classes"
 
 
-@dataclass(slots=True)
+@record
 class TopicChoice:
     """A topic of the graph, its type, and the classes of displays that show it; none when no display does."""
 
@@ -69,7 +70,7 @@ class TopicChoice:
     classes: list[str]
 
 
-@dataclass(slots=True)
+@record
 class TopicChoices:
     """Answers `AskTopics`."""
 
@@ -77,7 +78,7 @@ class TopicChoices:
     type: Literal["topic_choices"] = "topic_choices"
 
 
-@dataclass(slots=True)
+@record
 class Folder:
     """Answers `AskFolder`: the folders and configuration files in a folder of the server, by name."""
 
@@ -88,7 +89,7 @@ class Folder:
     type: Literal["folder"] = "folder"
 
 
-@dataclass(slots=True)
+@record
 class ConfigurationText:
     """Answers `AskConfigurationText`: the file as it would be saved now, and a name for it."""
 
@@ -97,7 +98,7 @@ class ConfigurationText:
     type: Literal["configuration_text"] = "configuration_text"
 
 
-@dataclass(slots=True)
+@record
 class ConfigurationSaved:
     """The configuration was saved."""
 
@@ -105,7 +106,7 @@ class ConfigurationSaved:
     type: Literal["configuration_saved"] = "configuration_saved"
 
 
-@dataclass(slots=True)
+@record
 class ConfigurationRefused:
     """What a page asked for was not done. With a question, it is done when the page asks again and says so."""
 
@@ -118,7 +119,7 @@ class ConfigurationRefused:
 # --- page to server ------------------------------------------------------------------------------------------------
 
 
-@dataclass(slots=True)
+@record
 class AddDisplay:
     """Add a display of a class, enabled; into a group, if one is named, and showing a topic, if one is named."""
 
@@ -129,7 +130,7 @@ class AddDisplay:
     type: Literal["add_display"] = "add_display"
 
 
-@dataclass(slots=True)
+@record
 class DuplicateDisplays:
     """Add a display alike after each of these."""
 
@@ -137,7 +138,7 @@ class DuplicateDisplays:
     type: Literal["duplicate_displays"] = "duplicate_displays"
 
 
-@dataclass(slots=True)
+@record
 class RenameDisplay:
     """Give a display another name."""
 
@@ -146,7 +147,7 @@ class RenameDisplay:
     type: Literal["rename_display"] = "rename_display"
 
 
-@dataclass(slots=True)
+@record
 class RemoveDisplays:
     """Remove displays, and what is in them."""
 
@@ -154,7 +155,7 @@ class RemoveDisplays:
     type: Literal["remove_displays"] = "remove_displays"
 
 
-@dataclass(slots=True)
+@record
 class MoveDisplays:
     """Put displays into a group (None for none), in front of one of it (None for the end)."""
 
@@ -164,7 +165,7 @@ class MoveDisplays:
     type: Literal["move_displays"] = "move_displays"
 
 
-@dataclass(slots=True)
+@record
 class GroupDisplays:
     """Put displays into a new group, where the first of them is."""
 
@@ -173,28 +174,28 @@ class GroupDisplays:
     type: Literal["group_displays"] = "group_displays"
 
 
-@dataclass(slots=True)
+@record
 class Undo:
     """Take back the last edit of any page."""
 
     type: Literal["undo"] = "undo"
 
 
-@dataclass(slots=True)
+@record
 class Redo:
     """Do again what was taken back."""
 
     type: Literal["redo"] = "redo"
 
 
-@dataclass(slots=True)
+@record
 class AskTopics:
     """Which topics there are, and which displays show them."""
 
     type: Literal["ask_topics"] = "ask_topics"
 
 
-@dataclass(slots=True)
+@record
 class AskFolder:
     """What is in a folder of the server; None for that of the open file."""
 
@@ -202,7 +203,7 @@ class AskFolder:
     type: Literal["ask_folder"] = "ask_folder"
 
 
-@dataclass(slots=True)
+@record
 class NewConfiguration:
     """Begin anew with RViz's default; `discard` says that what is unsaved may be lost."""
 
@@ -210,7 +211,7 @@ class NewConfiguration:
     type: Literal["new_configuration"] = "new_configuration"
 
 
-@dataclass(slots=True)
+@record
 class OpenConfiguration:
     """Open a file of the server; `discard` says that what is unsaved may be lost."""
 
@@ -219,7 +220,7 @@ class OpenConfiguration:
     type: Literal["open_configuration"] = "open_configuration"
 
 
-@dataclass(slots=True)
+@record
 class LoadConfiguration:
     """Open a file of the browser's machine: its name and text."""
 
@@ -229,14 +230,14 @@ class LoadConfiguration:
     type: Literal["load_configuration"] = "load_configuration"
 
 
-@dataclass(slots=True)
+@record
 class RevertConfiguration:
     """Open the file anew, without what was edited."""
 
     type: Literal["revert_configuration"] = "revert_configuration"
 
 
-@dataclass(slots=True)
+@record
 class SaveConfiguration:
     """Save to the file, or to another one of the server, which is the configuration's file from then on.
 
@@ -250,7 +251,7 @@ class SaveConfiguration:
     type: Literal["save_configuration"] = "save_configuration"
 
 
-@dataclass(slots=True)
+@record
 class AskConfigurationText:
     """The file as it would be saved now, to be kept on the browser's machine."""
 

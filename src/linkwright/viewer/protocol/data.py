@@ -11,12 +11,13 @@ from __future__ import annotations
 import dataclasses
 import json
 import struct
-from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
+
+from linkwright.viewer.protocol.record import record
 
 if TYPE_CHECKING:
     from linkwright.viewer.protocol import DataContent
@@ -38,7 +39,7 @@ _EMPTY: dict[str, dict[str, list[Any]]] = {kind: {"$": [name, 0, 0]} for kind, (
 _PLAIN_TYPES = frozenset((str, float, int, bool, type(None)))
 
 
-@dataclass(slots=True)
+@record
 class DisplayForgotten:
     """Content of a display is to be drawn no more: that with a key, or all of it."""
 

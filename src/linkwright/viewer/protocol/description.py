@@ -5,11 +5,12 @@ A page asks for what it shows. `DescriptionChanged` tells every page that there 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import ClassVar, Literal
 
+from linkwright.viewer.protocol.record import record
 
-@dataclass(slots=True)
+
+@record
 class CallSite:
     """Where a macro was called, or, without a macro, a file included; 1-based."""
 
@@ -19,7 +20,7 @@ class CallSite:
     column: int
 
 
-@dataclass(slots=True)
+@record
 class SourceRange:
     """Characters of a text, from 1, the end exclusive; `file` is empty for the expanded description."""
 
@@ -30,7 +31,7 @@ class SourceRange:
     end_column: int
 
 
-@dataclass(slots=True)
+@record
 class Written:
     """Where an element stands in the expanded text and where it was written, with the calls between them.
 
@@ -43,7 +44,7 @@ class Written:
     calls: list[CallSite]
 
 
-@dataclass(slots=True)
+@record
 class LinkInertia:
     """Mass in kg and centre of mass in the link's frame, m.
 
@@ -57,7 +58,7 @@ class LinkInertia:
     quaternion: list[float]
 
 
-@dataclass(slots=True)
+@record
 class LinkDetails:
     """A link as it is described; `frame` is its name in tf."""
 
@@ -68,7 +69,7 @@ class LinkDetails:
     written: Written
 
 
-@dataclass(slots=True)
+@record
 class JointMimic:
     """Position = multiplier * position of `joint` + offset."""
 
@@ -77,7 +78,7 @@ class JointMimic:
     offset: float
 
 
-@dataclass(slots=True)
+@record
 class JointDetails:
     """A joint as it is described: the origin in the parent's frame, the unit axis in the joint's frame; SI units.
 
@@ -106,7 +107,7 @@ class JointDetails:
     written: Written
 
 
-@dataclass(slots=True)
+@record
 class Description:
     """What stands behind the robot of a RobotModel display; answers `AskDescription`.
 
@@ -125,7 +126,7 @@ class Description:
     type: Literal["description"] = "description"
 
 
-@dataclass(slots=True)
+@record
 class DescriptionChanged:
     """A display shows another description now; the links and joints that say something else than before are named."""
 
@@ -138,7 +139,7 @@ class DescriptionChanged:
     type: Literal["description_changed"] = "description_changed"
 
 
-@dataclass(slots=True)
+@record
 class DescriptionText:
     """A text of a description, or the expanded one where `file` is empty; None for what is no file of it."""
 
@@ -151,7 +152,7 @@ class DescriptionText:
     type: Literal["description_text"] = "description_text"
 
 
-@dataclass(slots=True)
+@record
 class InertiaFinding:
     """What is implausible about the mass or inertia of a link."""
 
@@ -161,7 +162,7 @@ class InertiaFinding:
     hint: str
 
 
-@dataclass(slots=True)
+@record
 class InertiaFindings:
     """All that is implausible about the masses of a robot; answers `AskInertia`."""
 
@@ -173,7 +174,7 @@ class InertiaFindings:
     type: Literal["inertia_findings"] = "inertia_findings"
 
 
-@dataclass(slots=True)
+@record
 class AskDescription:
     """The page shows links, joints or masses of a RobotModel display."""
 
@@ -181,7 +182,7 @@ class AskDescription:
     type: Literal["ask_description"] = "ask_description"
 
 
-@dataclass(slots=True)
+@record
 class AskDescriptionText:
     """The page shows a text of a description; an empty `file` is the expanded one.
 
@@ -193,7 +194,7 @@ class AskDescriptionText:
     type: Literal["ask_description_text"] = "ask_description_text"
 
 
-@dataclass(slots=True)
+@record
 class AskInertia:
     """The page wants to mark links whose masses are implausible, which takes the server a while."""
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal
 
+from linkwright.viewer.protocol.record import record
 
-@dataclass(slots=True)
+
+@record
 class DiagnosticNote:
     """A note of a diagnostic."""
 
@@ -16,7 +17,7 @@ class DiagnosticNote:
     column: int | None
 
 
-@dataclass(slots=True)
+@record
 class DiagnosticItem:
     """A diagnostic for the page; `excerpt` is the source line, if there is one."""
 
@@ -33,7 +34,7 @@ class DiagnosticItem:
     hints: list[str]
 
 
-@dataclass(slots=True)
+@record
 class Diagnostics:
     """What is wrong with the description now; none clears the list."""
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import ClassVar, Literal
 
 from linkwright.viewer.protocol.parts import Property, PropertyValue, StatusLevel, StatusRow
+from linkwright.viewer.protocol.record import record
 
 
-@dataclass(slots=True)
+@record
 class Display:
     """One display of the Displays panel. `cls` is RViz's class, such as ``rviz_default_plugins/Grid``.
 
@@ -34,7 +34,7 @@ class Display:
     properties: list[Property]
 
 
-@dataclass(slots=True)
+@record
 class Tree:
     """The whole Displays tree: sent at the start and whenever displays come or go."""
 
@@ -45,7 +45,7 @@ class Tree:
     type: Literal["tree"] = "tree"
 
 
-@dataclass(slots=True)
+@record
 class DisplayProperties:
     """The property rows of one display anew (the links of a new robot, the frames of TF)."""
 
@@ -56,7 +56,7 @@ class DisplayProperties:
     type: Literal["display_properties"] = "display_properties"
 
 
-@dataclass(slots=True)
+@record
 class PropertyChanged:
     """One value, set by any page or by the server. Enable boxes are the property ``<display>/Enabled``."""
 
@@ -68,7 +68,7 @@ class PropertyChanged:
     type: Literal["property_changed"] = "property_changed"
 
 
-@dataclass(slots=True)
+@record
 class DisplayStatus:
     """The status rows of one display, or of ``global``."""
 
@@ -80,7 +80,7 @@ class DisplayStatus:
     type: Literal["display_status"] = "display_status"
 
 
-@dataclass(slots=True)
+@record
 class SetProperty:
     """The user edited a property."""
 

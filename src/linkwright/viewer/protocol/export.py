@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal
 
+from linkwright.viewer.protocol.record import record
 from linkwright.viewer.protocol.views import View
 
 
-@dataclass(slots=True)
+@record
 class AskExport:
     """The user wants what is seen as a file; `view` is the camera as the page has it."""
 
@@ -17,7 +17,7 @@ class AskExport:
     type: Literal["ask_export"] = "ask_export"
 
 
-@dataclass(slots=True)
+@record
 class ExportReady:
     """The file can be fetched, once, from an address of the server; answers `AskExport`."""
 
@@ -26,7 +26,7 @@ class ExportReady:
     type: Literal["export_ready"] = "export_ready"
 
 
-@dataclass(slots=True)
+@record
 class ExportFailed:
     """The file could not be made; answers `AskExport`."""
 

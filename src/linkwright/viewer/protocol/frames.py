@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import struct
-from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from linkwright.viewer.protocol.record import record
+
 _TRANSFORMS_HEADER = struct.Struct("<IIIId")
 TRANSFORMS_KIND = 1
 
 
-@dataclass(slots=True)
+@record
 class FrameTable:
     """Names and parents (index, -1 for a root) of the frames in the binary frames with this revision."""
 

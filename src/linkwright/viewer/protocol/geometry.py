@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal
 
 from linkwright.viewer.protocol.data import Floats
+from linkwright.viewer.protocol.record import record
 
 
-@dataclass(slots=True)
+@record
 class PointMarks:
     """PointStamped: points in the frame of the content, metres, shape (N, 3)."""
 
@@ -16,7 +16,7 @@ class PointMarks:
     kind: Literal["point_marks"] = "point_marks"
 
 
-@dataclass(slots=True)
+@record
 class PoseMarks:
     """Pose, PoseArray, PoseWithCovariance, Odometry and Path: poses in the frame of the content.
 
@@ -29,7 +29,7 @@ class PoseMarks:
     kind: Literal["pose_marks"] = "pose_marks"
 
 
-@dataclass(slots=True)
+@record
 class PolygonLine:
     """Polygon: its corners in the frame of the content, shape (N, 3)."""
 
@@ -37,7 +37,7 @@ class PolygonLine:
     kind: Literal["polygon_line"] = "polygon_line"
 
 
-@dataclass(slots=True)
+@record
 class RangeCone:
     """Range: a cone along x of the frame of the content, metres and radians; no cone where `range` is 0."""
 
@@ -46,7 +46,7 @@ class RangeCone:
     kind: Literal["range_cone"] = "range_cone"
 
 
-@dataclass(slots=True)
+@record
 class Screw:
     """TwistStamped, AccelStamped and Wrench: two vectors in the frame of the content, SI units."""
 
@@ -55,7 +55,7 @@ class Screw:
     kind: Literal["screw"] = "screw"
 
 
-@dataclass(slots=True)
+@record
 class EffortRings:
     """Effort: a ring about each joint.
 

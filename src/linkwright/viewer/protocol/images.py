@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal
 
 from linkwright.viewer.protocol.data import Bytes
+from linkwright.viewer.protocol.record import record
 
 
-@dataclass(slots=True)
+@record
 class CameraModel:
     """The pinhole camera that an image is seen through, from the projection matrix of its CameraInfo.
 
@@ -26,7 +26,7 @@ class CameraModel:
     offset_y: float
 
 
-@dataclass(slots=True)
+@record
 class ImageFrame:
     """Image and Camera: one image.
 
@@ -46,7 +46,7 @@ class ImageFrame:
     kind: Literal["image_frame"] = "image_frame"
 
 
-@dataclass(slots=True)
+@record
 class OccupancyMap:
     """Map: the cells row by row from the origin's corner, each the byte of its int8 value.
 

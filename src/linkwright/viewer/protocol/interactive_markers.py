@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal
 
 from linkwright.viewer.protocol.markers import MarkerShape
+from linkwright.viewer.protocol.record import record
 
 OrientationMode = Literal["inherit", "fixed", "view_facing"]
 """In the order of visualization_msgs' numbers, as the modes below."""
@@ -25,7 +25,7 @@ InteractionMode = Literal[
 FeedbackEvent = Literal["pose_update", "menu_select", "button_click", "mouse_down", "mouse_up"]
 
 
-@dataclass(slots=True)
+@record
 class InteractiveControl:
     """A handle of an interactive marker.
 
@@ -43,7 +43,7 @@ class InteractiveControl:
     markers: list[MarkerShape]
 
 
-@dataclass(slots=True)
+@record
 class MarkerMenuEntry:
     """An entry of a marker's menu; `parent` is 0 at the top."""
 
@@ -52,7 +52,7 @@ class MarkerMenuEntry:
     title: str
 
 
-@dataclass(slots=True)
+@record
 class InteractiveMarkerShape:
     """An interactive marker in the frame of the content; `pose` is x y z qx qy qz qw, `scale` metres."""
 
@@ -65,7 +65,7 @@ class InteractiveMarkerShape:
     kind: Literal["interactive_marker"] = "interactive_marker"
 
 
-@dataclass(slots=True)
+@record
 class InteractiveMarkerMoved:
     """An interactive marker has another pose in the frame of the content."""
 
@@ -74,7 +74,7 @@ class InteractiveMarkerMoved:
     kind: Literal["interactive_marker_moved"] = "interactive_marker_moved"
 
 
-@dataclass(slots=True)
+@record
 class MarkerFeedback:
     """The user did something to an interactive marker; poses and points are in the marker's frame.
 

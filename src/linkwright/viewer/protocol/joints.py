@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal
 
+from linkwright.viewer.protocol.record import record
 
-@dataclass(slots=True)
+
+@record
 class JointControl:
     """A row of the Joints panel.
 
@@ -23,7 +24,7 @@ class JointControl:
     offset: float = 0.0
 
 
-@dataclass(slots=True)
+@record
 class Joints:
     """The rows of the Joints panel; None closes the panel."""
 
@@ -31,7 +32,7 @@ class Joints:
     type: Literal["joints"] = "joints"
 
 
-@dataclass(slots=True)
+@record
 class JointPositions:
     """Positions of the Joints panel's joints, rad or m, mimicking joints included."""
 
@@ -39,7 +40,7 @@ class JointPositions:
     type: Literal["joint_positions"] = "joint_positions"
 
 
-@dataclass(slots=True)
+@record
 class SetJoint:
     """The user moved a joint, rad or m."""
 
@@ -48,7 +49,7 @@ class SetJoint:
     type: Literal["set_joint"] = "set_joint"
 
 
-@dataclass(slots=True)
+@record
 class SetJoints:
     """A pose was recalled, or a sweep goes on: several joints at once, rad or m."""
 
@@ -56,14 +57,14 @@ class SetJoints:
     type: Literal["set_joints"] = "set_joints"
 
 
-@dataclass(slots=True)
+@record
 class RandomizeJoints:
     """The Randomize button."""
 
     type: Literal["randomize_joints"] = "randomize_joints"
 
 
-@dataclass(slots=True)
+@record
 class CenterJoints:
     """The Center button."""
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal
 
+from linkwright.viewer.protocol.record import record
 
-@dataclass(slots=True)
+
+@record
 class LogLine:
     """A record. `level` is rcl_interfaces/msg/Log's: 10 debug, 20 info, 30 warning, 40 error, 50 fatal; `time` in s."""
 
@@ -19,7 +20,7 @@ class LogLine:
     line: int
 
 
-@dataclass(slots=True)
+@record
 class LogLines:
     """New records in the order they came; `missed` counts those that were too many to be sent."""
 
@@ -28,7 +29,7 @@ class LogLines:
     type: Literal["log_lines"] = "log_lines"
 
 
-@dataclass(slots=True)
+@record
 class WatchLog:
     """Whether the page wants to be told of new records."""
 

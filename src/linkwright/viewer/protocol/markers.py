@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal
 
 from linkwright.viewer.protocol.data import Bytes, Floats
+from linkwright.viewer.protocol.record import record
 
 MarkerKind = Literal[
     "arrow",
@@ -25,7 +25,7 @@ MarkerKind = Literal[
 """In the order of visualization_msgs' numbers; the last since Jazzy."""
 
 
-@dataclass(slots=True)
+@record
 class MarkerMesh:
     """The file of a mesh marker: an address, or the bytes that came with the message.
 
@@ -38,7 +38,7 @@ class MarkerMesh:
     embedded: bool
 
 
-@dataclass(slots=True)
+@record
 class MarkerShape:
     """One marker, as visualization_msgs/msg/Marker has it.
 
@@ -62,7 +62,7 @@ class MarkerShape:
     texture: str | None
 
 
-@dataclass(slots=True)
+@record
 class MarkersChanged:
     """Marker and MarkerArray: markers that are new or others now, and those that have gone.
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal
 
+from linkwright.viewer.protocol.record import record
 
-@dataclass(slots=True)
+
+@record
 class GraphTopic:
     """A topic with the full names of the nodes at both ends."""
 
@@ -16,7 +17,7 @@ class GraphTopic:
     subscribers: list[str]
 
 
-@dataclass(slots=True)
+@record
 class NodeGraph:
     """All nodes and topics; sent when the panel opens and when they change."""
 
@@ -25,7 +26,7 @@ class NodeGraph:
     type: Literal["node_graph"] = "node_graph"
 
 
-@dataclass(slots=True)
+@record
 class WatchNodeGraph:
     """Whether the page wants to be told of the node graph."""
 

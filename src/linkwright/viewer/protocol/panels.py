@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal
+
+from linkwright.viewer.protocol.record import record
 
 PanelName = Literal["displays", "selection", "tool-properties", "views", "time", "transformation"]
 """The panels that RViz has, too; the names are the page's."""
 
 
-@dataclass(slots=True)
+@record
 class Panels:
     """What the configuration says of panels.
 
@@ -25,7 +26,7 @@ class Panels:
     type: Literal["panels"] = "panels"
 
 
-@dataclass(slots=True)
+@record
 class ShowPanels:
     """The user opened or closed one of these panels, and these are open in the page now. The file takes that over."""
 

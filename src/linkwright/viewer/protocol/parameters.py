@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import ClassVar, Literal
+
+from linkwright.viewer.protocol.record import record
 
 ParameterKind = Literal[
     "not_set",
@@ -19,7 +20,7 @@ ParameterKind = Literal[
 ]
 
 
-@dataclass(slots=True)
+@record
 class ParameterRow:
     """A parameter. `minimum`, `maximum` and `step` are those of its range, as text; empty where there is none."""
 
@@ -34,7 +35,7 @@ class ParameterRow:
     step: str
 
 
-@dataclass(slots=True)
+@record
 class ParameterNodes:
     """Full names of the nodes whose parameters can be asked for."""
 
@@ -42,7 +43,7 @@ class ParameterNodes:
     type: Literal["parameter_nodes"] = "parameter_nodes"
 
 
-@dataclass(slots=True)
+@record
 class NodeParameters:
     """The parameters of a node, sorted by name; sent when it is watched and on every change. `error`: no answer."""
 
@@ -52,7 +53,7 @@ class NodeParameters:
     type: Literal["node_parameters"] = "node_parameters"
 
 
-@dataclass(slots=True)
+@record
 class ParameterResult:
     """What came of `SetParameter`; `reason` is the node's."""
 
@@ -65,7 +66,7 @@ class ParameterResult:
     type: Literal["parameter_result"] = "parameter_result"
 
 
-@dataclass(slots=True)
+@record
 class ParameterDump:
     """Answers `DumpParameters`: a parameter file, and what to call it."""
 
@@ -76,7 +77,7 @@ class ParameterDump:
     type: Literal["parameter_dump"] = "parameter_dump"
 
 
-@dataclass(slots=True)
+@record
 class WatchParameters:
     """What the page wants to know of parameters from now on: the list of nodes, and the parameters of one."""
 
@@ -85,7 +86,7 @@ class WatchParameters:
     type: Literal["watch_parameters"] = "watch_parameters"
 
 
-@dataclass(slots=True)
+@record
 class SetParameter:
     """The user edited a parameter."""
 
@@ -96,7 +97,7 @@ class SetParameter:
     type: Literal["set_parameter"] = "set_parameter"
 
 
-@dataclass(slots=True)
+@record
 class DumpParameters:
     """The user wants the parameters of a node as a file."""
 

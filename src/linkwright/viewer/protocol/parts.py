@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Literal
+
+from linkwright.viewer.protocol.record import record
 
 StatusLevel = Literal["ok", "warn", "error"]
 PropertyKind = Literal["group", "bool", "int", "float", "string", "color", "enum", "frame", "topic"]
@@ -11,7 +13,7 @@ PropertyValue = bool | int | float | str | None
 RowDetails = Literal["frame", "link", "joint", "effort"]
 
 
-@dataclass(slots=True)
+@record
 class TopicOffer:
     """Which topics are offered for a row: those of one of the types with one of the words, if any, in their names."""
 
@@ -19,7 +21,7 @@ class TopicOffer:
     words: list[str]
 
 
-@dataclass(slots=True)
+@record
 class Property:
     """One row of a property tree, as RViz shows it.
 
@@ -47,7 +49,7 @@ class Property:
     topics: TopicOffer | None = None
 
 
-@dataclass(slots=True)
+@record
 class StatusRow:
     """One row below a display's Status."""
 
@@ -56,7 +58,7 @@ class StatusRow:
     text: str
 
 
-@dataclass(slots=True)
+@record
 class Place:
     """A place in a source file, 1-based, with the way there (macro calls and includes, innermost first)."""
 

@@ -9,18 +9,19 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
+
+from linkwright.viewer.protocol.record import record
 
 SAMPLES_KIND = 3
 _HEADER = struct.Struct("<IIII")
 _SERIES = struct.Struct("<II")
 
 
-@dataclass(slots=True)
+@record
 class PlotField:
     """A field that can be plotted, as it is written behind the topic's name; `kind` is the type of its values."""
 
@@ -28,7 +29,7 @@ class PlotField:
     kind: str
 
 
-@dataclass(slots=True)
+@record
 class PlotSeries:
     """A series that a page plots; the page chooses the id, which no other series of it has."""
 
@@ -37,7 +38,7 @@ class PlotSeries:
     path: str
 
 
-@dataclass(slots=True)
+@record
 class SeriesState:
     """Why a series has no values; None when it has, or when it waits for a first message."""
 
@@ -45,7 +46,7 @@ class SeriesState:
     error: str | None
 
 
-@dataclass(slots=True)
+@record
 class TopicFields:
     """What can be plotted of a topic; answers `AskFields`, and once more when a message tells how long arrays are."""
 
@@ -56,7 +57,7 @@ class TopicFields:
     type: Literal["topic_fields"] = "topic_fields"
 
 
-@dataclass(slots=True)
+@record
 class SeriesStates:
     """How the series of the page are."""
 
@@ -64,7 +65,7 @@ class SeriesStates:
     type: Literal["series_states"] = "series_states"
 
 
-@dataclass(slots=True)
+@record
 class AskFields:
     """The user chooses from the fields of a topic; None when the choice is over."""
 
@@ -72,7 +73,7 @@ class AskFields:
     type: Literal["ask_fields"] = "ask_fields"
 
 
-@dataclass(slots=True)
+@record
 class WatchSeries:
     """All series that the page plots from now on."""
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import ClassVar, Literal
 
 from linkwright.viewer.protocol.data import Bytes, Floats
+from linkwright.viewer.protocol.record import record
 
 
-@dataclass(slots=True)
+@record
 class CloudPoints:
     """PointCloud2 and its kin: points in the frame of the message, metres, shape (N, 3).
 
@@ -26,7 +26,7 @@ class CloudPoints:
     kind: Literal["cloud_points"] = "cloud_points"
 
 
-@dataclass(slots=True)
+@record
 class CellGrid:
     """GridCells: middles of the cells in the frame of the message, metres, shape (N, 3), and the sides of a cell."""
 
@@ -36,7 +36,7 @@ class CellGrid:
     kind: Literal["cell_grid"] = "cell_grid"
 
 
-@dataclass(slots=True)
+@record
 class AskPoint:
     """The user selected a point of a display's content and wants to know its fields; answered by `PointFields`."""
 
@@ -46,7 +46,7 @@ class AskPoint:
     type: Literal["ask_point"] = "ask_point"
 
 
-@dataclass(slots=True)
+@record
 class PointFields:
     """The fields of a point besides its coordinates, by name, in the order of the message.
 

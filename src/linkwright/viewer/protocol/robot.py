@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import ClassVar, Literal
 
 from linkwright.viewer.protocol.description import LinkInertia
 from linkwright.viewer.protocol.parts import Place
+from linkwright.viewer.protocol.record import record
 
 ShapeKind = Literal["box", "cylinder", "capsule", "sphere", "mesh"]
 
 
-@dataclass(slots=True)
+@record
 class Shape:
     """A shape to draw, posed in its link's frame.
 
@@ -28,9 +29,10 @@ class Shape:
     texture: str | None = None
     url: str | None = None
     format: str | None = None
+    name: str = ""
 
 
-@dataclass(slots=True)
+@record
 class LinkScene:
     """A link to draw in the frame of its name."""
 
@@ -43,7 +45,7 @@ class LinkScene:
     inertia: LinkInertia | None = None
 
 
-@dataclass(slots=True)
+@record
 class JointScene:
     """A joint, posed in its parent link's frame; `axis` is in the joint's own. SI units.
 
@@ -61,7 +63,7 @@ class JointScene:
     upper: float | None
 
 
-@dataclass(slots=True)
+@record
 class RobotScene:
     """What one RobotModel display draws; `revision` counts descriptions. No links means no robot."""
 
@@ -75,7 +77,7 @@ class RobotScene:
     type: Literal["robot_scene"] = "robot_scene"
 
 
-@dataclass(slots=True)
+@record
 class MeshStatus:
     """How loading a mesh went in the page; `error` is None when it is drawn."""
 
@@ -86,7 +88,7 @@ class MeshStatus:
     type: Literal["mesh_status"] = "mesh_status"
 
 
-@dataclass(slots=True)
+@record
 class AskStory:
     """The user selected a link of a RobotModel display and wants to know how it came to be."""
 
@@ -95,7 +97,7 @@ class AskStory:
     type: Literal["ask_story"] = "ask_story"
 
 
-@dataclass(slots=True)
+@record
 class LinkStory:
     """Where a link was written, through which macro calls, and with which values, line by line; answers `AskStory`."""
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal
 
+from linkwright.viewer.protocol.record import record
 
-@dataclass(slots=True)
+
+@record
 class Hello:
     """First message on every connection."""
 
@@ -16,7 +17,7 @@ class Hello:
     type: Literal["hello"] = "hello"
 
 
-@dataclass(slots=True)
+@record
 class Received:
     """How many messages of this connection the page has; sent after the first one and after each large one."""
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal
+
+from linkwright.viewer.protocol.record import record
 
 TwistKind = Literal["auto", "Twist", "TwistStamped"]
 
 
-@dataclass(slots=True)
+@record
 class TeleopTarget:
     """Where a pad publishes; `auto` takes the type that the topic's subscribers have, Twist where there are none."""
 
@@ -17,7 +18,7 @@ class TeleopTarget:
     frame_id: str
 
 
-@dataclass(slots=True)
+@record
 class TeleopState:
     """What became of a pad's target: the type it publishes, how many listen, and why it does not publish, if so."""
 
@@ -28,7 +29,7 @@ class TeleopState:
     type: Literal["teleop_state"] = "teleop_state"
 
 
-@dataclass(slots=True)
+@record
 class AimTeleop:
     """The page opens its pad, or gives it another target; None closes it."""
 
@@ -36,7 +37,7 @@ class AimTeleop:
     type: Literal["aim_teleop"] = "aim_teleop"
 
 
-@dataclass(slots=True)
+@record
 class Drive:
     """A velocity to publish now: m/s along x, y, z and rad/s around x, y, z. Comes again and again while one is held.
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal
+
+from linkwright.viewer.protocol.record import record
 
 SyncMode = Literal["Off", "Exact", "Approximate"]
 
 
-@dataclass(slots=True)
+@record
 class TimeState:
     """How time goes, whenever that changes. `sources` are the displays whose messages can lead it."""
 
@@ -19,7 +20,7 @@ class TimeState:
     type: Literal["time_state"] = "time_state"
 
 
-@dataclass(slots=True)
+@record
 class Clock:
     """The clocks now, in seconds, for pages that watch them.
 
@@ -35,14 +36,14 @@ class Clock:
     type: Literal["clock"] = "clock"
 
 
-@dataclass(slots=True)
+@record
 class TimeReset:
     """Time began anew: what displays keep of messages is gone."""
 
     type: Literal["time_reset"] = "time_reset"
 
 
-@dataclass(slots=True)
+@record
 class SetTime:
     """The user pauses, goes on, or leads time by a display's messages."""
 
@@ -52,14 +53,14 @@ class SetTime:
     type: Literal["set_time"] = "set_time"
 
 
-@dataclass(slots=True)
+@record
 class ResetTime:
     """The Reset button: displays are cleared, and elapsed times begin at zero."""
 
     type: Literal["reset_time"] = "reset_time"
 
 
-@dataclass(slots=True)
+@record
 class WatchClock:
     """A page shows the clocks, or no more."""
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import ClassVar, Literal
 
 from linkwright.viewer.protocol.parts import Property, PropertyValue
+from linkwright.viewer.protocol.record import record
 
 
-@dataclass(slots=True)
+@record
 class Tool:
     """A tool of the toolbar. `supported` is false for a class that this program does not know; the file keeps it."""
 
@@ -19,7 +19,7 @@ class Tool:
     properties: list[Property]
 
 
-@dataclass(slots=True)
+@record
 class ToolClass:
     """A class of tools that can be added."""
 
@@ -27,7 +27,7 @@ class ToolClass:
     name: str
 
 
-@dataclass(slots=True)
+@record
 class Tools:
     """The tools in the order of the toolbar, whenever they change; the first is the default one."""
 
@@ -36,7 +36,7 @@ class Tools:
     type: Literal["tools"] = "tools"
 
 
-@dataclass(slots=True)
+@record
 class ToolPropertyChanged:
     """One setting of a tool, set by any page; a refused value is answered with the one that stands."""
 
@@ -47,7 +47,7 @@ class ToolPropertyChanged:
     type: Literal["tool_property_changed"] = "tool_property_changed"
 
 
-@dataclass(slots=True)
+@record
 class SetToolProperty:
     """The user edited a setting of a tool."""
 
@@ -56,7 +56,7 @@ class SetToolProperty:
     type: Literal["set_tool_property"] = "set_tool_property"
 
 
-@dataclass(slots=True)
+@record
 class AddTool:
     """Add a tool of a class at the end of the toolbar."""
 
@@ -64,7 +64,7 @@ class AddTool:
     type: Literal["add_tool"] = "add_tool"
 
 
-@dataclass(slots=True)
+@record
 class RemoveTool:
     """Take a tool out of the toolbar."""
 
@@ -72,7 +72,7 @@ class RemoveTool:
     type: Literal["remove_tool"] = "remove_tool"
 
 
-@dataclass(slots=True)
+@record
 class PoseChosen:
     """A 2D Pose Estimate or 2D Goal Pose was set in the Fixed Frame: metres, and radians about z."""
 
@@ -83,7 +83,7 @@ class PoseChosen:
     type: Literal["pose_chosen"] = "pose_chosen"
 
 
-@dataclass(slots=True)
+@record
 class PointChosen:
     """A Publish Point tool was used on a point of the Fixed Frame, metres."""
 

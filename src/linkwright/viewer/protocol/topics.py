@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import ClassVar, Literal
 
+from linkwright.viewer.protocol.record import record
 
-@dataclass(slots=True)
+
+@record
 class TopicRow:
     """A topic of the graph; several `types` are a mistake of its users."""
 
@@ -16,7 +18,7 @@ class TopicRow:
     subscribers: int
 
 
-@dataclass(slots=True)
+@record
 class TopicTraffic:
     """What a measured topic carries: hertz and bytes a second. `error` tells why it cannot be measured or shown.
 
@@ -29,7 +31,7 @@ class TopicTraffic:
     error: str | None
 
 
-@dataclass(slots=True)
+@record
 class MessageField:
     """A field of a message with its value as text; `omitted` counts elements or fields that are left out."""
 
@@ -40,7 +42,7 @@ class MessageField:
     omitted: int = 0
 
 
-@dataclass(slots=True)
+@record
 class TopicList:
     """All topics, sorted by name."""
 
@@ -48,7 +50,7 @@ class TopicList:
     type: Literal["topic_list"] = "topic_list"
 
 
-@dataclass(slots=True)
+@record
 class TopicFigures:
     """The figures of every topic that the page measures, once a second."""
 
@@ -56,7 +58,7 @@ class TopicFigures:
     type: Literal["topic_figures"] = "topic_figures"
 
 
-@dataclass(slots=True)
+@record
 class TopicMessage:
     """The last message of an opened topic, a few times a second at most; `received` is seconds since the epoch."""
 
@@ -68,7 +70,7 @@ class TopicMessage:
     type: Literal["topic_message"] = "topic_message"
 
 
-@dataclass(slots=True)
+@record
 class WatchTopics:
     """What the page wants to know of topics from now on: their list, figures of some, messages of some."""
 

@@ -5,13 +5,13 @@ The values of a view are named by the path of their property: ``Distance``, ``Fo
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal
 
 from linkwright.viewer.protocol.parts import Property, PropertyValue
+from linkwright.viewer.protocol.record import record
 
 
-@dataclass(slots=True)
+@record
 class View:
     """A view: RViz's class of it (``rviz_default_plugins/Orbit``), its name, and its values."""
 
@@ -20,7 +20,7 @@ class View:
     values: dict[str, PropertyValue]
 
 
-@dataclass(slots=True)
+@record
 class ViewClass:
     """A class of views: its rows, whose ids are names of values, and RViz's defaults, also of rows not shown."""
 
@@ -29,7 +29,7 @@ class ViewClass:
     defaults: dict[str, PropertyValue]
 
 
-@dataclass(slots=True)
+@record
 class ViewClasses:
     """All classes of views; comes before the first view."""
 
@@ -37,7 +37,7 @@ class ViewClasses:
     type: Literal["view_classes"] = "view_classes"
 
 
-@dataclass(slots=True)
+@record
 class ViewState:
     """The view of a configuration; the page owns the camera from then on.
 
@@ -49,7 +49,7 @@ class ViewState:
     type: Literal["view_state"] = "view_state"
 
 
-@dataclass(slots=True)
+@record
 class SavedView:
     """A saved view and its id, which stays while it is renamed or changed."""
 
@@ -57,7 +57,7 @@ class SavedView:
     view: View
 
 
-@dataclass(slots=True)
+@record
 class SavedViews:
     """The saved views, in their order, whenever they change."""
 
@@ -65,7 +65,7 @@ class SavedViews:
     type: Literal["saved_views"] = "saved_views"
 
 
-@dataclass(slots=True)
+@record
 class ViewChanged:
     """The camera as the page has it now, at most a few times a second; the last of any page is saved in the file."""
 
@@ -73,7 +73,7 @@ class ViewChanged:
     type: Literal["view_changed"] = "view_changed"
 
 
-@dataclass(slots=True)
+@record
 class SaveView:
     """Add a view to the saved ones."""
 
@@ -81,7 +81,7 @@ class SaveView:
     type: Literal["save_view"] = "save_view"
 
 
-@dataclass(slots=True)
+@record
 class ChangeSavedView:
     """Give a saved view another name or other values."""
 
@@ -90,7 +90,7 @@ class ChangeSavedView:
     type: Literal["change_saved_view"] = "change_saved_view"
 
 
-@dataclass(slots=True)
+@record
 class RemoveSavedView:
     """Take a saved view away."""
 

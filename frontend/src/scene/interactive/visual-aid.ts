@@ -1,0 +1,43 @@
+import type { Object3D, Quaternion, Vector3 } from "three";
+import type { InteractiveControl } from "../../protocol";
+import { ThinLines } from "../objects/thin-lines";
+
+/** To both sides, m. */
+const REACH = 1000;
+const MODES: ReadonlySet<InteractiveControl["mode"]> = new Set<InteractiveControl["mode"]>([
+  "move_axis",
+  "rotate_axis",
+  "move_rotate",
+]);
+
+/** RViz's visual aid: while a control is dragged, the line along which it moves or about which it turns. */
+export class VisualAid {
+  private line: ThinLines | null = null;
+
+  constructor(private readonly parent: Object3D) {}
+
+  get shown(): boolean {
+    return this.line !== null && this.line.root.parent !== null;
+  }
+
+  /** Shows the line of a control that has one; `orientation` has the control's axis as x. */
+  show(control: InteractiveControl, position: Vector3, orientation: Quaternion): void {
+    this.hide();
+    if (!MODES.has(control.mode) || control.orientation_mode === "view_facing") return;
+    if (!this.line) {
+      this.line = new ThinLines();
+      this.line.setSegments(new Float32Array([-REACH, 0, 0, REACH, 0, 0]));
+    }
+    this.parent.add(this.line.root);
+    this.line.root.position.copy(position);
+    this.line.root.quaternion.copy(orientation);
+  }
+
+  hide(): void {
+    this.line?.root.removeFromParent(); // what is only invisible counts in bounds
+  }
+
+  dispose(): void {
+    this.line?.dispose();
+  }
+}
