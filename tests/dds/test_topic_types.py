@@ -62,6 +62,30 @@ CHURN = """
 """
 
 
+TOGETHER = """
+    from linkwright.graph import Graph
+    from linkwright.graph.dds import join
+    from linkwright.messages import get_message
+
+    NAMES = ["sensor_msgs/msg/Image", "sensor_msgs/msg/PointCloud2", "nav_msgs/msg/Odometry", "nav_msgs/msg/Path"]
+    NAMES += ["visualization_msgs/msg/MarkerArray", "trajectory_msgs/msg/JointTrajectory", "tf2_msgs/msg/TFMessage"]
+
+    def graph(name, types):
+        made = Graph(threads=True)
+        node = made.create_node(name)
+        for type_name in types:
+            node.create_publisher(get_message(type_name), f"/{name}/{type_name}", 1)
+        return made
+
+    for _ in range(120):
+        graphs = [graph("one", NAMES), graph("other", reversed(NAMES))]
+        for transport in [join(each) for each in graphs]:
+            assert transport.wait_until_ready(10)
+        for each in graphs:
+            each.close_now()
+"""
+
+
 @pytest.fixture
 def shared(processes, domain):
     """The domain that two graphs of this process share."""
@@ -135,3 +159,16 @@ def test_graphs_that_come_and_go_leave_no_memory_and_no_pointer_to_it_behind(dom
     )
     assert (done.returncode, done.stderr) == (0, "")
     assert float(done.stdout) < 3.0, "0.5 MB a graph, were its types made anew"
+
+
+@pytest.mark.slow
+def test_graphs_may_join_at_the_same_time(domain):
+    done = subprocess.run(
+        [sys.executable, "-X", "faulthandler", "-c", textwrap.dedent(TOGETHER)],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+        env={**os.environ, "MALLOC_PERTURB_": "165"},
+    )
+    assert (done.returncode, done.stderr) == (0, "")

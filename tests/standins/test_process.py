@@ -140,6 +140,19 @@ class TestManners:
         ended = run("-c", "import rclpy_of_another_kind")
         assert "ModuleNotFoundError: No module named 'rclpy_of_another_kind'" in ended.stderr
 
+    @pytest.mark.parametrize(
+        ("module", "hint"),
+        [
+            ("carrier_msgs.msg", "hint: put the ROS package 'carrier_msgs' into the workspace's src folder"),
+            ("cv_bridge", "hint: it comes with vision_opencv, which has to be compiled"),
+            ("serial", "hint: install it: pip install pyserial"),
+            ("unheard_of", "ModuleNotFoundError: No module named 'unheard_of'"),
+        ],
+    )
+    def test_what_to_do_about_a_missing_module(self, module, hint):
+        last = run("-c", f"import {module}").stderr.splitlines()[-1]
+        assert last.startswith(hint)
+
     def test_the_next_sitecustomize_runs(self, tmp_path):
         (tmp_path / "sitecustomize.py").write_text("WAS_RUN = 'yes'\n")
         code = "import sitecustomize; print(sitecustomize.WAS_RUN); import rclpy"

@@ -118,7 +118,7 @@ class Publisher(TopicEndpoint[M]):
             Whether they have.
         """
         seconds = None if timeout is None or timeout.nanoseconds < 0 else timeout.nanoseconds / 1e9
-        if self._held is not None and not self._sent(seconds):
+        if self._held and not self._sent(seconds):
             return False
         return self._acknowledged is None or self._acknowledged(seconds)
 

@@ -70,6 +70,11 @@ def test_a_lookup_gives_the_pose_of_the_source_in_the_target(buffer):
     assert (back.x, back.y) == (pytest.approx(-2.0), pytest.approx(1.0))
 
 
+def test_a_number_is_no_time(buffer):
+    with pytest.raises(TypeError, match=r"time must have sec and nanosec, or nanoseconds. It is 1\.5"):
+        buffer.lookup_transform_core("a", "b", 1.5)
+
+
 def test_between_two_times_poses_are_interpolated(buffer):
     fill(buffer, stamped("a", "b", 1, x=0.0, yaw=0.0), stamped("a", "b", 3, x=4.0, yaw=pi / 2))
     assert x_of(buffer, "a", "b", at(1.5)) == pytest.approx(1.0)

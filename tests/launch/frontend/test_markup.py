@@ -260,3 +260,12 @@ def test_a_file_of_no_kind(write: Any) -> None:
 def test_a_missing_file(tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError):
         load_launch_file(tmp_path / "no.launch.xml")
+
+
+def test_a_warning_stands_at_its_line(tmp_path: Path) -> None:
+    file = tmp_path / "old.launch.xml"
+    file.write_text('<launch>\n  <log message="m"/>\n</launch>\n')
+    root, parser = Parser.load(str(file))
+    with pytest.warns(UserWarning, match="The action log now expects a log level") as warned:
+        parser.parse_description(root)
+    assert (warned[0].filename, warned[0].lineno) == (str(file), 2)

@@ -24,8 +24,8 @@ from typing import Any
 
 from linkwright.graph.dds.cyclone import checked, load
 
-_UNUSED = "linkwright_types"
-"""The name of the topics that types are taken from."""
+_UNUSED = "linkwright_type_{}"
+"""The names of the topics that types are taken from."""
 
 _FUNCTIONS = 14
 """Members of the table: its version, an argument, and the functions."""
@@ -72,15 +72,16 @@ class TopicTypes:
             self._dds.ddsi_sertype_free(self._made.popitem()[1])
 
     def _new(self, participant: int, described_type: Any, what: str) -> int:
-        """The address of a type: that of a topic of the package's, which is deleted again.
+        """The address of a type: that of a topic of the package's, which nobody uses and which goes with `participant`.
 
-        It is deleted before the type gets its own table, because Cyclone looks the description up to forget it.
+        Were it deleted at once, Cyclone would forget the description again, while it reads those of other types
+        without a lock (``ddsi_topic_descriptor_from_type``): graphs of a process that joined at the same time crashed.
         """
-        unused = checked(self._dds.create_topic(participant, _UNUSED, described_type, None, None), what)
+        name = _UNUSED.format(len(self._made))
+        unused = checked(self._dds.create_topic(participant, name, described_type, None, None), what)
         pointer = c.c_void_p()
         checked(self._dds.dds_get_entity_sertype(unused, c.byref(pointer)), "asking for a type")
         address: int = self._dds.ddsi_sertype_ref(pointer)
-        self._dds.dds_delete(unused)
         functions = c.c_void_p.from_address(address)
         functions.value = _undescribing(functions.value or 0)
         return address

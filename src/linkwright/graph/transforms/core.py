@@ -411,9 +411,15 @@ def _all_usable(poses: NDArray[np.float64]) -> bool:
 
 
 def nanoseconds_of(time: Any) -> int:
-    """The nanoseconds of a ``Time`` or ``Duration``, or of a message of builtin_interfaces."""
+    """The nanoseconds of a ``Time`` or ``Duration``, or of a message of builtin_interfaces.
+
+    Raises:
+        TypeError: it is none of these; the text is tf2's.
+    """
     if hasattr(time, "nanosec"):
         return int(time.sec) * _NANOSECONDS_PER_SECOND + int(time.nanosec)
+    if not hasattr(time, "nanoseconds"):
+        raise TypeError(f"time must have sec and nanosec, or nanoseconds. It is {time!r}")
     return int(time.nanoseconds)
 
 

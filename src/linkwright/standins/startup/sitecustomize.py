@@ -43,7 +43,7 @@ class StandIns:
         if rest:
             return self.interface(name) if rest.partition(".")[0] in _INTERFACE_KINDS else None
         if top in self._stand_ins():
-            if top not in _WITH_ANY_ROS and self._has_real_ros():
+            if top not in _WITH_ANY_ROS and self.has_real_ros():
                 return None
             _make_importable()
             return PathFinder.find_spec(name, [_STAND_INS])
@@ -51,7 +51,7 @@ class StandIns:
 
     def interface(self, name: str) -> ModuleSpec | None:
         """The module of interfaces of this name, or None when it is none."""
-        if self._searching or self._has_real_ros():
+        if self._searching or self.has_real_ros():
             return None
         self._searching = True
         try:
@@ -70,7 +70,8 @@ class StandIns:
                 self._names = frozenset()
         return self._names
 
-    def _has_real_ros(self) -> bool:
+    def has_real_ros(self) -> bool:
+        """Whether there is an rclpy besides ours."""
         if self._real_ros is None:
             found = PathFinder.find_spec("rclpy", [entry for entry in sys.path if entry != _STAND_INS])
             self._real_ros = found is not None and found.origin is not None
@@ -139,7 +140,24 @@ def _run_next_sitecustomize() -> None:
     spec.loader.exec_module(module)
 
 
+def _tell_how_to_get(kind: type[BaseException], error: BaseException, traceback: object) -> None:
+    """Python's own last words about an error; where a module of ROS is missing, what to do about it too."""
+    sys.__excepthook__(kind, error, traceback)  # type: ignore[arg-type]  # naming its type would import a module
+    name = getattr(error, "name", None)
+    if isinstance(error, ModuleNotFoundError) and name and not _stand_ins.has_real_ros():
+        try:
+            _make_importable()
+            from linkwright.launch.providers import known_provider_hint
+
+            hint = known_provider_hint(name)
+        except Exception:  # noqa: BLE001 - the error that is told is the program's
+            return
+        if hint:
+            print(f"hint: {hint}", file=sys.stderr)
+
+
 _stand_ins = StandIns()
+sys.excepthook = _tell_how_to_get
 sys.meta_path.insert(0, InterfaceFolders(_stand_ins))
 sys.meta_path.append(_stand_ins)
 _run_next_sitecustomize()

@@ -1,0 +1,152 @@
+"""Recordings read and written by programs: ``rosbag2_py``."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+import rosbag2_py
+from rclpy.qos import QoSProfile
+from rclpy.serialization import deserialize_message, serialize_message
+from rosbag2_py import (
+    ConverterOptions,
+    SequentialReader,
+    SequentialWriter,
+    StorageFilter,
+    StorageOptions,
+    TopicMetadata,
+)
+from rosidl_runtime_py.utilities import get_message
+from std_msgs.msg import Int32, String
+
+from linkwright.standins import process
+
+CDR = ConverterOptions("cdr", "cdr")
+
+
+def write(path, storage="mcap", writer_class=SequentialWriter):
+    writer = writer_class()
+    writer.open(StorageOptions(uri=str(path), storage_id=storage), CDR)
+    writer.create_topic(
+        TopicMetadata(name="/words", type="std_msgs/msg/String", offered_qos_profiles=[QoSProfile(depth=3)])
+    )
+    writer.create_topic(TopicMetadata(7, "/numbers", "std_msgs/msg/Int32", "cdr"))
+    for number in range(4):
+        writer.write("/numbers", serialize_message(Int32(data=number)), 1000 + 10 * number)
+        writer.write("/words", serialize_message(String(data=f"word {number}")), 1005 + 10 * number)
+    writer.close()
+
+
+def opened(path):
+    reader = SequentialReader()
+    reader.open(StorageOptions(str(path), "mcap"), ConverterOptions("", ""))
+    return reader
+
+
+def rest(reader):
+    read = []
+    while reader.has_next():
+        topic, _, stamp_ns = reader.read_next()
+        read.append((topic, stamp_ns))
+    return read
+
+
+@pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
+def test_what_was_written_is_read(tmp_path, storage):
+    write(tmp_path / "bag", storage)
+    reader = opened(tmp_path / "bag")
+    types = {topic.name: topic.type for topic in reader.get_all_topics_and_types()}
+    assert types == {"/numbers": "std_msgs/msg/Int32", "/words": "std_msgs/msg/String"}
+    topic, data, stamp_ns = reader.read_next()
+    assert (topic, stamp_ns) == ("/numbers", 1000)
+    assert deserialize_message(data, get_message(types[topic])) == Int32(data=0)
+    assert len(rest(reader)) == 7
+    with pytest.raises(RuntimeError, match="Bag is at end"):
+        reader.read_next()
+
+
+def test_topics_are_filtered_and_times_sought(tmp_path):
+    write(tmp_path / "bag")
+    reader = opened(tmp_path / "bag")
+    reader.set_filter(StorageFilter(topics=["/words"]))
+    assert rest(reader) == [("/words", 1005 + 10 * number) for number in range(4)]
+    reader.seek(1020)
+    assert rest(reader) == [("/words", 1025), ("/words", 1035)]
+    reader.reset_filter()
+    reader.seek(1030)
+    assert rest(reader) == [("/numbers", 1030), ("/words", 1035)]
+    reader.set_filter(StorageFilter(topics=["/nothing"]))
+    reader.seek(0)
+    assert not reader.has_next()
+
+
+@pytest.mark.parametrize(
+    ("storage_filter", "admitted"),
+    [
+        (StorageFilter(), ["/a/b", "/c"]),
+        (StorageFilter(topics=["/c"]), ["/c"]),
+        (StorageFilter(topics_regex="/a"), ["/a/b"]),
+        (StorageFilter(topics=["/c"], topics_regex="/a"), ["/a/b", "/c"]),
+        (StorageFilter(topics_regex_to_exclude="/a"), ["/c"]),
+        (StorageFilter(exclude_topics=["/c"]), ["/a/b"]),
+    ],
+)
+def test_filters(storage_filter, admitted):
+    assert [topic for topic in ("/a/b", "/c") if storage_filter.admits(topic)] == admitted
+
+
+def test_what_is_known_without_reading(tmp_path):
+    write(tmp_path / "bag", writer_class=rosbag2_py.SequentialCompressionWriter)
+    metadata = rosbag2_py.Info().read_metadata(str(tmp_path / "bag"), "mcap")
+    assert (metadata.message_count, metadata.storage_identifier) == (8, "mcap")
+    assert metadata.starting_time.nanoseconds == 1000
+    assert metadata.duration.nanoseconds == 35
+    words = next(each for each in metadata.topics_with_message_count if each.topic_metadata.name == "/words")
+    assert words.message_count == 4
+    assert [profile.depth for profile in words.topic_metadata.offered_qos_profiles] == [3]
+
+
+def test_topics_as_humble_and_as_later_ones_give_them():
+    old = TopicMetadata("/t", "std_msgs/msg/String", "cdr", "")
+    new = TopicMetadata(
+        id=0, name="/t", type="std_msgs/msg/String", serialization_format="cdr", offered_qos_profiles=""
+    )
+    assert old.equals(new)
+    with pytest.raises(TypeError, match="unexpected arguments: kind"):
+        TopicMetadata(name="/t", kind="x")
+
+
+def test_mistakes_are_runtime_errors(tmp_path):
+    with pytest.raises(RuntimeError, match="there is no recording"):
+        opened(tmp_path / "nowhere")
+    with pytest.raises(RuntimeError, match="not open"):
+        SequentialReader().get_all_topics_and_types()
+    writer = SequentialWriter()
+    with pytest.raises(RuntimeError, match="not open"):
+        writer.create_topic(TopicMetadata(name="/t", type="std_msgs/msg/String"))
+    with pytest.raises(RuntimeError, match="no storage 'tape'"):
+        writer.open(StorageOptions(str(tmp_path / "bag"), "tape"), CDR)
+    writer.open(StorageOptions(str(tmp_path / "bag")), CDR)
+    with pytest.raises(RuntimeError, match="unheard_msgs"):
+        writer.create_topic(TopicMetadata(name="/t", type="unheard_msgs/msg/Thing"))
+    with pytest.raises(RuntimeError, match="'/t' has not been created yet"):
+        writer.write("/t", b"", 0)
+    with pytest.raises(RuntimeError, match="it exists already"):
+        SequentialWriter().open(StorageOptions(str(tmp_path / "bag")), CDR)
+    writer.close()
+
+
+def test_a_recording_is_complete_when_the_program_has_ended(tmp_path):
+    program = """
+from rosbag2_py._storage import ConverterOptions, StorageOptions, TopicMetadata
+import rosbag2_py
+from rclpy.serialization import serialize_message
+from std_msgs.msg import String
+writer = rosbag2_py.SequentialWriter()
+writer.open(StorageOptions(uri="bag", storage_id="sqlite3"), ConverterOptions("", ""))
+writer.create_topic(TopicMetadata(name="chatter", type="std_msgs/msg/String", serialization_format="cdr"))
+writer.write("chatter", serialize_message(String(data="hello")), 5)
+"""
+    subprocess.run([sys.executable, "-c", program], cwd=tmp_path, env=process.environment(), check=True)
+    assert rest(opened(tmp_path / "bag")) == [("chatter", 5)]
