@@ -1,4 +1,4 @@
-"""Ctrl-C while a program of ours is only being loaded, when no ``except KeyboardInterrupt`` is in force yet.
+"""Ctrl-C while a program of ours is only being loaded, when no ``except KeyboardInterrupt`` is in force yet, and later.
 
 It imports next to nothing itself, so that little time passes before it works.
 """
@@ -6,10 +6,20 @@ It imports next to nothing itself, so that little time passes before it works.
 from __future__ import annotations
 
 import _signal  # type: ignore[import-not-found]  # what ``signal`` is made of, without the enumerations around it
+import _thread
 import os
+import sys
+import time
+
+TYPE_CHECKING = False  # as that of `typing`, which takes longer to import than everything else here
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from typing import Any
 
 INTERRUPTED = 130
 """The exit status of a program that Ctrl-C ended: 128 and the number of SIGINT, as shells say it."""
+
+_SOON_SECONDS = 0.01
 
 
 def end_at_once() -> None:
@@ -25,6 +35,34 @@ def raise_interrupts() -> None:
     """Let Ctrl-C raise KeyboardInterrupt again: somebody catches it from now on."""
     if _signal.getsignal(_signal.SIGINT) is _end:
         _signal.signal(_signal.SIGINT, _signal.default_int_handler)
+        when_lost(lambda: os.kill(os.getpid(), _signal.SIGINT))
+
+
+def when_lost(deliver: Callable[[], None]) -> Callable[[Any], Any]:
+    """Have a KeyboardInterrupt delivered again that Python drops, with a word about it, and nobody gets to catch.
+
+    That is one that comes while a destructor runs or a weak reference is told, which imports do all the time.
+
+    Args:
+        deliver: called in a thread of its own, a moment later.
+
+    Returns:
+        The ``sys.unraisablehook`` that was there before.
+    """
+    before = sys.unraisablehook
+
+    def later() -> None:
+        time.sleep(_SOON_SECONDS)
+        deliver()
+
+    def hook(dropped: Any) -> None:
+        if issubclass(dropped.exc_type, KeyboardInterrupt):
+            _thread.start_new_thread(later, ())
+        else:
+            before(dropped)
+
+    sys.unraisablehook = hook
+    return before
 
 
 def _end(_number: int, _frame: object) -> None:

@@ -12,6 +12,7 @@ from types import FrameType, TracebackType
 from typing import Any, TypeVar
 
 from linkwright.event_loop import run_coroutine
+from linkwright.interruption import when_lost
 from linkwright.launch.engine.session import LaunchSession
 
 T = TypeVar("T")
@@ -40,6 +41,7 @@ class SignalWatch:
         self._received_at = 0.0
         self._is_making_loop = False
         self._before: dict[int, Any] = {}
+        self._unraisable: Callable[[Any], Any] | None = None
         self._deadline: threading.Timer | None = None
 
     @property
@@ -51,6 +53,7 @@ class SignalWatch:
         if threading.current_thread() is threading.main_thread():
             for number in _SIGNALS:
                 self._before[number] = signal.signal(number, self._handle)
+            self._unraisable = when_lost(self._handle_again)
         return self
 
     def __exit__(
@@ -63,6 +66,8 @@ class SignalWatch:
             self._deadline.cancel()
         for number, handler in self._before.items():
             signal.signal(number, handler)
+        if self._unraisable is not None:
+            sys.unraisablehook = self._unraisable
 
     def run(self, make: Callable[[], Coroutine[Any, Any, T]]) -> T:
         """Run a coroutine on a loop of its own.
@@ -95,6 +100,14 @@ class SignalWatch:
         if session is None or session.loop is None or session.visiting:
             raise KeyboardInterrupt
         session.loop.call_soon_threadsafe(session.interrupt, interruption_text(number))
+
+    def _handle_again(self) -> None:
+        """The KeyboardInterrupt that was raised for a signal reached nobody: be as before it, and send it once more."""
+        number, self.received = self.received, None
+        if self._deadline is not None:
+            self._deadline.cancel()
+        if number is not None:
+            os.kill(os.getpid(), number)
 
     def _end_at_once(self) -> None:
         if self.session is not None:

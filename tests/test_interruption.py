@@ -1,0 +1,33 @@
+"""Ctrl-C that Python drops."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import textwrap
+
+PROGRAM = """
+    import os, signal, time
+    from linkwright.interruption import end_at_once, raise_interrupts
+
+    class Dropping:
+        def __del__(self):
+            os.kill(os.getpid(), signal.SIGINT)
+            for _ in range(1000):
+                pass
+
+    end_at_once()
+    raise_interrupts()
+    try:
+        Dropping()
+        time.sleep(20)
+    except KeyboardInterrupt:
+        print("caught")
+"""
+
+
+def test_ctrl_c_that_comes_in_a_destructor_is_raised_again() -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", textwrap.dedent(PROGRAM)], capture_output=True, text=True, timeout=60, check=False
+    )
+    assert (done.stdout, done.stderr) == ("caught\n", "")
