@@ -106,7 +106,17 @@ def test_the_terminal_is_as_it_was(machine: Machine, delay: float) -> None:
         os.close(main)
 
 
-FIRST_FILES = {"__init__.py", "_version.py", "cli/__init__.py", "cli/entry.py", "interruption.py"}
+FIRST_FILES = {
+    "__init__.py",
+    "__main__.py",
+    "_version.py",
+    "cli/__init__.py",
+    "cli/entry.py",
+    "cli/tools/__init__.py",
+    "cli/tools/__main__.py",
+    "interruption.py",
+    "node_program.py",
+}
 """What is loaded before Ctrl-C is taken care of: about a millisecond."""
 
 
