@@ -16,7 +16,8 @@ class _Quantity:
     """One number for each free joint, where there is one: NaN stands for none."""
 
     def __init__(self, values: Array) -> None:
-        self.values = values
+        self._with_zero = np.append(values, 0.0)
+        self.values = self._with_zero[:-1]
 
     def spread(self, layout: JointLayout, *, scaled: bool, shifted: bool) -> Array | None:
         """The numbers for a message, one for each published joint; None when there are none at all.
@@ -25,7 +26,7 @@ class _Quantity:
         """
         if np.isnan(self.values).all():
             return None
-        spread: Array = np.append(self.values, 0.0)[layout.masters]  # masters are -1 for what does not move
+        spread: Array = self._with_zero[layout.masters]  # masters are -1 for what does not move
         if scaled:
             spread *= layout.factor
         if shifted:
@@ -44,7 +45,7 @@ class JointPositions:
     def __init__(self, settings: JointSettings) -> None:
         self.layout = empty_layout()
         self._rows: dict[str, int] = {}
-        self._forward = np.ones(0, dtype=np.bool_)
+        self._direction = np.ones(0)
         self._position, self._velocity, self._effort = (_Quantity(np.zeros(0)) for _ in range(3))
         self.take_over(self.layout, settings)
 
@@ -63,9 +64,10 @@ class JointPositions:
         self._position = _Quantity(np.array(start, dtype=np.float64))
         self._velocity = _Quantity(np.full(count, 0.0 if settings.publish_default_velocities else np.nan))
         self._effort = _Quantity(np.full(count, 0.0 if settings.publish_default_efforts else np.nan))
-        self._forward = np.ones(count, dtype=np.bool_)
+        self._direction = np.ones(count)
         self._lower = np.array([joint.lower for joint in layout.free])
         self._upper = np.array([joint.upper for joint in layout.free])
+        self._ahead = self._upper
         self._wraps = np.array([joint.kind == "continuous" for joint in layout.free], dtype=np.bool_)
         for joint in layout.free:
             row = rows_before.get(joint.name)
@@ -88,13 +90,13 @@ class JointPositions:
 
     def sweep(self, delta: float) -> None:
         """Move every free joint by delta (rad or m), turning round at limits; continuous ones start over."""
-        position, forward = self._position.values, self._forward
-        position += np.where(forward, delta, -delta)
-        beyond = forward & (position > self._upper)
-        below = ~forward & (position < self._lower)
-        position[beyond] = np.where(self._wraps, self._lower, self._upper)[beyond]
-        position[below] = self._lower[below]
-        self._forward = (forward & ~(beyond & ~self._wraps)) | below
+        position, direction = self._position.values, self._direction
+        position += direction * delta
+        beyond = (position - self._ahead) * direction > 0.0
+        if beyond.any():
+            position[beyond] = np.where(self._wraps, self._lower, self._ahead)[beyond]
+            self._direction = np.where(beyond & ~self._wraps, -direction, direction)
+            self._ahead = np.where(self._direction > 0.0, self._upper, self._lower)
 
     def set(self, name: str, position: float) -> None:
         """Move a free joint; KeyError when there is none of that name."""
@@ -110,8 +112,11 @@ class JointPositions:
         message.name = list(self.layout.ranges)
         velocities = self._velocity.spread(self.layout, scaled=True, shifted=False)
         efforts = self._effort.spread(self.layout, scaled=False, shifted=False)
-        if self.layout.dependent or not np.isnan(self._position.values).all():
-            message.position = self.published()
+        positions = self._position.spread(self.layout, scaled=True, shifted=True)
+        if positions is None and self.layout.dependent:
+            positions = np.zeros(len(self.layout.ranges))
+        if positions is not None:
+            message.position = positions
         if velocities is not None:
             message.velocity = velocities
         if efforts is not None:
