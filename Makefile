@@ -2,10 +2,12 @@
 #
 #   make demo    see the robot of the tutorial in a browser
 #   make test    all tests, those of the page in a real Chromium (fetched below .build/ where there is none)
+#   make test-ros  the tests against real ROS 2, which is installed from PyPI below .build/
 #   make check   ruff, mypy, import-linter, the page's type check, generated files current
 #   make bench   the figures the project promises, measured on this machine
 #   make soak    an hour of processes over DDS: does anything grow, get lost or hang?
 #   make docs    the documentation site in site/
+#   make reference  record anew what ros/xacro and urdfdom make of the descriptions in the tests
 #   make fuzz    a million hostile inputs for everything that reads files; see fuzz/README.md
 
 PYTHON ?= python3
@@ -15,13 +17,31 @@ BIN := $(VENV)/bin
 UV ?= $(shell command -v uv || echo .build/uv/bin/uv)
 export UV
 
+# uv looks into PATH for interpreters, where pyenv puts only the chosen one.
+PYENV_BINS := $(wildcard $(shell pyenv root 2>/dev/null || echo /nowhere)/versions/3.1*/bin)
+ifneq ($(PYENV_BINS),)
+empty :=
+export PATH := $(PATH):$(subst $(empty) $(empty),:,$(PYENV_BINS))
+endif
+
+# One line where the Python is not fit, before anything is made with it.
+ifeq ($(VERSION)$(wildcard $(BIN)/python),)
+ifneq ($(MAKECMDGOALS),clean)
+UNFIT := $(shell $(PYTHON) -c 'import sys; v = sys.version_info[:2]; print("" if (3, 10) <= v < (3, 14) else "is %d.%d" % v)' 2>/dev/null || echo "is not there")
+ifneq ($(UNFIT),)
+$(error Linkwright needs Python 3.10 to 3.13, and $(PYTHON) $(UNFIT); name another one, as in: make PYTHON=python3.12)
+endif
+endif
+endif
+
 LOCKED := .build/constraints.txt
 PAGE_SOURCES := $(shell find frontend -path frontend/node_modules -prune -o -type f -print)
 
-.PHONY: demo test test-quick test-browser check bench soak fuzz docs page lock format clean
+.PHONY: demo test test-quick coverage test-browser test-ros check bench soak fuzz reference docs page lock format clean
 
+# Ctrl-C is how the demo ends (status 130), which is no error; the shell has to outlive it to say so.
 demo: $(VENV)/.ready
-	$(BIN)/linkwright launch my_robot_description display_xacro.launch.py $(ARGS)
+	@trap : INT; $(BIN)/linkwright launch my_robot_description display_xacro.launch.py $(ARGS) || [ $$? = 130 ]
 
 test: $(VENV)/.dev page
 	$(BIN)/python tools/build_page.py test
@@ -30,8 +50,23 @@ test: $(VENV)/.dev page
 test-quick: $(VENV)/.dev
 	$(BIN)/pytest -n 2 --dist loadfile -m "not browser and not slow" $(ARGS)
 
+# The quick tests once more, with a look at which lines they reach; fails below the share named in pyproject.toml.
+coverage: $(VENV)/.dev
+	$(BIN)/pytest -n 2 --dist loadfile -m "not browser and not slow" --cov --cov-report=term:skip-covered $(ARGS)
+
 test-browser: $(VENV)/.dev page
 	LINKWRIGHT_CHROMIUM=$$($(BIN)/python tools/chromium.py) $(BIN)/pytest -m browser $(ARGS)
+
+# Against real ROS 2 (Jazzy) from wheels of PyPI, which there are for Linux and Python 3.12.
+test-ros: $(VENV)/.dev .build/ros/.ready
+	LINKWRIGHT_ROS_PYTHON=$(CURDIR)/.build/ros/bin/python RMW_IMPLEMENTATION=rmw_fastrtps_cpp \
+		$(BIN)/pytest tests/wire/test_real_ros.py tests/standins/test_real_names.py $(ARGS)
+
+.build/ros/.ready: | $(UV)
+	$(UV) venv --quiet --clear --python 3.12 .build/ros
+	$(UV) pip install --quiet --python .build/ros/bin/python \
+		ros-rclpy==7.1.6 ros-rmw-fastrtps-cpp==8.4.3 ros-common-interfaces==5.3.6
+	touch $@
 
 check: $(VENV)/.dev
 	$(BIN)/ruff check
@@ -41,9 +76,11 @@ check: $(VENV)/.dev
 	$(BIN)/python tools/lock.py check
 	$(BIN)/python tools/protocol_types.py --check
 	$(BIN)/python tools/message_stubs.py --check
+	$(BIN)/python tools/compatibility.py --check
 	$(BIN)/python tools/command_reference.py --check
-	$(BIN)/python tools/messages.py --check
+	$(BIN)/python tools/catalogues.py check
 	$(BIN)/python tools/rule_reference.py --check
+	$(BIN)/python tools/urdf_reference.py --check
 	$(BIN)/python tools/build_page.py run check
 
 bench: $(VENV)/.dev page
@@ -59,6 +96,16 @@ fuzz: .build/fuzz/venv/.ready
 .build/fuzz/venv/.ready: | $(UV)
 	$(UV) venv --quiet --clear --python $(or $(VERSION),3.11) .build/fuzz/venv
 	$(UV) pip install --quiet --python .build/fuzz/venv/bin/python atheris numpy pyyaml
+	touch $@
+
+# What ros/xacro and urdfdom make of the descriptions in the tests, recorded in the repository. ros/xacro writes attributes
+# otherwise from Python 3.13 on.
+reference: $(VENV)/.dev .build/reference/.ready
+	$(BIN)/python tools/reference_outputs.py $(ARGS)
+
+.build/reference/.ready: | $(UV)
+	$(UV) venv --quiet --clear --python '>=3.10,<3.13' .build/reference
+	$(UV) pip install --quiet --python .build/reference/bin/python xacro==2.1.1 cmeel-urdfdom==6.0.0
 	touch $@
 
 docs: $(VENV)/.dev
@@ -89,7 +136,7 @@ $(LOCKED): uv.lock tools/lock.py
 $(VENV)/.ready: pyproject.toml hatch_build.py $(LOCKED) $(PAGE_SOURCES) | $(UV)
 	test -x $(BIN)/python || $(UV) venv --quiet --python $(or $(VERSION),$(PYTHON)) $(VENV)
 	$(UV) pip install --quiet --compile-bytecode --python $(BIN)/python --constraints $(LOCKED) \
-		--reinstall-package linkwright --editable .
+		--reinstall-package linkwright --editable '.[all]'
 	$(BIN)/python -m compileall -q src
 	touch $@
 

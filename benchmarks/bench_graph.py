@@ -15,13 +15,13 @@ from typing import Any
 
 from benchmarks.measure import Row
 from benchmarks.robots import tree_robot
+from linkwright.descriptions import DescriptionLibrary
 from linkwright.graph import Graph, TransformBuffer, TransformListener
 from linkwright.messages import JointState, String, TFMessage
 from linkwright.nodes import NodeOptions
 from linkwright.nodes.joint_state_publisher_gui import JointStatePublisherGui
 from linkwright.nodes.robot_state_publisher import RobotStatePublisher
 from linkwright.testing import SteppedGraph
-from linkwright.urdf import DescriptionLibrary
 
 BURST = 1000
 BURSTS = 200

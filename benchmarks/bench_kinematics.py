@@ -16,8 +16,9 @@ import numpy as np
 from benchmarks import peers
 from benchmarks.measure import Row, show, side_by_side
 from benchmarks.robots import detailed_robot
+from linkwright.descriptions import load
 from linkwright.kinematics import KinematicTree
-from linkwright.urdf import Robot, load, parent_joints
+from linkwright.urdf import Robot, parent_joints
 
 CONFIGURATIONS = 10_000
 FEW = 200

@@ -197,8 +197,8 @@ def _start() -> Row:
     known = "from linkwright.messages import JointState, TFMessage, String"
     times = commands(
         {
-            "with": [sys.executable, "-c", f"import numpy, linkwright.workspace; {known}"],
-            "without": [sys.executable, "-c", "import numpy, linkwright.workspace"],
+            "with": [sys.executable, "-c", f"import numpy, linkwright.packages; {known}"],
+            "without": [sys.executable, "-c", "import numpy, linkwright.packages"],
         },
         rounds=15,
     )

@@ -29,7 +29,7 @@ from benchmarks.page_questions import (
     wheel_latency,
 )
 from benchmarks.robots import write_sweep
-from linkwright.workspace import PackageFinder
+from linkwright.packages import PackageFinder
 
 RUNS = 7
 MOVES = 40

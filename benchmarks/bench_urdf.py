@@ -13,15 +13,17 @@ from contextlib import redirect_stderr
 from benchmarks import peers
 from benchmarks.measure import Row, show, side_by_side
 from benchmarks.robots import detailed_robot
-from linkwright.urdf import load, materials, origins, values
+from linkwright.descriptions import load
+from linkwright.schema import reading
+from linkwright.urdf import values
 
 ROUNDS = 25
 
 
 def forget() -> None:
     """Empty what the reader remembers of values it has seen."""
-    for cached in (values.number, values.vector3, origins._pose, materials._rgba):
-        cached.cache_clear()
+    reading.forget()
+    values.vector3.cache_clear()
 
 
 def rows() -> list[Row]:

@@ -22,14 +22,14 @@ import aiohttp
 from benchmarks.data_scenes import Frames, at_rate
 from benchmarks.measure import Row
 from benchmarks.robots import tree_robot
+from linkwright.descriptions import DescriptionLibrary
 from linkwright.graph import DESCRIPTION_QOS, Graph
 from linkwright.messages import String
 from linkwright.nodes import NodeOptions
 from linkwright.nodes.joint_state_publisher_gui import JointStatePublisherGui
 from linkwright.nodes.robot_state_publisher import RobotStatePublisher
-from linkwright.urdf import DescriptionLibrary
+from linkwright.packages import PackageFinder
 from linkwright.viewer import RvizConfig, Viewer
-from linkwright.workspace import PackageFinder
 
 LINKS = 500
 RATE = 30

@@ -20,7 +20,7 @@ from pathlib import Path
 from benchmarks import peers
 from benchmarks.measure import LINKWRIGHT, Row, commands, peak_memory, show, side_by_side
 from benchmarks.robots import SHIPPED, Model, models
-from linkwright.xacro import expand, literals, macros, sources, template, yamldata, yamlnodes
+from linkwright.xacro import expand, expression, literals, macros, sources, template, yamldata, yamlnodes
 
 SMALL = SHIPPED / "urdf" / "mbot_base.xacro"
 PASSES = 7
@@ -59,7 +59,7 @@ def theirs() -> Engine | None:
 
 def forget() -> None:
     """Drop everything that was kept from earlier expansions."""
-    for kept in (sources.documents, template.templates, template.expressions, yamldata.loaded, yamlnodes.tags):
+    for kept in (sources.documents, template.templates, expression.expressions, yamldata.loaded, yamlnodes.tags):
         kept.clear()
     macros.parse_parameters.cache_clear()
     literals.number_or_boolean.cache_clear()

@@ -17,11 +17,11 @@ from typing import Any
 import numpy as np
 
 from benchmarks.robots import tree_robot
+from linkwright.descriptions import DescriptionLibrary
 from linkwright.graph import DESCRIPTION_QOS, TF_QOS, Graph
 from linkwright.messages import String, TFMessage, TransformBatch, get_message
-from linkwright.urdf import DescriptionLibrary
+from linkwright.packages import PackageFinder
 from linkwright.viewer import RvizConfig, Viewer
-from linkwright.workspace import PackageFinder
 
 TOPIC = "/data"
 FRAME = "link_0"

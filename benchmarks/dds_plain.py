@@ -18,7 +18,7 @@ from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 
 from benchmarks.dds_sides import HEIGHT, JOINTS, TRANSFORMS, WIDTH, Result, paced, renew
-from linkwright.graph.dds.settings import read_settings
+from linkwright.wire.dds.settings import read_settings
 
 QOS = Qos(Policy.Reliability.Reliable(duration(milliseconds=100)), Policy.History.KeepAll)
 

@@ -20,9 +20,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from linkwright.graph import Graph
-from linkwright.graph.dds import join
-from linkwright.graph.qos import HistoryPolicy, QoSProfile
+from linkwright.graph.qos.profile import HistoryPolicy, QoSProfile
 from linkwright.messages import get_message
+from linkwright.wire.dds import join
 
 JOINTS = 12
 TRANSFORMS = 100

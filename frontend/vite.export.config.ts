@@ -1,6 +1,6 @@
 import { defineConfig } from "vite";
 
-// The page of exports: one script and one style sheet, which `viewer/export/html.py` puts into a file with the robot.
+// The page of exports: one script and one style sheet, which `viewer/features/export/html.py` puts into a file with the robot.
 export default defineConfig({
   base: "./",
   publicDir: false,

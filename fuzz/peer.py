@@ -1,7 +1,7 @@
 """Expands with PyPI's xacro, for comparison; runs in an environment of its own, on line-wise JSON requests.
 
-A request is ``{"path": ..., "arguments": {...}, "packages": {...}}``; the answer ``{"text": ...}`` or
-``{"error": ...}``.
+A request is ``{"path": ..., "arguments": {...}, "packages": {...}}``, and with ``"folder"`` the path is one in that
+folder; the answer is ``{"text": ...}`` or ``{"error": ...}``.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from __future__ import annotations
 import contextlib
 import io
 import json
+import os
 import signal
 import sys
 import types
@@ -38,9 +39,10 @@ def install_packages(packages: dict[str, str]) -> None:
 
 def answer(request: dict[str, object]) -> dict[str, str]:
     """The expansion of one file, or why there is none."""
-    import xacro  # type: ignore[import-not-found]
+    import xacro  # type: ignore[import-not-found]  # that of ROS, in an environment of its own
 
-    install_packages(request["packages"])  # type: ignore[arg-type]
+    install_packages(request["packages"])  # type: ignore[arg-type]  # JSON from differential.py
+    os.chdir(request.get("folder", "."))  # type: ignore[arg-type]  # JSON too
     with contextlib.redirect_stderr(io.StringIO()), contextlib.redirect_stdout(io.StringIO()):
         signal.alarm(SECONDS)
         try:

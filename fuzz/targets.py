@@ -17,7 +17,7 @@ from linkwright.diagnostics import LinkwrightError, render, to_data
 from linkwright.kinematics import KinematicTree
 from linkwright.urdf import read, save, to_gv, tree_text
 from linkwright.urdf.plaintext import parse_as_urdfdom
-from linkwright.viewer.rviz_config import RvizConfig
+from linkwright.viewer.config.rviz_config import RvizConfig
 from linkwright.xacro import expand, sources
 from linkwright.xacro.faults import Fault
 from linkwright.xacro.limits import Limits, room_for

@@ -2,9 +2,22 @@
 
 from __future__ import annotations
 
+import signal
 import sys
 
 import pytest
+from hypothesis import HealthCheck, settings
+
+from tests.domains import own_domain
+from tests.repository_tools import load_tool
+
+# How long an example takes says how busy the machine is. With CI set, hypothesis draws the same examples each time.
+settings.register_profile("unhurried", settings(), deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("unhurried")
+
+# Shells start what runs in the background without SIGINT, and programs inherit that: tests of Ctrl-C would never end.
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture(autouse=True, scope="session")
@@ -15,12 +28,19 @@ def _state_of_the_user(tmp_path_factory):
         yield
 
 
+@pytest.fixture(autouse=True, scope="session")
+def _catalogues():
+    """The program speaks other languages as the catalogues of the checkout have it."""
+    load_tool("catalogues").compile_catalogues()
+
+
 @pytest.fixture(autouse=True)
 def plain_environment(monkeypatch):
-    """No workspace, colour or language setting of the machine reaches a test."""
+    """No workspace, colour or language setting of the machine reaches a test, nor does a node of another test run."""
     for name in ("AMENT_PREFIX_PATH", "COLCON_PREFIX_PATH", "ROS_PACKAGE_PATH", "NO_COLOR", "FORCE_COLOR"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setenv("LINKWRIGHT_LANG", "en")
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(own_domain()))
 
 
 @pytest.fixture(autouse=True)

@@ -2,9 +2,17 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 PACKAGE = REPOSITORY / "robots" / "my_robot_description"
-TUTORIAL = (REPOSITORY.parent / "shared" / "tutorial").resolve()
-"""The tutorial's files as published; not part of the repository, so tests of it run only where they are."""
+PUBLISHED = (REPOSITORY.parent / "shared" / "tutorial" / "my_robot_description").resolve()
+"""The tutorial's package as published, where it is at hand: it is not part of the repository."""
+TUTORIAL_PACKAGES = [PACKAGE, *([PUBLISHED] if PUBLISHED.is_dir() else [])]
+"""The packages that a reader of the tutorial may have: ours, and the published one."""
+
+
+def without_meshes(package: Path, folder: Path) -> Path:
+    """A copy of a package in a folder as readers of the tutorial have it at first: meshes are downloaded."""
+    return shutil.copytree(package, folder / package.name, ignore=shutil.ignore_patterns("meshes", "__pycache__"))

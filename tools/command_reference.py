@@ -1,4 +1,4 @@
-"""Write the command reference, ``docs/commands.md``, from the argument parsers of the commands.
+"""Write the command reference, ``docs/commands.md``, from the argument parsers of the commands, and the table for TAB.
 
 Usage: python tools/command_reference.py [--check]
 
@@ -9,12 +9,17 @@ here, because argparse formats them differently from one Python version to the n
 from __future__ import annotations
 
 import argparse
+import json
 import sys
 from collections.abc import Iterator, Sequence
 from html import escape
 from pathlib import Path
 
 from linkwright.cli.command import VERBS, parser_for, verb
+from linkwright.cli.completion.candidates import TABLE
+from linkwright.cli.tools.ros2 import COMMANDS
+from linkwright.launch.ros.executables import hosted_executables
+from linkwright.messages import catalogue
 
 TARGET = Path(__file__).resolve().parent.parent / "docs" / "commands.md"
 
@@ -47,6 +52,37 @@ def generate() -> str:
     for name in VERBS:
         sections += describe(parser_for(name), verb(name).HELP)
     return "\n".join(sections)
+
+
+def completion_table() -> str:
+    """What `linkwright.cli.completion` reads: commands with their options and arguments, our executables and types."""
+    executables: dict[str, list[str]] = {}
+    for package, name in sorted(hosted_executables()):
+        executables.setdefault(package, []).append(name)
+    names = [f"{package}/{name}" for package in catalogue.packages() for name in catalogue.texts(package)]
+    types = {kind: sorted(name for name in names if f"/{kind}/" in name) for kind in ("msg", "srv", "action")}
+    verbs = {name: _completed(parser_for(name)) for name in VERBS}
+    table = {"verbs": verbs, "ros2": list(COMMANDS), "executables": executables, "types": types}
+    return json.dumps(table, separators=(",", ":")) + "\n"
+
+
+def _completed(parser: argparse.ArgumentParser) -> dict[str, object]:
+    options = {
+        name: _taken(action) if action.nargs != 0 else None
+        for action in arguments(parser)
+        for name in (action.option_strings if len(action.option_strings) < 2 else _shown_names(action))
+    }
+    below = {subparser.prog.rpartition(" ")[2]: _completed(subparser) for subparser, _ in _subcommands(parser)}
+    if below:
+        return {"options": options, "below": below}
+    places = [_taken(action) for action in arguments(parser) if not action.option_strings]
+    return {"options": options, "places": places}
+
+
+def _taken(action: argparse.Action) -> dict[str, object]:
+    """What an argument may be: by its name in the help, or its choices; and whether it may be repeated."""
+    name = action.metavar if isinstance(action.metavar, str) else action.dest.upper()
+    return {"name": name, "choices": [*map(str, action.choices or ())], "many": action.nargs in ("*", "+", "...")}
 
 
 def describe(parser: argparse.ArgumentParser, help_text: str) -> Iterator[str]:
@@ -137,16 +173,15 @@ def _usage_word(action: argparse.Action) -> str:
 
 
 def main(words: Sequence[str]) -> int:
-    """Write the page, or with ``--check`` say whether it is current."""
-    text = generate()
-    if "--check" in words:
-        current = TARGET.read_text(encoding="utf-8") if TARGET.exists() else ""
-        if current != text:
-            print(f"{TARGET} is stale: run python tools/command_reference.py", file=sys.stderr)
-            return 1
-        return 0
-    TARGET.write_text(text, encoding="utf-8", newline="\n")
-    return 0
+    """Write both, or with ``--check`` say whether they are current."""
+    status = 0
+    for path, text in ((TARGET, generate()), (TABLE, completion_table())):
+        if "--check" not in words:
+            path.write_text(text, encoding="utf-8", newline="\n")
+        elif not path.exists() or path.read_text(encoding="utf-8") != text:
+            print(f"{path} is stale: run python tools/command_reference.py", file=sys.stderr)
+            status = 1
+    return status
 
 
 if __name__ == "__main__":

@@ -62,7 +62,7 @@ def _value(block: str, key: str) -> str:
 
 def update(extra: list[str]) -> None:
     """Resolve in a copy, so that the working tree never holds an address."""
-    uv = os.environ.get("UV") or shutil.which("uv")
+    uv = shutil.which(os.environ.get("UV") or "uv")
     if not uv:
         raise SystemExit("uv is not on the PATH; run `make lock`")
     with tempfile.TemporaryDirectory() as folder:
@@ -72,7 +72,7 @@ def update(extra: list[str]) -> None:
             shutil.copy(ROOT / name, target)
         if LOCK.exists():
             shutil.copy(LOCK, Path(folder) / "uv.lock")
-        subprocess.run([uv, "lock", *extra], cwd=folder, check=True)
+        subprocess.run([Path(uv).absolute(), "lock", *extra], cwd=folder, check=True)
         text = (Path(folder) / "uv.lock").read_text(encoding="utf-8")
     LOCK.write_text(without_addresses(text), encoding="utf-8")
 

@@ -1,14 +1,13 @@
 """Write the type stubs of the message classes, which are made at run time, for mypy and editors.
 
-Two places: ``linkwright/messages/wellknown.pyi`` for the classes that Linkwright's own code uses by name, and a stub
-package for each ROS package in ``linkwright/standins/stubs`` (to be put on a type checker's search path).
+``linkwright/messages/wellknown.pyi`` has those of the classes that Linkwright's own code uses by name;
+``standin_stubs.py`` writes those of all, for users.
 
 Usage: python tools/message_stubs.py [--check]
 """
 
 from __future__ import annotations
 
-import shutil
 import sys
 from collections.abc import Iterable
 from pathlib import Path
@@ -20,7 +19,6 @@ from linkwright.messages.library import LIBRARY
 
 SOURCES = Path(__file__).resolve().parent.parent / "src" / "linkwright"
 WELLKNOWN = SOURCES / "messages" / "wellknown.pyi"
-STUBS = SOURCES / "standins" / "stubs"
 
 WELLKNOWN_TYPES = (
     "builtin_interfaces/msg/Time",
@@ -159,7 +157,7 @@ def wellknown() -> str:
     return _HEAD + "\n" + _used(body + extra) + "\n" + body + extra
 
 
-def package_stubs(package: str) -> dict[str, str]:
+def of_package(package: str) -> dict[str, str]:
     """The stubs of a package: path below the folder of stubs -> text."""
     found = {f"{package}/__init__.pyi": _HEAD}
     for kind in ("msg", "srv", "action"):
@@ -175,30 +173,14 @@ def package_stubs(package: str) -> dict[str, str]:
     return found
 
 
-def generate() -> dict[Path, str]:
-    """All stubs: file -> text."""
-    files = {WELLKNOWN: wellknown()}
-    for package in catalogue.packages():
-        for path, text in package_stubs(package).items():
-            files[STUBS / path] = text
-    return files
-
-
 def main(arguments: list[str]) -> int:
-    """Write the files, or say which are not current."""
-    files = generate()
+    """Write `WELLKNOWN`, or say that it is not current."""
     if "--check" not in arguments:
-        shutil.rmtree(STUBS, ignore_errors=True)
-        for path, text in files.items():
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_text(text, encoding="utf-8")
-        return 0
-    there = {WELLKNOWN, *STUBS.rglob("*.pyi")}
-    stale = [path for path in sorted(there | set(files))
-             if path not in files or not path.exists() or path.read_text(encoding="utf-8") != files[path]]  # fmt: skip
-    for path in stale:
-        print(f"{path.relative_to(SOURCES)} is not current: run python tools/message_stubs.py", file=sys.stderr)
-    return 1 if stale else 0
+        WELLKNOWN.write_text(wellknown(), encoding="utf-8")
+    elif WELLKNOWN.read_text(encoding="utf-8") != wellknown():
+        print(f"{WELLKNOWN.relative_to(SOURCES)} is not current: run python tools/message_stubs.py", file=sys.stderr)
+        return 1
+    return 0
 
 
 if __name__ == "__main__":

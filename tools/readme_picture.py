@@ -1,59 +1,144 @@
-"""Take the picture of the README from the running program: ``python tools/readme_picture.py`` (needs a Chromium)."""
+"""Make the moving picture of the README from the running program.
+
+Usage: python tools/readme_picture.py (needs a Chromium and Pillow)
+
+`linkwright view` shows a copy of mbot's xacro file in a headless browser. A slider is moved, then the file is edited
+and saved, and the page follows. Each frame is a screenshot of the page above the line of the file that is edited.
+"""
 
 from __future__ import annotations
 
+import io
 import os
+import shutil
 import signal
 import subprocess
 import sys
 import tempfile
+from dataclasses import dataclass, field
+from itertools import pairwise
 from pathlib import Path
 
 import chromium
-from playwright.sync_api import sync_playwright
+from PIL import Image, ImageDraw, ImageFont
+from playwright.sync_api import Page, sync_playwright
 
-TARGET = Path(__file__).resolve().parent.parent / "docs" / "images" / "mbot.png"
-COMMAND = ("launch", "my_robot_description", "display_xacro.launch.py", "--no-open")
+ROOT = Path(__file__).resolve().parent.parent
+TARGET = ROOT / "docs" / "images" / "mbot.webp"
+MODEL = ROOT / "robots" / "my_robot_description" / "urdf" / "mbot_base.xacro"
 FLAGS = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking")
+
+SIZE = (1120, 630)
+"""Of the page, pixels."""
+STRIP = 44
+"""Height of the strip with the edited line, pixels."""
+
+
+@dataclass
+class Film:
+    """The frames so far, each with the milliseconds that it is shown.
+
+    Attributes:
+        page: what is filmed.
+        line: the text in the strip below it.
+    """
+
+    page: Page
+    line: str = ""
+    frames: list[Image.Image] = field(default_factory=list)
+    durations: list[int] = field(default_factory=list)
+
+    def take(self, milliseconds: int) -> None:
+        """Add what the page shows now."""
+        shot = Image.open(io.BytesIO(self.page.screenshot())).convert("RGB")
+        frame = Image.new("RGB", (SIZE[0], SIZE[1] + STRIP), "#1e2327")
+        frame.paste(shot)
+        ImageDraw.Draw(frame).text((16, SIZE[1] + 12), self.line, font=ImageFont.load_default(17), fill="#e6e6e6")
+        self.frames.append(frame)
+        self.durations.append(milliseconds)
+
+    def save(self, target: Path) -> None:
+        """Write the frames as an animated WebP."""
+        target.parent.mkdir(parents=True, exist_ok=True)
+        first, *rest = self.frames
+        first.save(target, save_all=True, append_images=rest, duration=self.durations, loop=0, quality=72, method=6)
 
 
 def main() -> int:
-    """Start the program, turn a wheel, select the link, take the picture."""
-    with tempfile.TemporaryDirectory() as state:  # the program keeps there what is not saved
-        return 0 if take({**os.environ, "XDG_STATE_HOME": state}) == 130 else 1
+    """Start the program on a copy of the model, film it, write the picture."""
+    with tempfile.TemporaryDirectory() as folder:
+        model = Path(folder) / "mbot.urdf.xacro"
+        shutil.copy(MODEL, model)
+        environment = {**os.environ, "XDG_STATE_HOME": folder, "LINKWRIGHT_DDS": "0"}
+        command = [sys.executable, "-m", "linkwright", "view", model.name, "--no-open"]
+        program = subprocess.Popen(command, stdout=subprocess.PIPE, env=environment, cwd=folder, text=True)
+        assert program.stdout is not None
+        try:
+            url = next(line.split()[1] for line in program.stdout if line.startswith("Viewer: "))
+            with sync_playwright() as playwright:
+                browser = playwright.chromium.launch(
+                    executable_path=chromium.find() or chromium.fetch(), args=list(FLAGS)
+                )
+                page = browser.new_page(viewport={"width": SIZE[0], "height": SIZE[1]}, locale="en-US")
+                page.goto(url)
+                page.wait_for_function("window.linkwright?.ready === true")
+                film = Film(page)
+                play(film, model)
+                film.save(TARGET)
+                browser.close()
+        finally:
+            program.send_signal(signal.SIGINT)
+            status = program.wait(timeout=20)
+    return 0 if status == 130 else 1
 
 
-def take(environment: dict[str, str]) -> int:
-    """The same in an environment; the exit status of the program."""
-    command = [sys.executable, "-m", "linkwright", *COMMAND]
-    program = subprocess.Popen(command, stdout=subprocess.PIPE, env=environment, text=True)
-    assert program.stdout is not None
-    url = next(line.split()[1] for line in program.stdout if line.startswith("Viewer: "))
-    with sync_playwright() as playwright:
-        path = chromium.find() or chromium.fetch()
-        browser = playwright.chromium.launch(executable_path=path, args=list(FLAGS))
-        page = browser.new_page(viewport={"width": 1280, "height": 800}, locale="en-US")
-        page.goto(url)
-        page.wait_for_function("window.linkwright?.ready === true")
-        page.locator('[data-joint="left_wheel_joint"] input[type=range]').fill("0.9")
-        # The tutorial's axes are as long as the robot is wide; at a third of that the robot shows.
-        tf = page.locator(".row:has(.row-title:text-is('TF'))")
-        tf.locator(".row-name").dblclick()
-        scale = page.locator(".row:has(.row-title:text-is('Marker Scale')) input")
-        scale.fill("0.35")
-        scale.press("Enter")
-        tf.locator(".row-name").dblclick()
-        canvas = page.locator("canvas").first.bounding_box()
-        assert canvas is not None
-        page.mouse.move(canvas["x"] + 300, canvas["y"] + 300)
-        page.mouse.wheel(0, -240)
-        page.mouse.click(canvas["x"] + canvas["width"] * 0.5, canvas["y"] + canvas["height"] * 0.56)
-        page.wait_for_timeout(800)
-        TARGET.parent.mkdir(parents=True, exist_ok=True)
-        page.screenshot(path=str(TARGET))
-        browser.close()
-    program.send_signal(signal.SIGINT)
-    return program.wait(timeout=10)
+def play(film: Film, model: Path) -> None:
+    """What the picture shows, in about ten seconds."""
+    page = film.page
+    canvas = page.locator("canvas").first.bounding_box()
+    assert canvas is not None
+    page.mouse.move(canvas["x"] + canvas["width"] / 2, canvas["y"] + canvas["height"] / 2)
+    while page.evaluate("window.linkwright.view.distance") > 1.7:
+        page.mouse.wheel(0, -120)
+        until(page, "lw.ready")
+    slider = page.locator('[data-joint="left_wheel_joint"] input[type=range]')
+    film.line = f"$ linkwright view {model.name}"
+    film.take(1400)
+    for step in range(1, 16):
+        slider.fill(f"{0.14 * step:.2f}")
+        until(page, f"Math.abs(lw.joints.left_wheel_joint - {0.14 * step:.2f}) < 0.02")
+        film.take(120)
+    film.take(600)
+    edit(film, model, "wheel_joint_y", ("0.19", "0.23", "0.28"), "lw.frames.left_wheel_link.position[1]")
+    edit(film, model, "kinect_joint_z", ("0.38", "0.46", "0.54"), "lw.frames.kinect_link.position[2]")
+    film.take(1200)
+
+
+def edit(film: Film, model: Path, name: str, values: tuple[str, ...], seen: str) -> None:
+    """Set a property of the model to each of some values, of which the first is in the file, and save each time.
+
+    Args:
+        film: the film.
+        model: the file.
+        name: of the property.
+        values: its values.
+        seen: what of the page becomes the value, as JavaScript.
+    """
+    for before, after in pairwise(values):
+        text = model.read_text(encoding="utf-8")
+        old, new = (f'<xacro:property name="{name}" value="{value}"/>' for value in (before, after))
+        film.line = f"{model.name}:  {old}"
+        film.take(500)
+        model.write_text(text.replace(old, new), encoding="utf-8")
+        film.line = f"{model.name}:  {new}"
+        until(film.page, f"Math.abs({seen} - {after}) < 1e-6 && lw.ready")
+        film.take(700)
+
+
+def until(page: Page, condition: str) -> None:
+    """Wait until a condition over `lw`, the page's `window.linkwright`, holds, and the page was painted after that."""
+    page.wait_for_function(f"() => {{ const lw = window.linkwright; return {condition}; }}")
+    page.evaluate("() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
 
 
 if __name__ == "__main__":

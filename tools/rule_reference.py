@@ -3,7 +3,7 @@
 Usage: python tools/rule_reference.py [--check]
 
 The text of a rule is its docstring, which `linkwright explain` prints too; that of other diagnostics is in
-``src/linkwright/lint/pages/``. The Chinese titles are in ``tools/rule_titles_zh.txt``.
+``src/linkwright/lint/pages/``. Chinese titles are in the catalogue, `diagnostics/translation/zh.po`.
 """
 
 from __future__ import annotations
@@ -13,13 +13,16 @@ import sys
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
+from babel.messages.pofile import read_po
+
+from linkwright.diagnostics.phrase import RULES
 from linkwright.lint.explain import PAGES, Page, room_pages, rule_page
 from linkwright.lint.registry import all_rules
 from linkwright.lint.rule import Rule
 
 ROOT = Path(__file__).resolve().parent.parent
 DOCS = ROOT / "docs"
-TITLES = ROOT / "tools" / "rule_titles_zh.txt"
+CATALOGUE = ROOT / "src" / "linkwright" / "diagnostics" / "translation" / "zh.po"
 
 GROUPS: Mapping[str, tuple[str, str, str]] = {
     "LW0": ("comments", "Suppressing comments", "抑制注释"),
@@ -72,8 +75,10 @@ def generate() -> dict[Path, str]:
 
 def chinese_titles() -> dict[str, str]:
     """Code -> what the rule reports, in Chinese."""
-    lines = TITLES.read_text(encoding="utf-8").splitlines()
-    return dict(line.split(" ", 1) for line in lines if line and not line.startswith("#"))
+    with CATALOGUE.open("rb") as file:
+        catalogue = read_po(file)
+    found = {rule.code: catalogue.get(rule_page(rule).title, RULES) for rule in all_rules()}
+    return {code: str(message.string) for code, message in found.items() if message is not None}
 
 
 def _rules(start: str) -> list[Rule]:

@@ -12,6 +12,10 @@ import { number, vector } from "./state/views/view-controller";
 interface Inspection {
   /** The robot, its meshes and its first transforms were drawn. */
   readonly ready: boolean;
+  /** The last frame shows all that came: none is due. */
+  readonly settled: boolean;
+  /** How many messages of the server were taken in since the connection was opened. */
+  readonly received: number;
   /** Pose of every frame in the fixed frame, m and xyzw. */
   readonly frames: Record<string, FramePose>;
   /** The first robot shown; `visuals` is how many of its visuals are drawn now. */
@@ -83,6 +87,12 @@ export function publishInspection(
   const inspection: Inspection = {
     get ready() {
       return stage?.ready ?? false;
+    },
+    get settled() {
+      return stage?.settled ?? false;
+    },
+    get received() {
+      return session.connection.received;
     },
     get frames() {
       return session.frames.snapshot();

@@ -1,4 +1,4 @@
-import "dockview-core/dist/styles/dockview.css";
+import "dockview/dist/styles/dockview.css";
 import "./styles/theme.css";
 import "./styles/layout.css";
 import "./styles/tree.css";

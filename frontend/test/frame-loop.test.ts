@@ -55,8 +55,13 @@ describe("the frame loop", () => {
     const fine: boolean[] = [];
     const loop = new FrameLoop((each) => fine.push(each));
     loop.invalidate();
-    run(1000);
+    run(100);
+    expect(loop.settled).toBe(false);
+    run(900);
     expect(fine).toEqual([false, true]);
+    expect(loop.settled).toBe(true);
+    loop.invalidate();
+    expect(loop.settled).toBe(false);
   });
 
   it("draws coarsely while a slow machine moves, finely when it stands still", () => {

@@ -21,6 +21,7 @@ export function property(part: Partial<Property> & Pick<Property, "id" | "name">
 export function display(part: Partial<Display> & Pick<Display, "id">): Display {
   return {
     cls: "rviz_default_plugins/Grid",
+    drawing: part.cls ?? "rviz_default_plugins/Grid",
     name: "Grid",
     group: null,
     enabled: true,
@@ -64,7 +65,7 @@ export function robot(displayId: string, ...links: string[]): RobotScene {
   };
 }
 
-/** A binary frame as `pack_transforms` of viewer/protocol.py packs it. */
+/** A binary frame as `pack_transforms` of viewer/protocol/frames.py packs it. */
 export function packed(revision: number, poses: readonly (readonly number[])[], ages: readonly number[]): ArrayBuffer {
   const buffer = new ArrayBuffer(24 + poses.length * 32);
   const view = new DataView(buffer);

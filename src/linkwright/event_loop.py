@@ -26,5 +26,6 @@ def run_coroutine(make: Callable[[], Coroutine[Any, Any, T]], ready: Callable[[]
             runner.get_loop()
             ready()
             return runner.run(make())
-    ready()
-    return asyncio.run(make())
+    else:
+        ready()
+        return asyncio.run(make())

@@ -12,6 +12,7 @@ from rosbags.typesys import Stores, get_typestore
 
 from linkwright.bag import STORAGES, BagReader, BagWriter, TopicSelection, summary_text
 from linkwright.bag.qos import from_bag, overrides_of, profile_for_playing, profile_for_recording, to_bag
+from linkwright.cli import main
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import (
     DEFAULT_QOS,
@@ -174,7 +175,21 @@ def test_a_file_that_was_cut_off_gives_the_chunks_that_are_whole(tmp_path: Path,
     file.write_bytes(whole[:-cut])
     with BagReader(path) as bag:
         stamps = [stamp - START for _, stamp, _ in bag.messages()]
+        assert bag.finding is not None
+        assert bag.finding.code == "BAG109"
     assert stamps == list(range(left))
+
+
+def test_info_and_play_say_that_a_recording_has_no_end(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = write(tmp_path)
+    assert main(["bag", "info", str(path)]) == 0
+    assert capsys.readouterr().err == ""
+    with BagReader(path) as bag:
+        assert bag.finding is None
+    file = path / "bag.mcap"
+    file.write_bytes(file.read_bytes()[:-100])
+    assert main(["bag", "info", str(path)]) == 0
+    assert "warning[BAG109]" in capsys.readouterr().err
 
 
 def test_a_folder_that_exists_is_not_written_over(tmp_path: Path) -> None:

@@ -8,8 +8,9 @@ import yaml
 
 from linkwright.graph import DESCRIPTION_QOS
 from linkwright.messages import String
-from tests.browser.conftest import state, until
+from tests.browser.conftest import SECONDS, state, until
 from tests.viewer.scene import ARM
+from tests.waiting import wait_until
 
 SCALE = 50.0
 """Pixels to a metre of the file's TopDownOrtho view: so each pixel is known in metres."""
@@ -81,10 +82,7 @@ class Scene:
 
     def only(self, topic: str) -> Any:
         """The one message heard on a topic."""
-        for _ in range(50):
-            if self.heard[topic]:
-                break
-            self.page.wait_for_timeout(50)
+        wait_until(lambda: self.heard[topic], SECONDS)
         (message,) = self.heard[topic]
         return message
 
@@ -109,4 +107,5 @@ def open_scene(live: Any, open_page: Any) -> Scene:
     viewer.place("mark", 0.0, 0.0, 0.0, parent="tip")
     made = Scene(viewer, open_page(viewer))
     until(made.page, "lw.tools.length === 8 && lw.frames.tip !== undefined")
+    viewer.settle(made.page)
     return made

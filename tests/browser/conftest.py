@@ -12,15 +12,22 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
 
 from tests.browser.live import LiveViewer, configuration
+from tests.browser.seen import what_was_seen
+from tests.waiting import wait_until
+
+SECONDS = 60.0
+"""How long the tests wait for what must come: long, for a busy machine draws a frame in seconds where it has no GPU."""
+
+Value = TypeVar("Value")
 
 _FLAGS = (
     "--no-sandbox",
@@ -53,6 +60,17 @@ _GROUPED = """
 """
 
 
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+    """Let a test that fails tell what its pages showed: the next time it may not fail."""
+    report = yield
+    browser = getattr(item, "funcargs", {}).get("browser")
+    if report.when == "call" and report.failed and browser is not None:
+        name = re.sub(r"\W+", "-", item.name)
+        report.sections.append(("Pages", what_was_seen(browser, item.config.rootpath / ".build" / "pages", name)))
+    return report
+
+
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Browser]:
     """One browser for a module, drawing in software.
@@ -77,7 +95,7 @@ class Program:
     output: list[str] = field(default_factory=list)
     _lines: queue.Queue[str | None] = field(default_factory=queue.Queue)
 
-    def wait_for(self, pattern: str, seconds: float = 20) -> re.Match[str]:
+    def wait_for(self, pattern: str, seconds: float = SECONDS) -> re.Match[str]:
         """Read on until a line matches; fails with all the output when none does in time."""
         deadline = time.monotonic() + seconds
         while True:
@@ -90,7 +108,7 @@ class Program:
             if time.monotonic() >= deadline:
                 pytest.fail(f"no line like {pattern!r} within {seconds} s:\n{''.join(self.output)}")
 
-    def interrupt(self, seconds: float = 10) -> int:
+    def interrupt(self, seconds: float = SECONDS) -> int:
         """Ctrl-C, and the exit status."""
         self.process.send_signal(signal.SIGINT)
         return self.process.wait(timeout=seconds)
@@ -133,8 +151,8 @@ def start(tmp_path: Path) -> Iterator[Start]:
     for program, reader in running:
         if program.process.poll() is None:
             program.process.terminate()
-            program.process.wait(timeout=10)
-        reader.join(timeout=5)
+            program.process.wait(timeout=SECONDS)
+        reader.join(timeout=SECONDS)
         assert program.process.stdout is not None
         program.process.stdout.close()
 
@@ -161,13 +179,14 @@ def open_page(browser: Browser) -> Iterator[Callable[..., Page]]:
 
     def open_url(program: Program | LiveViewer, *, wait: bool = True) -> Page:
         context = browser.new_context(viewport={"width": 1280, "height": 800}, locale="en-US")
+        context.set_default_timeout(1000 * SECONDS)
         contexts.append(context)
         page = context.new_page()
         page.on("pageerror", lambda error: complaints.append(str(error)))
         page.on("console", lambda message: complaints.append(message.text) if message.type == "error" else None)
         page.goto(program.url)
         if wait:
-            page.wait_for_function("window.linkwright?.ready === true", timeout=30_000)
+            page.wait_for_function("window.linkwright?.ready === true")
         return page
 
     yield open_url
@@ -191,8 +210,32 @@ def state(page: Page, name: str) -> Any:
     return page.evaluate(f"() => window.linkwright.{name}")
 
 
-def until(page: Page, condition: str, seconds: float = 10) -> None:
+def until(page: Page, condition: str) -> None:
     """Wait until a JavaScript condition over `lw` (window.linkwright) holds."""
     page.wait_for_function(
-        f"() => {{ const lw = window.linkwright; return lw && ({condition}); }}", timeout=seconds * 1000
+        f"() => {{ const lw = window.linkwright; return lw && ({condition}); }}", timeout=1000 * SECONDS
     )
+
+
+def becomes(read: Callable[[], Value], expected: Value) -> None:
+    """Read again and again until it is what is expected; fails with what was read last."""
+    limit = time.monotonic() + SECONDS
+    while (value := read()) != expected and time.monotonic() < limit:
+        time.sleep(0.02)
+    assert value == expected
+
+
+def two_seconds_pass(page: Page) -> None:
+    """Wait until the page's own clock, of its Time panel, has gone on."""
+    elapsed = page.locator(".time-panel .figure").last
+    wait_until(elapsed.inner_text, SECONDS)
+    started = float(elapsed.inner_text())
+    wait_until(lambda: float(elapsed.inner_text()) >= started + 2, SECONDS)
+
+
+def frames_drawn_meanwhile(page: Page) -> int:
+    """How many frames are drawn while two seconds pass."""
+    before: int = state(page, "framesDrawn")
+    two_seconds_pass(page)
+    after: int = state(page, "framesDrawn")
+    return after - before

@@ -8,11 +8,12 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar
 
+from linkwright.descriptions import DescriptionLibrary
 from linkwright.graph import STATIC_TF_PUBLISHER_QOS, Graph
 from linkwright.messages import TFMessage, get_message
-from linkwright.urdf import DescriptionLibrary
+from linkwright.packages import PackageFinder
 from linkwright.viewer import RvizConfig, Viewer
-from linkwright.workspace import PackageFinder
+from tests.waiting import wait_until
 
 Result = TypeVar("Result")
 
@@ -69,7 +70,7 @@ class LiveViewer:
             result = function()
             return await result if asyncio.iscoroutine(result) else result
 
-        return asyncio.run_coroutine_threadsafe(call(), self._loop).result(timeout=20)
+        return asyncio.run_coroutine_threadsafe(call(), self._loop).result(timeout=60)
 
     def publish(self, topic: str, message: Any, qos: Any = 10) -> None:
         """Publish a message; the publisher stays."""
@@ -94,6 +95,21 @@ class LiveViewer:
                 setattr(part, name, float(number))
         self.publish("/tf_static", TFMessage(transforms=[transform]), STATIC_TF_PUBLISHER_QOS)
 
+    def settle(self, page: Any) -> None:
+        """Wait until the one open page has all that the viewer has for it, and has drawn it."""
+
+        def sent() -> int | None:
+            (to_page,) = self.viewer._audience._pages
+            waiting = to_page._opening or to_page.outbox or to_page._reduced
+            return None if waiting else to_page.line._number
+
+        def settled() -> bool:
+            number = self.run(sent)
+            read = "([number]) => window.linkwright?.received === number && window.linkwright.settled"
+            return number is not None and page.evaluate(read, [number]) and self.run(sent) == number
+
+        wait_until(settled, 60)
+
     def status(self, name: str) -> dict[str, tuple[str, str]]:
         """The status rows of a display: name -> level, text."""
 
@@ -112,7 +128,7 @@ class LiveViewer:
 
         self.run(end)
         self._loop.call_soon_threadsafe(self._loop.stop)
-        self._thread.join(timeout=10)
+        self._thread.join(timeout=60)
         self._loop.close()
 
     async def _start(self) -> None:

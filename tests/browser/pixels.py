@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-import struct
-import zlib
+import io
+import math
 from typing import Any
 
+from PIL import Image
 
-def color_at(page: Any, x: float, y: float) -> tuple[int, int, int]:
-    """The colour of the page at a place, pixels from its upper left corner."""
-    image = page.screenshot(clip={"x": x, "y": y, "width": 1, "height": 1})
-    data, start = b"", 8
-    while start < len(image):
-        (length,) = struct.unpack_from(">I", image, start)
-        if image[start + 4 : start + 8] == b"IDAT":
-            data += image[start + 8 : start + 8 + length]
-        start += 12 + length
-    _, r, g, b, *_ = zlib.decompress(data)  # one pixel: every filter leaves it as it is
-    return r, g, b
+Color = tuple[int, int, int]
+
+
+def colors_at(page: Any, *places: tuple[float, float]) -> list[Color]:
+    """The colours of the page at some places, pixels from its upper left corner, at one moment."""
+    xs, ys = ([math.floor(each[axis]) for each in places] for axis in (0, 1))
+    x, y = min(xs), min(ys)
+    clip = {"x": x, "y": y, "width": max(xs) - x + 1, "height": max(ys) - y + 1}
+    with Image.open(io.BytesIO(page.screenshot(clip=clip))) as picture:
+        colors = picture.convert("RGB")
+    return [colors.getpixel((each - x, other - y)) for each, other in zip(xs, ys, strict=True)]

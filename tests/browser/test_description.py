@@ -119,7 +119,7 @@ def test_an_edit_lights_up_and_a_mistake_leads_to_its_place(page, arm):
     until(page, f"lw.description.revision > {revision} && lw.description.edited.includes('fore')")
     assert state(page, "description.edited") == ["fore"]
     page.wait_for_function("window.lit.size > 0")
-    page.locator(".link-row.flash").wait_for(state="detached", timeout=10_000)
+    page.locator(".link-row.flash").wait_for(state="detached")
     assert page.evaluate("[...window.lit]") == ["fore"]
 
     arm.write_text(good.replace('mass="2"', 'mas="2"'))

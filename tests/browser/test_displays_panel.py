@@ -37,7 +37,7 @@ def test_displays_are_added_by_type_and_taken_back(grouped):
     page.keyboard.press("Enter")
     until(page, "lw.displays.length === 5")
     assert names(page) == ["Grid", "Marks", "Axes", "Radar", "Cloud"]
-    assert page.evaluate("document.title").startswith("● ")
+    page.wait_for_function("document.title.startsWith('● ')")
     assert saved(viewer)[1]["Displays"][2]["Name"] == "Cloud"
     page.keyboard.press("Control+z")
     until(page, "lw.displays.length === 4")

@@ -10,12 +10,12 @@ import pytest
 
 from linkwright.graph import DESCRIPTION_QOS
 from linkwright.messages import String
-from tests.browser.conftest import state, until
+from tests.browser.conftest import becomes, state, until
 from tests.browser.golden import link, mesh, robot_of
 from tests.browser.live import configuration
 from tests.browser.mesh_writers import dae, obj, png, stl_binary
-from tests.viewer.export.robots import GRIPPER
-from tests.viewer.export.test_glb import textured_dae
+from tests.viewer.features.export.robots import GRIPPER
+from tests.viewer.features.export.test_glb import textured_dae
 
 pytestmark = pytest.mark.browser
 
@@ -49,11 +49,8 @@ def open_file(browser):
 
         page.on("request", requested)
         page.goto(path.as_uri())
-        for _ in range(200):  # its policy lets no text be evaluated in it, as wait_for_function does
-            if page.evaluate("() => window.linkwright?.ready === true"):
-                break
-            page.wait_for_timeout(50)
-        assert state(page, "ready")
+        # Its policy lets no text be evaluated in it, as wait_for_function does.
+        becomes(lambda: page.evaluate("() => window.linkwright?.ready === true"), True)
         return page
 
     yield open_it
@@ -139,12 +136,11 @@ def test_boxes_views_and_words(open_file, tmp_path):
     page = open_file(tmp_path / "gripper.html")
     page.get_by_label("Collision").check()
     page.get_by_label("Visual").uncheck()
-    page.wait_for_timeout(200)
+    becomes(lambda: state(page, "robot")["visuals"], 0)
     robot = next(each for each in state(page, "displays") if each["class"].endswith("RobotModel"))
     assert robot["drawn"]["links"]["arm"]["collisions"]
-    assert state(page, "robot")["visuals"] == 0
     page.get_by_role("button", name="Top").click()
-    assert state(page, "view")["pitch"] == pytest.approx(1.57, abs=0.01)
+    becomes(lambda: state(page, "view")["pitch"], pytest.approx(1.57, abs=0.01))
     chinese = open_file(tmp_path / "gripper.html", locale="zh-CN")
     assert chinese.get_by_label("碰撞").count() == 1
 
@@ -211,11 +207,12 @@ def test_pictures_and_videos(live, open_page, tmp_path):
     share(page, "Record a video")
     until(page, "document.querySelector('.recorder:not([hidden])') !== null")
     for turn in range(10):
+        before = state(page, "framesDrawn")
         page.mouse.move(600 + 8 * turn, 400)
         page.mouse.down()
         page.mouse.move(620 + 8 * turn, 410)
         page.mouse.up()
-        page.wait_for_timeout(120)
+        until(page, f"lw.framesDrawn > {before}")
     with page.expect_download() as download:
         page.locator(".recorder button").click()
     path = tmp_path / download.value.suggested_filename

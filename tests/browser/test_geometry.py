@@ -9,9 +9,9 @@ import pytest
 
 from linkwright.graph import DESCRIPTION_QOS
 from linkwright.messages import String, get_message
-from tests.browser.conftest import state, until
+from tests.browser.conftest import becomes, state, until
 from tests.browser.live import configuration
-from tests.viewer.test_geometry_displays import message, pose
+from tests.viewer.displays.test_geometry_displays import message, pose
 
 pytestmark = pytest.mark.browser
 
@@ -96,6 +96,7 @@ def test_every_display_draws_its_message_where_it_is(live, open_page):
     published(viewer)
     page = open_page(viewer, wait=False)
     until(page, "lw.displays.every((each) => each.drawn?.bounds)")
+    viewer.settle(page)
     told = drawn(page)
     assert told["Pose"]["bounds"]["min"] == pytest.approx([1, -0.05, 0.95], abs=1e-3)
     assert told["Pose"]["bounds"]["max"] == pytest.approx([2.3, 0.05, 1.05], abs=1e-3)
@@ -115,7 +116,7 @@ def test_every_display_draws_its_message_where_it_is(live, open_page):
     assert size(told["Torque"])[1] < 0.2 < size(told["Torque"])[0]
     assert size(told["Click"]) == pytest.approx([0.2] * 3, abs=1e-2)
     assert told["Axes"]["bounds"]["max"] == pytest.approx([1, 1, 2], abs=1e-3)
-    assert {each["level"] for each in state(page, "displays")} == {"ok"}
+    becomes(lambda: {each["level"] for each in state(page, "displays")}, {"ok"})
 
 
 def test_properties_act_at_once_and_content_goes_with_its_display(live, open_page):
@@ -123,6 +124,7 @@ def test_properties_act_at_once_and_content_goes_with_its_display(live, open_pag
     published(viewer)
     page = open_page(viewer, wait=False)
     until(page, "lw.displays.every((each) => each.drawn?.bounds)")
+    viewer.settle(page)
 
     def change(name: str, path: tuple[str, ...], value: object) -> None:
         def act() -> None:
@@ -141,6 +143,7 @@ def test_properties_act_at_once_and_content_goes_with_its_display(live, open_pag
     until(page, "lw.displays.find((each) => each.name === 'Click').drawn.points === 0")
     until(page, "lw.displays.find((each) => each.name === 'Torque').drawn.rings === 0")
     until(page, "lw.displays.find((each) => each.name === 'Way').drawn.axes === 3")
+    viewer.settle(page)
     told = drawn(page)
     assert told["Pose"]["bounds"]["max"][0] == pytest.approx(3.3, abs=1e-3)
     assert told["Cloud"]["arrows"] == 5
@@ -198,6 +201,7 @@ def test_rows_of_frames_links_and_joints_follow_what_is_drawn(live, open_page):
     viewer.place("tip", 0.0, 0.0, 1.0)
     page = open_page(viewer)
     until(page, "lw.displays[0].drawn?.arrows === 1 && lw.displays[1].drawn?.inertias === 1")
+    viewer.settle(page)
     frames, robot = (each["drawn"] for each in state(page, "displays"))
     assert (frames["axes"], frames["names"]) == (2, 2)
     assert frames["bounds"]["max"][2] == pytest.approx(1.2, abs=1e-3)
@@ -206,12 +210,15 @@ def test_rows_of_frames_links_and_joints_follow_what_is_drawn(live, open_page):
     tf, model = identities["Frames"], identities["Robot"]
     for key in (f"{tf}", f"{tf}/Frames", f"{tf}/Frames/tip"):
         row(page, key).locator(".twist").click()
-    position = row(page, f"{tf}/Frames/tip#Relative Position")
-    assert row(page, f"{tf}/Frames/tip#Parent").locator(".row-value").inner_text() == "base"
-    assert position.locator(".row-value").inner_text() == "0; 0; 1"
+
+    def value(key: str) -> str:
+        told: str = row(page, key).locator(".row-value").inner_text()
+        return told
+
+    becomes(lambda: value(f"{tf}/Frames/tip#Parent"), "base")
+    becomes(lambda: value(f"{tf}/Frames/tip#Relative Position"), "0; 0; 1")
     viewer.place("tip", 0.0, 0.0, 1.5)
-    page.wait_for_function(f"""() => document.querySelector('.row[data-key="{tf}/Frames/tip#Relative Position"]')
-        .textContent.includes('0; 0; 1.5')""")
+    becomes(lambda: value(f"{tf}/Frames/tip#Relative Position"), "0; 0; 1.5")
     row(page, tf).locator(".twist").click()
     top = row(page, f"{model}/Links")
     assert "Link/Joint Tree" in top.inner_text()
@@ -222,6 +229,6 @@ def test_rows_of_frames_links_and_joints_follow_what_is_drawn(live, open_page):
     assert [name for name in tree if name in ("base", "lift", "tip")] == ["base", "lift", "tip"]
     assert "Lower Limit" not in tree
     row(page, f"{model}/Joints/lift#Details").locator(".twist").click()
-    assert row(page, f"{model}/Joints/lift#Lower Limit").locator(".row-value").inner_text() == "-1"
-    assert row(page, f"{model}/Joints/lift#Joint Axis").locator(".row-value").inner_text() == "0; 1; 0"
-    assert row(page, f"{model}/Links/tip#Position").locator(".row-value").inner_text() == "0; 0; 1.5"
+    becomes(lambda: value(f"{model}/Joints/lift#Lower Limit"), "-1")
+    becomes(lambda: value(f"{model}/Joints/lift#Joint Axis"), "0; 1; 0")
+    becomes(lambda: value(f"{model}/Links/tip#Position"), "0; 0; 1.5")

@@ -10,11 +10,11 @@ import pytest
 
 from linkwright.graph import DESCRIPTION_QOS
 from linkwright.messages import String
-from tests.browser.conftest import state, until
+from tests.browser.conftest import becomes, state, until
 from tests.browser.golden import GOLDEN, golden_links, link, mesh, robot_of
 from tests.browser.live import configuration
 from tests.browser.mesh_writers import dae, png, stl_binary
-from tests.browser.pixels import color_at
+from tests.browser.pixels import Color, colors_at
 
 pytestmark = pytest.mark.browser
 
@@ -95,10 +95,11 @@ def box(x: float, color: str, size: float = 0.5) -> str:
     )
 
 
-def middle(page) -> tuple[int, int, int]:
+def middle(page) -> Color:
     """The colour in the middle of the scene."""
     place = page.locator("canvas").first.bounding_box()
-    return color_at(page, place["x"] + place["width"] / 2, place["y"] + place["height"] / 2)
+    (color,) = colors_at(page, (place["x"] + place["width"] / 2, place["y"] + place["height"] / 2))
+    return color
 
 
 # near, far -> what is seen; the eye is on +x, the background 48
@@ -116,7 +117,6 @@ def test_what_is_behind_shows_through(live, open_page):
     for name in names:
         viewer.place(name, 0.0, 0.0, 0.0)
     page = None
-    wrong = {}
     for near, far, expected in LAYERS:
         for first in (0, 1):
             pair = [link("near", box(0.3, near)), link("far", box(-0.3, far, 1.0))]
@@ -124,20 +124,8 @@ def test_what_is_behind_shows_through(live, open_page):
             viewer.publish("/robot_description", String(data=described), DESCRIPTION_QOS)
             page = page or open_page(viewer)
             until(page, alphas(near, far))
-            seen = settled(page, expected)
-            if seen != pytest.approx(expected, abs=3):
-                wrong[near, far, first] = seen
-    assert wrong == {}
-
-
-def settled(page, expected: tuple[int, int, int]) -> tuple[int, int, int]:
-    """The colour in the middle, when it is what is expected or does not become that."""
-    for _ in range(20):
-        seen = middle(page)
-        if seen == pytest.approx(expected, abs=3):
-            break
-        page.wait_for_timeout(100)
-    return seen
+            viewer.settle(page)
+            becomes(lambda page=page: middle(page), pytest.approx(expected, abs=3))
 
 
 def alphas(*colors: str) -> str:

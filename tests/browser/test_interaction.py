@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from tests.browser.conftest import state, until
+from tests.browser.conftest import becomes, frames_drawn_meanwhile, state, until
 from tests.places import PACKAGE
 
 pytestmark = pytest.mark.browser
@@ -133,10 +133,10 @@ def test_a_clicked_link_is_selected_with_its_place(page):
 
 
 def test_nothing_is_drawn_when_nothing_changes(page):
-    page.wait_for_timeout(1500)
-    before = state(page, "framesDrawn")
-    page.wait_for_timeout(1500)
-    assert state(page, "framesDrawn") - before <= 2
+    page.get_by_role("button", name="Panels", exact=True).click()
+    page.get_by_role("menuitemcheckbox", name="Time", exact=True).click()
+    becomes(lambda: frames_drawn_meanwhile(page) <= 2, True)
+    assert frames_drawn_meanwhile(page) <= 2
 
 
 def test_a_clicked_link_tells_its_macro_call_and_values(page):
@@ -144,9 +144,9 @@ def test_a_clicked_link_tells_its_macro_call_and_values(page):
     row.locator(".row-name").dblclick()
     page.get_by_role("treeitem").filter(has_text="left_wheel_link").first.locator(".row-name").click()
     until(page, "lw.selected?.link === 'left_wheel_link'")
-    story = page.locator(".selection-card .story")
-    story.wait_for()
-    told = story.inner_text()
+    provenance = page.locator(".selection-card .provenance")
+    provenance.wait_for()
+    told = provenance.inner_text()
     assert "in macro 'wheel' called at" in told
     assert "prefix" in told
     assert "left" in told

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-import time
 
 import pytest
 
 from tests.browser.arm import write_arm
-from tests.browser.conftest import state, until
+from tests.browser.conftest import becomes, state, two_seconds_pass, until
 
 pytestmark = pytest.mark.browser
 
@@ -28,7 +27,7 @@ def test_units_limits_and_followers(page):
     row = page.locator('.joint[data-joint="fore_joint"]')
     assert "-0.500 rad" in row.inner_text()
     page.get_by_role("button", name="deg").first.click()
-    assert "-28.6 deg" in row.inner_text()
+    becomes(lambda: "-28.6 deg" in row.inner_text(), True)
     move(page, "fore_joint", "90")
     until(page, f"Math.abs(lw.joints.fore_joint - {math.pi / 2}) < 1e-3")
     follower = page.locator('.joint[data-joint="finger_joint"]')
@@ -64,17 +63,20 @@ def test_a_sweep_moves_joints_until_it_is_stopped(page):
     page.get_by_label("Speed").select_option("4")
     page.get_by_role("button", name="Start the sweep").click()
     seen = set()
-    deadline = time.monotonic() + 3
-    while time.monotonic() < deadline and len(seen) < 12:
+
+    def swept() -> bool:
         seen.add(round(state(page, "joints.upper_joint"), 2))
-        page.wait_for_timeout(60)
-    assert len(seen) >= 6
-    assert max(seen) - min(seen) > 1.5
+        return len(seen) >= 6 and max(seen) - min(seen) > 1.5
+
+    becomes(swept, True)
     page.get_by_role("button", name="Stop the sweep").click()
-    page.wait_for_timeout(300)
-    before = state(page, "joints")
-    page.wait_for_timeout(300)
-    assert state(page, "joints") == before
+
+    def stand() -> bool:
+        before = state(page, "joints")
+        two_seconds_pass(page)
+        return state(page, "joints") == before
+
+    becomes(stand, True)
 
 
 def test_a_link_that_is_dragged_moves_its_joint(page):
@@ -85,7 +87,7 @@ def test_a_link_that_is_dragged_moves_its_joint(page):
         field.fill(value)
         field.press("Enter")
     until(page, "Math.abs(lw.view.pitch) < 1e-6 && lw.view.distance === 2")
-    page.wait_for_timeout(300)
+    until(page, "lw.settled")
     box = page.locator(".canvas-box canvas").bounding_box()
     metre = box["height"] / (2 * 2 * math.tan(math.radians(22.5)))
 
@@ -94,13 +96,13 @@ def test_a_link_that_is_dragged_moves_its_joint(page):
 
     page.keyboard.down("Alt")
     page.mouse.move(*at(0, 0.3))
-    page.wait_for_timeout(300)  # where joints turn is asked for
+    until(page, "lw.description.joints === 4")  # where they turn is asked for now
     page.mouse.move(*at(0.002, 0.3))
+    until(page, "lw.tool.cursor === 'grab'")
     page.mouse.down()
     for step in range(1, 9):
         angle = 0.8 * step / 8
         page.mouse.move(*at(0.2 * math.sin(angle), 0.1 + 0.2 * math.cos(angle)))
-        page.wait_for_timeout(30)
     page.mouse.up()
     page.keyboard.up("Alt")
     until(page, "Math.abs(Math.abs(lw.joints.upper_joint) - 0.8) < 0.1")

@@ -8,9 +8,10 @@ import pytest
 
 from tests.browser.conftest import until
 from tests.browser.live import configuration
-from tests.viewer.test_interactive_markers import Control, Feedback, Server
-from tests.viewer.test_interactive_markers import marker as interactive_marker
-from tests.viewer.test_markers import ColorRGBA, Marker, MarkerArray, marker
+from tests.viewer.displays.test_interactive_markers import Control, Feedback, Server
+from tests.viewer.displays.test_interactive_markers import marker as interactive_marker
+from tests.viewer.displays.test_markers import ColorRGBA, Marker, MarkerArray, marker
+from tests.waiting import wait_until
 
 pytestmark = pytest.mark.browser
 
@@ -86,6 +87,7 @@ def test_markers_of_every_type_are_drawn(live, open_page, tmp_path):
     page = open_page(viewer, wait=False)
     viewer.publish("/marks", MarkerArray(markers=all_kinds(mesh)))
     until(page, "Object.keys(lw.displays[1]?.drawn?.markers ?? {}).length === 13")
+    viewer.settle(page)  # markers are there before they are placed
     drawn = page.evaluate("() => window.linkwright.displays[1].drawn")
     assert drawn["markers"]["a/0"] == "arrow"
     assert drawn["markers"]["a/12"] == "arrow_strip"
@@ -118,7 +120,9 @@ def test_a_box_selects_what_is_seen_and_not_what_is_behind_it(live, open_page):
     beside.pose.position.y = 3.0
     viewer.publish("/marks", MarkerArray(markers=[wall, hidden, beside]))
     until(page, "Object.keys(lw.displays[1]?.drawn?.markers ?? {}).length === 3")
+    viewer.settle(page)
     page.keyboard.press("s")
+    until(page, "lw.tool.class.endsWith('/Select')")
     box = page.locator(".canvas-box canvas").bounding_box()
     page.mouse.move(box["x"] + 20, box["y"] + 20)
     page.mouse.down()
@@ -149,8 +153,10 @@ def test_an_interactive_marker_is_dragged_along_its_axis(live, open_page):
     server = viewer.run(lambda: Server(viewer._graph, interactive_marker("one", along_x)))
     page = open_page(viewer, wait=False)
     until(page, "lw.displays[0]?.drawn?.one !== undefined")
+    until(page, "lw.tools.length > 0")
     page.keyboard.press("i")
-    page.wait_for_timeout(300)
+    until(page, "lw.tool.class.endsWith('/Interact')")
+    viewer.settle(page)
     box = page.locator("canvas").first.bounding_box()
     # The eye is above, x to the right: the arrow ends at x = 1.8.
     middle = (box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
@@ -167,10 +173,13 @@ def test_an_interactive_marker_is_dragged_along_its_axis(live, open_page):
     pose = page.evaluate("() => window.linkwright.displays[0].drawn.one.pose")
     assert pose[0] == pytest.approx(1.0, abs=0.15)
     assert pose[1:3] == [0, 0]
-    events = viewer.run(lambda: [each.event_type for each in server.feedback])
-    assert events[0] == Feedback.MOUSE_DOWN
-    assert events[-1] == Feedback.MOUSE_UP
-    assert Feedback.POSE_UPDATE in events
+
+    def events() -> list[int]:
+        return viewer.run(lambda: [each.event_type for each in server.feedback])
+
+    wait_until(lambda: events()[-1] == Feedback.MOUSE_UP, what=events)
+    assert events()[0] == Feedback.MOUSE_DOWN
+    assert Feedback.POSE_UPDATE in events()
     last = viewer.run(lambda: server.feedback[-1])
     assert last.pose.position.x == pytest.approx(pose[0])
     assert (last.marker_name, last.control_name) == ("one", "x")

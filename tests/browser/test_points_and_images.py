@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from typing import Any
 
 import numpy as np
@@ -10,13 +9,13 @@ import pytest
 import yaml
 
 from linkwright.messages import get_message
-from tests.browser.conftest import state, until
-from tests.browser.pixels import color_at
+from tests.browser.conftest import becomes, frames_drawn_meanwhile, state, until
+from tests.browser.pixels import Color, colors_at
+from tests.viewer.clouds.test_clouds import cloud, depth_image, scan, xyz
+from tests.viewer.displays.test_cloud_displays import camera_info, placed
+from tests.viewer.displays.test_map_displays import cell_grid, grid, update
+from tests.viewer.images.test_images import image
 from tests.viewer.packed_images import depth_message, jpeg, packed
-from tests.viewer.test_cloud_displays import camera_info, placed
-from tests.viewer.test_clouds import cloud, depth_image, scan, xyz
-from tests.viewer.test_images import image
-from tests.viewer.test_map_displays import cell_grid, grid, update
 
 pytestmark = pytest.mark.browser
 
@@ -38,10 +37,11 @@ def config(*displays: dict[str, Any]) -> str:
     return yaml.safe_dump({"Visualization Manager": manager})
 
 
-def seen(page: Any, x: float, y: float) -> tuple[int, int, int]:
-    """The colour at a point of the fixed frame, seen from above."""
+def seen(page: Any, *points: tuple[float, float]) -> list[Color]:
+    """The colours at points of the fixed frame, seen from above."""
     box = page.locator(".canvas-box canvas").bounding_box()
-    return color_at(page, box["x"] + box["width"] / 2 + x * SCALE, box["y"] + box["height"] / 2 - y * SCALE)
+    x0, y0 = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    return colors_at(page, *((x0 + x * SCALE, y0 - y * SCALE) for x, y in points))
 
 
 def drawn(page: Any, display: int = 0) -> dict[str, Any]:
@@ -59,12 +59,6 @@ def set_property(viewer: Any, display: int, path: tuple[str, ...], value: object
     viewer.run(lambda: viewer.viewer.displays[display].set_property(path, value))
 
 
-def still(page: Any) -> None:
-    """Wait until no more frames are drawn."""
-    page.wait_for_timeout(400)
-    until(page, "lw.displays.length > 0")
-
-
 def test_a_cloud_is_drawn_in_every_style(live, open_page):
     size = {"Size (m)": 0.6, "Size (Pixels)": 30}
     viewer = live(config(entry("PointCloud2", Topic={"Value": "/cloud"}, **size)))
@@ -76,17 +70,18 @@ def test_a_cloud_is_drawn_in_every_style(live, open_page):
     for style in ("Flat Squares", "Points", "Squares", "Spheres", "Boxes", "Tiles"):
         set_property(viewer, 0, ("Style",), style)
         until(page, f"lw.displays[0].drawn.style === '{style}'")
-        still(page)
-        assert [seen(page, x, 1.0) for x in (-2.0, 0.0, 2.0)] == [RED, GREEN, BLUE], style
+        viewer.settle(page)
         inside = 0.2 if style == "Spheres" else 0.26
-        assert seen(page, inside, 1.0)[1] > 100, style
-        assert seen(page, 0.35, 1.0) == BACKGROUND, style
-        corner = seen(page, 0.27, 1.27)
-        assert (corner == BACKGROUND) == (style == "Spheres"), style
+        places = [(-2.0, 1.0), (0.0, 1.0), (2.0, 1.0), (0.35, 1.0), (inside, 1.0), (0.27, 1.27)]
+
+        def looks(places: list[tuple[float, float]] = places) -> tuple[list[Color], bool, bool]:
+            *known, near_edge, corner = seen(page, *places)
+            return known, near_edge[1] > 100, corner == BACKGROUND
+
+        becomes(looks, ([RED, GREEN, BLUE, BACKGROUND], True, style == "Spheres"))
     set_property(viewer, 0, ("Style",), "Flat Squares")
     set_property(viewer, 0, ("Alpha",), 0.5)
-    still(page)
-    assert seen(page, -2.0, 1.0) == pytest.approx((152, 24, 24), abs=2)
+    becomes(lambda: seen(page, (-2.0, 1.0)), [pytest.approx((152, 24, 24), abs=2)])
 
 
 def test_a_point_is_selected_and_its_fields_are_shown(live, open_page):
@@ -98,6 +93,7 @@ def test_a_point_is_selected_and_its_fields_are_shown(live, open_page):
     page.locator(".dv-tabs-overflow-container").get_by_text("Selection", exact=True).click()
     box = page.locator(".canvas-box canvas").bounding_box()
     middle = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    viewer.settle(page)
     page.mouse.click(*middle)
     page.keyboard.press("s")
     page.mouse.click(*middle)
@@ -117,18 +113,16 @@ def test_a_large_cloud_keeps_coming(live, open_page):
     array = np.zeros(100_000, xyz([]).dtype)
     for name in "xyz":
         array[name] = rng.uniform(-3, 3, array.size)
-    messages = []
+    # The first comes while the page is busy starting, the rest one upon the other: the last is drawn, and all of it.
     for number in range(10):
         array["x"][0] = 4.0 + number  # the bounds say which message is drawn
-        messages.append(cloud(array))
-    viewer.publish("/cloud", messages[0])
-    until(page, "lw.displays[0]?.drawn?.points === 100000")
-    started = time.monotonic()
-    for message in messages:
-        viewer.publish("/cloud", message)
-        page.wait_for_timeout(100)
-    until(page, "lw.displays[0].drawn.bounds[1][0] === 13", 10)
-    assert time.monotonic() - started < 10
+        viewer.publish("/cloud", cloud(array))
+    until(page, "lw.displays[0]?.drawn?.bounds?.[1][0] === 13 && lw.displays[0].drawn.points === 100000")
+    # From now on each is, when it has its time.
+    for number in range(3):
+        array["x"][0] = 20.0 + number
+        viewer.publish("/cloud", cloud(array))
+        until(page, f"lw.displays[0].drawn.bounds[1][0] === {20 + number} && lw.displays[0].drawn.points === 100000")
 
 
 def test_a_scan_and_single_numbers_are_drawn(live, open_page):
@@ -146,12 +140,9 @@ def test_a_scan_and_single_numbers_are_drawn(live, open_page):
     viewer.publish("/cells", cell_grid(-1.5, width=1.0, height=0.5))
     until(page, "lw.displays[0]?.drawn?.points === 3 && lw.displays[1].drawn.points === 1")
     until(page, "lw.displays[2].drawn.cells === 1")
-    still(page)
-    assert seen(page, 1.0, 0.0) == RED
-    assert seen(page, -3.0, 0.0) == (255, 0, 255)
-    assert seen(page, 0.0, -2.0) == RED
-    assert seen(page, -1.9, 0.2) == (25, 255, 0)
-    assert seen(page, -1.9, 0.3) == BACKGROUND
+    viewer.settle(page)
+    places = (1.0, 0.0), (-3.0, 0.0), (0.0, -2.0), (-1.9, 0.2), (-1.9, 0.3)
+    becomes(lambda: seen(page, *places), [RED, (255, 0, 255), RED, (25, 255, 0), BACKGROUND])
 
 
 def test_a_map_is_drawn_and_updated(live, open_page):
@@ -165,28 +156,19 @@ def test_a_map_is_drawn_and_updated(live, open_page):
     until(page, "lw.displays[0]?.drawn?.cells === 6")
     # The corner is at x -1, cells are half a metre wide.
     places = [(-0.75, 0.25), (-0.25, 0.25), (0.25, 0.25), (-0.75, 0.75), (-0.25, 0.75), (0.25, 0.75)]
-    still(page)
     shades = [(255, 255, 255), (0, 0, 0), (112, 137, 134), (128, 128, 128), (0, 255, 0), (255, 0, 0)]
-    assert [seen(page, *place) for place in places] == shades
+    becomes(lambda: seen(page, *places), shades)
     set_property(viewer, 0, ("Color Scheme",), "costmap")
-    still(page)
-    assert [seen(page, *place) for place in places[:4]] == [BACKGROUND, (255, 0, 255), (112, 137, 134), (127, 0, 128)]
+    becomes(lambda: seen(page, *places[:4]), [BACKGROUND, (255, 0, 255), (112, 137, 134), (127, 0, 128)])
     set_property(viewer, 0, ("Color Scheme",), "raw")
     set_property(viewer, 0, ("Binary representation",), True)
     set_property(viewer, 0, ("Binary threshold",), 50)
-    still(page)
-    assert [seen(page, *place) for place in places[:4]] == [
-        (0, 0, 0),
-        (255, 255, 255),
-        (255, 255, 255),
-        (255, 255, 255),
-    ]
+    becomes(lambda: seen(page, *places[:4]), [(0, 0, 0), (255, 255, 255), (255, 255, 255), (255, 255, 255)])
     set_property(viewer, 0, ("Binary representation",), False)
     set_property(viewer, 0, ("Color Scheme",), "map")
     viewer.publish("/map_updates", update(0, 0, 1, 1, [100]))
     until(page, "lw.displays[0].drawn.counts[100] === 2")
-    still(page)
-    assert seen(page, *places[0]) == (0, 0, 0)
+    becomes(lambda: seen(page, places[0]), [(0, 0, 0)])
 
 
 def test_what_a_map_is_drawn_behind_is_seen(live, open_page):
@@ -200,11 +182,11 @@ def test_what_a_map_is_drawn_behind_is_seen(live, open_page):
     viewer.publish("/map", grid())
     viewer.publish("/cloud", three_points(frame="cellar"))
     until(page, "lw.displays[0]?.drawn?.points === 3 && lw.displays[1].drawn.cells === 6")
-    still(page)
-    assert seen(page, 0.0, 0.0) == GREEN
+    viewer.settle(page)
+    becomes(lambda: seen(page, (0.0, 0.0), (0.1, 0.1)), [GREEN, GREEN])
     set_property(viewer, 1, ("Draw Behind",), False)
-    still(page)
-    assert seen(page, 0.1, 0.1) != GREEN
+    viewer.settle(page)
+    becomes(lambda: seen(page, (0.1, 0.1)) != [GREEN], True)
 
 
 def test_an_image_has_a_panel_of_its_own(live, open_page):
@@ -216,13 +198,15 @@ def test_an_image_has_a_panel_of_its_own(live, open_page):
     viewer.publish("/image", image("rgb8", 40, 20, pixels.tobytes()))
     until(page, "lw.displays[0]?.drawn?.width === 40")
     assert drawn(page)["corner"] == [255, 0, 0, 255]
-    box = page.locator(".picture-panel canvas").bounding_box()
-    row = box["y"] + box["height"] / 2
-    assert color_at(page, box["x"] + box["width"] * 0.4, row) == RED
-    assert color_at(page, box["x"] + box["width"] * 0.6, row) == BLUE
+
+    def looks() -> tuple[bool, list[Color]]:
+        box = page.locator(".picture-panel canvas").bounding_box()
+        places = [(0.4, box["height"] / 2), (0.6, box["height"] / 2), (0.5, 1.0)]
+        colors = colors_at(page, *((box["x"] + share * box["width"], box["y"] + down) for share, down in places))
+        return box["height"] > box["width"] / 2, colors
+
     # The shape is kept: above and below the image it is black.
-    assert box["height"] > box["width"] / 2
-    assert color_at(page, box["x"] + box["width"] / 2, box["y"] + 1) == (0, 0, 0)
+    becomes(looks, (True, [RED, BLUE, (0, 0, 0)]))
 
     page.locator(".panel-tab", has_text="Image").get_by_role("button").click()
     until(page, "lw.displays[0].enabled === false")
@@ -263,16 +247,16 @@ def test_a_camera_shows_the_scene_over_its_image(live, open_page):
     viewer.publish("/eye/camera_info", info)
     viewer.publish("/eye/image", placed(image("rgb8", 40, 30, bytes([255, 255, 0]) * 1200), "eye"))
     until(page, "lw.displays[0]?.drawn?.image?.[0] === 40 && lw.displays[0].drawn.width > 0")
-    assert drawn(page)["middle"] == [255, 255, 0, 255]
+    becomes(lambda: drawn(page)["middle"], [255, 255, 0, 255])  # the next frame has the image
     assert drawn(page)["position"] == pytest.approx([0, 0, 0])
     viewer.publish("/cloud", three_points())
-    until(page, "lw.displays[0].drawn.middle[0] < 200")
-    assert drawn(page)["middle"][2] > 100  # the blue one, two metres ahead
+    until(page, "lw.displays[0].drawn.middle[0] < 200 && lw.displays[0].drawn.middle[2] > 100")  # blue, 2 m ahead
     set_property(viewer, 0, ("Visibility", "PointCloud2"), False)
     until(page, "lw.displays[0].drawn.middle[0] === 255")
     set_property(viewer, 0, ("Visibility", "PointCloud2"), True)
     set_property(viewer, 0, ("Image Rendering",), "overlay")
     set_property(viewer, 0, ("Overlay Alpha",), 1.0)
+    viewer.settle(page)
     until(page, "lw.displays[0].drawn.middle[1] === 255")
 
 
@@ -284,11 +268,9 @@ def test_a_depth_image_becomes_points(live, open_page):
     viewer.publish("/color/image", placed(image("rgb8", 2, 1, bytes([255, 0, 0, 0, 255, 0]))))
     viewer.publish("/depth/image", placed(depth_image([[2.0, 4.0]])))
     until(page, "lw.displays[0]?.drawn?.points === 2")
-    assert drawn(page)["bounds"] == [[0, 0, 2], [2, 0, 4]]
-    still(page)
+    becomes(lambda: drawn(page)["bounds"], [[0, 0, 2], [2, 0, 4]])
     # A pixel is half as wide as it is far: 1 m and 2 m here.
-    assert seen(page, -0.3, 0.0) == RED
-    assert seen(page, 2.8, 0.0) == GREEN
+    becomes(lambda: seen(page, (-0.3, 0.0), (2.8, 0.0)), [RED, GREEN])
 
 
 def test_depths_and_colours_come_by_the_transports_chosen(live, open_page):
@@ -304,6 +286,7 @@ def test_depths_and_colours_come_by_the_transports_chosen(live, open_page):
     viewer.publish("/color/image/compressed", packed("rgb8; jpeg compressed bgr8", jpeg((0, 0, 255), 2, 1)))
     viewer.publish("/depth/image/compressedDepth", depth_message(np.array([[2000, 4000]], np.uint16), "rvl"))
     until(page, "lw.displays[0]?.drawn?.points === 2 && lw.displays[1].drawn?.width === 2")
+    viewer.settle(page)
     assert drawn(page)["bounds"] == [[0, 0, 2], [2, 0, 4]]
     assert drawn(page)["firstColor"][2] > 240
     assert drawn(page, 1)["corner"] == [0, 0, 0, 255]
@@ -315,7 +298,6 @@ def test_nothing_is_drawn_when_nothing_comes(live, open_page):
     viewer.publish("/cloud", three_points())
     viewer.publish("/map", grid())
     until(page, "lw.displays[0]?.drawn?.points === 3 && lw.displays[1].drawn.cells === 6")
-    page.wait_for_timeout(1000)
-    before = state(page, "framesDrawn")
-    page.wait_for_timeout(1000)
-    assert state(page, "framesDrawn") == before
+    viewer.settle(page)
+    becomes(lambda: frames_drawn_meanwhile(page), 0)
+    assert frames_drawn_meanwhile(page) == 0

@@ -41,7 +41,7 @@ def test_change_break_and_repair(start, open_page, model):
     until(page, "Math.abs(lw.frames.left_wheel_link.position[1] - 0.25) < 1e-6")
     assert state(page, "joints.left_wheel_joint") == joint
     assert state(page, "view.distance") == distance
-    assert state(page, "robot.visuals") == 12
+    until(page, "lw.robot.visuals === 12")
 
     edit(model, "<xacro:wheel ", "<xacro:whel ")
     page.get_by_text("there is no macro", exact=False).first.wait_for()
@@ -50,7 +50,7 @@ def test_change_break_and_repair(start, open_page, model):
     assert state(page, "robot.links") == 12
     assert state(page, "frames.left_wheel_link.position[1]") == pytest.approx(0.25)
     line = next(i for i, text in enumerate(model.read_text().splitlines(), 1) if "<xacro:whel" in text)
-    assert page.get_by_text(f"mbot.xacro:{line}", exact=False).count() > 0
+    page.get_by_text(f"mbot.xacro:{line}", exact=False).first.wait_for()
 
     edit(model, "<xacro:whel ", "<xacro:wheel ")
     page.get_by_text("there is no macro", exact=False).first.wait_for(state="hidden")

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from typing import Any
 from urllib.parse import urlsplit
 
 import pytest
 
-from tests.browser.conftest import state, until
+from tests.browser.conftest import SECONDS, until
 from tests.browser.live import configuration
-from tests.viewer.test_slow_lines import cloud, image
 from tests.viewer.throttle import slow_line
+from tests.viewer.web.test_slow_lines import cloud, image
+from tests.waiting import wait_until
 
 pytestmark = pytest.mark.browser
 
@@ -41,26 +43,30 @@ def test_a_slow_line_thins_what_is_heavy_and_says_so(live, open_page):
     viewer.place("tip", 1.0, 0.0, 0.0)
     line = slow_line(viewer.url, 3_000_000.0)
     page = open_page(Through(viewer.run(line.__aenter__)), wait=False)
-    until(page, "lw.displays.length === 2", seconds=30)
+    until(page, "lw.displays.length === 2")
 
-    def publish() -> None:
-        viewer.publish("/cloud", cloud(200_000))
-        viewer.publish("/image", image(1280, 720))
+    heavy = cloud(200_000), image(1280, 720)
+    told: dict[str, Any] = {}
 
-    notice = page.locator(".line-notice")
-    for _ in range(40):
-        publish()
-        page.wait_for_timeout(100)
-        if notice.is_visible() and "WebP" in notice.inner_text() and "points" in notice.inner_text():
-            break
-    text = notice.inner_text()
-    assert "Slow connection" in text
-    assert "Cloud 1 of" in text
-    assert "of 1280 × 720, quality" in text
-    drawn = {each["name"]: each["drawn"] for each in state(page, "displays")}
-    assert drawn["Cloud"]["step"] > 1
-    assert 0 < drawn["Cloud"]["points"] < 200_000
-    assert drawn["Picture"]["width"] == 1280
+    def is_thinned() -> bool:
+        """Asked while both keep coming: of what comes no more all is sent in the end."""
+        for topic, message in zip(("/cloud", "/image"), heavy, strict=True):
+            viewer.publish(topic, message)
+        notice = "document.querySelector('.line-notice:not([hidden])')?.innerText ?? ''"
+        told.update(
+            page.evaluate(f"() => ({{ text: {notice}, drawn: linkwright.displays.map((each) => each.drawn) }})")
+        )
+        points, picture = told["drawn"]
+        return (
+            all(each in told["text"] for each in ("Slow connection", "Cloud 1 of", "of 1280 × 720, quality", "WebP"))
+            and points["step"] > 1
+            and 0 < points["points"] < 200_000
+            and picture["width"] == 1280
+        )
+
+    wait_until(is_thinned, SECONDS, lambda: told)
+    # All of it comes when nothing else does.
+    until(page, "lw.displays[0].drawn.points === 200000 && document.querySelector('.line-notice').hidden")
     viewer.run(lambda: line.__aexit__(None, None, None))
 
 
@@ -68,9 +74,9 @@ def test_a_line_that_is_quick_says_nothing(live, open_page):
     viewer = live(SENSES)
     page = open_page(viewer, wait=False)
     until(page, "lw.displays.length === 2")
+    heavy = cloud(100_000)
     for _ in range(20):
-        viewer.publish("/cloud", cloud(100_000))
-        page.wait_for_timeout(100)
+        viewer.publish("/cloud", heavy)
     until(page, "lw.displays[0].drawn?.points === 100000")
     until(page, "document.querySelector('.line-notice').hidden")
 
@@ -90,7 +96,8 @@ def test_nothing_is_fetched_from_outside_of_the_server(live, browser):
     for name in ("File", "Panels", "Share"):
         page.get_by_role("button", name=name, exact=True).click()
         page.keyboard.press("Escape")
-    page.wait_for_timeout(500)
+    until(page, "lw.displays[1].drawn?.width === 64")
+    page.wait_for_load_state("networkidle")
     context.close()
     assert len(asked) > 3
     elsewhere = [url for url in asked if urlsplit(url).netloc != own and not url.startswith(("data:", "blob:"))]

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import asyncio
 import math
-from typing import Any
 
 import pytest
 
 from linkwright.messages import get_message
 from tests.browser.arm_from_above import TIP, Scene, open_scene
-from tests.browser.conftest import state, until
+from tests.browser.conftest import becomes, state, two_seconds_pass, until
+from tests.waiting import wait_until
 
 pytestmark = pytest.mark.browser
 
@@ -54,7 +55,7 @@ def test_a_goal_is_published_where_it_was_dragged(scene):
     scene.page.mouse.down()
     scene.page.mouse.move(x0, y0 - 20)
     scene.page.mouse.move(x1, y1)
-    assert state(scene.page, "tool.state")["arrows"] == 1
+    becomes(lambda: state(scene.page, "tool.state")["arrows"], 1)
     scene.page.mouse.up()
     until(scene.page, "lw.tool.class.endsWith('/Interact')")
     goal = scene.only("/goal_pose")
@@ -84,7 +85,7 @@ def test_a_pose_estimate_has_the_covariance_of_the_tool_properties(scene):
 def test_a_clicked_point_is_published_and_drawn(scene):
     scene.press("u")
     scene.page.mouse.move(*scene.pixel(-3, -3))
-    assert state(scene.page, "tool.hint") == "Move over an object to select the target point."
+    becomes(lambda: state(scene.page, "tool.hint"), "Move over an object to select the target point.")
     scene.click(0.25, 0.5)
     until(scene.page, "lw.tool.class.endsWith('/Interact')")
     clicked = scene.only("/clicked_point")
@@ -148,7 +149,7 @@ def test_things_are_selected_one_by_one_and_with_a_box(scene):
     assert scene.selected() == ["base"]
     scene.drag((-3, -3), (4, 2))
     assert sorted(scene.selected()) == ["base", "tip"]
-    page.wait_for_timeout(300)
+    scene.viewer.settle(page)
     assert sorted(scene.selected()) == ["base", "tip"]
 
 
@@ -162,8 +163,7 @@ def test_the_selection_panel_tells_where_links_are(scene):
     tree = page.get_by_role("tree", name="What is selected")
     tree.get_by_text("Link tip").wait_for()
     position = tree.get_by_role("treeitem").filter(has_text="Position")
-    page.wait_for_timeout(500)
-    assert "3; 1; 0.5" in position.inner_text()
+    position.get_by_text("3; 1; 0.5").wait_for()
 
 
 # --- time and keys ---------------------------------------------------------------------------------------------------
@@ -177,14 +177,19 @@ def test_pause_freezes_what_is_shown(scene):
     message = get_message("geometry_msgs/msg/PointStamped")()
     message.header.frame_id = "base"
     scene.viewer.publish("/clicked_point", message)
-    page.wait_for_timeout(400)
+    wait_until(lambda: scene.viewer.status("Clicks")["Topic"][1].startswith("1 message"))
+    scene.viewer.run(lambda: asyncio.sleep(0.5))  # in the viewer's loop: what it would do at once it has done before
+    scene.viewer.settle(page)
     assert state(page, "frames.tip.position")[0] == pytest.approx(TIP[0])
     assert scene.viewer.run(scene.viewer.viewer.displays[2].data) == []
     page.get_by_role("button", name="Pause").click()
     until(page, "lw.frames.tip.position[0] === 5")
+    two_seconds_pass(page)
+    elapsed = page.locator(".time-panel .figure").nth(1)
+    before = float(elapsed.inner_text())
     page.keyboard.press("r")
-    until(page, "!lw.time.paused")
-    assert float(page.locator(".time-panel .figure").nth(1).inner_text()) < 5
+    becomes(lambda: float(elapsed.inner_text()) < before, True)
+    assert not state(page, "time.paused")
 
 
 def test_the_sheet_of_keys_opens_and_closes(scene):
@@ -196,15 +201,7 @@ def test_the_sheet_of_keys_opens_and_closes(scene):
     page.keyboard.press("Escape")
     sheet.wait_for(state="detached")
     page.keyboard.press("F11")
-    assert poll(page, "document.fullscreenElement?.className ?? null", "scene-box")
+    # A page that changes its screen draws no frames to wait by.
+    becomes(lambda: page.evaluate("document.fullscreenElement?.className ?? null"), "scene-box")
     page.keyboard.press("F11")
-    assert poll(page, "document.fullscreenElement", None)
-
-
-def poll(page: Any, expression: str, wanted: Any) -> bool:
-    """Whether an expression comes to have a value; a page that changes its screen draws no frames to wait by."""
-    for _ in range(60):
-        if page.evaluate(f"() => {expression}") == wanted:
-            return True
-        page.wait_for_timeout(250)
-    return False
+    becomes(lambda: page.evaluate("document.fullscreenElement"), None)

@@ -7,7 +7,7 @@ import math
 import pytest
 
 from tests.browser.arm_from_above import SCALE, TIP, Scene, open_scene
-from tests.browser.conftest import state, until
+from tests.browser.conftest import becomes, state, until
 
 pytestmark = pytest.mark.browser
 
@@ -99,9 +99,8 @@ def test_views_are_saved_renamed_used_and_removed(scene):
     page.get_by_role("treeitem").filter(has_text="map").locator(".row-name").dblclick()
     until(page, "lw.view.type === 'TopDownOrtho'")
     assert state(page, "view.values")["Scale"] == SCALE
-    page.wait_for_timeout(400)
+    becomes(lambda: scene.file()["Views"]["Current"]["Class"], "rviz_default_plugins/TopDownOrtho")
     views = scene.file()["Views"]
-    assert views["Current"]["Class"] == "rviz_default_plugins/TopDownOrtho"
     assert [(each["Name"], each["Scale"]) for each in views["Saved"]] == [("map", SCALE)]
     page.get_by_role("button", name="Remove", exact=True).click()
     until(page, "lw.view.saved.length === 0")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import re
+import signal
 from typing import Any
 
 import pytest
@@ -11,7 +12,7 @@ import pytest
 from linkwright.cli import main
 from linkwright.graph import ActionServer, Graph
 from linkwright.graph.actions.goal import GoalResponse
-from linkwright.graph.lifecycle.node import LifecycleNodeMixin
+from linkwright.graph.lifecycle.managed_node import LifecycleNodeMixin
 from linkwright.messages import get_action
 from linkwright.nodes import NodeOptions
 from linkwright.nodes.component_container import ComponentContainer
@@ -204,6 +205,73 @@ def test_component_load_and_unload(in_graph, capsys):
     assert run(capsys, "component", "load", "-q", "/box", *words)[0] == "2  /head/ear\n"
     assert run(capsys, "component", "unload", "/box", "1")[0] == "Unloaded component 1 from '/box' container node\n"
     assert run(capsys, "component", "unload", "-q", "/box", "1")[0] == "1\n"
+
+
+class _Container:
+    """The process that `component standalone` starts, as far as it is asked for; its node is in the graph."""
+
+    def __init__(self, deaf_to: set[int], status: int | None) -> None:
+        self.returncode: int | None = None
+        self.told: list[int] = []
+        self._deaf_to = deaf_to
+        self._status = status
+        self._ended = asyncio.Event()
+
+    def send_signal(self, number: int) -> None:
+        self.told.append(number)
+        if number not in self._deaf_to:
+            self._end(-number)
+
+    def kill(self) -> None:
+        self.send_signal(signal.SIGKILL)
+
+    async def wait(self) -> int:
+        if self._status is not None:
+            self._end(self._status)
+        await self._ended.wait()
+        assert self.returncode is not None
+        return self.returncode
+
+    def _end(self, status: int) -> None:
+        self.returncode = status
+        self._ended.set()
+
+
+def standalone(monkeypatch, deaf_to: set[int], status: int | None) -> list[_Container]:
+    started: list[_Container] = []
+
+    async def start(*_words: str) -> _Container:
+        started.append(_Container(deaf_to, status))
+        return started[0]
+
+    monkeypatch.setattr(asyncio, "create_subprocess_exec", start)
+    monkeypatch.setattr("linkwright.cli.component.standalone._ENDS_WITHIN", 0.01)
+    return started
+
+
+STANDALONE = ["component", "standalone", "-c", "box", "demo_nodes_cpp"]
+
+
+def test_a_component_on_its_own_runs_until_its_container_ends(in_graph, capsys, monkeypatch):
+    in_graph(container)
+    started = standalone(monkeypatch, set(), 3)
+    run(capsys, *STANDALONE, "demo_nodes_cpp::Listener", status=3)
+    assert started[0].told == []
+
+
+@pytest.mark.parametrize(
+    ("deaf_to", "told"),
+    [
+        (set(), [signal.SIGINT]),
+        ({signal.SIGINT}, [signal.SIGINT, signal.SIGTERM]),
+        ({signal.SIGINT, signal.SIGTERM}, [signal.SIGINT, signal.SIGTERM, signal.SIGKILL]),
+    ],
+)
+def test_a_component_that_cannot_be_loaded_ends_its_container(in_graph, capsys, monkeypatch, deaf_to, told):
+    in_graph(container)
+    started = standalone(monkeypatch, deaf_to, None)
+    run(capsys, *STANDALONE, "demo_nodes_cpp::Nobody", status=1)
+    assert started[0].told == told
 
 
 def test_mistakes_of_components(in_graph, capsys):

@@ -15,7 +15,7 @@ def test_tree_of_a_good_model(capsys):
         "root Link: base_link has 4 child(ren)",
         "    child(1):  back_caster_link",
     ]
-    assert captured.err == ""
+    assert captured.err == "0 errors, 0 warnings\n"
 
 
 def test_xacro_is_expanded_first(capsys):

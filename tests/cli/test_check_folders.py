@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import gc
 import json
 
 import pytest
 
 from linkwright.cli import main
+from linkwright.lint import engine
+from linkwright.lint.engine import examine
+from linkwright.lint.subject import Subject
 from linkwright.lint.targets import find_targets
 
 GOOD = '<robot name="r">\n  <link name="base_link"/>\n</robot>\n'
@@ -71,7 +75,85 @@ def test_packages_are_those_around_the_files_and_those_in_the_folders(here):
         },
     )
     assert find_targets([here / "src"]).packages == (here / "src" / "one", here / "src" / "two")
-    assert find_targets([here / "src/one/urdf/r.urdf"]).packages == (here / "src" / "one",)
+    assert find_targets([here / "src/one/urdf"]).packages == (here / "src" / "one",)
+    assert find_targets([here / "src/one/urdf/r.urdf"]).packages == ()
+    assert find_targets([here / "src/one/urdf/r.urdf"], around=True).packages == (here / "src" / "one",)
+
+
+def test_a_file_is_judged_without_its_package_unless_asked(here, capsys):
+    manifest = "<package><name>one</name><exec_depend>xacro</exec_depend><exec_depend>xacro</exec_depend></package>"
+    write(here, {"one/package.xml": manifest, "one/urdf/r.urdf": GOOD})
+    assert main(["check", "one/urdf/r.urdf"]) == 0
+    assert "LW8" not in capsys.readouterr().err
+    assert main(["check", "--fix", "one/urdf/r.urdf"]) == 0
+    assert (here / "one/package.xml").read_text() == manifest
+    assert main(["check", "--package", "one/urdf/r.urdf"]) == 1
+    assert "error[LW802]" in capsys.readouterr().err
+    main(["check", "--package", "--fix", "one/urdf/r.urdf"])
+    assert (here / "one/package.xml").read_text().count("<exec_depend>") == 1
+
+
+def test_a_diff_shows_each_fix_of_a_package_once(here, capsys):
+    line = "  <exec_depend>xacro</exec_depend>\n"
+    write(here, {"one/package.xml": f"<package>\n  <name>one</name>\n{line * 3}</package>\n", "one/r.urdf": GOOD})
+    assert main(["check", "--diff", "one"]) == 1
+    diff = capsys.readouterr().out
+    assert [each for each in diff.splitlines() if each.startswith(("-", "+"))] == [
+        "--- one/package.xml",
+        "+++ one/package.xml",
+        *2 * ["-" + line.rstrip()],
+    ]
+
+
+def _joints(count):
+    links = "".join(f'<link name="l{number}"/>\n' for number in range(count + 1))
+    joints = "".join(
+        f'<joint name="j{number}" type="continuous"><parent link="l{number}"/><child link="l{number + 1}"/>'
+        '<axis xyz="0 0 2"/></joint>\n'
+        for number in range(count)
+    )
+    return f'<robot name="r">\n{links}{joints}</robot>\n'
+
+
+def test_many_findings_that_are_alike_are_one_for_people(here, capsys):
+    write(here, {"r.urdf": _joints(70)})
+    main(["check", "r.urdf", *ONLY])
+    said = capsys.readouterr().err
+    assert said.count("warning[LW221]") == 1
+    assert "note: the axis of joint 'j2' is not of length 1 but 2: '0 0 2' (r.urdf:75:" in said
+    assert "note: and 67 more like it (--all shows them)" in said
+    assert said.endswith("0 errors, 70 warnings\n")
+    main(["check", "r.urdf", *ONLY, "--all"])
+    assert capsys.readouterr().err.count("warning[LW221]") == 70
+    main(["check", "r.urdf", *ONLY, "--format", "json"])
+    assert len(json.loads(capsys.readouterr().out)["diagnostics"]) == 70
+
+
+def test_few_findings_that_are_alike_are_shown_one_by_one(here, capsys):
+    write(here, {"r.urdf": _joints(3)})
+    main(["check", "r.urdf", *ONLY])
+    assert capsys.readouterr().err.count("warning[LW221]") == 3
+
+
+def test_nothing_stays_of_a_robot_that_was_checked(here, monkeypatch):
+    """Counted while the next is checked, without the garbage collector, which may not come for long."""
+    robot = _joints(3).replace('<robot name="r">', f'<robot name="r" {XACRO}><xacro:property name="x" value="1"/>')
+    names = [f"r{number}.{ending}" for number in range(6) for ending in ("urdf", "urdf.xacro")]
+    write(here, dict.fromkeys(names, robot))
+    alive = []
+
+    def counted(*arguments, **options):
+        alive.append(sum(isinstance(each, Subject) for each in gc.get_objects()))
+        return examine(*arguments, **options)
+
+    monkeypatch.setattr(engine, "examine", counted)
+    gc.collect()
+    gc.disable()
+    try:
+        main(["check", *names])
+    finally:
+        gc.enable()
+    assert alive == [0, *[1] * (len(names) - 1)] or alive == [0] * len(names)
 
 
 def test_of_several_files_no_tree_is_printed_but_a_summary(here, capsys):

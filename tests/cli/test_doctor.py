@@ -195,3 +195,15 @@ def test_the_report(in_graph, capsys):
 def test_the_report_only_when_something_is_wrong(in_graph, capsys):
     in_graph(robot)
     assert "PLATFORM" not in doctor(capsys, "--report-failed", status=0)
+
+
+def test_a_parameter_file_for_nodes_that_do_not_run(in_graph, capsys, tmp_path):
+    in_graph(robot)
+    path = tmp_path / "params.yaml"
+    sections = ("/**", "robot_state_publisher", "joint_state_publsher", "/left/*")
+    path.write_text("".join(f"{each}: {{ros__parameters: {{a: 1}}}}\n" for each in sections))
+    said = doctor(capsys, "--params-file", str(path), status=1)
+    assert said.count("DOC702") == 2
+    assert "section '/joint_state_publsher' of" in said
+    assert "did you mean '/joint_state_publisher'" in said
+    assert "section '/left/*' of" in said

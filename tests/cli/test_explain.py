@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from linkwright.cli import main
+from linkwright.urdf.vocabulary import names
 
 
 @pytest.mark.parametrize("word", ["LW201", "lw201", "limit-inverted"])
@@ -20,6 +23,56 @@ def test_the_page_of_another_diagnostic(capsys):
     assert capsys.readouterr().out.startswith("# URDF110: two things of one kind have the same name\n")
 
 
+def test_the_page_of_a_rule_in_chinese(capsys):
+    assert main(["--lang", "zh", "explain", "LW325"]) == 0
+    text = capsys.readouterr().out
+    assert text.startswith(
+        "# LW325: inertia-too-small\n\n转动惯量比形状所示小几百倍。\n\n级别：警告。默认开启。\n\n## 为什么\n"
+    )
+    assert [line for line in text.splitlines() if line.startswith("## ")] == [
+        "## 为什么",
+        "## 例子",
+        "## 改成",
+        "## 选项",
+    ]
+    assert "- `factor`（默认 `200.0`）：" in text
+
+
+def test_the_page_of_another_diagnostic_in_chinese(capsys):
+    assert main(["--lang", "zh", "explain", "URDF110"]) == 0
+    assert capsys.readouterr().out.startswith("# URDF110：同类的两样东西同名\n\nLinks, joints and")
+
+
 def test_near_codes_for_one_that_is_none(capsys):
     assert main(["explain", "limit-invertd"]) == 1
     assert "did you mean limit-inverted" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("word", ["joint.limit.effort", "limit/effort", "<limit> effort", "effort", "Effort"])
+def test_the_meaning_of_an_attribute(capsys, word):
+    assert main(["explain", word]) == 0
+    text = capsys.readouterr().out
+    assert text.startswith("# `joint.limit.effort`\n\n- `effort`: ")
+    assert "N m" in text
+
+
+def test_the_meaning_of_an_element_in_all_its_places(capsys):
+    assert main(["explain", "origin"]) == 0
+    text = capsys.readouterr().out
+    assert text.startswith("# `link.inertial.origin`, `link.visual.origin`, `link.collision.origin`, `joint.origin`\n")
+    assert "`rpy`: roll, pitch, yaw about the fixed axes x, y, z (" in text
+
+
+def test_a_name_that_means_several_things(capsys):
+    assert main(["explain", "xyz"]) == 0
+    assert re.findall("^# `.*`$", capsys.readouterr().out, re.MULTILINE)[-1] == "# `joint.axis.xyz`"
+
+
+def test_each_element_and_attribute_has_a_meaning(capsys):
+    for name in names():
+        assert main(["explain", name]) == 0, name
+
+
+def test_near_names_for_an_element_that_is_none(capsys):
+    assert main(["explain", "inertail"]) == 1
+    assert "inertial" in capsys.readouterr().err

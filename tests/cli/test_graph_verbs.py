@@ -9,8 +9,8 @@ import yaml
 
 from linkwright.cli import main
 from linkwright.graph import Graph, ParameterDescriptor
-from linkwright.graph.qos import SERVICES_QOS
-from linkwright.graph.service_introspection import ServiceIntrospectionState
+from linkwright.graph.endpoints.service_introspection import ServiceIntrospectionState
+from linkwright.graph.qos.profile import SERVICES_QOS
 from linkwright.messages import String, get_service
 
 
@@ -293,8 +293,18 @@ def watched(graph: Graph) -> None:
     service = node.create_service("example_interfaces/srv/AddTwoInts", "sum", add)
     service.configure_introspection(node.get_clock(), SERVICES_QOS, ServiceIntrospectionState.CONTENTS)
     client = node.create_client("example_interfaces/srv/AddTwoInts", "sum")
-    node.create_timer(0.1, lambda: client.call_async(client.srv_type.Request(a=2, b=3)))
-    node.create_timer(0.35, lambda: signal.raise_signal(signal.SIGINT))
+    answers = []
+
+    def ask() -> None:
+        if graph.count_subscribers("/sum/_service_event"):
+            client.call_async(client.srv_type.Request(a=2, b=3)).add_done_callback(answered)
+
+    def answered(_: object) -> None:
+        answers.append(1)
+        if len(answers) == 3:
+            signal.raise_signal(signal.SIGINT)
+
+    node.create_timer(0.05, ask)
 
 
 def test_service_echo(in_graph, capsys):

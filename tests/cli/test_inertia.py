@@ -7,7 +7,7 @@ import json
 import pytest
 
 from linkwright.cli import main
-from linkwright.urdf import load
+from linkwright.descriptions import load
 
 MODEL = """\
 <robot name="r">

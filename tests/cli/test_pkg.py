@@ -15,9 +15,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from linkwright.cli import main
-from linkwright.workspace import create, package_templates
-from linkwright.workspace.licenses import known_licenses, license_text
-from linkwright.workspace.naming import check_package_name, is_email
+from linkwright.packages.creation import package_templates
+from linkwright.packages.creation.licenses import known_licenses, license_text
+from linkwright.packages.creation.request import BUILD_TYPES, Maintainer, PackageRequest
+from linkwright.packages.naming import check_package_name, is_email
 from tests.robots.workspaces import colcon_build, sourced
 
 ADA = ("--maintainer-name", "Ada", "--maintainer-email", "ada@example.org")
@@ -112,7 +113,7 @@ def test_an_empty_cmake_package_keeps_its_folders() -> None:
     assert Path("arm/include/arm").is_dir()
 
 
-@pytest.mark.parametrize("build_type", create.BUILD_TYPES)
+@pytest.mark.parametrize("build_type", BUILD_TYPES)
 @pytest.mark.parametrize("package_format", ["2", "3"])
 def test_the_manifest_is_what_colcon_expects(build_type: str, package_format: str) -> None:
     words = ["--build-type", build_type, "--package-format", package_format, "--dependencies", "urdf", "xacro", "urdf"]
@@ -152,9 +153,7 @@ def test_a_node_gives_way_to_a_library_of_its_name(capsys: pytest.CaptureFixture
 
 def test_text_with_quotes_survives_in_setup_py() -> None:
     text = """It's "quoted" \\ 机器人"""
-    request = create.PackageRequest(
-        name="arm", maintainer=create.Maintainer("O'Neil", "o@example.org"), year=2026, description=text
-    )
+    request = PackageRequest(name="arm", maintainer=Maintainer("O'Neil", "o@example.org"), year=2026, description=text)
     call = ast.parse(package_templates.setup_py(request)).body[-1]
     assert isinstance(call, ast.Expr)
     assert isinstance(call.value, ast.Call)

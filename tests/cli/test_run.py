@@ -6,14 +6,14 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 
 from linkwright.cli import main
-from linkwright.cli.command import FINDINGS, USAGE
+from linkwright.cli.endings import FINDINGS, USAGE
+from tests.waiting import SECONDS
 
 COMMAND = [sys.executable, "-c", "import sys; from linkwright.cli import main; sys.exit(main())", "run"]
 NODE = """
@@ -71,7 +71,7 @@ def run() -> Iterator[Run]:
 
 def test_an_entry_point_gets_its_words_and_gives_its_exit_status(run: Run) -> None:
     process = run("arm", "wave", "--fast", "-h", "--ros-args", "-r", "a:=b")
-    out, err = process.communicate(timeout=30)
+    out, err = process.communicate(timeout=60)
     assert out == "['--fast', '-h', '--ros-args', '-r', 'a:=b']\n", err
     assert process.returncode == 6
 
@@ -82,19 +82,19 @@ def test_signals_are_the_executables(run: Run, number: int, status: int) -> None
     assert process.stdout is not None
     assert process.stdout.readline() == "['wait']\n"
     process.send_signal(number)
-    assert process.wait(10) == status
+    assert process.wait(60) == status
 
 
 def test_a_prefix(run: Run, workspace: Path) -> None:
     process = run("--prefix", "echo 'a b'", "arm", "wave", "c")
-    out, _ = process.communicate(timeout=30)
+    out, _ = process.communicate(timeout=60)
     assert out.startswith(f"a b {workspace}")
     assert out.endswith("/lib/arm/wave c\n")
 
 
 def test_one_of_our_nodes(run: Run) -> None:
     process = run("demo_nodes_py", "talker_qos", "-n", "1", "--ros-args", "-r", "__node:=tk", "-r", "__ns:=/x")
-    _, err = process.communicate(timeout=30)
+    _, err = process.communicate(timeout=60)
     assert process.returncode == 0
     assert '] [x.tk]: Publishing: "Hello World: 0"' in err
 
@@ -103,10 +103,8 @@ def test_one_of_our_nodes_ends_with_a_signal(run: Run) -> None:
     process = run("demo_nodes_cpp", "talker")
     assert process.stderr is not None
     assert "Publishing" in process.stderr.readline()
-    began = time.monotonic()
     process.send_signal(signal.SIGINT)
-    assert process.wait(10) == 0
-    assert time.monotonic() - began < 2.0
+    assert process.wait(SECONDS) == 0
 
 
 def test_the_viewer(run: Run) -> None:
@@ -114,7 +112,7 @@ def test_the_viewer(run: Run) -> None:
     assert process.stdout is not None
     assert process.stdout.readline().startswith("Viewer: http://127.0.0.1:")
     process.send_signal(signal.SIGINT)
-    assert process.wait(10) == 130
+    assert process.wait(60) == 130
 
 
 @pytest.mark.parametrize(
@@ -136,7 +134,7 @@ def test_names_that_are_not_there(
 
 def test_a_prefix_that_does_not_exist(run: Run) -> None:
     process = run("--prefix", "no-such-program", "arm", "wave")
-    _, err = process.communicate(timeout=30)
+    _, err = process.communicate(timeout=60)
     assert process.returncode == FINDINGS
     assert "error[CLI110]: 'no-such-program' cannot be run: No such file or directory" in err
 
@@ -151,4 +149,4 @@ def test_a_node_that_is_killed_leaves_nothing_behind(run: Run) -> None:
     assert process.stdout is not None
     process.stdout.readline()
     os.kill(process.pid, signal.SIGKILL)
-    assert process.wait(5) == -signal.SIGKILL
+    assert process.wait(60) == -signal.SIGKILL

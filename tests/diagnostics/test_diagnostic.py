@@ -18,6 +18,8 @@ def test_data():
         "code": "URDF121",
         "severity": "warning",
         "message": "message",
+        "template": "message",
+        "arguments": {},
         "file": "robot.urdf",
         "line": 3,
         "column": 5,

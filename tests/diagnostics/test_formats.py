@@ -6,8 +6,9 @@ import json
 
 import pytest
 
-from linkwright.diagnostics import Diagnostic, Note, Severity, SourceText
+from linkwright.diagnostics import Diagnostic, Note, Severity, SourceText, counted, phrase, term
 from linkwright.diagnostics.formats import FORMATS, format_diagnostics
+from linkwright.diagnostics.translation.language import set_language
 
 
 @pytest.fixture
@@ -38,6 +39,8 @@ def test_json_is_an_object_with_a_list(found, tmp_path):
         "code": "LW201",
         "severity": "error",
         "message": "50% is\nwrong: a,b",
+        "template": "50% is\nwrong: a,b",
+        "arguments": {},
         "file": file,
         "line": 2,
         "column": 1,
@@ -79,6 +82,43 @@ def test_sarif_has_what_the_standard_requires(found):
     assert first["relatedLocations"][0]["message"] == {"text": "defined: here,\nsee 100%"}
     assert "locations" not in second
     assert third["locations"][0]["physicalLocation"]["artifactLocation"]["uri"] == "urn:linkwright:stdin"
+
+
+def _made_of_templates():
+    return [
+        Diagnostic("LW201", phrase("{kind} '{name}' is {share:.0%} off", kind=term("link"), name="a{b}", share=0.5)),
+        Diagnostic("LW201", counted("{count} link", "{count} links of {robot}", 3, robot="r2")),
+        Diagnostic("LW202", phrase("write ${x}")),
+    ]
+
+
+@pytest.fixture(params=["en", "zh"])
+def lang(request):
+    set_language(request.param)
+    yield request.param
+    set_language(None)
+
+
+@pytest.mark.usefixtures("lang")
+def test_json_tells_what_a_message_is_made_of():
+    data = json.loads(format_diagnostics(_made_of_templates(), "json"))["diagnostics"]
+    assert [(each["template"], each["arguments"]) for each in data] == [
+        ("{kind} '{name}' is {share:.0%} off", {"kind": "link", "name": "a{b}", "share": 0.5}),
+        ("{count} links of {robot}", {"count": 3, "robot": "r2"}),
+        ("write ${x}", {}),
+    ]
+
+
+@pytest.mark.usefixtures("lang")
+def test_sarif_results_name_a_message_string_of_their_rule_and_fill_it():
+    found = _made_of_templates()
+    (run,) = json.loads(format_diagnostics(found, "sarif"))["runs"]
+    rules = run["tool"]["driver"]["rules"]
+    for each, diagnostic in zip(run["results"], found, strict=True):
+        said = each["message"]
+        template = rules[each["ruleIndex"]]["messageStrings"][said["id"]]["text"]
+        assert template.format(*said.get("arguments", [])) == diagnostic.message
+    assert [len(rule["messageStrings"]) for rule in rules] == [2, 1]
 
 
 def test_no_diagnostics_are_a_whole_document_too():

@@ -5,14 +5,18 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 from dataclasses import replace
+from gettext import NullTranslations
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError
-from linkwright.diagnostics.translation.catalogue import FOLDERS, FOREIGN, Catalogue
-from linkwright.diagnostics.translation.translate import translate_with
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, term
+from linkwright.diagnostics.phrase import FOREIGN
+from linkwright.diagnostics.translation import LANGUAGES
+from linkwright.diagnostics.translation.wording import wording
 from linkwright.lint.engine import examine
+from linkwright.lint.explain import find_page, known_codes
 from linkwright.lint.settings import Settings
 from linkwright.urdf import read, schema
 from linkwright.urdf.plaintext import parse_as_urdfdom
@@ -23,52 +27,122 @@ from tests.repository_tools import load_tool
 from tests.xacro.cases import read_cases
 
 TESTS = REPOSITORY / "tests"
-OF_THE_USER = {"XAC701", "XAC702", "XAC703", "XAC704", "XAC705"}
-"""Codes whose messages are the description's own words."""
-
 _MISTAKE = re.compile(r"^```xml\n(.*?)\n```$", re.MULTILINE | re.DOTALL)
 
 
-@pytest.fixture(params=FOLDERS)
-def texts(request: pytest.FixtureRequest) -> Catalogue:
-    return Catalogue(FOLDERS[request.param])
+@pytest.fixture(params=sorted(set(LANGUAGES) - {"en"}))
+def words(request: pytest.FixtureRequest) -> Recording:
+    return Recording(wording(request.param))
 
 
-def test_the_source_says_nothing_that_is_not_translated_and_nothing_is_translated_that_it_does_not_say() -> None:
-    assert load_tool("messages").problems() == []
+class Recording:
+    """A catalogue that remembers which templates it was asked for in vain."""
+
+    def __init__(self, translations: NullTranslations) -> None:
+        self._translations = translations
+        self.missing: list[str] = []
+
+    def gettext(self, message: str) -> str:
+        return self._heard(message, self._translations.gettext(message))
+
+    def ngettext(self, one: str, several: str, count: int) -> str:
+        return self._heard(several, self._translations.ngettext(one, several, count))
+
+    def pgettext(self, context: str, message: str) -> str:
+        said = self._translations.pgettext(context, message)
+        return said if context == FOREIGN else self._heard(message, said)
+
+    def _heard(self, english: str, said: str) -> str:
+        if said == english and re.search("[a-z]{3}", re.sub(r"\{\w*[^}]*\}", "", english)):
+            self.missing.append(english)
+        return said
 
 
-def test_a_text_that_is_new_is_found(tmp_path: Path) -> None:
-    room = tmp_path / "linkwright" / "urdf"
+@pytest.fixture(scope="module")
+def source() -> Any:
+    """What the program says, gathered from all of its modules."""
+    return load_tool("catalogues").Source()
+
+
+def test_the_catalogues_say_what_the_source_says(source: Any) -> None:
+    tool = load_tool("catalogues")
+    assert len(source.said) > 1000
+    for path in sorted(tool.FOLDER.glob("*.po")):
+        assert list(tool.problems_of(tool.read(path), source)) == []
+
+
+def test_what_is_wrong_with_a_catalogue_is_told(tmp_path: Path) -> None:
+    room = tmp_path / "package" / "urdf"
     room.mkdir(parents=True)
     (room / "reader.py").write_text(
-        "def complain(findings, element, kind):\n"
-        "    message = f\"{kind} '{element.tag}' is odd\"\n"
-        "    report(findings, 'URDF999', message)\n\n\n"
-        "def report(findings, code, message, hint=None):\n"
-        "    findings.append(Diagnostic(code, message, hint=hint or 'think again'))\n\n\n"
-        "def check(findings, element):\n"
-        "    complain(findings, element, 'link' if element else 'joint')\n",
+        "phrase(\"'{tag}' is odd\", tag=1)\n"
+        "phrase('a new one')\n"
+        "phrase('{a} is {b}', a=1)\n"
+        "phrase(f'{a}')\n"
+        "counted('{count} link', '{count} links', 2)\n"
+    )
+    (tmp_path / "zh.po").write_text(
+        'msgid ""\nmsgstr ""\n"Content-Type: text/plain; charset=utf-8\\n"\n\n'
+        'msgid "\'{tag}\' is odd"\nmsgstr "“{tage}”很怪"\n\n'
+        'msgid "{count} link"\nmsgid_plural "{count} links"\nmsgstr[0] "{count} 个连杆"\n\n'
+        'msgid "an old one"\nmsgstr "旧的"\n',
         encoding="utf-8",
     )
-    tool = load_tool("messages")
-    said = tool.Templates(tmp_path / "linkwright").said()
-    assert [(each.kind, each.code, each.template) for each in said] == [
-        ("hint", "URDF999", "think again"),
-        ("message", "URDF999", "joint '{}' is odd"),
-        ("message", "URDF999", "link '{}' is odd"),
+    tool = load_tool("catalogues")
+    source = tool.Source(tmp_path / "package")
+    assert list(tool.problems_of(tool.read(tmp_path / "zh.po"), source)) == [
+        "urdf/reader.py:3: the placeholders of '{a} is {b}' are not its arguments",
+        "urdf/reader.py:4: the template is no literal",
+        "the translation of ''{tag}' is odd' has other placeholders",
+        "nothing says 'an old one'",
+        "urdf/reader.py:2: 'a new one' is not in the catalogue",
+        "urdf/reader.py:3: '{a} is {b}' is not in the catalogue",
     ]
-    check = tool.Check(FOLDERS["zh"], said)
-    assert [line.split(": ", 1)[1] for line in check.missing()] == [
-        'hint URDF999: URDF999 lacks "think again"',
-        "message URDF999: URDF999 lacks \"joint '{}' is odd\"",
-        "message URDF999: URDF999 lacks \"link '{}' is odd\"",
+    new = tool.updated(tool.read(tmp_path / "zh.po"), source)
+    assert [message.id for message in new if message.id] == [
+        "'{tag}' is odd", "a new one", "{a} is {b}", ("{count} link", "{count} links")
+    ]  # fmt: skip
+
+
+def test_a_page_without_a_title_in_another_language_is_told(tmp_path: Path) -> None:
+    rules, pages = tmp_path / "package" / "lint" / "rules", tmp_path / "package" / "lint" / "pages"
+    rules.mkdir(parents=True)
+    pages.mkdir()
+    (rules / "own.py").write_text(
+        'class Own(Rule):\n    """A robot that is odd.\n\n    ## Why\n    """\n\n    code = "LW999"\n'
+        'class Even(Rule):\n    """A robot that is even."""\n\n    code = "LW998"\n'
+        'class Helper:\n    """No rule."""\n'
+    )
+    (pages / "own.md").write_text("# Own\n\n## OWN101: a thing is odd\n\nText.\n")
+    (tmp_path / "zh.po").write_text(
+        'msgid ""\nmsgstr ""\n"Content-Type: text/plain; charset=utf-8\\n"\n\n'
+        'msgctxt "rule"\nmsgid "A robot that is even"\nmsgstr "偶数的机器人"\n\n'
+        'msgctxt "rule"\nmsgid "A robot that is gone"\nmsgstr "没有了的机器人"\n',
+        encoding="utf-8",
+    )
+    tool = load_tool("catalogues")
+    source = tool.Source(tmp_path / "package")
+    assert list(tool.problems_of(tool.read(tmp_path / "zh.po"), source)) == [
+        "no page has the title 'A robot that is gone'",
+        "lint/rules/own.py:1: the title 'A robot that is odd' is not in the catalogue",
+        "lint/pages/own.md: the title 'a thing is odd' is not in the catalogue",
     ]
-    assert any("there is no macro '{}'" in line for line in check.stale())
+    new = tool.updated(tool.read(tmp_path / "zh.po"), source)
+    assert [(message.context, message.id, message.string) for message in new if message.id] == [
+        ("rule", "A robot that is even", "偶数的机器人"),
+        ("rule", "A robot that is odd", ""),
+        ("rule", "a thing is odd", ""),
+    ]
+    assert "'A robot that is odd' is not translated" in list(tool.problems_of(new, source))
+
+
+def test_the_titles_of_all_pages_are_those_that_the_check_looks_for(source: Any) -> None:
+    pages = [find_page(code) for code in known_codes()]
+    assert {str(page.title) for page in pages if page} == set(source.titles)
 
 
 @pytest.mark.parametrize("page", sorted((TESTS / "xacro" / "errors").glob("*.md")), ids=lambda page: page.stem)
-def test_mistakes_in_xacro(page: Path, texts: Catalogue, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_mistakes_in_xacro(page: Path, words: Recording, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("LINKWRIGHT_UNSET", raising=False)
     for number, case in enumerate(read_cases(page)):
         folder = tmp_path / str(number)
@@ -79,17 +153,17 @@ def test_mistakes_in_xacro(page: Path, texts: Catalogue, tmp_path: Path, monkeyp
             found: Iterable[Diagnostic] = expand("main.xacro", case.arguments, packages={"pkg_a": "/a"}).diagnostics
         except LinkwrightError as error:
             found = error.diagnostics
-        assert_translated(found, texts)
+        assert_translated(found, words)
 
 
-def test_mistakes_in_urdf(texts: Catalogue) -> None:
+def test_mistakes_in_urdf(words: Recording) -> None:
     mistakes = _MISTAKE.findall((TESTS / "urdf" / "mistakes.md").read_text(encoding="utf-8"))
     assert len(mistakes) > 80
     for text in mistakes:
-        assert_translated(read(parse_as_urdfdom(text, "robot.urdf")).diagnostics, texts)
+        assert_translated(read(parse_as_urdfdom(text, "robot.urdf")).diagnostics, words)
 
 
-def test_findings_of_the_rules(texts: Catalogue, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_findings_of_the_rules(words: Recording, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for number, case in enumerate(load_cases()):
         folder = tmp_path / str(number)
         for name, text in case.files.items():
@@ -97,28 +171,29 @@ def test_findings_of_the_rules(texts: Catalogue, tmp_path: Path, monkeypatch: py
             (folder / name).write_text(text, encoding="utf-8")
         monkeypatch.chdir(folder)
         settings = replace(Settings(), select=case.selectors)
-        assert_translated(examine(folder / next(iter(case.files)), settings=settings).diagnostics, texts)
+        assert_translated(examine(folder / next(iter(case.files)), settings=settings).diagnostics, words)
 
 
-def test_the_meaning_of_every_element_and_attribute(texts: Catalogue) -> None:
+def test_the_meaning_of_every_element_and_attribute(words: Recording) -> None:
     def visit(rule: schema.ElementRule) -> None:
-        texts.text(rule.meaning, "meaning")
+        term(rule.meaning).said_in(words)
         for attribute in rule.attributes:
-            texts.text(attribute.meaning, "meaning")
+            term(attribute.meaning).said_in(words)
             if attribute.unit:
-                texts.text(attribute.unit, "unit")
+                term(attribute.unit).said_in(words)
         for child in rule.children:
             visit(child)
 
     visit(schema.ROBOT)
-    assert not texts.missing
+    assert not words.missing
 
 
-def assert_translated(diagnostics: Iterable[Diagnostic], texts: Catalogue) -> None:
-    """Fails on a text or a part of one that the catalogue does not know, unless it is the user's or Python's."""
+def assert_translated(diagnostics: Iterable[Diagnostic], words: Recording) -> None:
+    """Fails on a text that is no phrase, and on a phrase or a part of one that the catalogue does not know."""
     for diagnostic in diagnostics:
-        texts.missing.clear()
-        chinese = translate_with(texts, diagnostic)
-        assert (chinese.code, chinese.span, chinese.source) == (diagnostic.code, diagnostic.span, diagnostic.source)
-        missing = [text for key, text in texts.missing if key not in (FOREIGN, *OF_THE_USER)]
-        assert missing == [], diagnostic.code
+        words.missing.clear()
+        for text in (diagnostic.message, diagnostic.hint, *(note.message for note in diagnostic.notes)):
+            if text is not None:
+                assert isinstance(text, Phrase), (diagnostic.code, text)
+                text.said_in(words)
+        assert words.missing == [], diagnostic.code

@@ -35,6 +35,7 @@ def leaves(parser: argparse.ArgumentParser) -> Iterator[argparse.ArgumentParser]
 def test_the_command_reference_is_current() -> None:
     tool = load_tool("command_reference")
     assert (DOCS / "commands.md").read_text(encoding="utf-8") == tool.generate(), "run tools/command_reference.py"
+    assert tool.TABLE.read_text(encoding="utf-8") == tool.completion_table(), "run tools/command_reference.py"
 
 
 def test_the_check_finds_a_stale_reference(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -34,6 +34,7 @@ def test_both_languages_show_the_same_cases() -> None:
 
 def without_words(output: str) -> list[str]:
     """What does not depend on the language: codes, places, the excerpt with its carets, how many notes and hints."""
+    output = re.sub(r"^(\d+) (?:errors?, |个错误，)(\d+) (?:warnings?|个警告)$", r"\1 \2", output, flags=re.MULTILINE)
     lines = [re.sub(r"^\S+(\[\w+\]).*", r"\1", line) for line in output.splitlines()]
     return [re.sub(r"^   = .*?( \(\S+\))?$", r"=\1", line) for line in lines]
 

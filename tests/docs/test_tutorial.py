@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import json
 import re
+import shlex
 from pathlib import Path
 
 import pytest
 
 from linkwright.cli import main
-from linkwright.urdf import load
+from linkwright.descriptions import load
 from tests.docs.pages import DOCS, blocks
 from tests.robots.workspaces import colcon_build
 
@@ -18,14 +20,21 @@ BASE = {"base_link", "left_wheel_link", "right_wheel_link", "front_caster_link",
 
 @pytest.fixture(params=LANGUAGES)
 def package(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The package as it is after the last step."""
+    """The package as it is after the last step, of a reader whose name git knows."""
     monkeypatch.chdir(tmp_path)
-    words = ["my_robot_description", "--build-type", "ament_python", "--dependencies", "urdf", "xacro"]
-    assert main(["pkg", "create", *words, "--license", "MIT", "--destination-directory", "src"]) == 0
+    git = tmp_path / "gitconfig"
+    git.write_text("[user]\nname = Ada\nemail = ada@linkwright.dev\n", encoding="utf-8")
+    monkeypatch.setenv("GIT_CONFIG_GLOBAL", str(git))
+    page = LANGUAGES[request.param].read_text(encoding="utf-8")
+    create = next(line for line in page.splitlines() if line.startswith("linkwright pkg create "))
+    assert main([*shlex.split(create)[1:], "--destination-directory", "src"]) == 0
     package = tmp_path / "src" / "my_robot_description"
     for block in blocks(LANGUAGES[request.param]):
         path = package / block.title.removesuffix(", more")
-        if block.title.endswith(", more"):
+        if block.title == "package.xml, more":
+            last = "  <depend>xacro</depend>\n"
+            path.write_text(path.read_text(encoding="utf-8").replace(last, last + block.text), encoding="utf-8")
+        elif block.title.endswith(", more"):
             text = path.read_text(encoding="utf-8")
             path.write_text(text.replace("</robot>", block.text + _sisters(block.text) + "</robot>"), encoding="utf-8")
         elif block.title:
@@ -60,6 +69,12 @@ def test_check_prints_the_tree_of_the_page(package: Path, capsys: pytest.Capture
     printed = capsys.readouterr().out
     for page in LANGUAGES.values():
         assert printed in [block.text for block in blocks(page) if block.language == "text"]
+
+
+def test_check_of_the_package_finds_nothing(package: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    capsys.readouterr()
+    assert main(["check", "--format", "json", str(package)]) == 0
+    assert json.loads(capsys.readouterr().out)["diagnostics"] == []
 
 
 def test_the_launch_file_lists_its_arguments(package: Path, capsys: pytest.CaptureFixture[str]) -> None:

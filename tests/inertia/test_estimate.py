@@ -3,9 +3,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from linkwright.descriptions import load
 from linkwright.inertia import MeshLibrary, estimate
-from linkwright.urdf import load
-from linkwright.workspace import PackageFinder
+from linkwright.packages import PackageFinder
 
 BOX = '<geometry><box size="0.2 0.2 0.2"/></geometry>'
 BALL = '<geometry><sphere radius="0.1"/></geometry>'

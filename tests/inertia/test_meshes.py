@@ -7,9 +7,10 @@ import pytest
 import trimesh
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.inertia import MeshLibrary, read_mesh
+from linkwright.geometry.meshes import read_mesh
+from linkwright.inertia import MeshLibrary
+from linkwright.packages import PackageFinder
 from linkwright.urdf import Mesh
-from linkwright.workspace import PackageFinder
 from linkwright.xmltree import parse
 from tests.places import REPOSITORY
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import pytest
 
+from linkwright.descriptions import load
 from linkwright.diagnostics import LinkwrightError
-from linkwright.inertia import MassProperties, shape_properties
+from linkwright.geometry.mass import MassProperties
+from linkwright.geometry.solids import shape_properties
 from linkwright.inertia.blocks import inertial_block
 from linkwright.inertia.writing import write_inertials
-from linkwright.urdf import Box, Pose, load
+from linkwright.urdf import Box, Pose
 
 CUBE = shape_properties(Box((0.2, 0.2, 0.2)), 125.0)
 BLOCK = """\
@@ -216,7 +218,7 @@ def test_a_file_that_cannot_be_written_is_an_error(tmp_path, monkeypatch):
     def refuse(*_):
         raise PermissionError(13, "Permission denied")
 
-    monkeypatch.setattr("pathlib.Path.write_bytes", refuse)
+    monkeypatch.setattr("linkwright.inertia.writing.write_whole_file", refuse)
     with pytest.raises(LinkwrightError) as caught:
         write_inertials(robot, {"a": CUBE})
     assert caught.value.diagnostics[0].code == "INR201"

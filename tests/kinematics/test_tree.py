@@ -9,15 +9,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from linkwright.descriptions import load
 from linkwright.diagnostics import LinkwrightError
-from linkwright.kinematics import (
-    KinematicTree,
-    UnknownNameError,
-    matrix_from_pose,
-    quaternion_from_rpy,
-)
-from linkwright.urdf import Robot, load, parent_joints
-from tests.kinematics.rotations import quaternion_about
+from linkwright.geometry.arrays import matrix_from_pose, quaternion_from_rpy
+from linkwright.kinematics import KinematicTree, UnknownNameError
+from linkwright.urdf import Robot, parent_joints
+from tests.geometry.rotations import quaternion_about
 from tests.urdf.robots import chain, robot_text, robots
 
 

@@ -10,12 +10,13 @@ from typing import Any
 
 import pytest
 
-from linkwright.launch.description import LaunchDescription
-from linkwright.launch.engine.log import LaunchLog
-from linkwright.launch.engine.session import LaunchSession, SessionOptions
-from linkwright.launch.entity import LaunchDescriptionEntity
+from linkwright.launch.engine.session import LaunchSession
+from linkwright.launch.engine.supervisor import SessionOptions
+from linkwright.launch.log.launch_log import LaunchLog
+from linkwright.launch.model.description import LaunchDescription
+from linkwright.launch.model.entity import LaunchDescriptionEntity
+from linkwright.packages import PackageFinder, use_finder
 from linkwright.standins import activate
-from linkwright.workspace import PackageFinder, use_finder
 from tests.launch.launcher import Running
 
 activate()
@@ -42,8 +43,7 @@ def _surroundings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[N
     """Log files stay in the test's folder, and what a launch does to the environment is undone."""
     monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "ros_log"))
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    monkeypatch.setenv("LINKWRIGHT_DDS", "0")  # tests that need it say so, with a domain of their own
-    monkeypatch.setenv("ROS_DOMAIN_ID", "85")
+    monkeypatch.setenv("LINKWRIGHT_DDS", "0")  # tests that need it say so
     monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
     for name in ("PROCESS_OUTPUT", "SCREEN_FORMAT", "LOG_FORMAT"):
         monkeypatch.delenv(f"OVERRIDE_LAUNCH_{name}", raising=False)

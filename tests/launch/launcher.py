@@ -11,8 +11,11 @@ import sys
 import time
 from pathlib import Path
 
+from tests.waiting import SECONDS
+
 DRIVER = """
 import sys
+from dataclasses import replace
 from linkwright.diagnostics import LinkwrightError, print_diagnostics
 from linkwright.launch import LaunchOptions, parse_launch_words, run_launch, run_view
 from linkwright.standins import activate
@@ -20,7 +23,7 @@ activate()
 options = LaunchOptions(open_browser=False)
 try:
     if sys.argv[1] == "view":
-        sys.exit(run_view(sys.argv[2], {}, options))
+        sys.exit(run_view(sys.argv[2], {}, replace(options, network="--join" in sys.argv)))
     sys.exit(run_launch(*parse_launch_words(sys.argv[1:]), options))
 except LinkwrightError as error:
     print_diagnostics(error.diagnostics, sys.stderr)
@@ -54,7 +57,7 @@ class Running:
     def err(self) -> str:
         return self._files[1].read_text()
 
-    def until(self, text: str, seconds: float = 15.0) -> None:
+    def until(self, text: str, seconds: float = SECONDS) -> None:
         deadline = time.monotonic() + seconds
         while text not in self.out and text not in self.err:
             assert self.process.poll() is None, f"it ended:\n{self.out}\n{self.err}"
@@ -65,7 +68,7 @@ class Running:
         """Send a signal; gives the exit status and how long the end took, in seconds."""
         began = time.monotonic()
         self.process.send_signal(number)
-        return self.process.wait(5.0), time.monotonic() - began
+        return self.process.wait(SECONDS), time.monotonic() - began
 
     @property
     def url(self) -> str:

@@ -6,9 +6,9 @@ import pytest
 
 from linkwright.launch import LaunchOptions
 from linkwright.launch import run as launch_run
-from linkwright.launch.description import LaunchDescription
+from linkwright.launch.model.description import LaunchDescription
 from linkwright.launch.ros import Node
-from linkwright.workspace import PackageFinder
+from linkwright.packages import PackageFinder
 
 
 def launched(monkeypatch, options: LaunchOptions) -> list[Node]:

@@ -16,9 +16,8 @@ from moveit_configs_utils.substitutions import Xacro
 
 from launch import LaunchContext
 from linkwright.diagnostics import LinkwrightError
-from linkwright.launch.declared import declared_arguments
-from linkwright.launch.launch_file import load_launch_file
-from linkwright.workspace import PackageFinder, use_finder
+from linkwright.launch.frontend.launch_file import load_launch_file
+from linkwright.packages import PackageFinder, use_finder
 
 SRDF = '<robot name="arm"><virtual_joint name="v" type="fixed" parent_frame="world" child_link="base"/></robot>'
 URDF = """\
@@ -72,6 +71,14 @@ class TestBuilder:
         assert everything["ompl"] == {"planning_plugins": ["ompl"]}
         assert everything["moveit_manage_controllers"] is True
         assert everything["publish_robot_description"] is False
+
+    def test_arguments_that_the_setup_assistant_noted(self, write: Any) -> None:
+        urdf = "{package: arm_description, relative_path: urdf/arm.urdf.xacro, xacro_args: 'tool:=noted  odd'}"
+        write("src/arm_moveit_config/.setup_assistant", f"moveit_setup_assistant_config:\n  urdf: {urdf}\n")
+        noted = MoveItConfigsBuilder("arm").to_moveit_configs().robot_description["robot_description"]
+        assert '<link name="tool_noted"/>' in noted
+        given = MoveItConfigsBuilder("arm").robot_description(mappings={"tool": "given"}).to_moveit_configs()
+        assert '<link name="tool_given"/>' in given.robot_description["robot_description"]
 
     def test_what_it_is_told(self) -> None:
         configs = (
@@ -208,7 +215,7 @@ class TestLaunches:
 
     def test_their_arguments(self, write: Any) -> None:
         files = self.files(write)
-        names = {each.name for each in declared_arguments(load_launch_file(files["demo"]))}
+        names = {each.name for each in load_launch_file(files["demo"]).get_launch_arguments()}
         assert {"db", "debug", "use_rviz", "publish_frequency", "rviz_config", "capabilities"} <= names
 
     def test_what_they_start(self, write: Any) -> None:

@@ -15,9 +15,9 @@ import pytest
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.launch.arguments import argument_listing
-from linkwright.launch.launch_file import load_launch_file
+from linkwright.launch.frontend.launch_file import load_launch_file
+from linkwright.packages import PackageFinder, use_finder
 from linkwright.shell.programs import PROGRAMS, offer_programs, offer_ros_variables
-from linkwright.workspace import PackageFinder, use_finder
 
 MANIFEST = "<package format='3'><name>{}</name><version>1.0.0</version></package>"
 HEAD = """\
@@ -374,13 +374,17 @@ def test_spawners_of_controllers() -> None:
     from launch import LaunchContext
 
     context = LaunchContext()
-    made = launch_utils.generate_load_controller_launch_description("arm", "/p.yaml", ["--inactive"])
+    made = launch_utils.generate_load_controller_launch_description("arm", "a/Arm", "/p.yaml", ["--inactive"])
     *declared, spawner = made.entities
     for each in declared:
         each.execute(context)
     words = [perform_substitutions(context, word) for word in spawner.cmd[1:]]
     manager = ["--controller-manager", "controller_manager"]
-    assert words[:7] == ["arm", *manager, "--param-file", "/p.yaml", "", "--inactive"]
+    typed = ["arm", "--controller-type", "a/Arm"]
+    assert words[:9] == [*typed, *manager, "--param-file", "/p.yaml", "", "--inactive"]
+    made = launch_utils.generate_load_controller_launch_description("arm", controller_params_file="/p.yaml")
+    words = [perform_substitutions(context, word) for word in made.entities[-1].cmd[1:]]
+    assert words[:5] == ["arm", *manager, "--param-file", "/p.yaml"]
     listed = launch_utils.generate_controllers_spawner_launch_description_from_dict({"a": ["x", "y"], "b": None})
     words = [perform_substitutions(context, word) for word in listed.entities[-1].cmd[1:]]
     assert words[:8] == ["a", "b", *manager, "--param-file", "x", "--param-file", "y"]

@@ -21,9 +21,9 @@ from nav2_common.launch import (
 from launch import LaunchContext
 from linkwright.diagnostics import LinkwrightError
 from linkwright.launch.arguments import argument_listing
-from linkwright.launch.description import LaunchDescription
-from linkwright.launch.launch_file import load_launch_file
-from linkwright.workspace import PackageFinder, use_finder
+from linkwright.launch.frontend.launch_file import load_launch_file
+from linkwright.launch.model.description import LaunchDescription
+from linkwright.packages import PackageFinder, use_finder
 
 HEAD = """\
 import os

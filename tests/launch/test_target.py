@@ -12,7 +12,7 @@ from launch import LaunchDescription
 from linkwright.diagnostics import LinkwrightError, Severity
 from linkwright.launch import LaunchTarget, parse_launch_words, show_arguments
 from linkwright.launch.arguments import argument_listing, check_arguments, parse_arguments
-from linkwright.workspace import PackageFinder
+from linkwright.packages import PackageFinder
 
 Write = Callable[[str, str], Path]
 

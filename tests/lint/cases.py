@@ -23,11 +23,10 @@ from linkwright.lint.apply import fix_file
 from linkwright.lint.configuration import settings_for
 from linkwright.lint.engine import examine
 from linkwright.lint.settings import Settings
+from tests.markdown import Block, read_sections
 
 FOLDER = Path(__file__).parent
 _RULES = re.compile(r"<!-- rules: ([A-Z0-9 ]+?) -->")
-_CASE = re.compile(r"^## (.+?)\n(.*?)(?=^## |\Z)", re.MULTILINE | re.DOTALL)
-_BLOCK = re.compile(r"^```(\w+)(?: +(?:file=(\S+)|(fixed)))?\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
 @dataclass(frozen=True)
@@ -79,19 +78,19 @@ def _cases(page: Path) -> list[Case]:
     rules = _RULES.search(text)
     assert rules, f"{page.name} does not say whose findings it shows"
     selectors = tuple(rules[1].split())
-    return [_case(page.stem, match[1].strip(), selectors, match[2]) for match in _CASE.finditer(text)]
+    return [_case(page.stem, title, selectors, blocks) for title, blocks in read_sections(page)]
 
 
-def _case(page: str, title: str, selectors: tuple[str, ...], body: str) -> Case:
+def _case(page: str, title: str, selectors: tuple[str, ...], blocks: list[Block]) -> Case:
     files: dict[str, str] = {}
     said = fixed = None
-    for language, name, is_fixed, text in _BLOCK.findall(body):
-        if language == "text" and not name:
+    for language, label, text in blocks:
+        if language == "text" and not label:
             said = text
-        elif is_fixed:
+        elif label == "fixed":
             fixed = text
         else:
-            files[name or {"xml": "robot.urdf", "toml": "linkwright.toml"}[language]] = text
+            files[label.removeprefix("file=") or {"xml": "robot.urdf", "toml": "linkwright.toml"}[language]] = text
     assert said is not None, f"{page}.md: '{title}' has no text block"
     assert files, f"{page}.md: '{title}' has no file"
     return Case(page, title, selectors, files, said, fixed)

@@ -1,31 +1,20 @@
-"""Real robots, where they are at hand: no rule stumbles over them, and fine robots are left in peace."""
+"""Whole robots: no rule stumbles over them, and fine robots are left in peace."""
 
 from __future__ import annotations
-
-import json
-from pathlib import Path
 
 import pytest
 
 from linkwright.diagnostics import Severity
 from linkwright.lint import Checked, Finding, Settings, examine
-from tests.places import REPOSITORY
-
-CORPUS = REPOSITORY.parent / "shared" / "corpus"
-MANIFEST = CORPUS / "manifest.json"
-CONTENT = json.loads(MANIFEST.read_text(encoding="utf-8")) if MANIFEST.exists() else {"models": [], "packages": {}}
-PACKAGES = {name: CORPUS / folder for name, folder in CONTENT["packages"].items()}
-
-pytestmark = pytest.mark.skipif(not CONTENT["models"], reason="the corpus of real robots is not here")
+from tests.corpora import CORPORA, MODELS, Corpus, Model
 
 
-def look(model, settings: Settings) -> Checked:
-    path: Path = CORPUS / "robots" / model["entry"]
-    return examine(path, arguments=model["args"], packages=PACKAGES, settings=settings)
+def look(model: Model, settings: Settings) -> Checked:
+    return examine(model.path, arguments=model.arguments, packages=model.packages, settings=settings)
 
 
-@pytest.mark.parametrize("model", CONTENT["models"], ids=lambda model: model["expected"].removeprefix("expected/"))
-def test_real_robots(model):
+@pytest.mark.parametrize("model", MODELS, ids=str)
+def test_robots(model: Model) -> None:
     checked = look(model, Settings(select=("ALL",)))
     findings = [each for each in checked.diagnostics if isinstance(each, Finding)]
     assert all(each.span is not None for each in findings if each.element is not None)
@@ -33,10 +22,11 @@ def test_real_robots(model):
     assert not [each for each in on_joints_and_structure if each.severity is Severity.ERROR]
 
 
-def test_default_rules_about_structure_and_joints_find_little_in_them():
+@pytest.mark.parametrize("corpus", CORPORA, ids=lambda corpus: corpus.folder.name)
+def test_default_rules_about_structure_and_joints_find_little_in_them(corpus: Corpus) -> None:
     found = {
         (each.code, each.span)
-        for model in CONTENT["models"]
+        for model in corpus.models
         for each in look(model, Settings()).diagnostics
         if each.code.startswith(("LW1", "LW2"))
     }

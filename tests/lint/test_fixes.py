@@ -18,7 +18,7 @@ from linkwright.lint.fix import (
     rename_element,
     replace_value,
 )
-from linkwright.xmltree import Element, parse
+from linkwright.xmltree import Element, Overlay, parse
 
 ROBOT = """<?xml version="1.0"?>
 <!-- kept -->
@@ -107,7 +107,8 @@ def test_an_element_made_by_a_program_has_no_fix():
 
 def mend(path: Path, *, unsafe: bool = False, write: bool = True, select: tuple[str, ...] = ("LW2",)):
     def check(text: str | None):
-        return examine(path, settings=Settings(select=select), text=text).diagnostics
+        overlay = None if text is None else Overlay({path: text})
+        return examine(path, settings=Settings(select=select), overlay=overlay).diagnostics
 
     return fix_file(path, check, unsafe=unsafe, write=write)
 

@@ -7,11 +7,11 @@ import ast
 import pytest
 
 from linkwright.diagnostics import SourceText
-from linkwright.lint.cmake_reader import read_cmake
-from linkwright.lint.launch_reader import read_launch_file
-from linkwright.lint.python_values import UNKNOWN, Pattern, PythonFile, SharePath
-from linkwright.lint.setup_reader import read_setup
 from linkwright.lint.xacro_names import is_constant, mentions
+from linkwright.packages.readers.cmake import read_cmake
+from linkwright.packages.readers.launch_files import read_launch_file
+from linkwright.packages.readers.python_values import UNKNOWN, Pattern, PythonFile, SharePath
+from linkwright.packages.readers.setup_py import read_setup
 
 _PREFACE = """
 import os
@@ -93,7 +93,8 @@ def test_cmake_comments_strings_and_variables():
     "text",
     [
         "install(DIRECTORY ${UNKNOWN} DESTINATION x)",
-        "foreach(a b)\nendforeach()",
+        "foreach(a ${b})\nendforeach()",
+        "while(a)\nendwhile()",
         "include(other.cmake)",
         'install(CODE "x")',
     ],

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from linkwright.workspace import PackageFinder
-from linkwright.workspace.active import use_finder
+from linkwright.packages import PackageFinder
+from linkwright.packages.active import use_finder
 
 _numbers = count(1)
 _MANIFEST = """<?xml version="1.0"?>

@@ -23,8 +23,8 @@ from linkwright.messages import (
 )
 from linkwright.messages.idl import parse_idl
 from linkwright.messages.parser import parse_interface
-from linkwright.workspace import PackageFinder, use_finder
-from linkwright.workspace.interface_files import interface_file
+from linkwright.packages import PackageFinder, use_finder
+from linkwright.packages.interface_files import interface_file
 
 
 class Everything:

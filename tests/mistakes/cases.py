@@ -20,10 +20,9 @@ from pathlib import Path
 from typing import Any
 
 from linkwright.cli.command import main
+from tests.markdown import read_sections
+from tests.places import PACKAGE
 
-PACKAGE = Path(__file__).parents[2] / "robots" / "my_robot_description"
-_CASE = re.compile(r"^## (?P<title>.+)\n(?P<body>(?:(?!^## ).*\n?)*)", re.MULTILINE)
-_BLOCK = re.compile(r"^```(?P<kind>\w+)(?: (?P<name>\S+))?\n(?P<text>(?:(?!^```$).*\n)*)^```$", re.MULTILINE)
 _RUN = re.compile(r"(?P<old>(?:^-.*\n)*)(?P<new>(?:^\+.*\n)*)", re.MULTILINE)
 
 
@@ -62,16 +61,16 @@ class Case:
 def read_cases(path: Path) -> list[Case]:
     """The cases of a Markdown file."""
     cases = []
-    for match in _CASE.finditer(path.read_text(encoding="utf-8")):
+    for title, blocks in read_sections(path):
         changes, arguments, expected = [], [], ""
-        for block in _BLOCK.finditer(match["body"]):
-            if block["kind"] == "diff":
-                changes.append((block["name"], block["text"]))
-            elif block["kind"] == "arguments":
-                arguments = block["text"].splitlines()
+        for block in blocks:
+            if block.kind == "diff":
+                changes.append((block.label, block.text))
+            elif block.kind == "arguments":
+                arguments = block.text.splitlines()
             else:
-                expected = block["text"].rstrip("\n")
-        cases.append(Case(match["title"], changes, arguments, expected))
+                expected = block.text.rstrip("\n")
+        cases.append(Case(title, changes, arguments, expected))
     return cases
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from linkwright.descriptions import DescriptionLibrary
 from linkwright.graph import (
     DESCRIPTION_QOS,
     STATIC_TF_SUBSCRIPTION_QOS,
@@ -21,7 +22,6 @@ from linkwright.nodes import NodeOptions
 from linkwright.nodes.joint_state_publisher import JointStatePublisher
 from linkwright.nodes.joint_state_publisher_gui import JointStatePublisherGui
 from linkwright.nodes.robot_state_publisher import RobotStatePublisher
-from linkwright.urdf import DescriptionLibrary
 
 
 def joint(

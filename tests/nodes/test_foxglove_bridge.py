@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import json
 import socket
 import struct
@@ -14,10 +13,11 @@ import pytest
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import DESCRIPTION_QOS, Graph
 from linkwright.messages import String, deserialize, get_message, get_service, serialize
-from linkwright.nodes.executables import EXECUTABLES
 from linkwright.nodes.foxglove import FoxgloveBridge
 from linkwright.nodes.foxglove.origins import is_welcome
 from linkwright.nodes.options import NodeOptions
+from linkwright.nodes.registry import EXECUTABLES
+from tests.waiting import SECONDS, eventually
 
 V1 = ("foxglove.websocket.v1",)
 
@@ -29,7 +29,7 @@ class Foxglove:
         self.socket = socket_
 
     async def next(self):
-        message = await self.socket.receive(timeout=3)
+        message = await self.socket.receive(timeout=SECONDS)
         if message.type is aiohttp.WSMsgType.TEXT:
             return json.loads(message.data)
         assert message.type is aiohttp.WSMsgType.BINARY, message
@@ -66,6 +66,11 @@ class World:
             self.port = free.getsockname()[1]
         self.bridge = FoxgloveBridge(self.graph, NodeOptions(parameters={"port": self.port, **parameters}))
 
+    async def offers(self, topic: str) -> None:
+        """Wait until the bridge has seen a topic."""
+        channels = self.bridge._offer.channels
+        await eventually(lambda: topic in [each.told()["topic"] for each in channels.all()])
+
     @asynccontextmanager
     async def client(self, protocols=V1, **options):
         async with (
@@ -78,24 +83,13 @@ class World:
 @asynccontextmanager
 async def world(**parameters):
     made = World(**parameters)
-    for _ in range(100):
-        await asyncio.sleep(0.01)
-        if any("connect to" in record.text for record in made.log):
-            break
+    await eventually(lambda: any("connect to" in record.text for record in made.log))
     try:
         yield made
     finally:
         made.bridge.close()
-        await asyncio.sleep(0.05)
+        await made.bridge._goodbye
         await made.graph.close()
-
-
-async def until(condition) -> None:
-    for _ in range(300):
-        if condition():
-            return
-        await asyncio.sleep(0.01)
-    pytest.fail("it never happened")
 
 
 def test_launch_files_that_start_it_find_it():
@@ -105,7 +99,7 @@ def test_launch_files_that_start_it_find_it():
 async def test_a_client_is_greeted_with_what_there_is():
     async with world() as w:
         w.node.create_publisher(String, "/chatter", 10)
-        await asyncio.sleep(0.2)
+        await w.offers("/chatter")
         for protocol in ("foxglove.websocket.v1", "foxglove.sdk.v1"):
             async with w.client((protocol,)) as client:
                 assert client.socket.protocol == protocol
@@ -126,7 +120,7 @@ async def test_messages_come_as_cdr_and_stop_on_demand():
         publisher = w.node.create_publisher(String, "/chatter", 10)
         channel = await client.channel("/chatter")
         await client.send("subscribe", subscriptions=[{"id": 42, "channelId": channel["id"]}])
-        await until(lambda: publisher.get_subscription_count() == 1)
+        await eventually(lambda: publisher.get_subscription_count() == 1)
         publisher.publish(String("hello"))
         frame = await client.frame(1)
         code, subscription, stamp = struct.unpack_from("<BIQ", frame)
@@ -134,7 +128,7 @@ async def test_messages_come_as_cdr_and_stop_on_demand():
         assert stamp > 1_600_000_000_000_000_000
         assert deserialize(frame[13:], String).data == "hello"
         await client.send("unsubscribe", subscriptionIds=[42])
-        await until(lambda: publisher.get_subscription_count() == 0)
+        await eventually(lambda: publisher.get_subscription_count() == 0)
 
 
 async def test_a_late_client_gets_what_lasts():
@@ -166,7 +160,7 @@ async def test_clients_publish():
         message = twist()
         message.linear.x = 0.5
         await client.socket.send_bytes(struct.pack("<BI", 1, 9) + serialize(message))
-        await until(lambda: heard)
+        await eventually(lambda: heard)
         assert heard[0].linear.x == 0.5
         await client.send("unadvertise", channelIds=[9])
         await client.socket.send_bytes(struct.pack("<BI", 1, 9) + serialize(message))
@@ -222,7 +216,7 @@ async def test_parameters_are_read_set_and_followed():
 async def test_the_connections_are_told_and_then_their_changes():
     async with world() as w, w.client() as client:
         w.node.create_publisher(String, "/chatter", 10)
-        await asyncio.sleep(0.2)
+        await w.offers("/chatter")
         await client.send("subscribeConnectionGraph")
         first = await client.until("connectionGraphUpdate")
         assert {"name": "/chatter", "publisherIds": ["/robot"]} in first["publishedTopics"]
@@ -239,9 +233,7 @@ async def test_the_time_of_a_simulation_is_told():
         publisher = w.node.create_publisher(clock, "/clock", 10)
         message = clock()
         message.clock.sec = 12
-        for _ in range(20):
-            publisher.publish(message)
-            await asyncio.sleep(0.01)
+        publisher.publish(message)
         assert struct.unpack("<BQ", await client.frame(2)) == (2, 12_000_000_000)
 
 
@@ -328,7 +320,7 @@ async def test_a_page_of_another_site_is_refused():
 
 async def test_another_protocol_is_refused():
     async with world() as w, w.client(()) as client:
-        message = await client.socket.receive(timeout=3)
+        message = await client.socket.receive(timeout=SECONDS)
         assert message.type is aiohttp.WSMsgType.CLOSE
         assert client.socket.close_code == 1002
 
@@ -357,7 +349,7 @@ async def test_lists_of_names_hide_the_rest():
     async with world(**lists) as w:
         w.node.create_publisher(String, "/seen_one", 10)
         w.node.create_publisher(String, "/hidden", 10)
-        await asyncio.sleep(0.2)
+        await w.offers("/seen_one")
         async with w.client() as client:
             assert [each["topic"] for each in (await client.until("advertise"))["channels"]] == ["/seen_one"]
             assert (await client.until("advertiseServices"))["services"] == []
@@ -370,7 +362,7 @@ async def test_no_list_of_names_keeps_it_busy():
     async with world(topic_whitelist=["/(s|ss)+", "/seen"]) as w:
         w.node.create_publisher(String, "/seen", 10)
         w.node.create_publisher(String, f"/{'s' * 60}_", 10)
-        await asyncio.sleep(0.2)
+        await w.offers("/seen")
         async with w.client() as client:
             assert [each["topic"] for each in (await client.until("advertise"))["channels"]] == ["/seen"]
 

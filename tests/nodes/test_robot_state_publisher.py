@@ -5,17 +5,19 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from linkwright.descriptions import DescriptionLibrary
 from linkwright.diagnostics import LinkwrightError
+from linkwright.geometry.arrays import compose, quaternion_from_rpy
 from linkwright.graph import DESCRIPTION_QOS, QoSProfile, ReliabilityPolicy
-from linkwright.kinematics import KinematicTree, compose, quaternion_from_rpy
+from linkwright.kinematics import KinematicTree
 from linkwright.messages import Header, JointState, String, TFMessage, Time
 from linkwright.nodes import NodeOptions
-from linkwright.nodes.joint_motion import JointMotion
 from linkwright.nodes.robot_state_publisher import RobotStatePublisher
-from linkwright.urdf import DescriptionLibrary, Joint, Limit, Pose
-from tests.kinematics.rotations import quaternion_about
+from linkwright.nodes.robot_transforms import JointMotion
+from linkwright.urdf import Joint, Limit, Pose
+from tests.geometry.rotations import quaternion_about
 from tests.nodes.stage import joint, mimic, robot
-from tests.places import TUTORIAL
+from tests.places import TUTORIAL_PACKAGES
 
 TWO = robot(joint("a"), joint("b", xyz="1 0 0", parent="a_link"))
 MIMICS = robot(
@@ -441,9 +443,9 @@ class TestUpdate:
         assert len(stage.tf) == 1
 
 
-@pytest.mark.skipif(not TUTORIAL.exists(), reason="the tutorial's files are not here")
-async def test_the_tutorials_robot_stands_where_forward_kinematics_says(stage):
-    text = (TUTORIAL / "my_robot_description" / "urdf" / "mbot_base.urdf").read_text(encoding="utf-8")
+@pytest.mark.parametrize("package", TUTORIAL_PACKAGES, ids=lambda package: package.parent.name)
+async def test_the_tutorials_robot_stands_where_forward_kinematics_says(stage, package):
+    text = (package / "urdf" / "mbot_base.urdf").read_text(encoding="utf-8")
     stage.robot_state_publisher(text)
     model = DescriptionLibrary().read(text).robot
     tree = KinematicTree(model)

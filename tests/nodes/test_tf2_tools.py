@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
+from linkwright.geometry.arrays import quaternion_from_rpy
 from linkwright.graph import STATIC_TF_PUBLISHER_QOS, TF_QOS, ActionClient, Duration
 from linkwright.graph.actions.goal import GoalStatus
-from linkwright.kinematics import quaternion_from_rpy
 from linkwright.messages import TFMessage, TransformBatch, get_action
 from linkwright.nodes import NodeOptions
 from linkwright.nodes.tf2_buffer_server import Tf2BufferServer

@@ -1,15 +1,14 @@
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from linkwright.graph import dds
+from linkwright.wire import dds
+from tests.domains import own_domain
 from tests.reliability.running import Machine
 
-FIRST_DOMAIN = 21
 ROS_VARIABLES = (
     "ROS_LOCALHOST_ONLY",
     "ROS_AUTOMATIC_DISCOVERY_RANGE",
@@ -34,7 +33,6 @@ def machine(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Machine
     """Processes in a domain of this worker's; none of them outlives the test."""
     for name in ROS_VARIABLES:
         monkeypatch.delenv(name, raising=False)
-    worker = int(os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw"))
-    made = Machine(tmp_path, FIRST_DOMAIN + worker % 8)
+    made = Machine(tmp_path, own_domain())
     yield made
     made.clean_up()

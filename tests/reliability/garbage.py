@@ -13,6 +13,7 @@ import struct
 import sys
 import time
 from contextlib import suppress
+from pathlib import Path
 
 from cyclonedds.core import DDSException
 from cyclonedds.domain import Domain, DomainParticipant
@@ -22,8 +23,8 @@ from cyclonedds.qos import Policy, Qos
 from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 
-from linkwright.graph.dds.settings import read_settings
-from tests.dds.ros_peer import described, raw, text
+from linkwright.wire.dds.settings import read_settings
+from tests.wire.ros_peer import described, raw, text
 
 ROUNDS = 40
 HEADER = b"\0\1\0\0"
@@ -88,7 +89,7 @@ def main() -> None:
         "rq/flipRequest": writer(participant, "rq/flipRequest", request, RELIABLE),
         "ros_discovery_info": writer(participant, "ros_discovery_info", info, LASTING),
     }
-    limit = time.monotonic() + 10
+    limit = time.monotonic() + 60
     while time.monotonic() < limit and not all(each.get_matched_subscriptions() for each in writers.values()):
         time.sleep(0.02)
     print("matched", *(name for name, each in writers.items() if each.get_matched_subscriptions()), flush=True)
@@ -103,7 +104,8 @@ def main() -> None:
     time.sleep(0.5)
     writers["rt/words"].write(string(HEADER + text("fine")))
     print("last", flush=True)
-    time.sleep(3.0)
+    while not Path("leave").exists():  # who hears the last words has the time to
+        time.sleep(0.01)
     print("done", flush=True)
     del domain
 

@@ -9,13 +9,14 @@ import sys
 import textwrap
 import threading
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
 
 import psutil
 
 from linkwright.standins.process import environment
+from tests.waiting import SECONDS, wait_until
 
 LINKWRIGHT = str(Path(sys.executable).with_name("linkwright"))
 PROGRAM = """\
@@ -50,14 +51,6 @@ finally:
 MARK = "LINKWRIGHT_RELIABILITY"
 
 
-def until(condition: Callable[[], object], seconds: float = 10.0, what: object = "") -> None:
-    """Wait until something holds."""
-    limit = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < limit, f"not so within {seconds} s: {what() if callable(what) else what}"
-        time.sleep(0.02)
-
-
 class Running:
     """A process and the lines that it has written, standard output and errors together."""
 
@@ -90,28 +83,25 @@ class Running:
         found = [line.split() for line in tuple(self.lines) if line.split()[:1] == [word]]
         return int(found[-1][1]) if found else -1
 
-    def wait_for(self, text: str, seconds: float = 15.0, times: int = 1) -> None:
+    def wait_for(self, text: str, seconds: float = SECONDS, times: int = 1) -> None:
         """Wait until a text has come in so many lines."""
-        until(lambda: self.count(text) >= times, seconds, lambda: f"'{text}' in\n{self.text}")
+        wait_until(lambda: self.count(text) >= times, seconds, lambda: f"'{text}' in\n{self.text}")
 
-    def interrupt(self, seconds: float = 10.0) -> tuple[int, float]:
-        """Ctrl-C; the exit status, and how long the end took in seconds."""
-        begin = time.monotonic()
+    def interrupt(self) -> int:
+        """Ctrl-C; the exit status."""
         with suppress(ProcessLookupError):
             self.process.send_signal(signal.SIGINT)
-        status = self.process.wait(seconds)
-        self._reader.join(5.0)
-        return status, time.monotonic() - begin
+        return self.wait()
 
     def kill(self) -> None:
         """As ``kill -9`` does."""
         self.process.kill()
         self.process.wait()
 
-    def wait(self, seconds: float = 20.0) -> int:
+    def wait(self, seconds: float = SECONDS) -> int:
         """Wait for the end; the exit status."""
         status = self.process.wait(seconds)
-        self._reader.join(5.0)
+        self._reader.join(60.0)
         return status
 
     def left_behind(self) -> list[psutil.Process]:
@@ -123,8 +113,8 @@ class Running:
         for each in self.left_behind():
             with suppress(psutil.Error):
                 each.kill()
-        self.process.wait(5.0)
-        self._reader.join(5.0)
+        self.process.wait(60.0)
+        self._reader.join(60.0)
         assert self.process.stdout is not None
         self.process.stdout.close()
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from tests.reliability.running import Machine, until
+from tests.reliability.running import Machine
+from tests.waiting import wait_until
 
 FOLLOWER = """
 from geometry_msgs.msg import TransformStamped
@@ -71,11 +72,11 @@ def test_timers_go_on_and_the_tf_buffer_is_cleared(machine: Machine) -> None:
     conductor = machine.program(CONDUCTOR)
     follower.wait_for("tf 1 1")
     conductor.wait_for("back")
-    until(lambda: 10_000 <= follower.last_number("tick") < 20_000, 5.0, lambda: follower.text)
-    until(lambda: "tf 0 0" in _after_jump(follower.lines), 5.0, lambda: follower.text)
+    wait_until(lambda: 10_000 <= follower.last_number("tick") < 20_000, what=lambda: follower.text)
+    wait_until(lambda: "tf 0 0" in _after_jump(follower.lines), what=lambda: follower.text)
     before = follower.last_number("tick")
-    until(lambda: follower.last_number("tick") > before + 1000, 5.0, lambda: follower.text)
-    assert follower.interrupt()[0] == 0
+    wait_until(lambda: follower.last_number("tick") > before + 1000, what=lambda: follower.text)
+    assert follower.interrupt() == 0
     assert "Traceback" not in follower.text
 
 

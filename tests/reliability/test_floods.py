@@ -6,7 +6,8 @@ import signal
 
 import pytest
 
-from tests.reliability.running import Machine, until
+from tests.reliability.running import Machine
+from tests.waiting import wait_until
 
 FLOOD = """
 class Program(Node):
@@ -27,7 +28,6 @@ class Program(Node):
     def speak(self):
         self.number += 1
         self.calm.publish(Int32(data=self.number))
-        say("spoke", self.number, time.monotonic())
 """
 BOTH = """
 class Program(Node):
@@ -35,19 +35,13 @@ class Program(Node):
         super().__init__("both")
         self.flooded = 0
         self.create_subscription(String, "flood", self.swallow, 10)
-        self.create_subscription(Int32, "calm", lambda message: say("calm", message.data, time.monotonic()), 10)
+        self.create_subscription(Int32, "calm", lambda message: say("calm", message.data), 10)
 
     def swallow(self, _message):
         self.flooded += 1
-        if self.flooded == 1000:
-            say("flooded")
+        if self.flooded % 1000 == 0:
+            say("flooded", self.flooded)
 """
-
-
-def times(lines: list[str], word: str) -> dict[int, float]:
-    """When a number was said, by number; the clock is the machine's."""
-    found = [line.split() for line in tuple(lines) if line.startswith(word + " ")]
-    return {int(number): float(when) for _, number, when in found}
 
 
 def test_a_flood_on_one_topic_does_not_starve_another(machine: Machine) -> None:
@@ -56,12 +50,11 @@ def test_a_flood_on_one_topic_does_not_starve_another(machine: Machine) -> None:
     listener.wait_for("flooded")
     before = listener.count("calm")
     listener.wait_for("calm", times=before + 60)
-    heard, spoken = times(listener.lines, "calm"), times(flood.lines, "spoke")
-    numbers = list(heard)[before:]
+    numbers = [int(line.split()[1]) for line in tuple(listener.lines) if line.startswith("calm ")][before:]
     assert numbers == list(range(numbers[0], numbers[-1] + 1))
-    delays = sorted(heard[number] - spoken[number] for number in numbers if number in spoken)
-    assert delays[len(delays) // 2] < 0.2
-    assert listener.interrupt()[0] == flood.interrupt()[0] == 0
+    flooded = listener.last_number("flooded")
+    wait_until(lambda: listener.last_number("flooded") > flooded)  # it goes on
+    assert listener.interrupt() == flood.interrupt() == 0
 
 
 def test_a_subscriber_that_blocks_harms_nobody_else(machine: Machine) -> None:
@@ -101,7 +94,7 @@ def test_a_subscriber_that_blocks_harms_nobody_else(machine: Machine) -> None:
                 before = time.monotonic()
                 for publisher in self.publishers_:
                     publisher.publish(Int32(data=self.number))
-                if time.monotonic() - before > 0.5:
+                if time.monotonic() - before > 5.0:
                     say("held up")
         """
     )
@@ -151,13 +144,15 @@ def test_nothing_reliable_is_lost_when_the_subscriber_is_slow(machine: Machine, 
         """
     )
     talker.wait_for("sent")
-    listener.wait_for("all", 30.0)
+    listener.wait_for("all")
     assert not listener.count("lost"), listener.text
 
 
 def test_a_queue_of_ten_keeps_the_last_ten(machine: Machine) -> None:
     listener = machine.program(
         """
+        from pathlib import Path
+
         class Program(Node):
             def __init__(self):
                 super().__init__("late")
@@ -168,25 +163,28 @@ def test_a_queue_of_ten_keeps_the_last_ten(machine: Machine) -> None:
             def sleep_once(self):
                 if not self.slept and self.count_publishers("numbers"):
                     self.slept = True
-                    say("sleeping")
-                    time.sleep(2.0)
+                    Path("sleeping").touch()
+                    while not Path("sent").exists():
+                        time.sleep(0.01)
         """
     )
-    talker = machine.program(
+    machine.program(
         """
+        from pathlib import Path
+        from rclpy.duration import Duration
+
         class Program(Node):
             def __init__(self):
                 super().__init__("fast")
                 publisher = self.create_publisher(Int32, "numbers", 10)
-                while not publisher.get_subscription_count():
+                while not (publisher.get_subscription_count() and Path("sleeping").exists()):
                     time.sleep(0.01)
-                time.sleep(0.7)
                 for number in range(500):
                     publisher.publish(Int32(data=number))
-                say("sent")
+                assert publisher.wait_for_all_acked(Duration(seconds=60))
+                Path("sent").touch()
         """
     )
-    talker.wait_for("sent")
     listener.wait_for("number 499")
     numbers = [int(line.split()[1]) for line in listener.lines if line.startswith("number")]
     assert numbers == list(range(490, 500))
@@ -213,7 +211,7 @@ def test_a_service_answers_while_its_process_is_flooded(machine: Machine) -> Non
         """
     )
     server.wait_for("flooded")
-    until(lambda: "/ask" in machine.verb("service", "list"))
+    wait_until(lambda: "/ask" in machine.verb("service", "list"))
     for _ in range(3):
         assert "response" in machine.verb("service", "call", "/ask", "std_srvs/srv/Trigger")
 
@@ -233,7 +231,7 @@ def test_a_process_that_stands_still_holds_nobody_up(machine: Machine) -> None:
                 self.number += 1
                 before = time.monotonic()
                 self.publisher.publish(String(data=f"{self.number} " + "x" * 100_000))
-                if time.monotonic() - before > 0.5:
+                if time.monotonic() - before > 5.0:
                     say("held up")
                 if self.number % 50 == 0:
                     say("spoke", self.number)
@@ -257,9 +255,9 @@ def test_a_process_that_stands_still_holds_nobody_up(machine: Machine) -> None:
     other.wait_for("heard", times=20)
     listener.process.send_signal(signal.SIGSTOP)
     spoken, heard = talker.last_number("spoke"), other.count("heard")
-    until(lambda: talker.last_number("spoke") >= spoken + 400, 8.0, lambda: talker.text)
+    wait_until(lambda: talker.last_number("spoke") >= spoken + 400, what=lambda: talker.text)
     other.wait_for("heard", times=heard + 300)
     assert not talker.count("held up")
     listener.process.send_signal(signal.SIGCONT)
     now = talker.last_number("spoke")
-    until(lambda: listener.last_number("heard") > now, 10.0)
+    wait_until(lambda: listener.last_number("heard") > now)

@@ -14,11 +14,13 @@ import threading
 import time
 from contextlib import suppress
 
+import psutil
 import pytest
 from rosbags.highlevel import AnyReader
 from rosbags.typesys import Stores, get_typestore
 
-from tests.reliability.running import LINKWRIGHT, MARK, Machine, launch_file, program, until
+from tests.reliability.running import LINKWRIGHT, MARK, Machine, launch_file, program
+from tests.waiting import SECONDS, wait_until
 
 TALKER = """
 class Program(Node):
@@ -31,6 +33,12 @@ class Program(Node):
     def tick(self):
         self.number += 1
         self.publisher.publish(Int32(data=self.number))
+"""
+LISTENER = """
+class Program(Node):
+    def __init__(self):
+        super().__init__("listener")
+        self.create_subscription(Int32, "chatter", lambda message: say("heard", message.data), 10)
 """
 OWN_TERMINAL = """
 import fcntl, os, sys, termios
@@ -57,14 +65,13 @@ def test_a_launch_at_twenty_random_moments_of_its_start(machine: Machine) -> Non
     for delay in sorted(random.Random(11).uniform(0.0, 1.5) for _ in range(20)):
         running = machine.launch(launch)
         time.sleep(delay)
-        status, seconds = running.interrupt()
+        status = running.interrupt()
         where = f"interrupted after {delay:.3f} s, status {status}:\n{running.text}"
         # Python itself ends like this when the signal comes before our program has begun.
         assert status in ((130,) if "[launch]" in running.text else (130, 1, -signal.SIGINT)), where
-        assert seconds < 3.0, where
         if "[launch]" in running.text:
             assert not re.search(r"^Traceback", running.text, re.MULTILINE), where
-        until(lambda running=running: not running.left_behind(), 3.0, where)
+        wait_until(lambda running=running: not running.left_behind(), what=where)
 
 
 @pytest.mark.slow
@@ -89,20 +96,19 @@ def test_the_terminal_is_as_it_was(machine: Machine, delay: float) -> None:
         reader = threading.Thread(target=_drain, args=(main, heard), daemon=True)
         reader.start()
         try:
-            until(lambda main=main, process=process: os.tcgetpgrp(main) == process.pid)  # else nobody gets the Ctrl-C
+            # Until it is in the foreground, nobody gets the Ctrl-C.
+            wait_until(lambda main=main, process=process: os.tcgetpgrp(main) == process.pid)
             time.sleep(delay)
             os.write(main, b"\x03")
-            begin = time.monotonic()
-            status = process.wait(10.0)
+            status = process.wait(SECONDS)
         finally:
             process.kill()
         text = b"".join(heard).decode(errors="replace")
-        assert time.monotonic() - begin < 3.0, text
         assert status in (130, 0, 1, -signal.SIGINT), text
         after = termios.tcgetattr(terminal)
         assert after[:4] == before[:4], text
         os.close(terminal)
-        reader.join(5.0)
+        reader.join(60.0)
         os.close(main)
 
 
@@ -145,7 +151,7 @@ def test_loading_modules_ends_without_a_word(machine: Machine, words: tuple[str,
         )
         time.sleep(delay)
         process.send_signal(signal.SIGINT)
-        _, errors = process.communicate(timeout=10.0)
+        _, errors = process.communicate(timeout=SECONDS)
         if process.returncode in (1, -signal.SIGINT):  # Python was only starting itself
             assert set(re.findall(r"linkwright/(\S+\.py)", errors)) <= FIRST_FILES, errors
         else:
@@ -177,10 +183,9 @@ def test_verbs_that_go_on_until_then(machine: Machine, words: tuple[str, ...], s
     if shown:
         running.wait_for(shown)
     else:
-        time.sleep(1.2)
-    status, seconds = running.interrupt()
+        wait_until(lambda: psutil.Process(running.process.pid).net_connections("udp"))
+    status = running.interrupt()
     assert status in (0, 130), running.text
-    assert seconds < 1.5
     assert not traceback_in(running.text), running.text
 
 
@@ -190,11 +195,10 @@ def test_a_verb_at_random_moments_of_its_start(machine: Machine) -> None:
     for delay in sorted(random.Random(5).uniform(0.0, 0.9) for _ in range(10)):
         running = machine.command("topic", "echo", "/chatter")
         time.sleep(delay)
-        status, seconds = running.interrupt()
+        status = running.interrupt()
         where = f"interrupted after {delay:.3f} s, status {status}:\n{running.text}"
-        assert seconds < 2.0, where
         assert status in (0, 130, 1, -signal.SIGINT), where
-        if delay > 0.3:
+        if status in (0, 130):
             assert not traceback_in(running.text), where
 
 
@@ -202,12 +206,12 @@ def test_a_recording_is_whole(machine: Machine) -> None:
     machine.program(TALKER)
     bag = machine.folder / "bag"
     recorder = machine.command("bag", "record", "/chatter", "-o", bag)
-    until(lambda: sum(each.stat().st_size for each in bag.glob("*")) > 100 if bag.is_dir() else False)
+    wait_until(lambda: sum(each.stat().st_size for each in bag.glob("*")) > 100 if bag.is_dir() else False)
     recorder.wait_for("Subscribed to topic '/chatter'")
-    time.sleep(1.5)
-    status, seconds = recorder.interrupt()
+    listener = machine.program(LISTENER)
+    listener.wait_for("heard", times=60)  # which the recorder hears too
+    status = recorder.interrupt()
     assert status in (0, 130), recorder.text
-    assert seconds < 2.0
     info = machine.verb("bag", "info", bag)
     found = re.search(r"Topic: /chatter .*Count: (\d+)", info)
     assert found, info
@@ -219,8 +223,10 @@ def test_a_recording_is_whole(machine: Machine) -> None:
 
 def test_a_call_on_its_way(machine: Machine) -> None:
     """Both sides: who waits for the answer ends, and who is asked goes on and ends when told to."""
+    leave = machine.folder / "leave"
     server = machine.program(
         """
+        import os
         from std_srvs.srv import Trigger
 
         class Program(Node):
@@ -231,7 +237,8 @@ def test_a_call_on_its_way(machine: Machine) -> None:
 
             def answer(self, request, response):
                 say("asked")
-                time.sleep(1.0)
+                while not os.path.exists("leave"):
+                    time.sleep(0.01)
                 say("answered")
                 return response
         """
@@ -239,14 +246,14 @@ def test_a_call_on_its_way(machine: Machine) -> None:
     server.wait_for("up")
     client = machine.command("service", "call", "/slow", "std_srvs/srv/Trigger")
     server.wait_for("asked")
-    status, seconds = client.interrupt()
-    assert status == 130, client.text
-    assert seconds < 1.0
+    assert client.interrupt() == 130, client.text
     assert not traceback_in(client.text), client.text
+    leave.touch()
     server.wait_for("answered")
     assert "response" in machine.verb("service", "call", "/slow", "std_srvs/srv/Trigger")
+    leave.unlink()
     second = machine.command("service", "call", "/slow", "std_srvs/srv/Trigger")
     server.wait_for("asked", times=3)
-    assert server.interrupt()[1] < 2.5
+    server.interrupt()
     assert not traceback_in(server.text), server.text
     second.interrupt()

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import psutil
 
-from tests.reliability.running import Machine, launch_file, program, until
+from tests.reliability.running import Machine, launch_file, program
+from tests.waiting import wait_until
 
 TALKER = """
 class Program(Node):
@@ -51,9 +52,9 @@ def test_a_node_that_is_killed_comes_back_and_is_heard_again(machine: Machine) -
         listener.wait_for("heard", times=before + 6)
         # The one that was killed is not listed though its lease of five seconds still runs.
         assert machine.verb("node", "list").split() == ["/listener", "/talker"]
-    assert launch.interrupt()[0] == 130
-    until(lambda: not launch.left_behind(), 3.0)
-    until(lambda: machine.verb("node", "list").split() == ["/listener"], 8.0)
+    assert launch.interrupt() == 130
+    wait_until(lambda: not launch.left_behind())
+    wait_until(lambda: machine.verb("node", "list").split() == ["/listener"])
 
 
 def _words(process: psutil.Process) -> list[str]:
@@ -71,7 +72,7 @@ def test_a_subscriber_goes_on_when_its_publisher_is_killed(machine: Machine) -> 
         listener.wait_for("heard", times=before + 3)
         talker.kill()
     assert listener.process.poll() is None
-    assert listener.interrupt()[0] == 0
+    assert listener.interrupt() == 0
     assert "Traceback" not in listener.text
 
 
@@ -85,7 +86,7 @@ def test_a_publisher_goes_on_when_its_subscriber_is_killed(machine: Machine) -> 
     listener.wait_for("heard", times=10)
     numbers = [int(line.split()[1]) for line in listener.lines if line.startswith("heard")]
     assert numbers == list(range(numbers[0], numbers[0] + len(numbers)))
-    assert talker.interrupt()[0] == 0
+    assert talker.interrupt() == 0
     assert "Traceback" not in talker.text
 
 
@@ -103,5 +104,5 @@ def test_a_launcher_that_is_killed_leaves_no_process_and_no_node(machine: Machin
     launch.wait_for("up ")
     assert len(launch.left_behind()) >= 2
     launch.kill()
-    until(lambda: not launch.left_behind(), 4.0, launch.left_behind)
-    until(lambda: machine.verb("node", "list").split() == [], 8.0)
+    wait_until(lambda: not launch.left_behind(), what=launch.left_behind)
+    wait_until(lambda: machine.verb("node", "list").split() == [])

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import time
 from pathlib import Path
 
 import psutil
 import pytest
 
-from tests.reliability.running import Machine, launch_file, until
+from tests.reliability.running import Machine, launch_file
+from tests.waiting import wait_until
 
 ROBOT = Path(__file__).parents[2] / "robots" / "my_robot_description"
 
@@ -22,12 +22,12 @@ def test_two_of_one_kind_warn_and_both_work(machine: Machine) -> None:
     path = machine.write("a.launch.py", launch_file(*actions))
     launches = [machine.launch(path), machine.launch(path)]
     for each in launches:
-        each.wait_for("Another process has a node of the exact name '/talker' too")
+        each.wait_for("has nodes of the same names")
         each.wait_for("I heard: ", times=4)
     for each in launches:
-        assert each.count("Another process has a node of the exact name '/talker' too") == 1
+        assert each.count("Another process has a node") == 0
     assert machine.verb("node", "list").count("/talker") == 2
-    assert launches[0].interrupt()[0] == 130
+    assert launches[0].interrupt() == 130
     before = launches[1].count("I heard: ")
     launches[1].wait_for("I heard: ", times=before + 2)
     assert machine.verb("node", "list").count("/talker") == 1
@@ -46,7 +46,7 @@ def test_five_hundred_nodes(machine: Machine) -> None:
     launch = machine.launch(path)
     launch.wait_for("started in the launcher's process", times=500)
     names = {f"/frames_{number}" for number in range(500)}
-    until(lambda: set(machine.verb("node", "list", seconds=30.0).split()) >= names, 40.0)
+    wait_until(lambda: set(machine.verb("node", "list", seconds=30.0).split()) >= names)
     late = machine.program(
         """
         from tf2_msgs.msg import TFMessage
@@ -65,18 +65,15 @@ def test_five_hundred_nodes(machine: Machine) -> None:
                 say("frames", len(self.frames))
         """
     )
-    late.wait_for("frames 500", 20.0)
-    status, seconds = launch.interrupt(20.0)
-    assert status == 130
-    assert seconds < 5.0
-    until(lambda: not launch.left_behind(), 3.0)
+    late.wait_for("frames 500")
+    assert launch.interrupt() == 130
+    wait_until(lambda: not launch.left_behind())
 
 
 def test_a_late_comer_gets_the_description_and_the_fixed_frames(machine: Machine) -> None:
     model = ROBOT / "urdf" / "mbot_with_laser.urdf"
     launch = machine.launch(ROBOT / "launch" / "display.launch.py", f"model:={model}")
     launch.wait_for("Robot initialized")
-    time.sleep(2.0)
     late = machine.program(
         """
         from rclpy.time import Time
@@ -126,7 +123,7 @@ def test_a_process_that_keeps_to_itself(machine: Machine) -> None:
     assert deaf.wait() == 1
     assert "unset LINKWRIGHT_DDS" in deaf.text
     assert not alone.count("Another process")
-    assert alone.interrupt()[0] == seen.interrupt()[0] == 130
+    assert alone.interrupt() == seen.interrupt() == 130
 
 
 def test_nothing_outlives_a_launch(machine: Machine) -> None:
@@ -146,7 +143,6 @@ def test_nothing_outlives_a_launch(machine: Machine) -> None:
     launch.wait_for("Publishing")
     assert "/talker" in machine.verb("node", "list").split()
     assert len(launch.left_behind()) >= 5
-    status, seconds = launch.interrupt()
+    status = launch.interrupt()
     assert status == 130
-    assert seconds < 3.0
     assert launch.left_behind() == []

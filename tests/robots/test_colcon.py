@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from linkwright.workspace import PackageFinder
+from linkwright.packages import PackageFinder
 from tests.places import PACKAGE
 from tests.robots.workspaces import colcon_build, sourced
 

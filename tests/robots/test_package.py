@@ -10,9 +10,9 @@ import pytest
 import yaml
 from catkin_pkg.package import Package, parse_package
 
-from tests.places import PACKAGE, TUTORIAL
+from tests.places import PACKAGE, PUBLISHED
+from tests.robots.test_models import TUTORIAL
 
-PUBLISHED = TUTORIAL / "my_robot_description" / "rviz" / "urdf.rviz"
 LAUNCH_FILES = {
     "display.launch.py": {"gui": "false", "model": "mbot_base.urdf", "rvizconfig": "urdf.rviz"},
     "display_xacro.launch.py": {"gui": "true", "model": "mbot_base.xacro", "rvizconfig": "urdf.rviz"},
@@ -98,9 +98,13 @@ def test_rviz_configuration(rviz: dict[str, Any]) -> None:
     assert manager["Global Options"]["Fixed Frame"] == "base_link"
 
 
-@pytest.mark.skipif(not PUBLISHED.is_file(), reason="the tutorial's files are not beside this checkout")
 def test_rviz_configuration_keeps_every_value_of_the_tutorials(rviz: dict[str, Any]) -> None:
-    _assert_within(yaml.safe_load(PUBLISHED.read_text(encoding="utf-8")), rviz, "")
+    _assert_within(TUTORIAL["rviz"], rviz, "")
+
+
+@pytest.mark.skipif(not PUBLISHED.is_dir(), reason="the tutorial's files are not beside this checkout")
+def test_the_recorded_values_are_those_of_the_published_file() -> None:
+    assert yaml.safe_load((PUBLISHED / "rviz" / "urdf.rviz").read_text(encoding="utf-8")) == TUTORIAL["rviz"]
 
 
 def _assert_within(part: Any, whole: Any, place: str) -> None:

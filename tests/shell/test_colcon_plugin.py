@@ -78,18 +78,32 @@ def test_links_instead_of_copies(tmp_path: Path) -> None:
     assert (tmp_path / "install/arm/share/arm/urdf/arm.urdf").is_symlink()
 
 
-@pytest.mark.parametrize(
-    ("cmake", "said"),
-    [
-        ("add_executable(move src/move.cpp)", "'arm' cannot be built without ROS 2: it compiles 'move'"),
-        ("install(DIRECTORY meshes DESTINATION share/arm)", "'arm' installs 'meshes', which is not there"),
-    ],
-)
-def test_what_cannot_be_built_is_told(tmp_path: Path, cmake: str, said: str) -> None:
-    package(tmp_path, "arm", cmake)
+def test_what_needs_a_compiler_is_told_and_the_rest_is_installed(tmp_path: Path) -> None:
+    arm = package(
+        tmp_path,
+        "arm",
+        "add_executable(move src/move.cpp)\ninstall(TARGETS move DESTINATION lib/arm)\n"
+        "add_subdirectory(description)\n"
+        "configure_file(limits.yaml.in limits.yaml @ONLY)\n"
+        "install(FILES ${CMAKE_CURRENT_BINARY_DIR}/limits.yaml DESTINATION share/${PROJECT_NAME}/config)",
+    )
+    (arm / "limits.yaml.in").write_text("arm: '@PROJECT_NAME@'\n")
+    (arm / "description" / "urdf").mkdir(parents=True)
+    (arm / "description" / "urdf" / "arm.urdf").write_text("<robot/>")
+    (arm / "description" / "CMakeLists.txt").write_text("install(DIRECTORY urdf DESTINATION share/${PROJECT_NAME})\n")
+    result = in_shell(tmp_path, "colcon build")
+    assert result.returncode == 0, result.stderr
+    assert "'arm' is not built in full without ROS 2: 'move' would have to be compiled" in result.stderr
+    share = tmp_path / "install/arm/share/arm"
+    assert (share / "urdf" / "arm.urdf").read_text() == "<robot/>"
+    assert (share / "config" / "limits.yaml").read_text() == "arm: 'arm'\n"
+
+
+def test_what_is_not_there_ends_the_build(tmp_path: Path) -> None:
+    package(tmp_path, "arm", "install(DIRECTORY meshes DESTINATION share/arm)")
     result = in_shell(tmp_path, "colcon build")
     assert result.returncode == 1
-    assert said in result.stderr
+    assert "'arm' installs 'meshes', which is not there" in result.stderr
     assert "Traceback" not in result.stderr
 
 

@@ -6,7 +6,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 from typing import Any
 
@@ -96,6 +95,13 @@ def test_an_unknown_command_is_told_with_the_nearest_name() -> None:
     assert "colcon" in (diagnostic.hint or "")
 
 
+def test_a_program_of_ros_that_is_not_here_says_what_to_use() -> None:
+    with pytest.raises(LinkwrightError) as caught:
+        run_shell(["rqt_graph"], {"PATH": BARE})
+    (diagnostic,) = caught.value.diagnostics
+    assert "panel Node graph" in (diagnostic.hint or "")
+
+
 def in_bash(home: Path, lines: str) -> subprocess.CompletedProcess[str]:
     """What is typed in the interactive shell of a user with this home."""
     return subprocess.run(
@@ -120,6 +126,18 @@ def test_a_bash_start_file_that_sets_the_path_leaves_our_commands_behind_it(tmp_
     assert result.returncode == 5
 
 
+def test_tab_completes_and_programs_that_are_not_here_say_what_to_use(tmp_path: Path) -> None:
+    result = in_bash(tmp_path, "complete -p linkwright ros2; rosdep update; echo $?\n")
+    assert [line.rpartition(" ")[2] for line in result.stdout.splitlines()] == ["linkwright", "ros2", "127"]
+    assert "there is no command 'rosdep'" in result.stderr
+
+
+def test_a_real_ros2_completes_as_it_does(tmp_path: Path) -> None:
+    script(tmp_path / "opt", "ros2", "echo real ros2")
+    (tmp_path / ".bashrc").write_text(f"export PATH={tmp_path / 'opt'}:{BARE}\n")
+    assert "ros2" not in in_bash(tmp_path, "complete -p | grep linkwright\n").stdout
+
+
 @pytest.mark.parametrize("start", ["", f"export PATH={BARE}\n", 'export PATH="$PATH:/opt/ros/bin"\n'])
 def test_our_folders_stand_once_on_the_path(tmp_path: Path, start: str) -> None:
     (tmp_path / ".bashrc").write_text(start)
@@ -141,7 +159,7 @@ def test_termination_is_passed_on_and_the_folder_of_programs_goes(tmp_path: Path
         folder = Path(process.stdout.readline().strip())
         assert (folder / "ros2").exists()
         process.terminate()
-        assert process.wait(timeout=20) == 3
+        assert process.wait(timeout=60) == 3
     assert told.read_text() == "ended\n"
     assert not folder.exists()
 
@@ -158,9 +176,30 @@ def test_ctrl_c_is_for_the_command(tmp_path: Path) -> None:
     with process:
         assert process.stdout is not None
         process.stdout.readline()
-        time.sleep(0.1)
         os.killpg(process.pid, signal.SIGINT)
-        assert process.wait(timeout=20) == 4
+        assert process.wait(timeout=60) == 4
+
+
+def test_ctrl_c_at_the_very_end_of_the_command_leaves_its_status(monkeypatch: pytest.MonkeyPatch) -> None:
+    wait = os.waitpid
+
+    def interrupted(pid: int, options: int) -> tuple[int, int]:
+        result = wait(pid, options)
+        signal.raise_signal(signal.SIGINT)
+        return result
+
+    monkeypatch.setattr(os, "waitpid", interrupted)
+    assert run_shell(["sh", "-c", "exit 4"]) == 4
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
+def test_what_was_to_be_ignored_is_ignored_by_the_command(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As with nohup."""
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    try:
+        assert run_shell(["sh", "-c", "kill -HUP $$; exit 4"]) == 4
+    finally:
+        signal.signal(signal.SIGHUP, before)
 
 
 def test_termination_while_the_command_is_being_started_is_passed_on(monkeypatch: pytest.MonkeyPatch) -> None:

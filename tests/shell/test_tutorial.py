@@ -14,6 +14,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.domains import own_domain
+
 ROBOT = Path(__file__).resolve().parents[2] / "robots" / "my_robot_description"
 
 PREPARE = """\
@@ -44,7 +46,8 @@ def shell_words(text: str) -> list[str]:
 
 
 def environment(home: Path) -> dict[str, str]:
-    return {"PATH": "/usr/bin:/bin", "HOME": str(home), "USER": "learner", "ROS_DOMAIN_ID": "117", "LC_ALL": "C.UTF-8"}
+    variables = {"PATH": "/usr/bin:/bin", "HOME": str(home), "USER": "learner", "LC_ALL": "C.UTF-8"}
+    return {**variables, "ROS_DOMAIN_ID": str(own_domain())}
 
 
 def typed(text: str, home: Path) -> str:
@@ -93,7 +96,7 @@ def launched(home: Path) -> str:
         assert process.stderr is not None
         address = process.stdout.readline().split()[-1]
         guard.cancel()
-        with urllib.request.urlopen(address, timeout=20) as page:
+        with urllib.request.urlopen(address, timeout=60) as page:
             assert page.status == 200
         said = ""
         for line in process.stderr:

@@ -14,15 +14,15 @@ from linkwright.messages import get_message
 from linkwright.standins.interfaces import find_spec
 
 SOURCES = Path(linkwright.__file__).parent.parent
-PATH = Path(linkwright.__file__).parent / "standins" / "path"
 
 PREAMBLE = f"""
 import sys
 sys.path.insert(0, {str(SOURCES)!r})
-from linkwright.standins import interfaces
+from linkwright.standins import interfaces, modules
 interfaces.install()
 interfaces.install()
-sys.path.append({str(PATH)!r})
+modules.install()
+sys.path.append(modules.FOLDER)
 """
 
 MANIFEST = """<?xml version="1.0"?>

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from linkwright.standins import process
+from linkwright.standins import process, table
 
 
 def run(*arguments, cwd=None, env=None, **variables):
@@ -41,7 +41,7 @@ def main():
     got = []
     node.create_subscription(String, "chatter", got.append, 1)
     node.create_publisher(String, "chatter", 1).publish(String(data="hello"))
-    rclpy.spin_once(node, timeout_sec=1.0)
+    rclpy.spin_once(node, timeout_sec=60.0)
     print(got[0].data)
     rclpy.shutdown()
 if __name__ == "__main__":
@@ -53,6 +53,17 @@ class TestRunning:
     def test_a_file(self, tmp_path):
         (tmp_path / "my_node.py").write_text(NODE)
         assert said("my_node.py", cwd=tmp_path) == "hello"
+
+    @pytest.mark.parametrize("module", ["launch", "xacro"])
+    def test_a_folder_of_that_name_does_not_hide_a_stand_in(self, tmp_path, module):
+        (tmp_path / module).mkdir()
+        program = f"import {module}; print({module}.__spec__.origin)"
+        assert said("-c", program, cwd=tmp_path).endswith(f"{module}.txt")
+
+    def test_a_package_of_that_name_goes_before_a_stand_in(self, tmp_path):
+        (tmp_path / "launch").mkdir()
+        (tmp_path / "launch" / "__init__.py").write_text("mine = 1")
+        assert said("-c", "import launch; print(launch.mine)", cwd=tmp_path) == "1"
 
     def test_with_nothing_but_the_path_set(self, tmp_path):
         (tmp_path / "my_node.py").write_text(NODE)
@@ -98,7 +109,7 @@ class TestRunning:
         assert (ended.stdout, ended.returncode) == ("hello\n", 0), ended.stderr
 
     def test_all_stand_ins(self):
-        names = sorted(path.name for path in (Path(process.__file__).parent / "path").iterdir() if path.name[0] != "_")
+        names = table.packages()
         assert {"rclpy", "tf2_ros", "tf2_py", "tf2_geometry_msgs", "tf_transformations", "launch", "xacro"} <= set(
             names
         )
@@ -144,13 +155,25 @@ class TestManners:
         ("module", "hint"),
         [
             ("carrier_msgs.msg", "hint: put the ROS package 'carrier_msgs' into the workspace's src folder"),
-            ("cv_bridge", "hint: it comes with vision_opencv, which has to be compiled"),
+            ("image_geometry", "hint: it comes with vision_opencv, which has to be compiled"),
             ("serial", "hint: install it: pip install pyserial"),
             ("unheard_of", "ModuleNotFoundError: No module named 'unheard_of'"),
         ],
     )
     def test_what_to_do_about_a_missing_module(self, module, hint):
         last = run("-c", f"import {module}").stderr.splitlines()[-1]
+        assert last.startswith(hint)
+
+    @pytest.mark.parametrize(
+        ("line", "hint"),
+        [
+            ("from rclpy.qos import Node", "hint: it is in 'launch_ros.actions' or 'rclpy.node'"),
+            ("from rclpy.node import QoSPresetProfiles", "hint: it is in 'rclpy.qos'"),
+            ("from tf2_ros import PoseArray", "ImportError: cannot import name 'PoseArray' from 'tf2_ros'"),
+        ],
+    )
+    def test_where_a_name_is_that_a_module_does_not_have(self, line, hint):
+        last = run("-c", line).stderr.splitlines()[-1]
         assert last.startswith(hint)
 
     def test_the_next_sitecustomize_runs(self, tmp_path):
@@ -184,7 +207,8 @@ class TestManners:
         assert once["PYTHONPATH"] == os.pathsep.join([process.standin_path(), str(tmp_path)])
         assert once["OTHER"] == "kept"
         assert process.environment(once) == once
-        assert [path.name for path in Path(process.standin_path()).glob("*.py")] == ["sitecustomize.py"]
+        modules = {path.name for path in Path(process.standin_path()).glob("*.py")}
+        assert modules == {"linkwright_pytest.py", "sitecustomize.py"}
 
     def test_the_interpreter(self, tmp_path):
         assert process.python_command(["node.py"], {}) == [sys.executable, "node.py"]

@@ -26,6 +26,8 @@ from rclpy.lifecycle import LifecycleNode, State, TransitionCallbackReturn
 from rclpy.node import Node
 from std_msgs.msg import String
 
+from tests.waiting import wait_until
+
 
 @pytest.fixture(autouse=True)
 def _ros(monkeypatch):
@@ -81,7 +83,7 @@ class Client(Node):
         self.feedback, self.outcome = [], rclpy.task.Future()
 
     def send_goal(self, order, cancel_after=None):
-        assert self.client.wait_for_server(timeout_sec=2.0)
+        assert self.client.wait_for_server(timeout_sec=60.0)
         self.cancel_after = cancel_after
         sent = self.client.send_goal_async(Fibonacci.Goal(order=order), feedback_callback=self.feedback_callback)
         sent.add_done_callback(self.goal_response_callback)
@@ -113,7 +115,7 @@ def spun():
     thread.start()
     yield lambda *nodes: [executor.add_node(node) for node in nodes]
     executor.shutdown()
-    thread.join(3.0)
+    thread.join(60.0)
 
 
 class TestActions:
@@ -121,7 +123,7 @@ class TestActions:
         server, client = Server(), Client()
         spun(server, client)
         client.send_goal(6)
-        assert client.outcome.wait(5.0)
+        assert client.outcome.wait(60.0)
         outcome = client.outcome.result()
         assert outcome.status == GoalStatus.STATUS_SUCCEEDED
         assert outcome.result.sequence.tolist() == fibonacci(6)
@@ -133,14 +135,14 @@ class TestActions:
         executor.add_node(server)
         executor.add_node(client)
         client.send_goal(4)
-        executor.spin_until_future_complete(client.outcome, timeout_sec=5.0)
+        executor.spin_until_future_complete(client.outcome, timeout_sec=60.0)
         assert client.outcome.result().result.sequence.tolist() == fibonacci(4)
 
     def test_a_goal_that_is_cancelled(self, spun):
         server, client = Server(pause=0.02), Client()
         spun(server, client)
         client.send_goal(90 // 2, cancel_after=3)
-        assert client.outcome.wait(5.0)
+        assert client.outcome.wait(60.0)
         assert client.outcome.result().status == GoalStatus.STATUS_CANCELED
         assert client.canceling == 1
         assert len(client.feedback) < 40
@@ -149,7 +151,7 @@ class TestActions:
         server, client = Server(), Client()
         spun(server, client)
         client.send_goal(200)
-        assert client.outcome.wait(5.0)
+        assert client.outcome.wait(60.0)
         assert client.outcome.result() == "rejected"
 
     def test_a_callback_that_says_nothing_of_the_end_aborts(self, spun):
@@ -157,7 +159,7 @@ class TestActions:
         ActionServer(node, Fibonacci, "fibonacci", lambda _handle: Fibonacci.Result())
         spun(node, client)
         client.send_goal(1)
-        assert client.outcome.wait(5.0)
+        assert client.outcome.wait(60.0)
         assert client.outcome.result().status == GoalStatus.STATUS_ABORTED
 
     def test_a_deferred_goal(self, spun):
@@ -165,10 +167,10 @@ class TestActions:
         server, client = Server(handle_accepted_callback=waiting.append), Client()
         spun(server, client)
         client.send_goal(2)
-        _wait_until(lambda: waiting)
+        wait_until(lambda: waiting)
         assert not client.outcome.wait(0.1)
         waiting[0].execute()
-        assert client.outcome.wait(5.0)
+        assert client.outcome.wait(60.0)
         assert client.outcome.result().status == GoalStatus.STATUS_SUCCEEDED
 
     def test_a_queue_of_goals(self, spun):
@@ -199,7 +201,7 @@ class TestActions:
         for client in clients:
             client.send_goal(3)
         for client in clients:
-            assert client.outcome.wait(5.0)
+            assert client.outcome.wait(60.0)
             assert client.outcome.result().result.sequence.tolist() == fibonacci(3)
 
     def test_one_goal_at_a_time_aborts_the_one_before(self, spun):
@@ -226,10 +228,10 @@ class TestActions:
         server, first, second = Single(), Client(), Client()
         spun(server, first, second)
         first.send_goal(1)
-        _wait_until(lambda: server.goal is not None)
+        wait_until(lambda: server.goal is not None)
         second.send_goal(1)
-        assert first.outcome.wait(5.0)
-        assert second.outcome.wait(5.0)
+        assert first.outcome.wait(60.0)
+        assert second.outcome.wait(60.0)
         assert first.outcome.result().status == GoalStatus.STATUS_ABORTED
         assert second.outcome.result().status == GoalStatus.STATUS_SUCCEEDED
 
@@ -250,7 +252,7 @@ class TestActions:
 
         timer = client.create_timer(0.01, work, callback_group=ReentrantCallbackGroup())
         spun(server, client)
-        _wait_until(lambda: results)
+        wait_until(lambda: results)
         assert results == [fibonacci(2)]
 
     def test_names_and_types(self):
@@ -323,7 +325,7 @@ class TestLifecycle:
         spun(node, client)
         change = client.create_client(ChangeState, "/managed/change_state")
         state = client.create_client(GetState, "/managed/get_state")
-        assert change.wait_for_service(timeout_sec=2.0)
+        assert change.wait_for_service(timeout_sec=60.0)
         request = ChangeState.Request()
         request.transition.id = Transition.TRANSITION_CONFIGURE
         assert change.call(request).success
@@ -343,10 +345,3 @@ class TestLifecycle:
     def test_the_interface_is_switched_on_or_off(self):
         with pytest.raises(TypeError):
             LifecycleNode("wrong", enable_communication_interface="yes")
-
-
-def _wait_until(holds, timeout=3.0):
-    end = time.monotonic() + timeout
-    while not holds():
-        assert time.monotonic() < end
-        time.sleep(0.005)

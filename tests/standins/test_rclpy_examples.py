@@ -21,6 +21,8 @@ from rclpy.parameter import Parameter
 from rclpy.subscription_content_filter_options import ContentFilterOptions
 from std_msgs.msg import Int64MultiArray, String
 
+from tests.waiting import SECONDS
+
 
 @pytest.fixture(autouse=True)
 def ros(monkeypatch):
@@ -46,7 +48,7 @@ class TestMessagesAreSnapshots:
             message.data = word
             publisher.publish(message)
         for _ in range(3):
-            rclpy.spin_once(node, timeout_sec=1)
+            rclpy.spin_once(node, timeout_sec=SECONDS)
         assert heard == ["one", "two", "three"]
 
     def test_what_subscriptions_do_to_theirs(self, node):
@@ -61,7 +63,7 @@ class TestMessagesAreSnapshots:
         sent = Int64MultiArray(data=[7])
         node.create_publisher(Int64MultiArray, "topic", 10).publish(sent)
         for _ in range(2):
-            rclpy.spin_once(node, timeout_sec=1)
+            rclpy.spin_once(node, timeout_sec=SECONDS)
         assert heard == [[7, 1], [7, 1]]
         assert sent.data.tolist() == [7]
 
@@ -77,7 +79,7 @@ class TestMessagesAreSnapshots:
             request.a = number
             futures.append(client.call_async(request))
         for future in futures:
-            rclpy.spin_until_future_complete(node, future, timeout_sec=1)
+            rclpy.spin_until_future_complete(node, future, timeout_sec=SECONDS)
         assert [future.result().sum for future in futures] == [0, 1, 2]
 
     def test_feedback_that_grows(self, node):
@@ -97,9 +99,9 @@ class TestMessagesAreSnapshots:
         sent = client.send_goal_async(
             Fibonacci.Goal(order=4), feedback_callback=lambda each: heard.append(each.feedback.sequence.tolist())
         )
-        rclpy.spin_until_future_complete(node, sent, timeout_sec=2)
+        rclpy.spin_until_future_complete(node, sent, timeout_sec=60)
         result = sent.result().get_result_async()
-        rclpy.spin_until_future_complete(node, result, timeout_sec=2)
+        rclpy.spin_until_future_complete(node, result, timeout_sec=60)
         assert result.result().result.sequence.tolist() == [0, 1, 1, 2, 3]
         assert heard == [[0, 1, 1], [0, 1, 1, 2], [0, 1, 1, 2, 3]]
 
@@ -132,12 +134,14 @@ class ThrottledCallbackGroup(CallbackGroup):
     def __init__(self, node):
         super().__init__()
         self.left = 2
+        self.refills = 0
         self.lock = threading.Lock()
         self.timer = node.create_timer(0.05, self.refill, callback_group=MutuallyExclusiveCallbackGroup())
 
     def refill(self):
         with self.lock:
             self.left = 2
+            self.refills += 1
 
     def can_execute(self, entity):
         return self.left > 0
@@ -159,7 +163,7 @@ class TestOwnParts:
         urgent = rclpy.create_node("urgent")
 
         def dawdle(_message):
-            slow.wait(5)
+            slow.wait(SECONDS)
             order.append("slow")
 
         node.create_subscription(String, "slow", dawdle, 10)
@@ -169,7 +173,7 @@ class TestOwnParts:
         executor.add_node(node)
         for topic in ("slow", "urgent"):
             node.create_publisher(String, topic, 10).publish(String())
-        deadline = time.monotonic() + 5
+        deadline = time.monotonic() + SECONDS
         while len(order) < 2 and time.monotonic() < deadline:
             executor.spin_once(timeout_sec=0.1)
         for pool in (executor.high, executor.low):
@@ -182,17 +186,16 @@ class TestOwnParts:
         end = rclpy.create_node("end").create_timer(0.28, lambda: None)
         executor = SingleThreadedExecutor()
         executor.add_node(node)
-        deadline = time.monotonic() + 0.28
-        while time.monotonic() < deadline:
+        while group.refills < 4 or len(begun) < 4:
             executor.spin_once(timeout_sec=0.02)
         assert end.timer_period_ns == 280_000_000
-        assert 4 <= len(begun) <= 12
+        assert len(begun) <= 2 * (group.refills + 1)
 
     def test_the_events_executor(self, node):
         executor = EventsExecutor()
         executor.add_node(node)
         future = executor.create_task(lambda: "done")
-        executor.spin_until_future_complete(future, timeout_sec=1)
+        executor.spin_until_future_complete(future, timeout_sec=SECONDS)
         assert future.result() == "done"
 
 
@@ -213,10 +216,10 @@ class TestEvents:
             event_callbacks=SubscriptionEventCallbacks(matched=lambda info: seen.append(("in", info.current_count))),
         )
         for _ in range(2):
-            rclpy.spin_once(node, timeout_sec=1)
+            rclpy.spin_once(node, timeout_sec=SECONDS)
         assert sorted(seen) == [("in", 1), ("out", 1)]
         node.destroy_subscription(subscription)
-        rclpy.spin_once(node, timeout_sec=1)
+        rclpy.spin_once(node, timeout_sec=SECONDS)
         assert seen[-1] == ("out", 0)
 
 
@@ -290,7 +293,7 @@ class TestLittleThings:
         subscription.set_content_filter("", [])
         publisher.publish(String(data="all"))
         while len(heard) < 2:
-            rclpy.spin_once(node, timeout_sec=1.0)
+            rclpy.spin_once(node, timeout_sec=60.0)
         assert heard == ["yes", "all"]
         assert not subscription.is_cft_enabled
 

@@ -29,6 +29,8 @@ from rclpy.task import Future
 from std_msgs.msg import Int64, String
 from std_srvs.srv import Trigger
 
+from tests.waiting import SECONDS
+
 
 class Counter(Node):
     """Publishes numbers, as the first node of every course does."""
@@ -87,7 +89,7 @@ class TestMinimal:
         talker, listener = Counter(), Listener(5)
         executor.add_node(talker)
         executor.add_node(listener)
-        executor.spin_until_future_complete(listener.done, timeout_sec=5.0)
+        executor.spin_until_future_complete(listener.done, timeout_sec=SECONDS)
         assert listener.heard == [f"Hello {number}" for number in range(5)]
         executor.shutdown()
         talker.destroy_node()
@@ -101,7 +103,7 @@ class TestMinimal:
         assert subscription.topic_name == "/topic"
         while rclpy.ok() and len(got) < 3:
             publisher.publish(String(data="hi"))
-            rclpy.spin_once(node, timeout_sec=1.0)
+            rclpy.spin_once(node, timeout_sec=SECONDS)
         assert got == ["hi"] * 3
         node.destroy_node()
 
@@ -134,7 +136,7 @@ class TestMinimal:
             def __init__(self):
                 super().__init__("minimal_client")
                 self.cli = self.create_client(AddTwoInts, "add_two_ints")
-                while not self.cli.wait_for_service(timeout_sec=1.0):
+                while not self.cli.wait_for_service(timeout_sec=SECONDS):
                     self.get_logger().info("service not available, waiting again...")
                 self.req = AddTwoInts.Request()
 
@@ -154,7 +156,7 @@ class TestMinimal:
         rclpy.spin_until_future_complete(client, client.future)
         assert client.future.result().sum == 42
         rclpy.shutdown()
-        thread.join(2.0)
+        thread.join(SECONDS)
 
     def test_synchronous_call_beside_a_thread_that_spins(self, node):
         node.create_service(AddTwoInts, "add", _sum)
@@ -163,9 +165,9 @@ class TestMinimal:
         executor.add_node(node)
         thread = threading.Thread(target=executor.spin, daemon=True)
         thread.start()
-        assert client.call(AddTwoInts.Request(a=1, b=2), timeout_sec=2.0).sum == 3
+        assert client.call(AddTwoInts.Request(a=1, b=2), timeout_sec=SECONDS).sum == 3
         executor.shutdown()
-        thread.join(2.0)
+        thread.join(SECONDS)
 
     def test_a_client_in_a_callback_of_another_group(self, node):
         answers = []
@@ -179,7 +181,7 @@ class TestMinimal:
         timer = node.create_timer(0.01, ask, callback_group=MutuallyExclusiveCallbackGroup())
         executor = MultiThreadedExecutor(3)
         executor.add_node(node)
-        end = time.monotonic() + 3.0
+        end = time.monotonic() + SECONDS
         while not answers and time.monotonic() < end:
             executor.spin_once(timeout_sec=0.1)
         executor.shutdown()
@@ -190,7 +192,7 @@ class TestMinimal:
         client = node.create_client(AddTwoInts, "add")
         node.create_timer(0.01, lambda: client.call(AddTwoInts.Request()))
         with pytest.raises(RuntimeError, match="call_async"):
-            rclpy.spin_once(node, timeout_sec=1.0)
+            rclpy.spin_once(node, timeout_sec=SECONDS)
 
     def test_a_coroutine_awaits_a_service(self, node):
         answers = []
@@ -203,7 +205,7 @@ class TestMinimal:
             answers.append(response.sum)
 
         timer = node.create_timer(0.01, ask, callback_group=ReentrantCallbackGroup())
-        end = time.monotonic() + 3.0
+        end = time.monotonic() + SECONDS
         while not answers and time.monotonic() < end:
             rclpy.spin_once(node, timeout_sec=0.1)
         assert answers == [7]
@@ -215,7 +217,7 @@ class TestMinimal:
 
         node.create_service(AddTwoInts, "multiply", answer)
         future = node.create_client(AddTwoInts, "multiply").call_async(AddTwoInts.Request(a=6, b=7))
-        rclpy.spin_until_future_complete(node, future, timeout_sec=2.0)
+        rclpy.spin_until_future_complete(node, future, timeout_sec=SECONDS)
         assert future.result().sum == 42
 
     def test_done_callbacks_run_in_the_executor(self, node):
@@ -223,7 +225,7 @@ class TestMinimal:
         node.create_service(AddTwoInts, "add", _sum)
         future = node.create_client(AddTwoInts, "add").call_async(AddTwoInts.Request(a=1, b=1))
         future.add_done_callback(lambda done: seen.append(done.result().sum))
-        end = time.monotonic() + 3.0
+        end = time.monotonic() + SECONDS
         while not seen and time.monotonic() < end:
             rclpy.spin_once(node, timeout_sec=0.1)
         assert seen == [2]
@@ -233,14 +235,14 @@ class TestMinimal:
         with MultiThreadedExecutor(num_threads=4) as executor:
             executor.add_node(talker)
             executor.add_node(listener)
-            executor.spin_until_future_complete(listener.done, timeout_sec=5.0)
+            executor.spin_until_future_complete(listener.done, timeout_sec=SECONDS)
         assert len(listener.heard) >= 3
 
     def test_guard_condition(self, node):
         called = []
         guard = node.create_guard_condition(lambda: called.append(1))
         guard.trigger()
-        rclpy.spin_once(node, timeout_sec=1.0)
+        rclpy.spin_once(node, timeout_sec=SECONDS)
         assert called == [1]
         assert node.destroy_guard_condition(guard)
 
@@ -251,9 +253,9 @@ class TestMinimal:
         start = time.monotonic()
         for _ in range(5):
             rate.sleep()
-        assert 0.08 <= time.monotonic() - start < 0.5
+        assert time.monotonic() - start >= 0.08
         rclpy.shutdown()
-        thread.join(2.0)
+        thread.join(SECONDS)
         assert not thread.is_alive()
 
 
@@ -319,6 +321,36 @@ class TestNode:
         node.destroy_node()
         assert list(node.publishers) == []
 
+    def test_attributes_of_users_classes_may_have_any_name_that_rclpy_leaves(self, ros):
+        class Planner(Node):
+            def __init__(self):
+                super().__init__("planner")
+                self.graph, self.parameters, self.parts, self.bus, self.identity = {}, {}, [], None, 7
+                self.dispatcher = self.entities = self.timebase = self.cleanups = self.parameter_names = None
+                self._handle = self._dispatcher = self._parameters = self._entities = self._remappings = None
+
+        class Router(Node):
+            def graph(self):
+                return "mine"
+
+        assert Router("router").graph() == "mine"
+        heard = []
+        node = Planner()
+        node.declare_parameter("speed", 1.0)
+        node.create_subscription(String, "topic", heard.append, 10)
+        publisher = node.create_publisher(String, "topic", 10)
+        timer = node.create_timer(0.001, lambda: publisher.publish(String(data="hi")))
+        executor = SingleThreadedExecutor()
+        executor.add_node(node)
+        while not heard:
+            executor.spin_once(timeout_sec=SECONDS)
+        node.destroy_timer(timer)
+        assert node.count_subscribers("topic") == 1
+        assert node.get_parameter("speed").value == 1.0
+        assert node.graph == {}
+        node.destroy_node()
+        executor.shutdown()
+
     def test_destroying_it_twice(self, node):
         node.destroy_node()
         node.destroy_node()
@@ -380,7 +412,7 @@ class TestNode:
         got = []
         node.create_subscription(String, "chatter", lambda msg, info: got.append((msg.data, info)), 1)
         node.create_publisher(String, "chatter", 1).publish(String(data="x"))
-        rclpy.spin_once(node, timeout_sec=1.0)
+        rclpy.spin_once(node, timeout_sec=SECONDS)
         assert got[0][0] == "x"
         assert got[0][1].source_timestamp > 0
 
@@ -388,7 +420,7 @@ class TestNode:
         got = []
         node.create_subscription(String, "chatter", got.append, 1, raw=True)
         node.create_publisher(String, "chatter", 1).publish(String(data="x"))
-        rclpy.spin_once(node, timeout_sec=1.0)
+        rclpy.spin_once(node, timeout_sec=SECONDS)
         assert got == [b"\x00\x01\x00\x00\x02\x00\x00\x00x\x00"]
 
     def test_a_late_subscription_gets_what_was_kept(self, node):
@@ -396,7 +428,7 @@ class TestNode:
         profile = QoSProfile(depth=1, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
         node.create_publisher(String, "latched", profile).publish(String(data="kept"))
         node.create_subscription(String, "latched", lambda msg: got.append(msg.data), profile)
-        rclpy.spin_once(node, timeout_sec=1.0)
+        rclpy.spin_once(node, timeout_sec=SECONDS)
         assert got == ["kept"]
 
     def test_context_managers(self, ros):
@@ -411,7 +443,7 @@ class TestNode:
         got = []
         node.create_subscription(Log, "/rosout", got.append, 10)
         node.get_logger().warning("careful")
-        rclpy.spin_once(node, timeout_sec=1.0)
+        rclpy.spin_once(node, timeout_sec=SECONDS)
         assert (got[0].name, got[0].msg, got[0].level) == ("ns.tested", "careful", logging.WARNING)
         assert got[0].file == __file__
 

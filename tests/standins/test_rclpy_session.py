@@ -174,7 +174,7 @@ class TestSignals:
             assert child.stdout.readline() == "tick\n"
             child.send_signal(signal.SIGINT)
             output = child.stdout.read()
-            assert child.wait(5.0) == 0
+            assert child.wait(60.0) == 0
         assert output.endswith("interrupted\n")
 
     def test_a_program_that_forgets_to_shut_down_ends(self, tmp_path):
@@ -198,7 +198,7 @@ class TestSignals:
             check=False,
             capture_output=True,
             text=True,
-            timeout=20,
+            timeout=60,
         )
         assert (ended.returncode, ended.stderr) == (0, "")
 
@@ -328,9 +328,9 @@ class TestSmallModules:
 
         node.declare_parameter("speed", 1)
         client = AsyncParameterClient(node, "tested")
-        assert client.wait_for_services(timeout_sec=1.0)
+        assert client.wait_for_services(timeout_sec=60.0)
         future = client.set_parameters([Parameter("speed", value=2)])
-        rclpy.spin_until_future_complete(node, future, timeout_sec=2.0)
+        rclpy.spin_until_future_complete(node, future, timeout_sec=60.0)
         assert future.result().results[0].successful
         assert node.get_parameter("speed").value == 2
 

@@ -14,7 +14,7 @@ import linkwright
 pytest.importorskip("mypy")
 
 SOURCES = Path(linkwright.__file__).parent.parent
-STAND_INS = SOURCES / "linkwright" / "standins" / "path"
+STUBS = SOURCES.parent / "tools" / "standin_stubs.py"
 
 PROGRAM = """\
     import rclpy
@@ -54,7 +54,7 @@ PROGRAM = """\
         executor = MultiThreadedExecutor(num_threads=2)
         executor.add_node(node)
         future: Future[str] = Future()
-        executor.spin_until_future_complete(future, timeout_sec=1.0)
+        executor.spin_until_future_complete(future, timeout_sec=60.0)
         roll, pitch, yaw = euler_from_quaternion(list(quaternion_from_euler(0.0, 0.0, 1.0)))
         reveal_type(yaw)
         rclpy.spin(node)
@@ -66,10 +66,12 @@ PROGRAM = """\
 def test_names_types_and_mistakes_of_a_users_node(tmp_path):
     program = tmp_path / "my_node.py"
     program.write_text(textwrap.dedent(PROGRAM))
+    stubs = tmp_path / "stubs"
+    subprocess.run([sys.executable, STUBS, stubs], check=True, timeout=60)
     command = [sys.executable, "-m", "mypy", "--strict", "--config-file=", f"--cache-dir={tmp_path / 'cache'}"]
     checked = subprocess.run(
         [*command, "--follow-imports=silent", program],
-        env={"MYPYPATH": f"{STAND_INS}:{SOURCES}", "PATH": "/usr/bin:/bin"},
+        env={"MYPYPATH": f"{stubs}:{SOURCES}", "PATH": "/usr/bin:/bin"},
         cwd=tmp_path,
         check=False,
         capture_output=True,

@@ -11,8 +11,8 @@ import pytest
 
 import xacro
 from linkwright.diagnostics import LinkwrightError
-from linkwright.launch.engine.descriptions import DescriptionError, Descriptions, use_descriptions
-from linkwright.workspace import PackageFinder
+from linkwright.launch.model.descriptions import DescriptionError, Descriptions, use_descriptions
+from linkwright.packages import PackageFinder
 from linkwright.xacro import expand
 from tests.standins.conftest import HEAD
 

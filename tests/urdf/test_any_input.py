@@ -7,8 +7,10 @@ from hypothesis import strategies as st
 
 from linkwright.diagnostics import has_errors, render, to_data
 from linkwright.kinematics import KinematicTree
+from linkwright.schema import ElementRule
 from linkwright.urdf import read, save, to_gv, tree_text
-from linkwright.urdf.schema import JOINT_TYPES, ROBOT, ElementRule, Kind
+from linkwright.urdf.schema import ROBOT
+from linkwright.urdf.value_types import JOINT_TYPE, JOINT_TYPES, NUMBER, QUATERNION, RGBA, TEXT, VECTOR3, VERSION
 from linkwright.xmltree import Document, Element, parse, write
 
 BAD = [
@@ -30,13 +32,13 @@ BAD = [
     "a b",
 ]
 GOOD = {
-    Kind.TEXT: ["a", "b", "c", ""],
-    Kind.NUMBER: ["0", "1", "-90", " 2.5"],
-    Kind.VECTOR3: ["0 0 0", "1 -2 .5", "0 0 90", " 1  2 3 "],
-    Kind.QUATERNION: ["0 0 0 1", "0 0 0 0", "1 2 3 4"],
-    Kind.RGBA: ["1 1 1 1", "0 .5 0 1"],
-    Kind.JOINT_TYPE: [*JOINT_TYPES],
-    Kind.VERSION: ["1.0", "1.1", "1.2"],
+    TEXT: ["a", "b", "c", ""],
+    NUMBER: ["0", "1", "-90", " 2.5"],
+    VECTOR3: ["0 0 0", "1 -2 .5", "0 0 90", " 1  2 3 "],
+    QUATERNION: ["0 0 0 1", "0 0 0 0", "1 2 3 4"],
+    RGBA: ["1 1 1 1", "0 .5 0 1"],
+    JOINT_TYPE: [*JOINT_TYPES],
+    VERSION: ["1.0", "1.1", "1.2"],
 }
 OTHERS = [ElementRule(tag, "") for tag in ("gazebo", "xacro:if", "limits", "geomtry", "cube")]
 
@@ -46,7 +48,7 @@ def elements(draw, rule: ElementRule, sloppy: bool) -> Element:
     element = Element(rule.tag)
     for attribute in rule.attributes:
         if not sloppy or draw(st.integers(0, 9)):
-            good = GOOD[attribute.kind]
+            good = GOOD[attribute.type]
             values = st.sampled_from(BAD + good if sloppy and not draw(st.integers(0, 9)) else good)
             element.attributes[attribute.name] = draw(values)
     children = list(rule.children)
@@ -106,19 +108,19 @@ def check(root: Element) -> None:
     assert again.robot == robot
 
 
-@settings(max_examples=150, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
+@settings(max_examples=150, suppress_health_check=[HealthCheck.data_too_large])
 @given(robots(sloppy=False))
 def test_elements_with_good_values(root):
     check(root)
 
 
-@settings(max_examples=150, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
+@settings(max_examples=150, suppress_health_check=[HealthCheck.data_too_large])
 @given(robots(sloppy=True))
 def test_elements_with_anything(root):
     check(root)
 
 
-@settings(max_examples=100, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
+@settings(max_examples=100, suppress_health_check=[HealthCheck.data_too_large])
 @given(robots(sloppy=True))
 def test_every_finding_can_be_printed(root):
     for diagnostic in read(parse(write(Document(root)), "robot.urdf")).diagnostics:

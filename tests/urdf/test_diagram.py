@@ -6,8 +6,9 @@ import sys
 
 import pytest
 
+from linkwright.descriptions import load
 from linkwright.diagnostics import LinkwrightError
-from linkwright.urdf import load, to_gv
+from linkwright.urdf import to_gv
 from linkwright.urdf.diagram import render
 from tests.urdf.robots import chain, robot_text
 

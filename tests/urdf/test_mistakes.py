@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+import json
 import re
 from pathlib import Path
 
 import pytest
 
 import linkwright.urdf
+from tests.corpora import OWN
 from tests.urdf.mistakes import describe
 
 PAGE = (Path(__file__).parent / "mistakes.md").read_text(encoding="utf-8")
 SECTION = re.compile(r"^### (.+?)\n\n```xml\n(.*?)\n```\n\n```text\n(.*?)\n```$", re.MULTILINE | re.DOTALL)
 MISTAKES = [pytest.param(text, said, id=title) for title, text, said in SECTION.findall(PAGE)]
+
+VERDICTS = json.loads((OWN.folder / "verdicts.json").read_text(encoding="utf-8"))["urdfdom"]
+NO_TREES = {"A loop below the root", "A loop beside the root", "A link with two parents"}
+"""urdfdom accepts them and then walks along the joints for ever, or loses a joint."""
 
 
 def test_the_page_was_understood():
@@ -22,6 +28,17 @@ def test_the_page_was_understood():
 @pytest.mark.parametrize(("text", "said"), MISTAKES)
 def test_mistake(text, said):
     assert describe(text) == said
+
+
+@pytest.mark.parametrize(("text", "said"), MISTAKES)
+def test_urdfdom_keeps_the_robot_and_complains_where_we_do(text, said, request):
+    title = request.node.callspec.id
+    urdfdom = VERDICTS[title]
+    if title in NO_TREES:
+        assert (urdfdom["accepts"], urdfdom["errors"]) == (True, [])
+        return
+    assert urdfdom["accepts"] == said.endswith("robot: kept")
+    assert bool(urdfdom["errors"]) == ("error URDF" in said)
 
 
 def test_every_code_of_the_reader_is_shown():

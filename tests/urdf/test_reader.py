@@ -7,8 +7,8 @@ from math import inf, pi
 import pytest
 
 from linkwright.diagnostics import Severity
+from linkwright.geometry.single import quaternion_of
 from linkwright.urdf import Box, Capsule, Limit, Mimic, Pose, read
-from linkwright.urdf.rotation import quaternion_of
 from linkwright.xmltree import Document, Element, parse
 from tests.urdf.robots import chain, robot_text
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from linkwright.schema import AttributeRule, ElementRule
 from linkwright.urdf import (
     Calibration,
     Dynamics,
@@ -14,18 +15,19 @@ from linkwright.urdf import (
     Safety,
     read,
 )
-from linkwright.urdf.schema import ROBOT, SHAPES, AttributeRule, ElementRule, Kind
+from linkwright.urdf.schema import ROBOT, SHAPES
+from linkwright.urdf.value_types import JOINT_TYPE, NUMBER, QUATERNION, RGBA, TEXT, VECTOR3, VERSION
 from linkwright.urdf.values import number, numbers
 from linkwright.xmltree import Document, Element, parse
 
 VALUES = {
-    Kind.TEXT: "b",
-    Kind.NUMBER: "1",
-    Kind.VECTOR3: "1 1 1",
-    Kind.QUATERNION: "0 0 0 1",
-    Kind.RGBA: "1 1 1 1",
-    Kind.JOINT_TYPE: "revolute",
-    Kind.VERSION: "1.0",
+    TEXT: "b",
+    NUMBER: "1",
+    VECTOR3: "1 1 1",
+    QUATERNION: "0 0 0 1",
+    RGBA: "1 1 1 1",
+    JOINT_TYPE: "revolute",
+    VERSION: "1.0",
 }
 ALLOWED = {"URDF171", "URDF180"}  # the joint mimics nothing; without 'version' the limits of URDF 1.2 are ignored
 VERSIONS = ("1.0", "1.2")
@@ -35,7 +37,7 @@ def full(rule: ElementRule, version: tuple[int, int]) -> Element:
     """An element with all it may carry, itself as small as can be where only one child counts."""
     element = Element(
         rule.tag,
-        {attribute.name: VALUES[attribute.kind] for attribute in rule.attributes if attribute.since <= version},
+        {attribute.name: VALUES[attribute.type] for attribute in rule.attributes if attribute.since <= version},
     )
     if rule.tag == "origin":
         element.attributes.pop("quat_xyzw", None)
@@ -114,7 +116,7 @@ def test_what_the_table_requires_is_required(version, path, attribute: Attribute
     assert any(f"no '{attribute.name}'" in diagnostic.message for diagnostic in read(Document(robot)).diagnostics)
 
 
-@pytest.mark.parametrize(("version", "path", "attribute"), attribute_cases(lambda rule, _: rule.kind != Kind.TEXT))
+@pytest.mark.parametrize(("version", "path", "attribute"), attribute_cases(lambda rule, _: rule.type != TEXT))
 def test_malformed_values_are_found(version, path, attribute: AttributeRule):
     robot, element = prepared(version, path)
     if attribute.name == "quat_xyzw":
@@ -157,7 +159,7 @@ def test_defaults_are_those_of_the_model(path, values):
     for attribute in rule.attributes:
         if attribute.default:
             default = getattr(values, attribute.name)
-            parsed = number(attribute.default) if attribute.kind is Kind.NUMBER else numbers(attribute.default)
+            parsed = number(attribute.default) if attribute.type is NUMBER else numbers(attribute.default)
             assert parsed == default
 
 

@@ -6,7 +6,8 @@ from itertools import pairwise
 
 from hypothesis import given
 
-from linkwright.urdf import children_of, load, parent_joints, to_gv, tree_text
+from linkwright.descriptions import load
+from linkwright.urdf import children_of, parent_joints, to_gv, tree_text
 from linkwright.urdf.tree import walk
 from tests.urdf.robots import robot_text, robots
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from hypothesis import given
 
-from linkwright.urdf import load, read, save
+from linkwright.descriptions import load
+from linkwright.urdf import read, save
 from linkwright.xmltree import parse
 from tests.places import PACKAGE
 from tests.urdf.robots import chain, robot_text, robots

@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import json
 import struct
-import time
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager, suppress
 from dataclasses import dataclass, field
@@ -14,11 +13,13 @@ from pathlib import Path
 import aiohttp
 import numpy as np
 
+from linkwright.descriptions import DescriptionLibrary
 from linkwright.graph import DESCRIPTION_QOS, STATIC_TF_PUBLISHER_QOS, TF_QOS, Graph, LogRecord
 from linkwright.messages import String, TFMessage, TransformBatch
-from linkwright.urdf import DescriptionLibrary
+from linkwright.packages import PackageFinder
 from linkwright.viewer import RvizConfig, Viewer
-from linkwright.workspace import PackageFinder
+from tests.skipping import graph_clock
+from tests.waiting import SECONDS
 
 ARM = """\
 <robot name="arm">
@@ -49,7 +50,7 @@ class World:
 
     def __init__(self, config: RvizConfig | None = None, packages: dict[str, Path] | None = None, **options) -> None:
         self.log: list[LogRecord] = []
-        self.graph = Graph(on_log=self.log.append)
+        self.graph = Graph(clock=graph_clock(), on_log=self.log.append)
         node = self.graph.create_node("publishers")
         self._description = node.create_publisher(String, "robot_description", DESCRIPTION_QOS)
         self._tf = node.create_publisher(TFMessage, "/tf", TF_QOS)
@@ -72,7 +73,7 @@ class World:
         batch = TransformBatch(
             tuple(parent for parent, _ in poses),
             tuple(child for _, child in poses),
-            time.time_ns(),
+            self.graph.timebase.now_ns(),
             np.array(list(poses.values()), dtype=np.float64).reshape(-1, 7),
         )
         (self._tf_static if static else self._tf).publish(TFMessage(batch=batch))
@@ -132,7 +133,7 @@ class Client:
     socket: aiohttp.ClientWebSocketResponse
     messages: list[dict | Transforms | bytes] = field(default_factory=list)
 
-    async def receive(self, timeout: float = 2.0) -> dict | Transforms | bytes:
+    async def receive(self, timeout: float = SECONDS) -> dict | Transforms | bytes:
         message = await self.socket.receive(timeout=timeout)
         if message.type is aiohttp.WSMsgType.BINARY:
             decoded: dict | Transforms | bytes = unpack(message.data) if message.data[0] == 1 else message.data

@@ -5,23 +5,24 @@ from __future__ import annotations
 import asyncio
 import gzip
 import math
-import time
 from urllib.parse import urlsplit
 
 import aiohttp
 import pytest
 
+from linkwright.descriptions import DescriptionLibrary
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, SourceText
 from linkwright.graph import CLOCK_QOS, Graph
 from linkwright.messages import Time, get_message
 from linkwright.nodes import NodeOptions
 from linkwright.nodes.joint_state_publisher_gui import JointStatePublisherGui
 from linkwright.nodes.robot_state_publisher import RobotStatePublisher
-from linkwright.urdf import DescriptionLibrary
-from linkwright.viewer import RvizConfig, Viewer, server
-from linkwright.viewer.protocol import PROTOCOL_VERSION
-from linkwright.workspace import PackageFinder
-from tests.places import TUTORIAL
+from linkwright.packages import PackageFinder
+from linkwright.viewer import RvizConfig, Viewer
+from linkwright.viewer.protocol.session import PROTOCOL_VERSION
+from linkwright.viewer.web import server
+from tests.places import TUTORIAL_PACKAGES, without_meshes
+from tests.skipping import graph_clock, skipping
 from tests.viewer.scene import ARM, page, world
 
 Clock = get_message("rosgraph_msgs/msg/Clock")
@@ -36,9 +37,14 @@ async def test_a_page_that_opens_gets_everything_in_order():
             transforms = await client.transforms()
             kinds = [message["type"] for message in client.messages[:-1]]
             first, table = client.messages[0], client.messages[-2]
-    assert kinds[:3] == ["hello", "tree", "robot_scene"]
-    assert kinds[-2:] == ["diagnostics", "frame_table"]
-    assert {"configuration", "display_classes", "view_state", "joints"} < set(kinds)
+    whatever_is_shown = ["display_classes", "diagnostics", "joints", "view_classes"]
+    of_the_configuration = ["configuration", "description_changed", "panels", "time_state", "tools", "view_state"]
+    assert kinds == [
+        *("hello", "tree", "robot_scene"),
+        *whatever_is_shown,  # by the names of the features
+        *of_the_configuration,
+        *("saved_views", "frame_table"),  # the table last: who has it has all
+    ]
     assert (first["protocol"], first["title"]) == (PROTOCOL_VERSION, "arm")
     assert transforms.revision == table["revision"]
     assert transforms.poses[table["names"].index("tip")].tolist() == [1, 0, 0, 0, 0, 0, 1]
@@ -168,8 +174,9 @@ async def test_what_the_file_says_wrong_is_in_the_terminal():
     assert "a.rviz:4:7: a display without a 'Class' is left out" in made.logged()
 
 
+@skipping
 async def test_a_slider_in_the_page_turns_the_joint_in_the_page():
-    graph = Graph(on_log=lambda _: None)
+    graph = Graph(clock=graph_clock(), on_log=lambda _: None)
     library = DescriptionLibrary()
     viewer = Viewer(graph, library=library, finder=PackageFinder(), config=RvizConfig.for_model("base"), port=0)
     await viewer.start()
@@ -183,13 +190,13 @@ async def test_a_slider_in_the_page_turns_the_joint_in_the_page():
         while "tip" not in (names := (await client.until("frame_table"))["names"]):
             pass
         await client.drain(0.3)
-        delays = []
+        delays, now = [], asyncio.get_running_loop().time
         for angle in (0.5, 1.0, 1.5, 2.0, 2.5):
             await asyncio.sleep(0.1)
-            start = time.perf_counter()
+            start = now()
             await client.send("set_joint", name="turn", position=angle)
             transforms = await client.transforms()
-            delays.append(time.perf_counter() - start)
+            delays.append(now() - start)
             assert transforms.poses[names.index("tip")][5] == pytest.approx(math.sin(angle / 2))
         assert sorted(delays)[2] < 0.02
         assert await client.until("joint_positions", positions={"turn": 2.5})
@@ -204,13 +211,11 @@ async def test_closing_says_goodbye_and_leaves_the_graph():
     async with world() as made:
         async with page(made.viewer) as client:
             await client.opened()
-            start = time.monotonic()
             closing = asyncio.ensure_future(made.viewer.close())
             with pytest.raises(ConnectionError):
                 await client.until("nothing")
             await closing
             assert client.socket.close_code == 1001
-            assert time.monotonic() - start < 1.0
         assert made.graph.node_names() == ["/publishers"]
         with pytest.raises(aiohttp.ClientError):
             async with aiohttp.ClientSession() as session:
@@ -224,6 +229,7 @@ async def test_it_may_be_closed_when_the_graph_is_gone_and_more_than_once():
         await made.viewer.close()
 
 
+@skipping
 async def test_a_page_that_answers_nothing_does_not_hold_up_the_end():
     async with world() as made:
         address = urlsplit(made.viewer.url)
@@ -238,9 +244,10 @@ async def test_a_page_that_answers_nothing_does_not_hold_up_the_end():
         )
         writer.write(("\r\n".join(head) + "\r\n\r\n").encode())
         await reader.readuntil(b"\r\n\r\n")
-        start = time.monotonic()
+        now = asyncio.get_running_loop().time
+        start = now()
         await made.viewer.close()
-        assert time.monotonic() - start < 1.5
+        assert now() - start < 1.5
         writer.close()
 
 
@@ -308,13 +315,13 @@ async def test_the_page_and_its_hashed_files_are_served(tmp_path, monkeypatch):
             assert (await socket.receive_json())["type"] == "hello"
 
 
-@pytest.mark.skipif(not TUTORIAL.is_dir(), reason="the tutorial is not here")
+@pytest.mark.parametrize("package", TUTORIAL_PACKAGES, ids=lambda package: package.parent.name)
 @pytest.mark.parametrize(
     ("model", "links"),
     [("mbot_base", 5), ("mbot_with_camera", 6), ("mbot_with_kinect", 6), ("mbot_with_laser", 6)],
 )
-async def test_the_models_of_the_tutorial_are_shown(model, links):
-    share = TUTORIAL / "my_robot_description"
+async def test_the_models_of_the_tutorial_are_shown(package, model, links, tmp_path):
+    share = without_meshes(package, tmp_path)
     config = RvizConfig.load(share / "rviz" / "urdf.rviz")
     async with world(config, packages={"my_robot_description": share}) as made:
         made.describe((share / "urdf" / f"{model}.urdf").read_text(encoding="utf-8"))
@@ -341,11 +348,11 @@ async def test_the_node_is_given_what_a_launch_file_gives_it():
         (name,) = [each for each in made.graph.node_names() if each.endswith("/eyes")]
         assert name == "/robot/eyes"
         assert made.viewer.manager.fixed_frame == "tip"
-        assert made.viewer.manager.stage.time.now_ns() == 0  # no /clock yet
+        assert made.viewer.manager.time.now_ns() == 0  # no /clock yet
         clock = made.graph.create_node("clock").create_publisher(Clock, "/clock", CLOCK_QOS)
         clock.publish(Clock(clock=Time(sec=12)))
         await made.settle()
-        assert made.viewer.manager.stage.time.now_ns() == 12_000_000_000
+        assert made.viewer.manager.time.now_ns() == 12_000_000_000
 
 
 async def test_a_ros_argument_that_is_none_is_refused():

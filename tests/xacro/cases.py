@@ -7,17 +7,20 @@ banner, ``diagnostics`` what is reported.
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import pytest
+
 from linkwright.diagnostics import Diagnostic, Span
+from tests.markdown import read_sections
 
 ROOT = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro">'
 BANNER_LINES = 5
-
-_CASE = re.compile(r"^## (?P<title>.+)\n(?P<body>(?:(?!^## ).*\n?)*)", re.MULTILINE)
-_FENCE = re.compile(r"^```(?P<kind>\w+)(?: (?P<name>\S+))?\n(?P<text>(?:(?!^```$).*\n)*)^```$", re.MULTILINE)
+PACKAGES = {"pkg_a": "/share/pkg_a"}
+"""The packages that cases may name."""
+ENVIRONMENT = {"LINKWRIGHT_TEST": "env value", "LINKWRIGHT_UNSET": None}
+"""The environment variables that cases may name; None is for one that must not be set."""
 
 
 @dataclass
@@ -31,7 +34,7 @@ class Case:
     expected: str = ""
 
     def write(self, folder: Path) -> None:
-        """Write the files of the case into a folder."""
+        """Write the files of the case into a folder, which is made."""
         for name, text in {"main.xacro": self.main, **self.files}.items():
             path = folder / name
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -41,16 +44,16 @@ class Case:
 def read_cases(path: Path) -> list[Case]:
     """The cases of a Markdown file."""
     cases = []
-    for match in _CASE.finditer(path.read_text(encoding="utf-8")):
-        case = Case(match["title"])
-        for fence in _FENCE.finditer(match["body"]):
-            kind, text = fence["kind"], fence["text"].removesuffix("\n")
+    for title, blocks in read_sections(path):
+        case = Case(title)
+        for kind, name, lines in blocks:
+            text = lines.removesuffix("\n")
             if kind == "xacro":
                 case.main = f"{ROOT}{text}</robot>"
             elif kind == "document":
                 case.main = text
             elif kind == "file":
-                case.files[fence["name"]] = text
+                case.files[name] = text
             elif kind == "arguments":
                 case.arguments = dict(line.split(":=", 1) for line in text.splitlines())
             else:
@@ -60,6 +63,15 @@ def read_cases(path: Path) -> list[Case]:
         cases.append(case)
     assert cases, path
     return cases
+
+
+def set_environment(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Set the environment variables that cases may name."""
+    for name, value in ENVIRONMENT.items():
+        if value is None:
+            monkeypatch.delenv(name, raising=False)
+        else:
+            monkeypatch.setenv(name, value)
 
 
 def without_banner(text: str) -> str:

@@ -201,4 +201,4 @@ def test_cold_import_stays_light() -> None:
     """Nothing heavy, nor what only some files need, is imported with the room."""
     code = "import sys, linkwright.xacro; print(*sorted(sys.modules))"
     names = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout.split()
-    assert not {"yaml", "numpy", "asyncio", "xml.dom", "linkwright.workspace", "datetime"} & set(names)
+    assert not {"yaml", "numpy", "asyncio", "xml.dom", "linkwright.packages", "datetime"} & set(names)

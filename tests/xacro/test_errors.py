@@ -9,7 +9,7 @@ import pytest
 from linkwright.diagnostics import LinkwrightError
 from linkwright.xacro import expand
 
-from .cases import Case, described, read_cases
+from .cases import PACKAGES, Case, described, read_cases, set_environment
 
 CASES = {
     f"{path.stem}: {case.title}": case
@@ -22,9 +22,9 @@ CASES = {
 def test_error(case: Case, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     case.write(tmp_path)
     monkeypatch.chdir(tmp_path)
-    monkeypatch.delenv("LINKWRIGHT_UNSET", raising=False)
+    set_environment(monkeypatch)
     try:
-        diagnostics = expand("main.xacro", case.arguments, packages={"pkg_a": "/share/pkg_a"}).diagnostics
+        diagnostics = expand("main.xacro", case.arguments, packages=PACKAGES).diagnostics
     except LinkwrightError as error:
         diagnostics = error.diagnostics
     assert "\n".join(described(diagnostic, tmp_path) for diagnostic in diagnostics) == case.expected

@@ -1,4 +1,4 @@
-"""The rules of the language, one case each; what comes out was recorded from ros/xacro 2.1.1."""
+"""The rules of the language, one case each; what comes out is what ros/xacro writes (tools/reference_outputs.py)."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import pytest
 
 from linkwright.xacro import expand
 
-from .cases import Case, read_cases, without_banner
+from .cases import PACKAGES, Case, read_cases, set_environment, without_banner
 
 CASES = {
     f"{path.stem}: {case.title}": case
@@ -21,7 +21,6 @@ CASES = {
 def test_rule(case: Case, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     case.write(tmp_path)
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("LINKWRIGHT_TEST", "env value")
-    monkeypatch.delenv("LINKWRIGHT_UNSET", raising=False)
-    expansion = expand("main.xacro", case.arguments, packages={"pkg_a": "/share/pkg_a"})
+    set_environment(monkeypatch)
+    expansion = expand("main.xacro", case.arguments, packages=PACKAGES)
     assert without_banner(str(expansion)) == case.expected

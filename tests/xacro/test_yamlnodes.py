@@ -16,6 +16,9 @@ PIECES = [
     *(", ", "1e3", "1.5", ".inf", "2001-01-01", '"q"', "'s'", "? ", "!!str ", "!!set ", "|\n", "# c", "=", "null"),
 ]
 
+PLAIN = NodeLoader.__base__
+"""PyYAML's own loader, over libyaml where it is there, which names some errors otherwise than the parser in Python."""
+
 
 def outcome(load: Any) -> str:
     try:
@@ -35,7 +38,7 @@ def loaded(text: str) -> Any:
 
 @given(st.lists(st.sampled_from(PIECES), max_size=14).map("".join))
 def test_any_text(text: str) -> None:
-    assert outcome(lambda: loaded(text)) == outcome(lambda: yaml.safe_load(text))
+    assert outcome(lambda: loaded(text)) == outcome(lambda: yaml.load(text, PLAIN))
 
 
 @pytest.mark.parametrize(

@@ -175,6 +175,16 @@ def test_the_list_of_a_file_that_cannot_be_expanded(write, run):
     assert "hint: give which:=..." in answer.err
 
 
+def test_the_argument_is_named_that_leads_to_a_missing_file(write, run):
+    write(
+        "a.xacro",
+        '<xacro:arg name="kind" default="k5"/><xacro:arg name="other" default="o"/>'
+        '<xacro:arg name="path" default="$(arg kind)/part.xacro"/><xacro:include filename="$(arg path)"/>'
+        '<link name="$(arg name)"/><xacro:arg name="name" default="r"/>',
+    )
+    assert run("--args", "a.xacro").err.endswith("hint: give kind:=...\n")
+
+
 def test_the_list_goes_to_a_file(write, run):
     write("a.xacro", "<l/>")
     assert run("--args", "a.xacro").out == "the file takes no arguments\n"

@@ -1,4 +1,4 @@
-"""``linkwright xacro --explain``, `linkwright.xacro.explain` and `Expansion.story`."""
+"""``linkwright xacro --explain``, `linkwright.xacro.explain` and `Expansion.provenance`."""
 
 from __future__ import annotations
 
@@ -37,22 +37,22 @@ def robot(write):
 
 
 def only(path, name, *rest, **options):
-    (story,) = explain(path, name, *rest, **options)
-    return story
+    (found,) = explain(path, name, *rest, **options)
+    return found
 
 
 def told(value):
     return value.name, value.kind, value.value, str(value.span) if value.span else None, value.written
 
 
-def attributes(story):
-    return {f"{part.element.tag}.{attribute.name}": attribute for part in story.walk() for attribute in part.attributes}
+def attributes(found):
+    return {f"{part.element.tag}.{attribute.name}": attribute for part in found.walk() for attribute in part.attributes}
 
 
 def test_place_and_calls(robot):
-    story = only(robot, "left_wheel")
-    assert str(story.span) == "wheel.xacro:4:3"
-    (call,) = story.calls
+    found = only(robot, "left_wheel")
+    assert str(found.span) == "wheel.xacro:4:3"
+    (call,) = found.calls
     assert (call.macro, str(call.span)) == ("wheel", "a.xacro:6:1")
     assert [told(value) for value in call.parameters] == [
         ("side", "parameter", "'left'", "a.xacro:6:20", "left"),
@@ -101,21 +101,21 @@ def test_an_attribute_that_a_tag_set(robot):
     assert [value.name for value in extra.values] == ["y"]
 
 
-def test_the_story_of_an_element_of_an_expansion(robot):
+def test_the_provenance_of_an_element_of_an_expansion(robot):
     expansion = expand(robot)
     link = next(expansion.document.root.elements("link"))
-    story, same = expansion.story(link), only(robot, "left_wheel")
-    assert (story.span, story.calls, story.attributes) == (same.span, same.calls, same.attributes)
+    found, same = expansion.provenance(link), only(robot, "left_wheel")
+    assert (found.span, found.calls, found.attributes) == (same.span, same.calls, same.attributes)
     cylinder = next(link.elements("cylinder"))
-    assert expansion.story(cylinder).calls == expansion.story(link).calls
+    assert expansion.provenance(cylinder).calls == expansion.provenance(link).calls
 
 
-def test_the_story_of_what_has_changed_since(robot):
+def test_the_provenance_of_what_has_changed_since(robot):
     expansion = expand(robot)
     link = next(expansion.document.root.elements("link"))
     robot.write_text(robot.read_text().replace('side="left"', 'side="right"'))
     with pytest.raises(LinkwrightError, match="is not what"):
-        expansion.story(link)
+        expansion.provenance(link)
 
 
 def test_nested_calls_and_includes(write):
@@ -127,14 +127,14 @@ def test_nested_calls_and_includes(write):
 <xacro:macro name="out" params="y:=^|1"><xacro:call macro="B.in" x="${y+1}"/></xacro:macro>
 <xacro:out/>""",
     )
-    story = only(path, "deep_2")
-    assert [(call.macro, str(call.span)) for call in story.calls] == [
+    found = only(path, "deep_2")
+    assert [(call.macro, str(call.span)) for call in found.calls] == [
         (None, "b.xacro:2:35"),
         ("in", "a.xacro:3:41"),
         ("out", "a.xacro:4:1"),
     ]
-    assert [told(value) for value in story.calls[1].parameters] == [("x", "parameter", "2", "a.xacro:3:69", "${y+1}")]
-    assert [told(value) for value in story.calls[2].parameters] == [("y", "parameter", "1", "a.xacro:3:38", "1")]
+    assert [told(value) for value in found.calls[1].parameters] == [("x", "parameter", "2", "a.xacro:3:69", "${y+1}")]
+    assert [told(value) for value in found.calls[2].parameters] == [("y", "parameter", "1", "a.xacro:3:38", "1")]
 
 
 def test_values_are_those_of_the_moment(write):
@@ -193,14 +193,14 @@ def test_properties_of_outer_scopes(write):
 
 def test_elements_whose_tag_is_evaluated(write):
     path = write("a.xacro", '<xacro:property name="t" value="link"/><xacro:element xacro:name="${t}" name="l${1+1}"/>')
-    story = only(path, "l2")
-    assert story.element.tag == "link"
-    assert story.attributes[0].written == "l${1+1}"
+    found = only(path, "l2")
+    assert found.element.tag == "link"
+    assert found.attributes[0].written == "l${1+1}"
 
 
 def test_names_of_elements_deeper_down(write):
     path = write("a.xacro", '<gazebo><plugin name="p"/><plugin name="p"/></gazebo>')
-    assert [story.element.tag for story in explain(path, "p")] == ["plugin", "plugin"]
+    assert [found.element.tag for found in explain(path, "p")] == ["plugin", "plugin"]
 
 
 @pytest.mark.parametrize(
@@ -249,13 +249,13 @@ written at wheel.xacro:8:3
 """
 
 
-def test_the_text_of_a_story(robot, run):
+def test_the_text_of_a_provenance(robot, run):
     answer = run("--explain", "left_joint", str(robot))
     assert (answer.status, answer.err) == (0, "")
     assert answer.out == STORY
 
 
-def test_the_data_of_a_story(robot, run):
+def test_the_data_of_a_provenance(robot, run):
     answer = run("--explain", "left_wheel", str(robot), "--format", "json")
     (element,) = json.loads(answer.out)["elements"]
     assert (element["tag"], element["file"], element["line"], element["column"]) == ("link", "wheel.xacro", 4, 3)
@@ -267,8 +267,8 @@ def test_the_data_of_a_story(robot, run):
 
 def test_a_text_that_is_not_saved(write):
     text = '<robot xmlns:xacro="x"><xacro:property name="p" value="1"/><link name="l" a="${p}">t${p}</link></robot>'
-    story = only("new.xacro", "l", text=text)
-    assert (story.texts[0].written, story.texts[0].value) == ("t${p}", "t1")
-    assert story.attributes[1].values[0].value == "1"
+    found = only("new.xacro", "l", text=text)
+    assert (found.texts[0].written, found.texts[0].value) == ("t${p}", "t1")
+    assert found.attributes[1].values[0].value == "1"
     expansion = expand("new.xacro", text=text)
-    assert expansion.story(expansion.document.root).children[0].texts == story.texts
+    assert expansion.provenance(expansion.document.root).children[0].texts == found.texts

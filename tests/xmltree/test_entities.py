@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from pathlib import Path
 
 import pytest
@@ -12,10 +11,8 @@ from linkwright.xmltree import parse
 
 
 def refused(text: str) -> Diagnostic:
-    started = time.perf_counter()
     with pytest.raises(LinkwrightError) as caught:
         parse(text, "x")
-    assert time.perf_counter() - started < 2
     return caught.value.diagnostics[0]
 
 

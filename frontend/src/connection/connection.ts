@@ -1,6 +1,7 @@
 import { PROTOCOL_VERSION, type PageMessage, type ServerMessage } from "../protocol";
 import { Signal } from "../state/signal";
 import { unpackData, type DisplayData } from "./data";
+import { isPiece, Pieces } from "./pieces";
 import { unpackSamples, type SeriesSamples } from "./samples";
 import { unpackTransforms, type Transforms } from "./transforms";
 
@@ -25,6 +26,7 @@ export class Connection {
   readonly data = new Signal<DisplayData>();
   readonly samples = new Signal<SeriesSamples[]>();
   readonly stateChanged = new Signal<ConnectionState>();
+  private readonly pieces = new Pieces();
   private socket: WebSocket | null = null;
   private retryMs = FIRST_RETRY_MS;
   private receivedCount = 0;
@@ -40,6 +42,11 @@ export class Connection {
     return this.message.on((message) => {
       if (message.type === type) listener(message as Extract<ServerMessage, { type: T }>);
     });
+  }
+
+  /** How many messages were taken in since the socket was opened. */
+  get received(): number {
+    return this.receivedCount;
   }
 
   get state(): ConnectionState {
@@ -83,6 +90,11 @@ export class Connection {
   }
 
   protected receiveBytes(bytes: ArrayBuffer): void {
+    if (isPiece(bytes)) {
+      const whole = this.pieces.take(bytes);
+      if (whole) this.receiveBytes(whole);
+      return;
+    }
     const transforms = unpackTransforms(bytes);
     if (transforms) this.transforms.emit(transforms);
     const content = unpackData(bytes);

@@ -36,7 +36,8 @@ function start(app: HTMLElement, recorded: HTMLElement): void {
   const begin = { ...session.view.current };
 
   const container = h("div", { class: "canvas-box", role: "region", aria: { label: strings.scene.label } });
-  const overlay = h("div", { class: "overlay" }, new SelectionCard(session).element, new OrientationSign(session).element);
+  const corner = h("div", { class: "corner" }, new SelectionCard(session).element);
+  const overlay = h("div", { class: "overlay" }, corner, new OrientationSign(session).element);
   const scene = h("main", { class: "scene-box" }, container, overlay);
   app.append(scene);
   const stage = makeStage(container, session, new RecordedFiles(recording.files));

@@ -1,6 +1,6 @@
 import type { ServerMessage } from "../protocol";
 
-/** What the server told when the robot was exported; `viewer/export/html.py` writes it. */
+/** What the server told when the robot was exported; `viewer/features/export/html.py` writes it. */
 export interface Recording {
   /** Name and version of the program. */
   program: string;

@@ -1,4 +1,4 @@
-import type { DockviewApi, DockviewGroupPanel } from "dockview-core/dist/esm";
+import type { DockviewApi, DockviewGroupPanel } from "dockview";
 import { isNarrow } from "./default-layout";
 
 const SCENE = "scene";

@@ -1,4 +1,4 @@
-import type { AddPanelOptions, Direction, DockviewApi } from "dockview-core/dist/esm";
+import type { AddPanelOptions, Direction, DockviewApi } from "dockview";
 import { strings } from "../strings";
 import type { PanelId } from "./panel";
 

@@ -50,7 +50,7 @@ function displayItem(
     kind: "bool",
     value: display.checked,
     description: describe(display, drawn),
-    icon: drawn ? displayIcon(display.cls) : "unknown",
+    icon: drawn ? displayIcon(display.drawing) : "unknown",
     strong: true,
     severally: true,
     muted: !drawn || !display.enabled,
@@ -86,7 +86,7 @@ function offerTopics(
 }
 
 function isDrawn(display: DisplayState): boolean {
-  return display.isGroup || (display.supported && DRAWINGS.has(display.cls));
+  return display.isGroup || (display.supported && DRAWINGS.has(display.drawing));
 }
 
 /** What a display is, in a sentence or two. */

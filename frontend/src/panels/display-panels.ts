@@ -1,4 +1,4 @@
-import type { AddPanelOptions, DockviewApi, IContentRenderer } from "dockview-core/dist/esm";
+import type { AddPanelOptions, DockviewApi, IContentRenderer } from "dockview";
 import { h } from "../dom";
 import type { DisplayPanel, PanelHost } from "../scene/displays/display-panel";
 import { isNarrow } from "./default-layout";

@@ -1,5 +1,4 @@
-// The main file of the package writes its styles into the page at run time; ours come with the page, from its css file.
-import { createDockview, type DockviewApi, type IContentRenderer } from "dockview-core/dist/esm";
+import { createDockview, type DockviewApi, type IContentRenderer } from "dockview";
 import type { PanelName } from "../protocol";
 import { Signal } from "../state/signal";
 import { strings } from "../strings";

@@ -1,4 +1,4 @@
-import type { SerializedDockview } from "dockview-core/dist/esm";
+import type { SerializedDockview } from "dockview";
 import type { TextStorage } from "../state/storage";
 
 /** An arrangement of panels, and the file that it is kept for. */

@@ -1,4 +1,4 @@
-import type { ITabRenderer, TabPartInitParameters } from "dockview-core/dist/esm";
+import type { ITabRenderer, TabPartInitParameters } from "dockview";
 import { button, h } from "../dom";
 import { icon, type IconName } from "../icons";
 import { strings } from "../strings";

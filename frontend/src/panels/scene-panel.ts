@@ -33,7 +33,7 @@ export class ScenePanel implements Panel {
       "div",
       { class: "scene-box" },
       this.container,
-      h("div", { class: "overlay" }, h("div", { class: "notices" }, notice.element, banner.element), this.waiting, card.element, inspect.element, sign.element, new LineNotice(session).element),
+      h("div", { class: "overlay" }, h("div", { class: "notices" }, notice.element, banner.element), this.waiting, h("div", { class: "corner" }, new LineNotice(session).element, card.element), inspect.element, sign.element),
     );
     showSceneMenus(this.box, session.sceneMenu);
     this.element = h("div", { class: "scene-panel" }, toolbar.element, this.box);

@@ -1,6 +1,6 @@
 import { button, h } from "../dom";
 import { icon } from "../icons";
-import type { LinkScene, LinkStory } from "../protocol";
+import type { LinkScene, LinkProvenance } from "../protocol";
 import type { Session } from "../state/session";
 import { strings } from "../strings";
 import { placeText, shortPath } from "./place";
@@ -11,7 +11,7 @@ export class SelectionCard {
 
   constructor(private readonly session: Session) {
     session.selection.changed.on(() => this.update());
-    session.storyTold.on((story) => this.tell(story));
+    session.provenanceAnswered.on((provenance) => this.show(provenance));
     this.update();
   }
 
@@ -28,16 +28,16 @@ export class SelectionCard {
       place(link, (file, line) => this.session.description.placeAsked.emit({ file, line })),
       ...trail(link),
     );
-    if (link.place) this.session.connection.send({ type: "ask_story", display: selected.display, link: link.name });
+    if (link.place) this.session.connection.send({ type: "ask_provenance", display: selected.display, link: link.name });
   }
 
   /** Calls and values take the server a moment; they come in the place of the bare trail. */
-  private tell(story: LinkStory): void {
+  private show(provenance: LinkProvenance): void {
     const selected = this.session.selection.selected;
-    if (selected?.display !== story.display || selected.link.name !== story.link) return;
-    for (const old of this.element.querySelectorAll(".trail, .story")) old.remove();
-    const [, ...lines] = story.lines; // the first is the place, which the card shows already
-    if (lines.length > 0) this.element.append(h("pre", { class: "story", tabIndex: 0 }, lines.join("\n")));
+    if (selected?.display !== provenance.display || selected.link.name !== provenance.link) return;
+    for (const old of this.element.querySelectorAll(".trail, .provenance")) old.remove();
+    const [, ...lines] = provenance.lines; // the first is the place, which the card shows already
+    if (lines.length > 0) this.element.append(h("pre", { class: "provenance", tabIndex: 0 }, lines.join("\n")));
   }
 }
 

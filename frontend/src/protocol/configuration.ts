@@ -162,7 +162,7 @@ export interface LoadConfiguration {
   type: "load_configuration";
 }
 
-/** Open the file anew, without what was edited. */
+/** Open the file again, without what was edited. */
 export interface RevertConfiguration {
   type: "revert_configuration";
 }

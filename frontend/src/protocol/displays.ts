@@ -6,6 +6,7 @@ import type { Property, PropertyValue, StatusLevel, StatusRow } from "./parts";
 export interface Display {
   id: string;
   cls: string;
+  drawing: string;
   name: string;
   group: string | null;
   enabled: boolean;

@@ -58,7 +58,7 @@ import type {
 } from "./parameters";
 import type { AskFields, SeriesStates, TopicFields, WatchSeries } from "./plots";
 import type { AskPoint, CellGrid, CloudPoints, PointFields } from "./points";
-import type { AskStory, LinkStory, MeshStatus, RobotScene } from "./robot";
+import type { AskProvenance, LinkProvenance, MeshStatus, RobotScene } from "./robot";
 import type { Hello, Received } from "./session";
 import type { AimTeleop, Drive, TeleopState } from "./teleop";
 import type { Clock, ResetTime, SetTime, TimeReset, TimeState, WatchClock } from "./time";
@@ -99,6 +99,7 @@ export * from "./node-graph";
 export * from "./panels";
 export * from "./parameters";
 export * from "./parts";
+export * from "./pieces";
 export * from "./plots";
 export * from "./points";
 export * from "./robot";
@@ -109,123 +110,121 @@ export * from "./tools";
 export * from "./topics";
 export * from "./views";
 
-export const PROTOCOL_VERSION = 3;
-
 export type ServerMessage =
-  | Hello
-  | ExportReady
-  | ExportFailed
-  | Tree
-  | DisplayProperties
-  | PropertyChanged
-  | DisplayStatus
-  | DisplayForgotten
-  | RobotScene
-  | FrameTable
-  | ViewState
-  | Joints
-  | JointPositions
-  | Diagnostics
-  | LinkStory
-  | Description
-  | DescriptionChanged
-  | DescriptionText
-  | InertiaFindings
-  | TimeState
   | Clock
-  | TimeReset
-  | Tools
-  | ToolPropertyChanged
-  | ViewClasses
-  | SavedViews
   | Configuration
   | ConfigurationRefused
   | ConfigurationSaved
   | ConfigurationText
+  | Description
+  | DescriptionChanged
+  | DescriptionText
+  | Diagnostics
   | DisplayClasses
+  | DisplayForgotten
+  | DisplayProperties
+  | DisplayStatus
+  | ExportFailed
+  | ExportReady
   | Folder
-  | TopicChoices
-  | TopicList
-  | TopicFigures
-  | TopicMessage
-  | TopicFields
-  | SeriesStates
-  | NodeGraph
-  | ParameterNodes
-  | NodeParameters
-  | ParameterResult
-  | ParameterDump
+  | FrameTable
+  | Hello
+  | InertiaFindings
+  | JointPositions
+  | Joints
+  | LinkProvenance
   | LogLines
-  | TeleopState
+  | NodeGraph
+  | NodeParameters
+  | Panels
+  | ParameterDump
+  | ParameterNodes
+  | ParameterResult
   | PointFields
-  | Panels;
+  | PropertyChanged
+  | RobotScene
+  | SavedViews
+  | SeriesStates
+  | TeleopState
+  | TimeReset
+  | TimeState
+  | ToolPropertyChanged
+  | Tools
+  | TopicChoices
+  | TopicFields
+  | TopicFigures
+  | TopicList
+  | TopicMessage
+  | Tree
+  | ViewClasses
+  | ViewState;
 
 export type PageMessage =
-  | SetProperty
-  | Received
-  | AskExport
-  | SetJoint
-  | RandomizeJoints
-  | CenterJoints
-  | ViewChanged
-  | MarkerFeedback
-  | MeshStatus
-  | AskStory
-  | SetJoints
+  | AddDisplay
+  | AddTool
+  | AimTeleop
+  | AskConfigurationText
   | AskDescription
   | AskDescriptionText
-  | AskInertia
-  | SetTime
-  | ResetTime
-  | WatchClock
-  | SetToolProperty
-  | AddTool
-  | RemoveTool
-  | PoseChosen
-  | PointChosen
-  | SaveView
-  | ChangeSavedView
-  | RemoveSavedView
-  | AddDisplay
-  | AskConfigurationText
+  | AskExport
+  | AskFields
   | AskFolder
+  | AskInertia
+  | AskPoint
+  | AskProvenance
   | AskTopics
+  | CenterJoints
+  | ChangeSavedView
+  | Drive
+  | DumpParameters
   | DuplicateDisplays
   | GroupDisplays
   | LoadConfiguration
+  | MarkerFeedback
+  | MeshStatus
   | MoveDisplays
   | NewConfiguration
   | OpenConfiguration
+  | PointChosen
+  | PoseChosen
+  | RandomizeJoints
+  | Received
   | Redo
   | RemoveDisplays
+  | RemoveSavedView
+  | RemoveTool
   | RenameDisplay
+  | ResetTime
   | RevertConfiguration
   | SaveConfiguration
+  | SaveView
+  | SetJoint
+  | SetJoints
+  | SetParameter
+  | SetProperty
+  | SetTime
+  | SetToolProperty
+  | ShowPanels
   | Undo
-  | WatchTopics
-  | AskFields
-  | WatchSeries
+  | ViewChanged
+  | WatchClock
+  | WatchLog
   | WatchNodeGraph
   | WatchParameters
-  | SetParameter
-  | DumpParameters
-  | WatchLog
-  | AimTeleop
-  | Drive
-  | AskPoint
-  | ShowPanels;
+  | WatchSeries
+  | WatchTopics;
 
 export type DataContent =
-  | PointMarks
-  | PoseMarks
-  | PolygonLine
-  | RangeCone
-  | Screw
-  | EffortRings
-  | CloudPoints
   | CellGrid
+  | CloudPoints
+  | EffortRings
   | ImageFrame
-  | OccupancyMap
-  | InteractiveMarkerShape
   | InteractiveMarkerMoved
-  | MarkersChanged;
+  | InteractiveMarkerShape
+  | MarkersChanged
+  | OccupancyMap
+  | PointMarks
+  | PolygonLine
+  | PoseMarks
+  | RangeCone
+  | Screw;

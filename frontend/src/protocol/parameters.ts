@@ -39,7 +39,7 @@ export interface NodeParameters {
   type: "node_parameters";
 }
 
-/** What came of `SetParameter`; `reason` is the node's. */
+/** The outcome of `SetParameter`; `reason` is the node's. */
 export interface ParameterResult {
   node: string;
   name: string;

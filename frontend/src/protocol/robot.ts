@@ -61,17 +61,17 @@ export interface MeshStatus {
   type: "mesh_status";
 }
 
-/** The user selected a link of a RobotModel display and wants to know how it came to be. */
-export interface AskStory {
+/** The user selected a link of a RobotModel display and wants to know where it was written. */
+export interface AskProvenance {
   display: string;
   link: string;
-  type: "ask_story";
+  type: "ask_provenance";
 }
 
-/** Where a link was written, through which macro calls, and with which values, line by line; answers `AskStory`. */
-export interface LinkStory {
+/** Where a link was written, through which macro calls, with which values, as lines; answers `AskProvenance`. */
+export interface LinkProvenance {
   display: string;
   link: string;
   lines: string[];
-  type: "link_story";
+  type: "link_provenance";
 }

@@ -9,7 +9,7 @@ export interface TeleopTarget {
   frame_id: string;
 }
 
-/** What became of a pad's target: the type it publishes, how many listen, and why it does not publish, if so. */
+/** The state of a pad: the type it publishes, how many listen, and why it does not publish, if so. */
 export interface TeleopState {
   topic: string;
   kind: string;

@@ -2,7 +2,7 @@
 
 export type SyncMode = "Off" | "Exact" | "Approximate";
 
-/** How time goes, whenever that changes. `sources` are the displays whose messages can lead it. */
+/** The state of time, sent when it changes. `sources` are the displays whose messages can drive it. */
 export interface TimeState {
   paused: boolean;
   mode: SyncMode;
@@ -21,7 +21,7 @@ export interface Clock {
   type: "clock";
 }
 
-/** Time began anew: what displays keep of messages is gone. */
+/** Time was reset: displays dropped their messages. */
 export interface TimeReset {
   type: "time_reset";
 }

@@ -45,7 +45,7 @@ export interface TopicMessage {
   type: "topic_message";
 }
 
-/** What the page wants to know of topics from now on: their list, figures of some, messages of some. */
+/** What the page follows of topics from now on: their list, figures of some, messages of some. */
 export interface WatchTopics {
   listed: boolean;
   measured: string[];

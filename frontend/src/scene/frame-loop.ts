@@ -24,11 +24,17 @@ export class FrameLoop {
   private lastMs = -Infinity;
   private lateness = 0;
   private coarse = false;
+  private lastIsFine = false;
   private stillTimer = 0;
   private recent: number[] = [];
   private count = 0;
 
   constructor(private readonly draw: (fine: boolean) => void) {}
+
+  /** Nothing changed since the last frame, and that was a fine one. */
+  get settled(): boolean {
+    return this.requestedAt === null && this.lastIsFine;
+  }
 
   get framesDrawn(): number {
     return this.count;
@@ -76,6 +82,7 @@ export class FrameLoop {
     this.lastMs = now;
     this.recent.push(now);
     this.draw(fine);
+    this.lastIsFine = fine;
     this.count += 1;
     this.drawn.emit();
   }

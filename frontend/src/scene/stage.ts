@@ -61,6 +61,11 @@ export class Stage {
     return this.robotSettled;
   }
 
+  /** True while the last frame shows all that there is: none is due. */
+  get settled(): boolean {
+    return this.loop.settled && ![...this.drawings.values()].some(({ pacing }) => pacing.waiting);
+  }
+
   /** Visuals of all robots drawn in the last frame. */
   get visualsDrawn(): number {
     let count = 0;
@@ -159,7 +164,7 @@ export class Stage {
     this.session.selection.drop((item) => displays.some((display) => display.id === item.display));
     for (const display of displays) {
       const known = this.drawings.get(display.id);
-      const Drawing = DRAWINGS.get(display.cls);
+      const Drawing = DRAWINGS.get(display.drawing);
       if (known) this.propertiesChanged(known.display);
       else if (Drawing && display.supported) {
         const { session, meshes, panels } = this;

@@ -8,6 +8,8 @@ const GROUP = "rviz_common/Group";
 export class DisplayState {
   readonly id: string;
   readonly cls: string;
+  /** The class whose drawing is used: its own, or for a display of another package the one that it is like. */
+  readonly drawing: string;
   name = "";
   /** Its own box. */
   checked = false;
@@ -21,6 +23,7 @@ export class DisplayState {
   constructor(display: Display) {
     this.id = display.id;
     this.cls = display.cls;
+    this.drawing = display.drawing;
     this.update(display);
   }
 

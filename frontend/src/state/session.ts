@@ -1,5 +1,5 @@
 import type { Connection } from "../connection/connection";
-import type { DiagnosticItem, Hello, LinkStory, PropertyValue, RobotScene } from "../protocol";
+import type { DiagnosticItem, Hello, LinkProvenance, PropertyValue, RobotScene } from "../protocol";
 import { AngleUnits } from "./angle-unit";
 import { ConfigurationState } from "./configuration";
 import { DisplayDataStore } from "./display-data";
@@ -37,8 +37,8 @@ export class Session {
   readonly slowLine: SlowLine;
   readonly robotChanged = new Signal<RobotScene>();
   readonly diagnosticsChanged = new Signal();
-  /** Answers `ask_story`. */
-  readonly storyTold = new Signal<LinkStory>();
+  /** Answers `ask_provenance`. */
+  readonly provenanceAnswered = new Signal<LinkProvenance>();
   readonly greeted = new Signal<Hello>();
   /** Something in the scene wants a menu. */
   readonly sceneMenu = new Signal<SceneMenu>();
@@ -101,7 +101,7 @@ export class Session {
       this.diagnostics = items;
       this.diagnosticsChanged.emit();
     });
-    connection.on("link_story", (message) => this.storyTold.emit(message));
+    connection.on("link_provenance", (message) => this.provenanceAnswered.emit(message));
     connection.transforms.on((transforms) => this.frames.setTransforms(transforms));
   }
 }

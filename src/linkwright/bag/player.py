@@ -1,4 +1,4 @@
-"""Playing: publishes the messages of a recording at the distances at which they were received."""
+"""Plays a recording: publishes its messages at the intervals at which they were received."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from linkwright.bag.reading import BagReader
 from linkwright.bag.selection import TopicSelection
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import Node, Publisher, QoSProfile
-from linkwright.graph.dispatch import Alarm
+from linkwright.graph.time.timebase import Alarm
 from linkwright.messages import Time, get_message
 
 _NANOSECONDS_PER_SECOND = 1_000_000_000
@@ -134,14 +134,14 @@ class Player:
         self._schedule()
 
     def play_next(self) -> None:
-        """While it is paused: publish one more message."""
+        """Publish one more message while paused."""
         if self._paused and self._next is not None:
             self._position_ns = max(self._position_ns, self._next[1])
             self._publish_next()
             self._end_or_schedule()
 
     def close(self) -> None:
-        """Play no further."""
+        """Stop playing."""
         self.finished = True
         if self._alarm is not None:
             self._alarm.cancel()
@@ -201,16 +201,16 @@ class Player:
         if self.finished or self._paused or self._next is None:
             return
         wait_ns = round((self._next[1] - self._position_ns) / self._rate)
-        assert self._node.dispatcher is not None
-        self._alarm = self._node.dispatcher.call_at(self._since_ns + max(0, wait_ns), self._run)
+        assert self._node.handle.dispatcher is not None
+        self._alarm = self._node.handle.dispatcher.call_at(self._since_ns + max(0, wait_ns), self._run)
 
     def _anchor(self) -> None:
-        """Count from here: what follows changes how fast time goes."""
+        """Take now as the origin of the playing time, because its rate is about to change."""
         self._position_ns = self.now_ns()
         self._since_ns = self._steady_ns()
 
     def _steady_ns(self) -> int:
-        return self._node.timebase.steady_ns()
+        return self._node.handle.timebase.steady_ns()
 
     # --- publishers -----------------------------------------------------------------------------------------------
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, joined, phrase
 from linkwright.graph import (
     DurabilityPolicy,
     Duration,
@@ -78,7 +78,7 @@ def from_bag(qos: Qos) -> QoSProfile:
 
 
 def profile_for_recording(offered: Sequence[QoSProfile]) -> QoSProfile:
-    """What to subscribe with, so that every publisher of a topic is heard.
+    """The profile to subscribe with, so that every publisher of a topic is compatible.
 
     Reliable and transient local are asked for where all publishers offer them.
 
@@ -95,7 +95,7 @@ def profile_for_recording(offered: Sequence[QoSProfile]) -> QoSProfile:
 
 
 def profile_for_playing(recorded: Sequence[QoSProfile]) -> QoSProfile:
-    """What to publish with: what was recorded where all recorded publishers agree, else the default."""
+    """The profile to publish with: the recorded one where all publishers had the same, else the default."""
     if recorded and all(qos == recorded[0] for qos in recorded):
         return recorded[0]
     return QoSProfile(depth=10)
@@ -112,7 +112,11 @@ def overrides_of(document: object, source: str) -> dict[str, QoSProfile]:
         LinkwrightError: BAG106, it has not that form.
     """
     if not isinstance(document, Mapping) or not all(isinstance(each, Mapping) for each in document.values()):
-        raise _wrong(source, "it does not map topics to policies", "write a topic, and below it `reliability: ...`")
+        raise _wrong(
+            source,
+            phrase("it does not map topics to policies"),
+            phrase("write a topic, and below it `reliability: ...`"),
+        )
     return {str(topic): _profile(policies, str(topic), source) for topic, policies in document.items()}
 
 
@@ -123,20 +127,30 @@ def _profile(policies: Mapping[str, Any], topic: str, source: str) -> QoSProfile
             kind = _POLICIES[name]
             if str(value).upper() not in kind.__members__:
                 known = kind.short_keys()
-                hint = did_you_mean(str(value).lower(), known) or "there are " + ", ".join(known)
-                raise _wrong(source, f"'{value}' is no {name} (topic '{topic}')", hint)
+                hint = did_you_mean(str(value).lower(), known) or phrase("there are {names}", names=joined(known))
+                raise _wrong(
+                    source,
+                    phrase("'{value}' is no {name} (topic '{topic}')", value=value, name=name, topic=topic),
+                    hint,
+                )
             values[name] = kind[str(value).upper()]
         elif name in _DURATIONS:
             if not isinstance(value, Mapping) or set(value) - {"sec", "nsec"}:
                 raise _wrong(
-                    source, f"{name} of topic '{topic}' is no duration", "write `sec: 1` and `nsec: 0` below it"
+                    source,
+                    phrase("{name} of topic '{topic}' is no duration", name=name, topic=topic),
+                    phrase("write `sec: 1` and `nsec: 0` below it"),
                 )
             values[name] = Duration(seconds=value.get("sec", 0), nanoseconds=value.get("nsec", 0))
         elif _is_plain(name, value):
             values[name] = value
         else:
             known = [*_POLICIES, *_DURATIONS, "depth", "avoid_ros_namespace_conventions"]
-            raise _wrong(source, f"policy '{name}' of topic '{topic}' is not valid", did_you_mean(str(name), known))
+            raise _wrong(
+                source,
+                phrase("policy '{name}' of topic '{topic}' is not valid", name=name, topic=topic),
+                did_you_mean(str(name), known),
+            )
     if "depth" not in values and values.get("history") is not HistoryPolicy.KEEP_ALL:
         values["depth"] = 10
     return QoSProfile(**values)
@@ -148,5 +162,11 @@ def _is_plain(name: str, value: object) -> bool:
     return name == "avoid_ros_namespace_conventions" and isinstance(value, bool)
 
 
-def _wrong(source: str, reason: str, hint: str | None = None) -> LinkwrightError:
-    return LinkwrightError(Diagnostic("BAG106", f"'{source}' cannot be used as QoS overrides: {reason}", hint=hint))
+def _wrong(source: str, reason: Phrase, hint: Phrase | None = None) -> LinkwrightError:
+    return LinkwrightError(
+        Diagnostic(
+            "BAG106",
+            phrase("'{source}' cannot be used as QoS overrides: {reason}", source=source, reason=reason),
+            hint=hint,
+        )
+    )

@@ -12,7 +12,17 @@ from typing import TYPE_CHECKING, Any
 
 from linkwright.bag.qos import from_bag
 from linkwright.bag.unfinished import finished_copy, is_unfinished
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, did_you_mean, display_path
+from linkwright.diagnostics import (
+    Diagnostic,
+    LinkwrightError,
+    Note,
+    Severity,
+    did_you_mean,
+    display_path,
+    foreign,
+    missing_extra,
+    phrase,
+)
 from linkwright.messages import add_definitions
 
 if TYPE_CHECKING:
@@ -52,14 +62,18 @@ class BagReader:
             which has neither ``metadata.yaml`` nor an index, everything is read that was written.
 
     Raises:
-        LinkwrightError: BAG101 there is nothing there, BAG102 it is not a recording or a damaged one.
+        LinkwrightError: BAG101 there is nothing there, BAG102 it is not a recording or a damaged one, BAG107 `rosbags`
+            is not installed.
     """
 
     def __init__(self, path: str | Path) -> None:
-        from rosbags.rosbag2 import Reader
-
+        try:
+            from rosbags.rosbag2 import Reader
+        except ModuleNotFoundError as error:
+            raise missing_extra("BAG107", error) from None
         self.path = Path(path)
         self._open = ExitStack()
+        self._is_cut_off = False
         target = _storage_target(self.path)
         try:
             self._reader = Reader(self._finished(target))
@@ -86,6 +100,7 @@ class BagReader:
         files = sorted(target.glob("*.mcap")) if target.is_dir() else [target]
         if len(files) != 1 or files[0].suffix != ".mcap" or not is_unfinished(files[0]):
             return target
+        self._is_cut_off = True
         scratch = self._open.enter_context(TemporaryDirectory(prefix="linkwright_bag_"))
         return finished_copy(files[0], Path(scratch))
 
@@ -97,6 +112,18 @@ class BagReader:
             form, text = each.msgdef
             if form is not MessageDefinitionFormat.NONE:
                 add_definitions(each.msgtype, text, origin, idl=form is MessageDefinitionFormat.IDL)
+
+    @property
+    def finding(self) -> Diagnostic | None:
+        """That the recording has no end (BAG109): it was killed, or cut off in a copy."""
+        if not self._is_cut_off:
+            return None
+        return Diagnostic(
+            "BAG109",
+            phrase("recording '{path}' has no end: it was killed, or cut off in a copy", path=display_path(self.path)),
+            severity=Severity.WARNING,
+            hint=phrase("what is whole in it is read; what came after that is lost"),
+        )
 
     @property
     def files(self) -> list[Path]:
@@ -129,7 +156,11 @@ class BagReader:
             if name not in self._reader.topics:
                 hint = did_you_mean(name, self._reader.topics)
                 raise LinkwrightError(
-                    Diagnostic("BAG103", f"there is no topic '{name}' in '{display_path(self.path)}'", hint=hint)
+                    Diagnostic(
+                        "BAG103",
+                        phrase("there is no topic '{name}' in '{path}'", name=name, path=display_path(self.path)),
+                        hint=hint,
+                    )
                 )
         connections = [each for each in self._reader.connections if not topics or each.topic in topics]
         return self._read(self._reader.messages(connections, start=start_ns))
@@ -160,19 +191,19 @@ class BagReader:
 def _storage_target(path: Path) -> Path:
     """What the library is to open: the folder, or its only file where the metadata are missing."""
     if not path.exists():
-        raise LinkwrightError(Diagnostic("BAG101", f"there is no recording '{display_path(path)}'"))
+        raise LinkwrightError(Diagnostic("BAG101", phrase("there is no recording '{path}'", path=display_path(path))))
     if path.is_file() or (path / "metadata.yaml").exists():
         return path
     files = sorted(each for each in path.iterdir() if each.suffix in _SUFFIXES)
     if len(files) == 1:
         return files[0]
-    found = ", ".join(each.name for each in files) or "none"
+    found = ", ".join(each.name for each in files) or phrase("none")
     raise LinkwrightError(
         Diagnostic(
             "BAG102",
-            f"'{display_path(path)}' is not a recording: it has no metadata.yaml",
-            notes=(Note(f"files with messages in it: {found}"),),
-            hint="name one of those files instead" if files else None,
+            phrase("'{path}' is not a recording: it has no metadata.yaml", path=display_path(path)),
+            notes=(Note(phrase("files with messages in it: {found}", found=found)),),
+            hint=phrase("name one of those files instead") if files else None,
         )
     )
 
@@ -190,4 +221,9 @@ def _profiles(connection: Any) -> list[Any]:
 
 def _unreadable(path: Path, error: Exception) -> LinkwrightError:
     reason = str(error).strip().rstrip(".") or type(error).__name__
-    return LinkwrightError(Diagnostic("BAG102", f"'{display_path(path)}' cannot be read as a recording: {reason}"))
+    return LinkwrightError(
+        Diagnostic(
+            "BAG102",
+            phrase("'{path}' cannot be read as a recording: {reason}", path=display_path(path), reason=foreign(reason)),
+        )
+    )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from linkwright.bag.qos import profile_for_recording
@@ -10,7 +10,7 @@ from linkwright.bag.selection import TopicSelection
 from linkwright.bag.writing import BagWriter
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import Node, QoSProfile
-from linkwright.graph.transport import MessageInfo
+from linkwright.graph.endpoints.info import MessageInfo
 from linkwright.messages import get_message
 
 _FLUSH_SECONDS = 1.0
@@ -32,6 +32,7 @@ class Recorder:
         without_publishers: whether topics that have subscriptions only are recorded too.
         without_subscriptions: whether topics that nobody subscribes to are recorded too.
         paused: whether messages are dropped until `toggle_paused`.
+        guarded: wraps what the node calls back; the place to end when the disk is full. Otherwise the node logs it.
     """
 
     def __init__(
@@ -46,6 +47,7 @@ class Recorder:
         without_publishers: bool = False,
         without_subscriptions: bool = True,
         paused: bool = False,
+        guarded: Callable[[Callable[..., object]], Callable[..., object]] = lambda callback: callback,
     ) -> None:
         self._node = node
         self._selection = selection
@@ -55,12 +57,13 @@ class Recorder:
         self._without_subscriptions = without_subscriptions
         self._by_clock = bool(node.get_parameter("use_sim_time").value)
         self._logger = node.get_logger()
+        self._receive = guarded(self._write)
         self._refused: set[str] = set()
         self._count = 0
         self.paused = paused
         self._logger.info("Listening for topics...")
-        self._looking = node.create_timer(polling_seconds, self._look) if discover else None
-        self._flushing = node.create_timer(_FLUSH_SECONDS, writer.flush)
+        self._looking = node.create_timer(polling_seconds, guarded(self._look)) if discover else None
+        self._flushing = node.create_timer(_FLUSH_SECONDS, guarded(writer.flush))
         self._look()
 
     @property
@@ -74,7 +77,7 @@ class Recorder:
         self._logger.info("Pausing recording." if self.paused else "Resuming recording.")
 
     def close(self) -> None:
-        """Write the rest and close the recording; say what of that which was asked for is not in it."""
+        """Write the rest and close the recording; report the requested topics that are not in it."""
         self._flushing.cancel()
         if self._looking is not None:
             self._looking.cancel()
@@ -113,7 +116,7 @@ class Recorder:
         self._node.create_subscription(
             message_class,
             name,
-            lambda data, info: self._write(name, data, info),
+            lambda data, info: self._receive(name, data, info),
             self._overrides.get(name) or profile_for_recording(offered),
             raw=True,
         )

@@ -6,8 +6,8 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError
-from linkwright.graph.service_introspection import EVENT_TOPIC_SUFFIX
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
+from linkwright.graph.endpoints.service_introspection import EVENT_TOPIC_SUFFIX
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ class TopicSelection:
 
     @property
     def is_complete_with(self) -> frozenset[str] | None:
-        """The topics after which there is nothing more to look for; None where new ones may always come."""
+        """The topics after which discovery may stop; None where new ones may always match."""
         return None if self._takes_what_comes else self.named
 
     @property
@@ -104,5 +104,8 @@ def _compiled(pattern: str) -> re.Pattern[str] | None:
         return re.compile(pattern)
     except re.error as error:
         raise LinkwrightError(
-            Diagnostic("BAG104", f"'{pattern}' is not a valid regular expression: {error.msg}")
+            Diagnostic(
+                "BAG104",
+                phrase("'{pattern}' is not a valid regular expression: {msg}", pattern=pattern, msg=foreign(error.msg)),
+            )
         ) from error

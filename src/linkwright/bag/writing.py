@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import contextlib
+import sqlite3
 from collections.abc import Collection
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from linkwright.bag.qos import to_bag
-from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path
+from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, missing_extra, phrase
 from linkwright.messages import type_hash
 from linkwright.messages.schema_text import schema_of
 
@@ -19,6 +20,9 @@ if TYPE_CHECKING:
 
 STORAGES = ("mcap", "sqlite3")
 """The file formats; the first is the default, as in ROS 2 from Iron on."""
+
+_REFUSALS = (OSError, sqlite3.Error)
+"""What a full disk brings about."""
 
 _VERSION: Literal[8] = 8
 """Of the folder's metadata; Humble reads 8 and below but for fields it does not know, Jazzy writes 9."""
@@ -33,12 +37,15 @@ class BagWriter:
         compressed: whether chunks of messages are compressed (zstd); MCAP only.
 
     Raises:
-        LinkwrightError: BAG105, the folder exists already or cannot be made.
+        LinkwrightError: BAG105, the folder exists already or cannot be made; BAG107, `rosbags` is not installed.
     """
 
     def __init__(self, path: str | Path, storage: str = STORAGES[0], *, compressed: bool = False) -> None:
-        from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
-        from rosbags.rosbag2.errors import WriterError
+        try:
+            from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
+            from rosbags.rosbag2.errors import WriterError
+        except ModuleNotFoundError as error:
+            raise missing_extra("BAG107", error) from None
 
         self.path = Path(path)
         try:
@@ -51,8 +58,12 @@ class BagWriter:
             raise LinkwrightError(
                 Diagnostic(
                     "BAG105",
-                    f"recording '{display_path(self.path)}' cannot be made: {reason}",
-                    hint="name another folder with -o",
+                    phrase(
+                        "recording '{path}' cannot be made: {reason}",
+                        path=display_path(self.path),
+                        reason=foreign(reason),
+                    ),
+                    hint=phrase("name another folder with -o"),
                 )
             ) from error
         self._connections: dict[str, Any] = {}
@@ -66,15 +77,18 @@ class BagWriter:
         """Make room for a topic; its messages may follow.
 
         Raises:
-            LinkwrightError: MSG101, the type is not known.
+            LinkwrightError: MSG101, the type is not known; BAG108, the disk refuses.
         """
-        self._connections[name] = self._writer.add_connection(
-            name,
-            type_name,
-            msgdef=schema_of(type_name),
-            rihs01=type_hash(type_name),
-            offered_qos_profiles=[to_bag(qos) for qos in offered_qos],
-        )
+        try:
+            self._connections[name] = self._writer.add_connection(
+                name,
+                type_name,
+                msgdef=schema_of(type_name),
+                rihs01=type_hash(type_name),
+                offered_qos_profiles=[to_bag(qos) for qos in offered_qos],
+            )
+        except _REFUSALS as error:
+            raise self._ended(error) from error
 
     def write(self, topic: str, stamp_ns: int, data: bytes | memoryview) -> None:
         """Add a message.
@@ -83,27 +97,63 @@ class BagWriter:
             topic: a topic that was added.
             stamp_ns: when it was received, nanoseconds since the epoch.
             data: CDR bytes with their header of four.
+
+        Raises:
+            LinkwrightError: BAG108, the disk refuses; what was written until then can be played.
         """
-        self._writer.write(self._connections[topic], stamp_ns, data)
+        if self._writer.storage is None:
+            return
+        try:
+            self._writer.write(self._connections[topic], stamp_ns, data)
+        except _REFUSALS as error:
+            raise self._ended(error) from error
 
     def flush(self) -> None:
-        """Have what was written so far survive the end of this process, however it ends."""
+        """Have what was written so far survive the end of this process, however it ends.
+
+        Raises:
+            LinkwrightError: BAG108, the disk refuses.
+        """
         storage: Any = self._writer.storage
-        if hasattr(storage, "close_chunk"):
-            if storage.chunk.msgs:
-                storage.close_chunk()
-            storage.bio.flush()
-        else:
-            storage.conn.commit()
+        if storage is None:
+            return
+        try:
+            if hasattr(storage, "close_chunk"):
+                if storage.chunk.msgs:
+                    storage.close_chunk()
+                storage.bio.flush()
+            else:
+                storage.conn.commit()
+        except _REFUSALS as error:
+            raise self._ended(error) from error
 
     def close(self) -> None:
-        """Write the index and the metadata. A second call does nothing."""
+        """Write the index and the metadata. A second call, and one after the disk refused something, does nothing.
+
+        Raises:
+            LinkwrightError: BAG108, the disk refuses.
+        """
         if self._writer.storage is not None:
-            self._writer.close()
+            try:
+                self._writer.close()
+            except _REFUSALS as error:
+                raise self._ended(error) from error
+
+    def _ended(self, error: Exception) -> LinkwrightError:
+        """What to say when the disk refuses something; nothing more is written then."""
+        storage, self._writer.storage = self._writer.storage, None
+        with contextlib.suppress(*_REFUSALS):  # what waits in its buffer is refused again
+            if storage is not None:
+                storage.abort()
+        reason = error.strerror if isinstance(error, OSError) else str(error)
+        message = phrase(
+            "recording '{path}' ends here: {reason}", path=display_path(self.path), reason=foreign(reason or error)
+        )
+        hint = phrase("what was written until then is kept, and `linkwright bag play` plays it")
+        return LinkwrightError(Diagnostic("BAG108", message, hint=hint))
 
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:
-        with contextlib.suppress(OSError):
-            self.close()
+        self.close()

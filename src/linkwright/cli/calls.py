@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from linkwright.cli.lookup import absolute_or_given, is_hidden, unknown
-from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.diagnostics import Diagnostic, LinkwrightError, joined, phrase
 
 if TYPE_CHECKING:
     from linkwright.cli.session import Session
@@ -43,14 +43,27 @@ async def call(
             raise NoAnswerError(
                 Diagnostic(
                     "CLI421",
-                    f"there is no service '{service_name}' of type {service_type}",
-                    hint="the node may have ended, or was made without this service",
+                    phrase(
+                        "there is no service '{service_name}' of type {service_type}",
+                        service_name=service_name,
+                        service_type=service_type,
+                    ),
+                    hint=phrase("the node may have ended, or was made without this service"),
                 )
             )
         future = client.call_async(request)
         response = await session.answer(future, timeout)
         if response is None:
-            raise NoAnswerError(Diagnostic("CLI422", f"service '{service_name}' did not answer in {timeout:g} s"))
+            raise NoAnswerError(
+                Diagnostic(
+                    "CLI422",
+                    phrase(
+                        "service '{service_name}' did not answer in {timeout:g} s",
+                        service_name=service_name,
+                        timeout=timeout,
+                    ),
+                )
+            )
         return response
     finally:
         session.node.destroy_client(client)
@@ -83,9 +96,12 @@ async def is_ready(
         raise NoAnswerError(
             Diagnostic(
                 "CLI443",
-                f"'{name}' is offered by a node on Fast DDS (rmw_fastrtps_cpp), whose services cannot be "
-                "called from here",
-                hint="start that node with RMW_IMPLEMENTATION=rmw_cyclonedds_cpp",
+                phrase(
+                    "'{name}' is offered by a node on Fast DDS (rmw_fastrtps_cpp), whose services cannot be"
+                    " called from here",
+                    name=name,
+                ),
+                hint=phrase("start that node with RMW_IMPLEMENTATION=rmw_cyclonedds_cpp"),
             )
         )
     return ready()
@@ -93,7 +109,7 @@ async def is_ready(
 
 def node_names(session: Session, *, hidden: bool = False) -> list[str]:
     """Full names of the nodes, sorted, each as often as there are nodes of it."""
-    from linkwright.graph.names import join
+    from linkwright.graph.names.rules import join
 
     found = (join(namespace, name) for name, namespace in session.node.get_node_names_and_namespaces())
     return sorted(name for name in found if hidden or not is_hidden(name))
@@ -114,6 +130,10 @@ async def find_node(session: Session, name: str, *, hidden: bool = False, timeou
     full = absolute_or_given(name)
     if not await session.until(lambda: full in node_names(session, hidden=hidden), timeout):
         known = node_names(session, hidden=hidden)
-        nothing = f"there are: {', '.join(dict.fromkeys(known))}" if known else "no nodes are running"
-        raise unknown("CLI423", f"Node not found: '{full}'", full, known, nothing)
+        nothing = (
+            phrase("there are: {known}", known=joined(dict.fromkeys(known)))
+            if known
+            else phrase("no nodes are running")
+        )
+        raise unknown("CLI423", phrase("Node not found: '{full}'", full=full), full, known, nothing)
     return full

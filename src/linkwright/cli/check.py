@@ -6,13 +6,16 @@ import argparse
 import sys
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linkwright.cli.assignments import parse_assignments
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, has_errors, print_diagnostics
+from linkwright.assignments import parse_assignments
+from linkwright.cli.endings import say
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, counted, has_errors, phrase, print_diagnostics
+from linkwright.diagnostics.alike import alike_together
 from linkwright.diagnostics.formats import FORMATS, format_diagnostics
 from linkwright.diagnostics.translation import localized
 
@@ -20,10 +23,10 @@ if TYPE_CHECKING:
     from linkwright.lint.apply import Mended
     from linkwright.lint.engine import Checked
     from linkwright.lint.settings import Settings
+    from linkwright.packages import PackageFinder
     from linkwright.urdf import Robot
-    from linkwright.workspace import PackageFinder
 
-HELP = "check URDF and xacro files and the packages around them; of one file, print the link tree"
+HELP = "check URDF and xacro files, and the packages in folders; of one file, print the link tree"
 
 _USAGE = 2
 
@@ -37,6 +40,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="URDF and xacro files, folders that are searched for descriptions and packages, and values for the"
         " files' <xacro:arg>",
     )
+    parser.add_argument(
+        "--package",
+        action="store_true",
+        help="check too the packages that the files lie in, as is done for folders",
+    )
+    parser.add_argument("--all", action="store_true", help="print each finding, not the first of those that are alike")
     parser.add_argument("--format", choices=FORMATS, default="text", help="how to print what is found (default: text)")
     parser.add_argument("--strict", action="store_true", help="warnings make the exit status 1 too")
     parser.add_argument("--select", metavar="RULES", action="append", help="report only these, such as LW2,axis-zero")
@@ -58,23 +67,24 @@ def run(arguments: argparse.Namespace) -> int:
         None if arguments.select is None else _listed(arguments.select),
         _listed(arguments.ignore or ()),
         None if arguments.config is None else Path(arguments.config),
+        arguments.package,
     )
     unknown = words.unknown_selector()
     if unknown:
         return _usage(unknown)
     if arguments.config is not None and not Path(arguments.config).is_file():
-        return _usage(f"no such file: '{arguments.config}'")
+        return _usage(phrase("no such file: '{config}'", config=arguments.config))
     if arguments.diff:
         return _print_diff(paths, words, arguments.unsafe_fixes)
     mended = _fix(paths, words, arguments.unsafe_fixes, write=True) if arguments.fix or arguments.unsafe_fixes else []
     found, robot = _check(paths, words)
-    _print(found, arguments.format)
+    _print(found, arguments.format, everything=arguments.all)
     if arguments.format == "text":
         if robot is not None:
             from linkwright.urdf import tree_text
 
             sys.stdout.write(tree_text(robot))
-        _summarise(found, mended, several=len(paths) > 1 or paths[0].is_dir())
+        _summarise(found, mended)
     if arguments.statistics:
         _print_statistics(found)
     failed = has_errors(found) or (arguments.strict and any(each.severity is Severity.WARNING for each in found))
@@ -89,11 +99,12 @@ class _Words:
     select: tuple[str, ...] | None
     ignore: tuple[str, ...]
     config: Path | None
+    package: bool
     finders: dict[Path, PackageFinder] = field(default_factory=dict)
 
     def finder(self, file: Path) -> PackageFinder:
         """Where the packages are for a file; one finder for each folder, because a search takes time."""
-        from linkwright.workspace import PackageFinder
+        from linkwright.packages import PackageFinder
 
         folder = file.absolute().parent
         if folder not in self.finders:
@@ -102,7 +113,7 @@ class _Words:
 
     def unknown_selector(self) -> str | None:
         """What to say of a selector that selects nothing, or None."""
-        from linkwright.lint.selectors import is_selector, selector_hint
+        from linkwright.lint.selector_words import is_selector, selector_hint
 
         for word in (*(self.select or ()), *self.ignore):
             if not is_selector(word):
@@ -112,7 +123,7 @@ class _Words:
     def settings(self, path: Path) -> tuple[Settings, tuple[Diagnostic, ...]]:
         """The settings for a file or folder, with what is wrong with their text."""
         from linkwright.lint.configuration import read_settings, settings_for
-        from linkwright.lint.selectors import canonical
+        from linkwright.lint.selector_words import canonical
 
         settings, trouble = settings_for(path) if self.config is None else read_settings(self.config)
         select = None if self.select is None else tuple(map(canonical, self.select))
@@ -124,11 +135,13 @@ def _check(paths: Sequence[Path], words: _Words) -> tuple[list[Diagnostic], Robo
     from linkwright.lint.engine import examine_package
     from linkwright.lint.targets import find_targets
 
-    targets = find_targets(paths)
+    targets = find_targets(paths, around=words.package)
     if not targets.files and not targets.packages:
         named = ", ".join(f"'{path}'" for path in paths)
-        hint = "descriptions are .urdf files and .xacro files with <robot name=...> that no other file includes"
-        raise LinkwrightError(Diagnostic("CLI302", f"there is nothing to check in {named}", hint=hint))
+        hint = phrase("descriptions are .urdf files and .xacro files with <robot name=...> that no other file includes")
+        raise LinkwrightError(
+            Diagnostic("CLI302", phrase("there is nothing to check in {named}", named=named), hint=hint)
+        )
     found: dict[tuple[str, object, str], Diagnostic] = {}
     robot = None
     for file in targets.files:
@@ -142,14 +155,22 @@ def _check(paths: Sequence[Path], words: _Words) -> tuple[list[Diagnostic], Robo
 
 
 def _add(found: dict[tuple[str, object, str], Diagnostic], more: Iterable[Diagnostic]) -> None:
-    """Add what is new; a file that two robots include says the same twice."""
+    """Add what is new; a file that two robots include says the same twice.
+
+    Of a finding's element nothing is wanted any more, and it would keep its whole description in memory.
+    """
+    from linkwright.lint.finding import Finding
+
     for diagnostic in more:
-        found.setdefault((diagnostic.code, diagnostic.span, diagnostic.message), diagnostic)
+        key = (diagnostic.code, diagnostic.span, diagnostic.message)
+        if key not in found:
+            found[key] = replace(diagnostic, element=None) if isinstance(diagnostic, Finding) else diagnostic
 
 
 def _examine(file: Path, words: _Words, text: str | None = None) -> tuple[Checked, tuple[Diagnostic, ...]]:
     from linkwright.lint.engine import examine
     from linkwright.lint.rule import Scope
+    from linkwright.xmltree import Overlay
 
     settings, trouble = words.settings(file)
     checked = examine(
@@ -157,7 +178,7 @@ def _examine(file: Path, words: _Words, text: str | None = None) -> tuple[Checke
         arguments=words.values,
         packages=words.finder(file),
         settings=settings,
-        text=text,
+        overlay=None if text is None else Overlay({file: text}),
         scopes=(Scope.DESCRIPTION,),
     )
     return checked, trouble
@@ -167,15 +188,17 @@ def _fix(paths: Sequence[Path], words: _Words, unsafe: bool, *, write: bool) -> 
     from linkwright.lint.apply import fix_file
     from linkwright.lint.engine import examine_package
     from linkwright.lint.targets import find_targets
-    from linkwright.workspace.manifest import MANIFEST
+    from linkwright.packages.manifest import MANIFEST
+    from linkwright.xmltree import Overlay
 
     def file_again(file: Path, text: str | None) -> Iterable[Diagnostic]:
         return _examine(file, words, text)[0].diagnostics
 
-    def package_again(folder: Path, _text: str | None) -> Iterable[Diagnostic]:
-        return examine_package(folder, words.settings(folder)[0]).diagnostics
+    def package_again(folder: Path, text: str | None) -> Iterable[Diagnostic]:
+        overlay = None if text is None else Overlay({folder / MANIFEST: text})
+        return examine_package(folder, words.settings(folder)[0], overlay=overlay).diagnostics
 
-    targets = find_targets(paths)
+    targets = find_targets(paths, around=words.package)
     checks = [(file, partial(file_again, file)) for file in targets.files]
     checks += [(folder / MANIFEST, partial(package_again, folder)) for folder in targets.packages]
     return [fix_file(path, check, unsafe=unsafe, write=write) for path, check in checks]
@@ -191,22 +214,32 @@ def _print_diff(paths: Sequence[Path], words: _Words, unsafe: bool) -> int:
     return 1 if seen else 0
 
 
-def _print(found: Sequence[Diagnostic], form: str) -> None:
+def _print(found: Sequence[Diagnostic], form: str, *, everything: bool) -> None:
     if form == "text":
-        print_diagnostics(found, sys.stderr)
+        with suppress(OSError):  # as with `say`
+            print_diagnostics(found if everything else alike_together(found), sys.stderr)
     else:
         sys.stdout.write(format_diagnostics(found, form))
 
 
-def _summarise(found: Sequence[Diagnostic], mended: Sequence[Mended], *, several: bool) -> None:
+def _summarise(found: Sequence[Diagnostic], mended: Sequence[Mended]) -> None:
     if mended:
         count = sum(sum(each.counts.values()) for each in mended)
         files = len({file for each in mended for file in each.texts})
-        print(localized(f"mended {_count(count, 'finding')} in {_count(files, 'file')}"), file=sys.stderr)
-    if several:
-        errors = sum(each.severity is Severity.ERROR for each in found)
-        warnings = sum(each.severity is Severity.WARNING for each in found)
-        print(localized(f"{_count(errors, 'error')}, {_count(warnings, 'warning')}"), file=sys.stderr)
+        line = phrase(
+            "mended {findings} in {files}",
+            findings=counted("{count} finding", "{count} findings", count),
+            files=counted("{count} file", "{count} files", files),
+        )
+        say(localized(line))
+    errors = sum(each.severity is Severity.ERROR for each in found)
+    warnings = sum(each.severity is Severity.WARNING for each in found)
+    line = phrase(
+        "{errors}, {warnings}",
+        errors=counted("{count} error", "{count} errors", errors),
+        warnings=counted("{count} warning", "{count} warnings", warnings),
+    )
+    say(localized(line))
 
 
 def _print_statistics(found: Iterable[Diagnostic]) -> None:
@@ -214,11 +247,7 @@ def _print_statistics(found: Iterable[Diagnostic]) -> None:
 
     for code, count in sorted(Counter(each.code for each in found).items(), key=lambda each: (-each[1], each[0])):
         page = find_page(code)
-        print(f"{count:6}  {code:<9} {page.name or page.title if page else ''}".rstrip(), file=sys.stderr)
-
-
-def _count(number: int, what: str) -> str:
-    return f"{number} {what}" if number == 1 else f"{number} {what}s"
+        print(f"{count:6}  {code:<9} {page.name or localized(page.title) if page else ''}".rstrip(), file=sys.stderr)
 
 
 def _listed(words: Iterable[str]) -> tuple[str, ...]:

@@ -14,15 +14,17 @@ from importlib import import_module
 from typing import Protocol, cast
 
 from linkwright._version import __version__
+from linkwright.cli.endings import FINE, USAGE, status_of
 from linkwright.cli.language import HELP as LANGUAGE_HELP
-from linkwright.cli.language import UnknownLanguageError, take_language
-from linkwright.diagnostics import LinkwrightError, did_you_mean, print_diagnostics
+from linkwright.cli.language import take_language
+from linkwright.cli.translated_help import said_in_help, translate_help
+from linkwright.diagnostics import did_you_mean
 from linkwright.diagnostics.translation import set_language
-from linkwright.interruption import INTERRUPTED, end_at_once, raise_interrupts
+from linkwright.interruption import end_at_once, raise_interrupts
 
 GROUPS = {
     "descriptions": ("view", "xacro", "check", "explain", "inertia", "diagram", "export"),
-    "packages and running them": ("pkg", "run", "launch", "shell", "bag"),
+    "packages and running them": ("pkg", "run", "launch", "shell", "completion", "bag"),
     "the running graph, as ros2 does": (
         "topic",
         "node",
@@ -47,8 +49,6 @@ Elsewhere options may stand between words (`launch PACKAGE --no-open FILE`)."""
 _WITH_A_LOOP = frozenset({"view", "run", "launch", "bag", *GROUPS["the running graph, as ros2 does"]})
 """Verbs that run an event loop or another program, which care for Ctrl-C themselves; before they do there is nothing to
 be cleaned up."""
-
-FINE, FINDINGS, USAGE, BUG = 0, 1, 2, 3
 
 PROGRAM = "linkwright"
 
@@ -82,24 +82,7 @@ def main(words: Sequence[str] | None = None, *, program: str = PROGRAM) -> int:
     if whole_process:
         _collect_seldom()
     try:
-        return _dispatch(take_language(sys.argv[1:] if words is None else words), program)
-    except UnknownLanguageError as error:
-        print(f"linkwright: {error}", file=sys.stderr)
-        return USAGE
-    except LinkwrightError as error:
-        print_diagnostics(error.diagnostics, sys.stderr)
-        return FINDINGS
-    except KeyboardInterrupt:
-        return INTERRUPTED
-    except BrokenPipeError:
-        # The reader of our output went away (`| head`); python would complain again when it flushes at exit.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return FINE
-    except SystemExit as stop:  # argparse
-        return stop.code if isinstance(stop.code, int) else USAGE
-    except Exception as error:  # noqa: BLE001 - the last line of defence: a bug of ours must not print a traceback
-        _report_bug(error)
-        return BUG
+        return status_of(lambda: _dispatch(take_language(sys.argv[1:] if words is None else words), program))
     finally:
         set_language(None)
         if whole_process:
@@ -127,6 +110,7 @@ def parser_for(name: str, *, program: str = PROGRAM) -> argparse.ArgumentParser:
     prog = f"{program} {name}".strip()
     parser = argparse.ArgumentParser(prog=prog, description=module.HELP, formatter_class=_formatter)
     module.configure(parser)
+    translate_help(parser)
     if parser.usage is not None:
         parser.usage = parser.usage.replace(f"{PROGRAM} {name}", prog, 1)
     return parser
@@ -163,9 +147,7 @@ def _dispatch(words: list[str], program: str) -> int:
     arguments = parse(words[1:])
     if name not in _WITH_A_LOOP:
         raise_interrupts()
-    status = module.run(arguments)
-    print(end="", flush=True)  # here, where it is known what to do when nobody reads it
-    return status
+    return module.run(arguments)
 
 
 def _unknown(name: str, known: Iterable[str], prog: str) -> int:
@@ -180,22 +162,8 @@ def _overview() -> str:
     width = max(map(len, VERBS))
     lines = ["usage: linkwright COMMAND ...", "", "Robot descriptions the ROS 2 way, without ROS."]
     for title, names in GROUPS.items():
-        lines += ["", f"{title}:"]
-        lines += [f"  {name:{width}}  {verb(name).HELP}" for name in names]
-    lines += ["", "options of all commands:", f"  --lang LANGUAGE  {LANGUAGE_HELP}"]
+        lines += ["", f"{said_in_help(title)}:"]
+        lines += [f"  {name:{width}}  {said_in_help(verb(name).HELP)}" for name in names]
+    lines += ["", "options of all commands:", f"  --lang LANGUAGE  {said_in_help(LANGUAGE_HELP)}"]
     lines += ["", "`linkwright COMMAND --help` says more. `linkwright --version` prints the version."]
     return "\n".join(lines)
-
-
-def _report_bug(error: Exception) -> None:
-    import tempfile
-    import traceback
-
-    with tempfile.NamedTemporaryFile("w", prefix="linkwright-", suffix=".log", delete=False, encoding="utf-8") as log:
-        log.write(f"linkwright {__version__}, Python {sys.version}, words {sys.argv[1:]}\n")
-        traceback.print_exception(type(error), error, error.__traceback__, file=log)
-    print(
-        f"linkwright: this is a bug of ours: {type(error).__name__}: {error}\n"
-        f"Please report it with the file {log.name}",
-        file=sys.stderr,
-    )

@@ -6,7 +6,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from linkwright.cli.assignments import parse_assignments
+from linkwright.assignments import parse_assignments
 from linkwright.cli.output import write_output
 from linkwright.diagnostics import print_diagnostics
 
@@ -30,7 +30,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Write OUT.gv and the picture, and say so as urdf_to_graphviz does."""
-    from linkwright.urdf import examine, to_gv
+    from linkwright.descriptions import examine
+    from linkwright.urdf import to_gv
     from linkwright.urdf.diagram import render
 
     names = [word for word in arguments.words if ":=" not in word]

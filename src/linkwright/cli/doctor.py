@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 
 from linkwright.cli.numbers import positive_float
 from linkwright.cli.session import run_in_graph
-from linkwright.diagnostics import Severity, display_path, print_diagnostics
+from linkwright.diagnostics import Severity, counted, display_path, joined, phrase, print_diagnostics, quoted
 from linkwright.diagnostics.formats import FORMATS, format_diagnostics
 from linkwright.diagnostics.translation import localized
 
 if TYPE_CHECKING:
     from linkwright.cli.session import Session
-    from linkwright.graph.doctor import FixedFrame, Observation
+    from linkwright.doctor import FixedFrame, Observation
 
 HELP = "explain what is wrong with the running nodes, topics and frames"
 
@@ -38,6 +38,13 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="a viewer's .rviz file, to look at its Fixed Frame too",
     )
     parser.add_argument("--fixed-frame", metavar="FRAME", action="append", default=[], help="a Fixed Frame to look for")
+    parser.add_argument(
+        "--params-file",
+        metavar="FILE",
+        action="append",
+        default=[],
+        help="a parameter file, to look whether the nodes run that it is for",
+    )
     parser.add_argument("--format", choices=FORMATS, default="text", help="how to print what is found (default: text)")
     parser.add_argument(
         "-r", "--report", action="store_true", help="print what is here as well: computer, network, versions, topics"
@@ -49,15 +56,18 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Look, and print what is found; 1 when there is something to mend."""
-    from linkwright.graph.doctor import examine, observe, report
+    from linkwright.doctor import examine, examine_parameter_files, observe, report
 
     frames = _fixed_frames(arguments)
 
     async def job(session: Session) -> int:
         if arguments.format == "text":
-            print(localized(f"looking at the running graph for {arguments.seconds:g} s ..."), file=sys.stderr)
+            print(
+                localized(phrase("looking at the running graph for {seconds:g} s ...", seconds=arguments.seconds)),
+                file=sys.stderr,
+            )
         seen = await observe(session.graph, session.node, arguments.seconds, fixed_frames=frames)
-        found = examine(seen)
+        found = [*examine(seen), *examine_parameter_files(seen, arguments.params_file)]
         failed = any(each.severity is not Severity.INFO for each in found)
         if arguments.report or (arguments.report_failed and failed):
             print(report(seen))
@@ -72,14 +82,14 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _fixed_frames(arguments: argparse.Namespace) -> list[FixedFrame]:
-    from linkwright.graph.doctor import FixedFrame
+    from linkwright.doctor import FixedFrame
 
-    frames = [FixedFrame(name, "the command line") for name in arguments.fixed_frame]
+    frames = [FixedFrame(name, phrase("the command line")) for name in arguments.fixed_frame]
     if arguments.rviz:
-        from linkwright.viewer.rviz_config import RvizConfig
+        from linkwright.viewer.config.rviz_config import RvizConfig
 
         frames += [
-            FixedFrame(RvizConfig.load(file).options.text("Fixed Frame"), f"'{display_path(file)}'")
+            FixedFrame(RvizConfig.load(file).options.text("Fixed Frame"), quoted(display_path(file)))
             for file in arguments.rviz
         ]
     return frames
@@ -88,10 +98,14 @@ def _fixed_frames(arguments: argparse.Namespace) -> list[FixedFrame]:
 def _summary(seen: Observation, findings: int) -> str:
     frames = {name for each in seen.transforms for name in (each.parent, each.child)}
     topics = {each.name for each in seen.endpoints if each.kind.value in ("publisher", "subscription")}
-    counted = ", ".join(
-        f"{count} {name}{'' if count == 1 else 's'}"
-        for count, name in ((len(seen.nodes), "node"), (len(topics), "topic"), (len(frames), "frame"))
+    counts = joined(
+        [
+            counted("{count} node", "{count} nodes", len(seen.nodes)),
+            counted("{count} topic", "{count} topics", len(topics)),
+            counted("{count} frame", "{count} frames", len(frames)),
+        ]
     )
     if not findings:
-        return localized(f"All is well: {counted}")
-    return localized(f"{findings} finding{'' if findings == 1 else 's'}; {counted}")
+        return localized(phrase("All is well: {counts}", counts=counts))
+    found = counted("{count} finding", "{count} findings", findings)
+    return localized(phrase("{findings}; {counts}", findings=found, counts=counts))

@@ -1,27 +1,42 @@
-"""``linkwright explain``: the page of a rule or of another diagnostic."""
+"""``linkwright explain``: the page of a rule or of another diagnostic, the meaning of an element or attribute."""
 
 from __future__ import annotations
 
 import argparse
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.diagnostics import Diagnostic, LinkwrightError, joined, nearest, phrase
+from linkwright.diagnostics.translation import localized
 
-HELP = "say what a rule or diagnostic code means, why it matters and what to do"
+HELP = "say what a diagnostic code means and what to do, or what an element or attribute of URDF means"
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
-    parser.add_argument("code", metavar="CODE", help="such as LW201, limit-inverted or URDF110")
+    parser.add_argument(
+        "code",
+        metavar="CODE|ELEMENT",
+        help="such as LW201, limit-inverted or URDF110, or an element or attribute, such as joint.limit.effort",
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Print the page."""
     from linkwright.lint.explain import find_page, nearest_codes
+    from linkwright.urdf.vocabulary import meanings, names
 
     page = find_page(arguments.code)
-    if page is None:
-        near = nearest_codes(arguments.code)
-        hint = f"did you mean {' or '.join(near)}?" if near else "docs/rules.md lists the rules"
-        raise LinkwrightError(Diagnostic("CLI301", f"there is no code or rule '{arguments.code}'", hint=hint))
-    print(page, end="")
+    if page is not None:
+        print(localized(page.markdown))
+        return 0
+    found = meanings(arguments.code)
+    if not found:
+        near = list(dict.fromkeys([*nearest_codes(arguments.code), *nearest(arguments.code, names(), 2)]))
+        hint = (
+            phrase("did you mean {near}?", near=joined(near, last=" or "))
+            if near
+            else phrase("docs/rules.md lists the rules")
+        )
+        message = phrase("there is no code, rule, element or attribute '{code}'", code=arguments.code)
+        raise LinkwrightError(Diagnostic("CLI301", message, hint=hint))
+    print("\n\n".join(found))
     return 0

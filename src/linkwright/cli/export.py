@@ -6,7 +6,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from linkwright.cli.assignments import parse_assignments
+from linkwright.assignments import parse_assignments
 from linkwright.cli.output import write_output
 from linkwright.diagnostics import LinkwrightError, print_diagnostics
 
@@ -27,11 +27,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Write the file and say so."""
-    from linkwright.urdf import DescriptionLibrary
-    from linkwright.viewer.export import FORMATS, export_snapshot, format_of
-    from linkwright.viewer.export.model import snapshot_of_model
-    from linkwright.workspace import PackageFinder
-    from linkwright.xacro import expand
+    from linkwright.descriptions import DescriptionLibrary, examine
+    from linkwright.packages import PackageFinder
+    from linkwright.viewer.features.export import FORMATS, export_snapshot, format_of
+    from linkwright.viewer.model_snapshot import snapshot_of_model
 
     if format_of(arguments.out) is None:
         endings = " or ".join(f".{ending}" for ending in FORMATS)
@@ -40,15 +39,13 @@ def run(arguments: argparse.Namespace) -> int:
         return 2
     path = Path(arguments.file).absolute()
     finder = PackageFinder(start=[path.parent, Path.cwd()])
-    expansion = expand(path, parse_assignments(arguments.values), packages=finder)
+    description = examine(path, arguments=parse_assignments(arguments.values), packages=finder, xacro=True)
     library = DescriptionLibrary()
-    text = str(expansion)
-    library.remember(text, expansion.document, expansion.story, expansion.dependencies)
-    reading = library.read(text)
-    print_diagnostics([*expansion.diagnostics, *reading.diagnostics], sys.stderr)
-    if reading.robot is None or not reading.robot.root:
+    text = library.remember(description)
+    print_diagnostics(description.diagnostics, sys.stderr)
+    if description.robot is None or not description.robot.root:
         return 1  # without a name for its first link nothing can be placed
-    snapshot = snapshot_of_model(text, reading.robot, library, finder)
+    snapshot = snapshot_of_model(text, description.robot, library, finder)
     print_diagnostics(snapshot.problems, sys.stderr)
     try:
         data = export_snapshot(snapshot, arguments.out.rpartition(".")[2].lower())

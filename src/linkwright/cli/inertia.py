@@ -8,8 +8,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linkwright.cli.assignments import parse_assignments
-from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, has_errors, print_diagnostics
+from linkwright.assignments import parse_assignments
+from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, has_errors, phrase, print_diagnostics
 
 if TYPE_CHECKING:
     from linkwright.urdf import Robot
@@ -53,11 +53,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Print the blocks or write them; 1 when the description has errors or a block could not be written."""
+    from linkwright.descriptions import examine
     from linkwright.inertia import MeshLibrary, estimate
     from linkwright.inertia.reports import as_json, as_text
     from linkwright.inertia.writing import Written, write_inertials
-    from linkwright.urdf import examine
-    from linkwright.workspace import PackageFinder
+    from linkwright.packages import PackageFinder
 
     folder = Path(arguments.file).absolute().parent
     finder = PackageFinder(start=[folder, Path.cwd()])
@@ -129,8 +129,10 @@ def _masses(words: Sequence[str], robot: Robot) -> dict[str, float]:
         except argparse.ArgumentTypeError:
             name = ""
         if not name:
-            message = f"'{word}' gives no link a mass"
-            wrong.append(Diagnostic("CLI312", message, hint="write --mass LINK=KG, such as --mass arm_link=1.5"))
+            message = phrase("'{word}' gives no link a mass", word=word)
+            wrong.append(
+                Diagnostic("CLI312", message, hint=phrase("write --mass LINK=KG, such as --mass arm_link=1.5"))
+            )
         elif name not in robot.links:
             wrong.append(_unknown(name, robot))
     if wrong:
@@ -139,7 +141,9 @@ def _masses(words: Sequence[str], robot: Robot) -> dict[str, float]:
 
 
 def _unknown(name: str, robot: Robot) -> Diagnostic:
-    return Diagnostic("CLI311", f"the robot has no link '{name}'", hint=did_you_mean(name, robot.links))
+    return Diagnostic(
+        "CLI311", phrase("the robot has no link '{name}'", name=name), hint=did_you_mean(name, robot.links)
+    )
 
 
 def _refusals(refused: Mapping[str, str], robot: Robot) -> list[Diagnostic]:
@@ -150,9 +154,11 @@ def _refusals(refused: Mapping[str, str], robot: Robot) -> list[Diagnostic]:
         found.append(
             Diagnostic(
                 "INR211",
-                f"<inertial> of link '{name}' is not written: {why}",
+                phrase("<inertial> of link '{name}' is not written: {why}", name=name, why=why),
                 element.span() if element else None,
-                hint="put the block printed above where the link is written, or expressions that give its numbers",
+                hint=phrase(
+                    "put the block printed above where the link is written, or expressions that give its numbers"
+                ),
                 source=element.source if element else None,
             )
         )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import shlex
 
 HELP = "run a ROS 2 launch file, with its rviz2 as a page in the browser"
 
@@ -25,6 +26,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--isolate", action="store_true", help="run the nodes that come with Linkwright as processes, each by itself"
+    )
+    parser.add_argument(
+        "--skip-missing",
+        action="store_true",
+        help="leave out what cannot run because a package, program or file is not there, and run the rest",
     )
     parser.add_argument(
         "-n", "--noninteractive", action="store_true", help="run without a terminal that sends signals to processes too"
@@ -75,13 +81,13 @@ def run(arguments: argparse.Namespace) -> int:
     target, values = parse_launch_words(arguments.words)
     standins.activate()
     offer_ros_variables(os.environ)
+    offer_programs(os.environ)
     if arguments.show_args:
         print(show_arguments(target))
         return 0
     if arguments.print:
         print(print_description(target))
         return 0
-    offer_programs(os.environ)
     if arguments.show_all_subprocesses_output:
         os.environ["OVERRIDE_LAUNCH_PROCESS_OUTPUT"] = "both"
     options = LaunchOptions(
@@ -94,5 +100,7 @@ def run(arguments: argparse.Namespace) -> int:
         prefix=arguments.launch_prefix,
         prefix_filter=arguments.launch_prefix_filter,
         foxglove=arguments.foxglove,
+        skip_missing=arguments.skip_missing,
+        command_to_skip_missing=shlex.join(["linkwright", "launch", "--skip-missing", *arguments.words]),
     )
     return run_launch(target, values, options)

@@ -7,7 +7,7 @@ import sys
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, phrase, quoted
 
 if TYPE_CHECKING:
     from linkwright.cli.session import Session
@@ -33,12 +33,12 @@ def absolute(name: str) -> str:
     Raises:
         InvalidNameError: it is no name.
     """
-    from linkwright.graph.names import expand_topic_name
+    from linkwright.graph.names.rules import expand_topic_name
 
     return expand_topic_name(name, "ros2cli", "/")
 
 
-def unknown(code: str, message: str, name: str, known: Iterable[str], nothing: str) -> LinkwrightError:
+def unknown(code: str, message: Phrase, name: str, known: Iterable[str], nothing: Phrase) -> LinkwrightError:
     """The error for a name that the graph does not have.
 
     Args:
@@ -52,7 +52,7 @@ def unknown(code: str, message: str, name: str, known: Iterable[str], nothing: s
     by_end = [each for each in candidates if each.endswith("/" + name.strip("/").rpartition("/")[2])]
     hint = did_you_mean(absolute_or_given(name), candidates)
     if hint is None and by_end:
-        hint = f"did you mean '{by_end[0]}'?"
+        hint = phrase("did you mean {names}?", names=quoted(by_end[0]))
     return LinkwrightError(Diagnostic(code, message, hint=hint or nothing))
 
 
@@ -78,8 +78,8 @@ async def topic_types(session: Session, name: str, *, wait: bool) -> list[str]:
     print(f"WARNING: topic [{name}] does not appear to be published yet", file=sys.stderr)
     if not wait:
         known = [each for each, _ in session.node.get_topic_names_and_types()]
-        nothing = "give the type of its messages to wait for it, or look at `linkwright topic list`"
-        message = f"Could not determine the type for the passed topic '{name}'"
+        nothing = phrase("give the type of its messages to wait for it, or look at `linkwright topic list`")
+        message = phrase("Could not determine the type for the passed topic '{name}'", name=name)
         raise unknown("CLI411", message, name, known, nothing)
     while not types:
         await asyncio.sleep(_POLL)
@@ -106,8 +106,12 @@ async def topic_type(
         return _message_class(given, raw=raw)
     types = await topic_types(session, name, wait=wait)
     if len(types) > 1:
-        message = f"Cannot echo topic '{name}', as it contains more than one type: [{', '.join(types)}]"
-        hint = "name the one that is meant behind the topic; `linkwright doctor` tells who uses which"
+        message = phrase(
+            "Cannot echo topic '{name}', as it contains more than one type: [{types}]",
+            name=name,
+            types=", ".join(types),
+        )
+        hint = phrase("name the one that is meant behind the topic; `linkwright doctor` tells who uses which")
         raise LinkwrightError(Diagnostic("CLI412", message, hint=hint))
     return _message_class(types[0], raw=raw)
 

@@ -14,7 +14,7 @@ from linkwright.cli import pkg_questions
 from linkwright.diagnostics import print_diagnostics
 
 if TYPE_CHECKING:
-    from linkwright.workspace.create import Maintainer
+    from linkwright.packages.creation.request import Maintainer
 
 HELP = "create ROS packages, and tell where they are and what is in them"
 
@@ -30,7 +30,7 @@ class _ListLicenses(argparse.Action):
         option_string: str | None = None,  # noqa: ARG002 - argparse passes it
     ) -> None:
         if values == "?":
-            from linkwright.workspace.licenses import known_licenses
+            from linkwright.packages.creation.licenses import known_licenses
 
             print("\n".join(["Supported licenses:", *known_licenses()]))
             parser.exit(0)
@@ -39,7 +39,7 @@ class _ListLicenses(argparse.Action):
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
-    from linkwright.workspace.create import BUILD_TYPES, DEFAULT_DESCRIPTION, DEFAULT_LICENSE
+    from linkwright.packages.creation.request import BUILD_TYPES, DEFAULT_DESCRIPTION, DEFAULT_LICENSE
 
     verbs = parser.add_subparsers(dest="verb", metavar="COMMAND", required=True, title="commands")
     create = verbs.add_parser(
@@ -98,7 +98,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _create(arguments: argparse.Namespace) -> int:
     """Create the package, printing each step as ``ros2 pkg create`` does."""
-    from linkwright.workspace.create import PackageRequest, create_package
+    from linkwright.packages.creation.create import create_package
+    from linkwright.packages.creation.request import PackageRequest
 
     request = PackageRequest(
         name=arguments.name,
@@ -120,8 +121,8 @@ def _create(arguments: argparse.Namespace) -> int:
 
 def _maintainer(name: str | None, email: str | None) -> Maintainer:
     """The maintainer as given; what is missing comes from git's configuration, then from the login name."""
-    from linkwright.workspace.create import Maintainer
-    from linkwright.workspace.naming import is_email
+    from linkwright.packages.creation.request import Maintainer
+    from linkwright.packages.naming import is_email
 
     login = _login()
     if not name:

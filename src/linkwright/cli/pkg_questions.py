@@ -6,7 +6,7 @@ import argparse
 import sys
 from typing import TYPE_CHECKING
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean
+from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, joined, phrase
 
 if TYPE_CHECKING:
     Subparsers = argparse._SubParsersAction[argparse.ArgumentParser]
@@ -39,14 +39,14 @@ def configure(verbs: Subparsers) -> None:
 
 def _list(_: argparse.Namespace) -> int:
     from linkwright.launch import builtin_packages
-    from linkwright.workspace import PackageFinder
+    from linkwright.packages import PackageFinder
 
     print("\n".join(sorted({*PackageFinder().packages(), *builtin_packages()})))
     return 0
 
 
 def _prefix(arguments: argparse.Namespace) -> int:
-    from linkwright.workspace import PackageFinder, install_prefix
+    from linkwright.packages import PackageFinder, install_prefix
 
     share = PackageFinder().share(arguments.package)
     print(share if arguments.share else install_prefix(share))
@@ -55,7 +55,7 @@ def _prefix(arguments: argparse.Namespace) -> int:
 
 def _executables(arguments: argparse.Namespace) -> int:
     from linkwright.launch import builtin_packages, executables_of
-    from linkwright.workspace import PackageFinder
+    from linkwright.packages import PackageFinder
 
     finder = PackageFinder()
     packages = [arguments.package] if arguments.package else sorted({*finder.packages(), *builtin_packages()})
@@ -66,7 +66,7 @@ def _executables(arguments: argparse.Namespace) -> int:
 
 
 def _xml(arguments: argparse.Namespace) -> int:
-    from linkwright.workspace import MANIFEST, PackageFinder
+    from linkwright.packages import MANIFEST, PackageFinder
     from linkwright.xmltree import parse_file
 
     path = PackageFinder().share(arguments.package) / MANIFEST
@@ -80,8 +80,10 @@ def _xml(arguments: argparse.Namespace) -> int:
         raise LinkwrightError(
             Diagnostic(
                 "CLI108",
-                f"package.xml of '{arguments.package}' has no element <{arguments.tag}>",
-                hint=did_you_mean(arguments.tag, names) or "there are " + ", ".join(names),
+                phrase(
+                    "package.xml of '{package}' has no element <{tag}>", package=arguments.package, tag=arguments.tag
+                ),
+                hint=did_you_mean(arguments.tag, names) or phrase("there are {names}", names=joined(names)),
             )
         )
     for element in found:

@@ -57,7 +57,7 @@ def _add_arguments(parser: argparse.ArgumentParser, action: str, default: str, e
     for name, values, meaning in (
         ("history", _HISTORY, "which samples are kept"),
         ("reliability", _RELIABILITY, f"whether each message must arrive{extra}"),
-        ("durability", _DURABILITY, f"whether late comers get what was sent{extra}"),
+        ("durability", _DURABILITY, f"whether late joiners get what was sent{extra}"),
         ("liveliness", _LIVELINESS, "how a publisher is known to be alive"),
     ):
         help_text = f"{meaning}: {', '.join(values)}"
@@ -72,8 +72,8 @@ def _add_arguments(parser: argparse.ArgumentParser, action: str, default: str, e
 
 def profile(arguments: argparse.Namespace) -> QoSProfile:
     """The profile that the options ask for."""
-    from linkwright.graph import qos
-    from linkwright.graph.time import Duration
+    from linkwright.graph.qos import profile as qos
+    from linkwright.graph.time.values import Duration
 
     chosen = copy(qos.QoSPresetProfiles.get_from_short_key(arguments.qos_profile))
     if arguments.qos_history is not None:
@@ -100,7 +100,7 @@ def fitting_profile(node: Node, topic: str, arguments: argparse.Namespace) -> Qo
     That is what ros2cli does: reliable and transient local where all are, so that what was published once is shown.
     Where no depth is asked for, the queue is longer than ros2's, so that a burst is counted and shown in full.
     """
-    from linkwright.graph.qos_fitting import fit
+    from linkwright.graph.qos.fitting import fit
 
     chosen = profile(arguments)
     if any(getattr(arguments, name) is not None for name in (*_SINGLE, _LEASE)):

@@ -9,6 +9,7 @@ import subprocess
 import sys
 
 from linkwright.cli.launch import add_viewer_options
+from linkwright.diagnostics import foreign, phrase
 
 HELP = "run an executable of a package: ours, a built one, or an entry point of its sources"
 
@@ -34,7 +35,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Run it; returns its exit status. Signals are the executable's, because it takes the place of this process."""
     from linkwright import standins
     from linkwright.launch import LaunchOptions, find_program, is_viewer, run_viewer
-    from linkwright.workspace import PackageFinder
+    from linkwright.packages import PackageFinder
 
     words = list(arguments.words)
     if is_viewer(arguments.package, arguments.executable):
@@ -61,5 +62,7 @@ def _become(command: list[str], environment: dict[str, str]) -> int:
     except OSError as error:
         from linkwright.diagnostics import Diagnostic, LinkwrightError
 
-        message = f"'{command[0]}' cannot be run: {error.strerror or error}"
+        message = phrase(
+            "'{command}' cannot be run: {strerror}", command=command[0], strerror=foreign(error.strerror or error)
+        )
         raise LinkwrightError(Diagnostic("CLI110", message)) from error

@@ -17,7 +17,7 @@ from contextlib import asynccontextmanager
 from inspect import signature
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Note
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, install_hint, phrase
 from linkwright.event_loop import run_coroutine
 from linkwright.interruption import raise_interrupts
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from types import FrameType
 
     from linkwright.graph import Graph, Node
-    from linkwright.graph.future import Future
+    from linkwright.graph.loop.future import Future
 
 T = TypeVar("T")
 
@@ -215,8 +215,8 @@ async def join_others(graph: Graph, spin_time: float | None) -> None:
     Raises:
         LinkwrightError: CLI401, there is no DDS; DDS101, ROS_DOMAIN_ID is no domain.
     """
-    from linkwright.graph import dds
-    from linkwright.graph.dds.settings import read_settings
+    from linkwright.wire import dds
+    from linkwright.wire.dds.settings import read_settings
 
     if dds.available():
         read_settings()  # raises what joining would only log
@@ -225,11 +225,9 @@ async def join_others(graph: Graph, spin_time: float | None) -> None:
         raise LinkwrightError(
             Diagnostic(
                 "CLI401",
-                "the nodes of other processes cannot be reached without DDS",
+                phrase("the nodes of other processes cannot be reached without DDS"),
                 notes=(Note(dds.why_not()),),
-                hint="unset LINKWRIGHT_DDS"
-                if os.environ.get("LINKWRIGHT_DDS")
-                else "install cyclonedds on a platform that has a wheel of it",
+                hint=phrase("unset LINKWRIGHT_DDS") if os.environ.get("LINKWRIGHT_DDS") else install_hint("dds"),
             )
         )
     await asyncio.to_thread(transport.wait_until_ready, _LONGEST_DISCOVERY)

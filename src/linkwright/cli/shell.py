@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 
 HELP = "open a shell in which ros2, xacro, check_urdf, urdf_to_graphviz, rviz2 and colcon exist"
 
@@ -20,7 +21,13 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the shell or the command; the exit status is its own."""
+    from linkwright.cli.completion.scripts import shell_script
     from linkwright.shell import run_shell
+    from linkwright.shell.instead import INSTEAD
+    from linkwright.shell.session import MARK
 
     words = arguments.command
-    return run_shell(words[1:] if words[:1] == ["--"] else words)
+    return run_shell(
+        words[1:] if words[:1] == ["--"] else words,
+        additions=lambda kind: shell_script(kind, sys.executable, MARK, list(INSTEAD)),
+    )

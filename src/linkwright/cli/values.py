@@ -7,7 +7,17 @@ import sys
 from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, SourceText, Span, did_you_mean
+from linkwright.diagnostics import (
+    Diagnostic,
+    LinkwrightError,
+    Note,
+    Phrase,
+    SourceText,
+    Span,
+    did_you_mean,
+    foreign,
+    phrase,
+)
 
 if TYPE_CHECKING:
     import yaml
@@ -51,7 +61,9 @@ def read_values(arguments: argparse.Namespace) -> str:
         return Path(file).read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or error
-        raise LinkwrightError(Diagnostic("CLI404", f"'{file}' cannot be read: {reason}")) from None
+        raise LinkwrightError(
+            Diagnostic("CLI404", phrase("'{file}' cannot be read: {reason}", file=file, reason=foreign(reason)))
+        ) from None
 
 
 def parse_values(text: str) -> list[dict[str, Any]]:
@@ -69,13 +81,24 @@ def parse_values(text: str) -> list[dict[str, Any]]:
         mark = error.problem_mark or error.context_mark
         span = None if mark is None else source.span(mark.index)
         what = error.problem or error.context
-        notes = (Note(error.context),) if error.context and error.problem else ()
-        hint = "quote the values for the shell, and write a blank after each colon and comma: \"{a: 1, b: 'x'}\""
+        notes = (Note(foreign(error.context)),) if error.context and error.problem else ()
+        hint = phrase(
+            "quote the values for the shell, and write a blank after each colon and comma: \"{a: 1, b: 'x'}\""
+        )
         raise LinkwrightError(
-            Diagnostic("CLI402", f"the values are not YAML: {what}", span, notes=notes, hint=hint, source=source)
+            Diagnostic(
+                "CLI402",
+                phrase("the values are not YAML: {what}", what=foreign(what)),
+                span,
+                notes=notes,
+                hint=hint,
+                source=source,
+            )
         ) from None
     except (yaml.YAMLError, ValueError, RecursionError) as error:
-        raise LinkwrightError(Diagnostic("CLI402", f"the values are not YAML: {error}", source=source)) from None
+        raise LinkwrightError(
+            Diagnostic("CLI402", phrase("the values are not YAML: {error}", error=foreign(error)), source=source)
+        ) from None
     documents = [document for document in documents if document is not None] or [{}]
     for document in documents:
         if not isinstance(document, dict):
@@ -84,12 +107,12 @@ def parse_values(text: str) -> list[dict[str, Any]]:
 
 
 def _no_mapping(document: object, source: SourceText) -> Diagnostic:
-    hint = "write 'field: value', or '{field: value, other: value}'"
+    hint = phrase("write 'field: value', or '{field: value, other: value}'")
     if isinstance(document, str) and ":" in document:
         name, _, value = document.partition(":")
         if name.isidentifier():
-            hint = f"YAML wants a blank after the colon: '{name}: {value}'"
-    message = "The passed value needs to be a dictionary in YAML format"
+            hint = phrase("YAML wants a blank after the colon: '{name}: {value}'", name=name, value=value)
+    message = phrase("The passed value needs to be a dictionary in YAML format")
     return Diagnostic("CLI403", message, source.span(0, len(source.text)), hint=hint, source=source)
 
 
@@ -196,9 +219,11 @@ def _faults(
         if name not in fields:
             yield Diagnostic(
                 "CLI405",
-                f"{message.TYPE_NAME} has no field '{name}'",
+                phrase("{type_name} has no field '{name}'", type_name=message.TYPE_NAME, name=name),
                 places.span(here, key=True),
-                hint=did_you_mean(str(name), fields) or f"its fields are {', '.join(fields)}" if fields else None,
+                hint=did_you_mean(str(name), fields) or phrase("its fields are {fields}", fields=", ".join(fields))
+                if fields
+                else None,
                 source=places.source,
             )
             continue
@@ -213,9 +238,14 @@ def _faults(
         except (*_FAULTS, LinkwrightError) as error:
             yield Diagnostic(
                 "CLI406",
-                f"field '{'.'.join(map(str, here))}' is of type {fields[name]} and cannot be {_shown(value)}",
+                phrase(
+                    "field '{here}' is of type {fields} and cannot be {value}",
+                    here=".".join(map(str, here)),
+                    fields=fields[name],
+                    value=_shown(value),
+                ),
                 places.span(here),
-                notes=(Note(str(error)),) if str(error) else (),
+                notes=(Note(foreign(error)),) if str(error) else (),
                 hint=_type_hint(fields[name], value),
                 source=places.source,
             )
@@ -226,13 +256,13 @@ def _shown(value: object) -> str:
     return text if len(text) <= 60 else text[:57] + "..."
 
 
-def _type_hint(kind: str, value: object) -> str | None:
+def _type_hint(kind: str, value: object) -> Phrase | None:
     if kind == "string" and isinstance(value, (bool, int, float)):
-        return f"quote it, so that YAML takes it as text: '\"{str(value).lower()}\"'"
+        return phrase("quote it, so that YAML takes it as text: '\"{value}\"'", value=str(value).lower())
     if kind.startswith(("float", "double")) and isinstance(value, str):
-        return "write a number, such as 1.0"
+        return phrase("write a number, such as 1.0")
     if kind.startswith(("int", "uint")) and isinstance(value, float):
-        return "write a whole number"
+        return phrase("write a whole number")
     if ("sequence" in kind or "[" in kind) and not isinstance(value, (list, str)):
-        return "write a list: [1, 2, 3]"
+        return phrase("write a list: [1, 2, 3]")
     return None

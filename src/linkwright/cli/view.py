@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from linkwright.cli.assignments import parse_assignments
+from linkwright.assignments import parse_assignments
 from linkwright.cli.launch import add_viewer_options
 
 HELP = "show a URDF or xacro file in the browser, with sliders for its joints"
@@ -14,6 +14,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     parser.add_argument("file", metavar="FILE", help="the URDF or xacro file")
     parser.add_argument("values", metavar="NAME:=VALUE", nargs="*", help="values for the file's <xacro:arg>")
+    parser.add_argument(
+        "--join", action="store_true", help="join the ROS 2 network (ROS_DOMAIN_ID), where other programs see the nodes"
+    )
     add_viewer_options(parser)
 
 
@@ -22,5 +25,11 @@ def run(arguments: argparse.Namespace) -> int:
     from linkwright.launch import LaunchOptions, run_view
 
     values = parse_assignments(arguments.values)
-    options = LaunchOptions(arguments.host, arguments.port, not arguments.no_open, foxglove=arguments.foxglove)
+    options = LaunchOptions(
+        arguments.host,
+        arguments.port,
+        not arguments.no_open,
+        foxglove=arguments.foxglove,
+        network=arguments.join,
+    )
     return run_view(arguments.file, values, options)

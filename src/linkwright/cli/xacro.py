@@ -6,12 +6,12 @@ import argparse
 import sys
 from typing import TYPE_CHECKING
 
-from linkwright.cli.assignments import parse_assignments
+from linkwright.assignments import parse_assignments
 from linkwright.cli.output import write_output
-from linkwright.diagnostics import Diagnostic, Severity, print_diagnostics
+from linkwright.diagnostics import Diagnostic, Severity, phrase, print_diagnostics
 
 if TYPE_CHECKING:
-    from linkwright.xacro.engine import Inputs
+    from linkwright.xacro.inputs import Inputs
 
 HELP = "expand a xacro file to URDF, list its arguments, or explain its parts"
 
@@ -81,7 +81,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Do what is asked for; findings go to standard error, results to standard output or the file."""
-    from linkwright.xacro.engine import Inputs
+    from linkwright.xacro.inputs import Inputs
     from linkwright.xacro.limits import Limits
 
     words = [arguments.file, *arguments.values]
@@ -107,7 +107,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.args:
         result = _arguments(inputs, verbosity, arguments.format)
     elif arguments.explain is not None:
-        result = _story(inputs, arguments.explain, arguments.format)
+        result = _provenance(inputs, arguments.explain, arguments.format)
     else:
         result = _expansion(inputs, verbosity, deps=arguments.deps)
     if arguments.output:
@@ -128,8 +128,8 @@ def _values(words: list[str]) -> tuple[dict[str, str], list[Diagnostic]]:
         if value and not private:
             continue
         del values[name]
-        why = "its name begins with an underscore" if value else "it is empty"
-        message = f"the argument '{name}' is ignored, as xacro does: {why}"
+        why = phrase("its name begins with an underscore") if value else phrase("it is empty")
+        message = phrase("the argument '{name}' is ignored, as xacro does: {why}", name=name, why=why)
         ignored.append(Diagnostic("CLI103", message, severity=Severity.WARNING))
     return values, ignored
 
@@ -141,7 +141,7 @@ def _expansion(inputs: Inputs, verbosity: int, *, deps: bool) -> str:
         from linkwright.xacro.property_log import log_properties
 
         log_properties(inputs, lambda line: print(line, file=sys.stderr), everywhere=verbosity >= _ALL_PROPERTIES)
-    name, values, packages, text, limits, root_dir = inputs
+    name, values, packages, text, limits, root_dir, _ = inputs
     expansion = expand(name, values, packages=packages, text=text, limits=limits, root_dir=root_dir)
     if verbosity > _QUIET:
         print_diagnostics(expansion.diagnostics, sys.stderr)
@@ -162,16 +162,16 @@ def _arguments(inputs: Inputs, verbosity: int, form: str) -> str:
     return arguments_text(examined.arguments)
 
 
-def _story(inputs: Inputs, name: str, form: str) -> str:
+def _provenance(inputs: Inputs, name: str, form: str) -> str:
+    from linkwright.xacro.inspection import provenance_of_named
     from linkwright.xacro.limits import room_for
-    from linkwright.xacro.story import stories
-    from linkwright.xacro.story_text import story_data, story_text
+    from linkwright.xacro.provenance_text import provenance_data, provenance_text
 
-    found = stories(inputs, name)
+    found = provenance_of_named(inputs, name)
     if form == "json":
         with room_for(inputs.limits):  # elements may be nested deeper than Python's calls
-            return _json({"elements": [story_data(story) for story in found]})
-    return "\n".join(map(story_text, found))
+            return _json({"elements": [provenance_data(provenance) for provenance in found]})
+    return "\n".join(map(provenance_text, found))
 
 
 def _json(data: object) -> str:

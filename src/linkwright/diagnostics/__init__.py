@@ -1,6 +1,18 @@
 """Findings about a user's input: where, what, why, how to mend it; and how they are printed."""
 
 from linkwright.diagnostics.diagnostic import Diagnostic, LinkwrightError, Note, Severity, has_errors
+from linkwright.diagnostics.extras import install_hint, missing_extra
+from linkwright.diagnostics.phrase import (
+    Phrase,
+    counted,
+    foreign,
+    joined,
+    phrase,
+    quoted,
+    quoted_names,
+    term,
+    title_of_page,
+)
 from linkwright.diagnostics.render import display_path, print_diagnostics, render, to_data, wants_colour
 from linkwright.diagnostics.source import SourceText, Span
 from linkwright.diagnostics.suggest import did_you_mean, missing_file_hint, nearest
@@ -10,16 +22,27 @@ __all__ = [
     "Diagnostic",
     "LinkwrightError",
     "Note",
+    "Phrase",
     "Severity",
     "SourceText",
     "Span",
+    "counted",
     "did_you_mean",
     "display_path",
+    "foreign",
     "has_errors",
+    "install_hint",
+    "joined",
+    "missing_extra",
     "missing_file_hint",
     "nearest",
+    "phrase",
     "print_diagnostics",
+    "quoted",
+    "quoted_names",
     "render",
+    "term",
+    "title_of_page",
     "to_data",
     "translated",
     "wants_colour",

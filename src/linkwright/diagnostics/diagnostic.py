@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import Enum
 
+from linkwright.diagnostics.phrase import Phrase
 from linkwright.diagnostics.source import SourceText, Span
 
 
@@ -21,7 +22,7 @@ class Severity(Enum):
 class Note:
     """One more fact about a diagnostic, with the place it holds at, such as a macro call on the way there."""
 
-    message: str
+    message: Phrase
     span: Span | None = None
 
 
@@ -33,17 +34,17 @@ class Diagnostic:
         code: letters for the room and three digits, such as ``XAC101``; never reused for another meaning.
         message: one sentence without a full stop at its end, naming the thing as the user wrote it.
         span: the place, or None where there is none (a missing file).
-        notes: the story behind it: includes, macro calls, values.
+        notes: what led to it: includes, macro calls, values.
         hint: how to mend it, or None.
         source: the text that the span is in, for an excerpt; None where it was not kept.
     """
 
     code: str
-    message: str
+    message: Phrase
     span: Span | None = None
     severity: Severity = Severity.ERROR
     notes: tuple[Note, ...] = ()
-    hint: str | None = None
+    hint: Phrase | None = None
     source: SourceText | None = None
 
 

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import IO, TYPE_CHECKING, Any
 from unicodedata import combining, east_asian_width
 
 from linkwright.diagnostics.diagnostic import Diagnostic, Note, Severity
+from linkwright.diagnostics.phrase import as_phrase, phrase
 from linkwright.diagnostics.source import Span
-from linkwright.diagnostics.translation import labels, language, translated
+from linkwright.diagnostics.translation import labels, language, localized, translated
 
 if TYPE_CHECKING:
     from pathlib import Path
 
 _COLOURS = {Severity.ERROR: "31", Severity.WARNING: "33", Severity.INFO: "36"}
+MOST_PRINTED = 500
+"""More findings than these nobody reads, and the errors among them would scroll away."""
 _TAB = "    "
 _WIDEST = 300
 _AROUND = 80
@@ -35,7 +38,7 @@ def render(diagnostic: Diagnostic, *, colour: bool = False, lang: str = "en") ->
     """
     paint = _Paint(colour)
     words = labels(lang)
-    severity, colon = diagnostic.severity, words[":"]
+    severity, colon = diagnostic.severity, words[": "]
     head = f"{words[severity.value]}[{diagnostic.code}]"
     lines = [f"{paint(head, _COLOURS[severity] + ';1')}{paint(colon + diagnostic.message, '1')}"]
     if diagnostic.span:
@@ -50,19 +53,41 @@ def render(diagnostic: Diagnostic, *, colour: bool = False, lang: str = "en") ->
 
 
 def print_diagnostics(diagnostics: Iterable[Diagnostic], stream: IO[str]) -> None:
-    """Write diagnostics to a stream, in the reader's language, coloured where the stream wants it."""
+    """Write diagnostics to a stream, in the reader's language, coloured where the stream wants it.
+
+    Of more than `MOST_PRINTED` the rest is counted; formats for programs have them all.
+    """
     colour, lang = wants_colour(stream), language()
-    for diagnostic in translated(diagnostics):
+    found = list(diagnostics)
+    shown = _most_severe(found)
+    for diagnostic in translated(shown):
         print(render(diagnostic, colour=colour, lang=lang), file=stream)
+    if len(shown) < len(found):
+        print(localized(phrase("... and {count:,} more findings", count=len(found) - len(shown))), file=stream)
     stream.flush()
 
 
+def _most_severe(found: Sequence[Diagnostic]) -> Sequence[Diagnostic]:
+    """As many as somebody may read, errors before the rest, in their order."""
+    if len(found) <= MOST_PRINTED:
+        return found
+    numbers = sorted(range(len(found)), key=lambda number: found[number].severity is not Severity.ERROR)
+    return [found[number] for number in sorted(numbers[:MOST_PRINTED])]
+
+
 def to_data(diagnostic: Diagnostic) -> dict[str, Any]:
-    """The diagnostic as JSON-ready data: places are 1-based, absent ones are None."""
+    """The diagnostic as JSON-ready data: places are 1-based, absent ones are None.
+
+    ``template`` and ``arguments`` are what the message is made of, in English: the same finding has the same template
+    for every robot and in every language.
+    """
+    message = as_phrase(diagnostic.message)
     return {
         "code": diagnostic.code,
         "severity": diagnostic.severity.value,
         "message": diagnostic.message,
+        "template": message.chosen_template,
+        "arguments": dict(message.arguments),
         **_span_data(diagnostic.span),
         "notes": [_note_data(note) for note in diagnostic.notes],
         "hints": [diagnostic.hint] if diagnostic.hint else [],

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING
 
+from linkwright.diagnostics.phrase import Phrase, joined, phrase, quoted_names
 from linkwright.diagnostics.render import display_path
 
 if TYPE_CHECKING:
@@ -31,20 +32,16 @@ def nearest(name: str, candidates: Iterable[str], limit: int = 3) -> list[str]:
     return [by_fold[match] for match in get_close_matches(folded, near, n=limit, cutoff=0.6)]
 
 
-def did_you_mean(name: str, candidates: Iterable[str]) -> str | None:
+def did_you_mean(name: str, candidates: Iterable[str]) -> Phrase | None:
     """A hint such as ``did you mean 'radius'?``, or None when no candidate is near."""
-    return _quoted(nearest(name, candidates))
+    return _meant(nearest(name, candidates))
 
 
-def _quoted(names: Iterable[str]) -> str | None:
-    quoted = [f"'{name}'" for name in names]
-    if not quoted:
-        return None
-    listed = quoted[0] if len(quoted) == 1 else ", ".join(quoted[:-1]) + " or " + quoted[-1]
-    return f"did you mean {listed}?"
+def _meant(names: Sequence[str]) -> Phrase | None:
+    return phrase("did you mean {names}?", names=quoted_names(names, " or ")) if names else None
 
 
-def missing_file_hint(path: Path, wanted: Callable[[str], bool] | None = None) -> str:
+def missing_file_hint(path: Path, wanted: Callable[[str], bool] | None = None) -> Phrase:
     """What to say about a file that is not there: a missing folder, the nearest names beside it, or what is beside it.
 
     Args:
@@ -60,12 +57,18 @@ def missing_file_hint(path: Path, wanted: Callable[[str], bool] | None = None) -
     try:
         names = sorted(entry.name for entry in folder.iterdir() if entry.is_file())
     except OSError:
-        return f"the folder '{display_path(folder)}' does not exist; the current folder is '{os.getcwd()}'"  # noqa: PTH109 - pathlib takes long to import
+        return phrase(
+            "the folder '{folder}' does not exist; the current folder is '{current}'",
+            folder=display_path(folder),
+            current=os.getcwd(),  # noqa: PTH109 - pathlib takes long to import
+        )
     # By what stands before the ending: 'a.urdf' and 'robot.urdf' are not alike for sharing it.
     ending = "".join(path.suffixes)
     stems = {name.removesuffix(ending): name for name in names if name.endswith(ending)}
-    like = _quoted(stems[stem] for stem in nearest(path.name.removesuffix(ending), stems))
+    like = _meant([stems[stem] for stem in nearest(path.name.removesuffix(ending), stems)])
     if like:
         return like
     there = [name for name in names if wanted(name)][:_LISTED]
-    return "there are: " + ", ".join(there) if there else f"the current folder is '{os.getcwd()}'"  # noqa: PTH109
+    if there:
+        return phrase("there are: {names}", names=joined(there))
+    return phrase("the current folder is '{current}'", current=os.getcwd())  # noqa: PTH109 - as above

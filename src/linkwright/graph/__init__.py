@@ -3,16 +3,26 @@
 from linkwright.graph.actions.client import ActionClient, ClientGoalHandle
 from linkwright.graph.actions.goal import CancelResponse, GoalResponse, GoalStatus, ServerGoalHandle
 from linkwright.graph.actions.server import ActionServer
-from linkwright.graph.client import Client
-from linkwright.graph.clock import Clock, ClockChange, JumpHandle, JumpThreshold, ROSClock, TimeJump
-from linkwright.graph.entity import Entity
-from linkwright.graph.events import PublisherEventCallbacks, SubscriptionEventCallbacks
-from linkwright.graph.executor import run_logged
+from linkwright.graph.computation_graph import Graph
+from linkwright.graph.endpoints.client import Client
+from linkwright.graph.endpoints.event_types import PublisherEventCallbacks, SubscriptionEventCallbacks
+from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind, MessageInfo
+from linkwright.graph.endpoints.publisher import Publisher
+from linkwright.graph.endpoints.service import Service
+from linkwright.graph.endpoints.subscription import Subscription
+from linkwright.graph.endpoints.transport import Transport
 from linkwright.graph.faults import InterruptedWaitError, InvalidHandleError, NodeNotFoundError
-from linkwright.graph.future import Future
-from linkwright.graph.graph import Graph
-from linkwright.graph.log.logger import Logger, LogLevel, LogRecord, LogSink, console_line, print_to_console
-from linkwright.graph.names import (
+from linkwright.graph.log.console import print_to_console
+from linkwright.graph.log.format import console_line
+from linkwright.graph.log.levels import LogLevel
+from linkwright.graph.log.logger import Logger, run_logged
+from linkwright.graph.log.record import LogRecord, LogSink
+from linkwright.graph.loop.entity import Entity, GuardCondition
+from linkwright.graph.loop.future import Future
+from linkwright.graph.loop.rate import Rate
+from linkwright.graph.loop.timer import Timer, TimerInfo
+from linkwright.graph.names.identity import NodeIdentity
+from linkwright.graph.names.rules import (
     InvalidNameError,
     InvalidNamespaceError,
     InvalidNodeNameError,
@@ -31,8 +41,8 @@ from linkwright.graph.parameters.errors import (
     ParameterUninitializedException,
 )
 from linkwright.graph.parameters.parameter import Parameter, ParameterDescriptor, ParameterType, SetParametersResult
-from linkwright.graph.publisher import Publisher
-from linkwright.graph.qos import (
+from linkwright.graph.qos.compatibility import QoSCompatibility, qos_check_compatible
+from linkwright.graph.qos.profile import (
     ACTION_STATUS_QOS,
     CLOCK_QOS,
     DEFAULT_QOS,
@@ -54,13 +64,9 @@ from linkwright.graph.qos import (
     QoSProfile,
     ReliabilityPolicy,
 )
-from linkwright.graph.qos_compatibility import QoSCompatibility, qos_check_compatible
-from linkwright.graph.rate import Rate
-from linkwright.graph.service import Service
-from linkwright.graph.subscription import Subscription
-from linkwright.graph.time import ClockType, Duration, Time
-from linkwright.graph.timebase import JumpClock, SystemClock, Timebase
-from linkwright.graph.timer import GuardCondition, Timer, TimerInfo
+from linkwright.graph.time.clock import Clock, ClockChange, JumpHandle, JumpThreshold, ROSClock, TimeJump
+from linkwright.graph.time.timebase import JumpClock, SystemClock, Timebase
+from linkwright.graph.time.values import ClockType, Duration, Time
 from linkwright.graph.transforms.buffer import FrameSnapshot, TransformBuffer
 from linkwright.graph.transforms.errors import (
     ConnectivityException,
@@ -70,7 +76,6 @@ from linkwright.graph.transforms.errors import (
     TransformException,
 )
 from linkwright.graph.transforms.listener import TransformListener
-from linkwright.graph.transport import EndpointInfo, EndpointKind, MessageInfo, NodeIdentity, Transport
 
 __all__ = [
     "ACTION_STATUS_QOS",

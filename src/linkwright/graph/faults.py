@@ -1,4 +1,4 @@
-"""Errors of a program that uses the graph wrongly, with the classes that rclpy raises as their patterns."""
+"""What programs that use the graph must be ready for, with the classes that rclpy raises as their patterns."""
 
 from __future__ import annotations
 
@@ -36,3 +36,19 @@ class NotInitializedError(Exception):
     def __init__(self, message: str | None = None) -> None:
         text = "rclpy.init() has not been called."
         super().__init__(f"{text[:-1]}. msg:{message}" if message else text)
+
+
+class TimeoutException(Exception):  # noqa: N818  # rclpy's name
+    """The time given has passed."""
+
+
+class ShutdownException(Exception):  # noqa: N818  # rclpy's name
+    """The executor was shut down."""
+
+
+class ExternalShutdownException(Exception):  # noqa: N818  # rclpy's name
+    """The context was shut down, by a signal for one."""
+
+
+class ConditionReachedException(Exception):  # noqa: N818  # rclpy's name
+    """What was waited for has come true."""

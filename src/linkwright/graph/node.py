@@ -3,175 +3,177 @@
 from __future__ import annotations
 
 from collections.abc import Awaitable, Callable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, TypeVar
+from functools import cached_property, partial
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
-from linkwright.graph.client import Client
-from linkwright.graph.clock import Clock, ROSClock
-from linkwright.graph.dispatch import FREE_GROUP, CallbackGroup, Dispatcher, ExclusiveGroup
-from linkwright.graph.endpoint import Endpoint
-from linkwright.graph.endpoint_events import PublisherEvents, SubscriptionEvents
-from linkwright.graph.entity import Entity
-from linkwright.graph.events import PublisherEventCallbacks, SubscriptionEventCallbacks
+from linkwright.graph.endpoints.client import Client
+from linkwright.graph.endpoints.content_filter import ContentFilterOptions
+from linkwright.graph.endpoints.event_types import PublisherEventCallbacks, SubscriptionEventCallbacks
+from linkwright.graph.endpoints.publisher import Publisher
+from linkwright.graph.endpoints.service import Service
+from linkwright.graph.endpoints.service_introspection import EVENT_TOPIC_SUFFIX
+from linkwright.graph.endpoints.subscription import Subscription
+from linkwright.graph.introspection.node_queries import NodeQueries
+from linkwright.graph.local_graph import LocalGraph
 from linkwright.graph.log.logger import Logger
-from linkwright.graph.names import expand_service_name, expand_topic_name, join
-from linkwright.graph.node_queries import NodeQueries
+from linkwright.graph.log.rosout import LOG_TYPE, ROSOUT_TOPIC, Rosout
+from linkwright.graph.loop.callback_groups import FREE_GROUP, CallbackGroup
+from linkwright.graph.loop.entity import GuardCondition
+from linkwright.graph.loop.node_handle import NodeHandle
+from linkwright.graph.loop.rate import Rate
+from linkwright.graph.loop.timer import Timer
+from linkwright.graph.names.identity import NodeIdentity
+from linkwright.graph.names.remapping import Remappings
+from linkwright.graph.names.rules import absolute_namespace, check_node_name
 from linkwright.graph.parameters.node_parameters import NodeParameters
-from linkwright.graph.publisher import Publisher
-from linkwright.graph.qos import SERVICES_QOS, QoSProfile
-from linkwright.graph.qos_compatibility import best_available
-from linkwright.graph.rate import Rate
-from linkwright.graph.remapping import Remappings
-from linkwright.graph.service import Service
-from linkwright.graph.sim_time import SimulatedTime
-from linkwright.graph.subscription import Subscription
-from linkwright.graph.time import NANOSECONDS_PER_SECOND
-from linkwright.graph.timebase import Timebase
-from linkwright.graph.timer import GuardCondition, Timer
-from linkwright.graph.transport import NodeIdentity
+from linkwright.graph.parameters.parameter import Parameter
+from linkwright.graph.parameters.qos_overrides import QoSOverridingOptions, override_qos
+from linkwright.graph.parameters.services import EVENTS_TOPIC, EVENTS_TYPE, ParameterEvents, ParameterServices
+from linkwright.graph.parameters.store import ParameterStore
+from linkwright.graph.qos.compatibility import best_available
+from linkwright.graph.qos.profile import PARAMETER_EVENTS_QOS, ROSOUT_QOS, SERVICES_QOS, QoSProfile
+from linkwright.graph.simulated_time import SimulatedTime
+from linkwright.graph.time.clock import Clock, ROSClock
+from linkwright.graph.time.values import NANOSECONDS_PER_SECOND
 
 if TYPE_CHECKING:
-    from linkwright.graph.content_filter import ContentFilterOptions
-    from linkwright.graph.graph import Graph
-    from linkwright.graph.parameters.parameter import Parameter
+    from typing_extensions import Self
+
+    from linkwright.graph.executors import Executor
 
 M = TypeVar("M")
-E = TypeVar("E", bound=Entity)
 
 
 class Node(NodeParameters, NodeQueries):
-    """A node of the graph; made by ``Graph.create_node``, whose arguments these are.
+    """A node of a graph.
 
     Its callbacks are run by its dispatcher: in a graph on an event loop that is the loop, where one callback runs
     after another. One that raises is logged there; the others go on. Everything of a node may be made and used from
     any thread.
+
+    rclpy's nodes derive from this class, and users' nodes from those. So what is here has the names of rclpy, or
+    mangled ones; for all else there is the `handle`. Nothing here reads `graph`, which a user's may have for itself.
+
+    Args:
+        graph: where it lives.
+        node_name: the name its code gives it.
+        namespace: where in the graph it lives; a missing leading slash is added.
+        parameters: values that take the place of declared defaults; nested mappings stand for dotted names.
+        remappings: rules ``(from, to)`` for topics, services, ``__node`` and ``__ns``; see `Remappings`.
+        enclave: its security enclave.
+        start_parameter_services: whether others can ask for its parameters.
+        enable_rosout: whether what it logs goes to ``/rosout`` too.
+        rosout_qos_profile: the quality of service of that; a number is a depth.
+        allow_undeclared_parameters: whether parameters can be set that were not declared.
+        automatically_declare_parameters_from_overrides: whether `parameters` are declared at once.
+        copies_messages: whether what it sends is copied, for its sender to change it then.
+
+    Raises:
+        InvalidNodeNameError: the name is not valid.
+        InvalidNamespaceError: the namespace is not valid.
+        InvalidHandleError: the graph is closed.
+        LinkwrightError: a parameter's value cannot be had.
     """
 
     def __init__(
         self,
-        graph: Graph,
-        identity: NodeIdentity,
+        graph: LocalGraph,
+        node_name: str,
         *,
-        logger: Logger,
-        remappings: Remappings,
-        dispatcher: Dispatcher | None,
+        namespace: str = "/",
+        parameters: Mapping[str, Any] | Sequence[Parameter] | None = None,
+        remappings: Sequence[tuple[str, str]] = (),
+        enclave: str = "/",
+        start_parameter_services: bool = True,
+        enable_rosout: bool = True,
+        rosout_qos_profile: QoSProfile | int = ROSOUT_QOS,
+        allow_undeclared_parameters: bool = False,
+        automatically_declare_parameters_from_overrides: bool = False,
+        copies_messages: bool = False,
     ) -> None:
-        self.graph = graph
-        self.identity = identity
-        self._full_name = join(identity.namespace, identity.name)
-        self.default_callback_group: CallbackGroup = ExclusiveGroup()
-        """The group of entities that are in no other."""
-        self._logger = logger
-        self._remappings = remappings
-        self._dispatcher = dispatcher
-        self._clock = ROSClock(timebase=graph.timebase)
-        self._entities: dict[Entity, None] = {}
-        self._publishers: dict[Publisher[Any], None] = {}
-        self._cleanups: dict[Callable[[], object], None] = {}
-        self._destroyed = False
-        self.copies_messages = False
-        """Whether what is sent is copied, for its sender to change it then; holds for what is made afterwards."""
-        self._simulated_time: SimulatedTime | None = None
+        rules = Remappings(remappings)
+        name = rules.node_name(node_name)
+        check_node_name(name)
+        identity = NodeIdentity(name, absolute_namespace(rules.namespace(namespace, node_name)), enclave)
+        self.__local_graph = graph
+        self.__handle = handle = graph.open_node(identity, rules, copies_messages=copies_messages)
+        self.__clock = ROSClock(timebase=graph.timebase)
+        NodeQueries.__init__(self, graph, handle)
+        try:
+            if enable_rosout:
+                publisher: Publisher[Any] = Node.create_publisher(self, LOG_TYPE, ROSOUT_TOPIC, rosout_qos_profile)
+                handle.add_cleanup(Rosout(publisher, handle.logger).close)
+            events = ParameterEvents(
+                Node.create_publisher(self, EVENTS_TYPE, EVENTS_TOPIC, PARAMETER_EVENTS_QOS),
+                self.__clock,
+                identity.full_name,
+            )
+            store = ParameterStore(
+                _by_name(parameters or {}), allow_undeclared=allow_undeclared_parameters, on_change=events.publish
+            )
+            NodeParameters.__init__(self, store)
+            if automatically_declare_parameters_from_overrides:
+                NodeParameters.declare_parameters_from_overrides(self)
+            if start_parameter_services:
+                ParameterServices(self, name, partial(Node.create_service, self))
+            SimulatedTime(handle, self, self.__clock)
+        except BaseException:
+            handle.destroy()
+            raise
 
-    def begin(self, parameters: Mapping[str, Any] | Sequence[Parameter], **parameter_options: Any) -> None:
-        """Make what every node has: parameters and their services, logging, and the following of simulated time.
+    @cached_property
+    def graph(self) -> LocalGraph:
+        """Where it lives. Unlike a property this lets a user's node have an attribute or a method of the name."""
+        return self.__local_graph
 
-        Args:
-            parameters: values that take the place of declared defaults.
-            parameter_options: see `NodeParameters._start_parameters`.
+    @property
+    def handle(self) -> NodeHandle:
+        """What the graph knows of the node; entered while the node is used."""
+        return self.__handle
 
-        Raises:
-            LinkwrightError: a value that is given cannot be had.
-        """
-        self._start_parameters(parameters, **parameter_options)
-        self._simulated_time = SimulatedTime(self, self._clock)
+    @property
+    def default_callback_group(self) -> CallbackGroup:
+        """The group of everything that is given none: one callback runs at a time."""
+        return self.__handle.default_callback_group
+
+    @property
+    def executor(self) -> Executor | None:
+        """The executor that runs the node's callbacks; None when nothing does, or the event loop of its graph."""
+        dispatcher = self.__handle.dispatcher
+        return cast("Executor", dispatcher) if hasattr(dispatcher, "add_node") else None
+
+    @executor.setter
+    def executor(self, new_executor: Executor | None) -> None:
+        current = self.executor
+        if current is new_executor:
+            return
+        if current is not None:
+            current.remove_node(self)
+        if new_executor is not None:
+            new_executor.add_node(self)
 
     def get_name(self) -> str:
         """The name without namespace."""
-        return self.identity.name
+        self.__handle.check_alive()
+        return self.__handle.identity.name
 
     def get_namespace(self) -> str:
         """The namespace, absolute."""
-        return self.identity.namespace
+        self.__handle.check_alive()
+        return self.__handle.identity.namespace
 
     def get_fully_qualified_name(self) -> str:
         """Namespace and name."""
-        return self._full_name
+        self.__handle.check_alive()
+        return self.__handle.identity.full_name
 
     def get_logger(self) -> Logger:
         """The node's logger."""
-        return self._logger
+        return self.__handle.logger
 
     def get_clock(self) -> ROSClock:
-        """The node's clock: ROS time."""
-        return self._clock
-
-    @property
-    def timebase(self) -> Timebase:
-        """What the graph's time is made of."""
-        return self.graph.timebase
-
-    @property
-    def is_destroyed(self) -> bool:
-        """Whether the node has left the graph."""
-        return self._destroyed
-
-    # --- what runs the callbacks ---------------------------------------------------------------------------------
-
-    @property
-    def dispatcher(self) -> Dispatcher | None:
-        """What runs the node's callbacks; None while nothing does."""
-        return self._dispatcher
-
-    def set_dispatcher(self, dispatcher: Dispatcher | None) -> None:
-        """Have the node's callbacks run by a dispatcher from now on, or by none.
-
-        What falls due while there is none waits as the quality of service says, and is announced to the next one.
-        """
-        self._dispatcher = dispatcher
-        for entity in tuple(self._entities):
-            entity.set_dispatcher(dispatcher)
-
-    def entities(self) -> tuple[Entity, ...]:
-        """Everything of the node that calls back."""
-        return tuple(self._entities)
-
-    def add_entity(self, entity: E) -> E:
-        """Take something that calls back into the node, and give it back: its calls are run with the node's."""
-        return self._added(entity)
-
-    def remove_entity(self, entity: Entity) -> None:
-        """Take something out of the node that was added with `add_entity`."""
-        self._retire(entity)
-
-    def add_cleanup(self, callback: Callable[[], object]) -> None:
-        """Have something called when the node is destroyed, before its parts are."""
-        self._cleanups[callback] = None
-
-    def remove_cleanup(self, callback: Callable[[], object]) -> None:
-        """Do not have it called."""
-        self._cleanups.pop(callback, None)
-
-    # --- names -------------------------------------------------------------------------------------------------------
-
-    def resolve_topic_name(self, topic: str, *, only_expand: bool = False) -> str:
-        """The absolute name of a topic as this node names it, expanded and remapped.
-
-        Raises:
-            InvalidTopicNameError: it is not valid.
-        """
-        name, namespace = self.identity.name, self.identity.namespace
-        full_name = expand_topic_name(topic, name, namespace)
-        return full_name if only_expand else self._remappings.topic(full_name, name, namespace)
-
-    def resolve_service_name(self, service: str, *, only_expand: bool = False) -> str:
-        """The absolute name of a service or action as this node names it, expanded and remapped.
-
-        Raises:
-            InvalidServiceNameError: it is not valid.
-        """
-        name, namespace = self.identity.name, self.identity.namespace
-        full_name = expand_service_name(service, name, namespace)
-        return full_name if only_expand else self._remappings.service(full_name, name, namespace)
+        """The node's clock: ROS time, which follows ``/clock`` when the parameter ``use_sim_time`` says so."""
+        return self.__clock
 
     # --- making ------------------------------------------------------------------------------------------------------
 
@@ -183,6 +185,7 @@ class Node(NodeParameters, NodeQueries):
         *,
         callback_group: CallbackGroup | None = None,
         event_callbacks: PublisherEventCallbacks | None = None,
+        qos_overriding_options: QoSOverridingOptions | None = None,
         publisher_class: type[Publisher[Any]] = Publisher,
     ) -> Publisher[M]:
         """A publisher of a topic.
@@ -193,23 +196,23 @@ class Node(NodeParameters, NodeQueries):
             qos_profile: what is offered; a number is a depth.
             callback_group: for the event callbacks.
             event_callbacks: what is called for events of the quality of service.
+            qos_overriding_options: which of its policies parameters may override.
             publisher_class: the class of what is made.
 
         Raises:
             InvalidTopicNameError: the topic's name is not valid.
-            TypeError: the type is none of a message.
+            AttributeError: the type is no class of an interface.
+            RuntimeError: it is that of a service.
+            InvalidHandleError: the node was destroyed.
         """
-        name = self.resolve_topic_name(topic)
-        others = (each.qos_profile for each in self.graph.bus.subscriptions(name))
-        qos = best_available(QoSProfile.of(qos_profile), others, publisher=True)
+        name = self.__handle.resolve_topic_name(topic)
+        qos = override_qos(self, "publisher", name, QoSProfile.of(qos_profile), qos_overriding_options)
+        others = (each.qos_profile for each in self.__local_graph.bus.subscriptions(name))
+        qos = best_available(qos, others, publisher=True)
         publisher: Publisher[M] = publisher_class(
-            self, msg_type, name, qos, callback_group, event_callbacks=event_callbacks
+            self.__handle, msg_type, name, qos, callback_group, event_callbacks=event_callbacks
         )
-        if event_callbacks is not None:
-            publisher.events = self._added(PublisherEvents(publisher, event_callbacks))
-        self._publishers[publisher] = None
-        self.graph.add(publisher)
-        return publisher
+        return self.__handle.add(publisher)
 
     def create_subscription(
         self,
@@ -220,6 +223,7 @@ class Node(NodeParameters, NodeQueries):
         *,
         callback_group: CallbackGroup | None = None,
         event_callbacks: SubscriptionEventCallbacks | None = None,
+        qos_overriding_options: QoSOverridingOptions | None = None,
         raw: bool = False,
         content_filter_options: ContentFilterOptions | None = None,
     ) -> Subscription[M]:
@@ -233,31 +237,26 @@ class Node(NodeParameters, NodeQueries):
             qos_profile: what is asked for; a number is a depth.
             callback_group: which entities may run beside it.
             event_callbacks: what is called for events of the quality of service.
+            qos_overriding_options: which of its policies parameters may override.
             raw: whether the callback gets CDR bytes with their header instead of messages.
             content_filter_options: which messages are wanted.
 
         Raises:
             InvalidTopicNameError: the topic's name is not valid.
             ContentFilterError: the content filter cannot be understood.
-            TypeError: the type is none of a message.
+            AttributeError: the type is no class of an interface.
+            RuntimeError: it is that of a service.
         """
-        name = self.resolve_topic_name(topic)
-        others = (each.qos_profile for each in self.graph.bus.publishers(name))
-        qos = best_available(QoSProfile.of(qos_profile), others, publisher=False)
+        name = self.__handle.resolve_topic_name(topic)
+        qos = override_qos(self, "subscription", name, QoSProfile.of(qos_profile), qos_overriding_options)
+        others = (each.qos_profile for each in self.__local_graph.bus.publishers(name))
+        qos = best_available(qos, others, publisher=False)
         subscription: Subscription[M] = Subscription(
-            self, msg_type, name, qos, callback, callback_group, raw=raw, event_callbacks=event_callbacks
+            self.__handle, msg_type, name, qos, callback, callback_group, raw=raw, event_callbacks=event_callbacks
         )
-        if event_callbacks is not None:
-            subscription.events = SubscriptionEvents(subscription, event_callbacks)
         if content_filter_options is not None:
             subscription.set_content_filter(*content_filter_options)
-        self.add_subscription(subscription)
-        return subscription
-
-    def add_subscription(self, subscription: Subscription[Any]) -> None:
-        """Take a subscription into the node and the graph that was made otherwise than by `create_subscription`."""
-        self._added(subscription)
-        self.graph.add(subscription)
+        return self.__handle.add(subscription)
 
     def create_service(
         self,
@@ -282,15 +281,14 @@ class Node(NodeParameters, NodeQueries):
 
         Raises:
             InvalidServiceNameError: the name is not valid.
-            TypeError: the type is none of a service.
+            AttributeError: the type is no class of an interface.
+            RuntimeError: it is that of a message.
         """
-        name = self.resolve_service_name(srv_name)
+        name = self.__handle.resolve_service_name(srv_name)
         service: Service[Any, Any] = Service(
-            self, srv_type, name, QoSProfile.of(qos_profile), callback, callback_group, replying=replying
+            self.__handle, srv_type, name, QoSProfile.of(qos_profile), callback, callback_group, replying=replying
         )
-        self._added(service)
-        self.graph.add(service)
-        return service
+        return self.__handle.add(service)
 
     def create_client(
         self,
@@ -310,13 +308,13 @@ class Node(NodeParameters, NodeQueries):
 
         Raises:
             InvalidServiceNameError: the name is not valid.
-            TypeError: the type is none of a service.
+            AttributeError: the type is no class of an interface.
+            RuntimeError: it is that of a message.
         """
-        name = self.resolve_service_name(srv_name)
-        client: Client[Any, Any] = Client(self, srv_type, name, QoSProfile.of(qos_profile), callback_group)
-        self._added(client)
-        self.graph.add(client)
-        return client
+        name = self.__handle.resolve_service_name(srv_name)
+        qos = QoSProfile.of(qos_profile)
+        client: Client[Any, Any] = Client(self.__handle, srv_type, name, qos, callback_group)
+        return self.__handle.add(client)
 
     def create_timer(
         self,
@@ -339,8 +337,8 @@ class Node(NodeParameters, NodeQueries):
             ValueError: the period is negative.
         """
         period_ns = round(float(timer_period_sec) * NANOSECONDS_PER_SECOND)
-        timer = Timer(self, callback, period_ns, clock or self._clock, callback_group, autostart=autostart)
-        return self._added(timer)
+        clock = clock or self.__clock
+        return self.__handle.add(Timer(self.__handle, callback, period_ns, clock, callback_group, autostart=autostart))
 
     def create_rate(self, frequency: float, clock: Clock | None = None) -> Rate:
         """A rate to sleep by.
@@ -354,126 +352,92 @@ class Node(NodeParameters, NodeQueries):
         """
         if frequency <= 0:
             raise ValueError("frequency must be > 0")
-        return Rate(self.create_timer(1.0 / frequency, None, FREE_GROUP, clock))
+        return Rate(Node.create_timer(self, 1.0 / frequency, None, FREE_GROUP, clock))
 
     def create_guard_condition(
         self, callback: Callable[[], object] | None, callback_group: CallbackGroup | None = None
     ) -> GuardCondition:
         """A callback for the node to set off itself: many triggers in a row call it once."""
-        return self._added(GuardCondition(self, callback, callback_group))
+        return self.__handle.add(GuardCondition(self.__handle, callback, callback_group))
 
     # --- what was made -----------------------------------------------------------------------------------------------
 
     @property
     def publishers(self) -> Iterator[Publisher[Any]]:
-        """The node's publishers."""
-        yield from tuple(self._publishers)
+        """The node's publishers, without those of ``/rosout`` and of the events of services, as in rclpy."""
+        return (
+            publisher
+            for publisher in self.__handle.parts(Publisher)
+            if publisher.type_name != LOG_TYPE and not publisher.name.endswith(EVENT_TOPIC_SUFFIX)
+        )
 
     @property
     def subscriptions(self) -> Iterator[Subscription[Any]]:
         """The node's subscriptions."""
-        yield from self._of(Subscription)
+        return iter(self.__handle.parts(Subscription))
 
     @property
     def services(self) -> Iterator[Service[Any, Any]]:
         """The node's services."""
-        yield from self._of(Service)
+        return iter(self.__handle.parts(Service))
 
     @property
     def clients(self) -> Iterator[Client[Any, Any]]:
         """The node's clients."""
-        yield from self._of(Client)
+        return iter(self.__handle.parts(Client))
 
     @property
     def timers(self) -> Iterator[Timer]:
         """The node's timers."""
-        yield from self._of(Timer)
+        return iter(self.__handle.parts(Timer))
 
     @property
     def guards(self) -> Iterator[GuardCondition]:
         """The node's guard conditions."""
-        yield from self._of(GuardCondition)
-
-    def endpoints(self) -> tuple[Endpoint, ...]:
-        """The node's publishers, subscriptions, services and clients."""
-        entities = [entity for entity in tuple(self._entities) if isinstance(entity, Endpoint)]
-        return (*self._publishers, *entities)
+        return iter(self.__handle.parts(GuardCondition))
 
     # --- destroying --------------------------------------------------------------------------------------------------
 
     def destroy_publisher(self, publisher: Publisher[Any]) -> bool:
         """Take a publisher away; what it sent is still delivered. Whether it was this node's."""
-        if self._publishers.pop(publisher, publisher) is publisher:
-            return False
-        if publisher.events is not None:
-            self._entities.pop(publisher.events, None)
-        self.graph.remove(publisher)
-        publisher.retire()
-        return True
+        return self.__handle.remove(publisher)
 
     def destroy_subscription(self, subscription: Subscription[Any]) -> bool:
         """Take a subscription away; its callback is not called again. Whether it was this node's."""
-        return self._destroy_endpoint(subscription)
+        return self.__handle.remove(subscription)
 
     def destroy_service(self, service: Service[Any, Any]) -> bool:
         """Take a service away. Whether it was this node's."""
-        return self._destroy_endpoint(service)
+        return self.__handle.remove(service)
 
     def destroy_client(self, client: Client[Any, Any]) -> bool:
         """Take a client away; its pending futures stay as they are. Whether it was this node's."""
-        return self._destroy_endpoint(client)
+        return self.__handle.remove(client)
 
     def destroy_timer(self, timer: Timer) -> bool:
         """Stop a timer for good. Whether it was this node's."""
-        return self._retire(timer)
+        return self.__handle.remove(timer)
 
     def destroy_guard_condition(self, guard: GuardCondition) -> bool:
         """Never call back again. Whether it was this node's."""
-        return self._retire(guard)
+        return self.__handle.remove(guard)
 
     def destroy_rate(self, rate: Rate) -> bool:
         """End a rate; who sleeps by it is woken. Whether it was this node's."""
-        rate.wake()
-        self.remove_cleanup(rate.wake)
-        return self._retire(rate.timer)
+        return rate.destroy()
 
-    def destroy_node(self) -> bool:
-        """Take the node and all it made out of the graph. A second call does nothing. Whether this was the first."""
-        if self._destroyed:
-            return False
-        self._destroyed = True
-        for cleanup in tuple(self._cleanups):
-            cleanup()
-        self._close_parameters()
-        for entity in tuple(self._entities):
-            if isinstance(entity, Endpoint):
-                self._destroy_endpoint(entity)
-            else:
-                self._retire(entity)
-        for publisher in tuple(self._publishers):
-            self.destroy_publisher(publisher)
-        self.graph.forget(self)
-        return True
+    def destroy_node(self) -> None:
+        """Take the node and all it made out of the graph. A second call does nothing."""
+        self.__handle.destroy()
 
-    def _added(self, entity: E) -> E:
-        self._entities[entity] = None
-        entity.set_dispatcher(self._dispatcher)
-        return entity
+    def __enter__(self) -> Self:
+        return self
 
-    def _retire(self, entity: Entity) -> bool:
-        if entity not in self._entities:
-            return False
-        del self._entities[entity]
-        entity.retire()
-        return True
+    def __exit__(self, *_: object) -> None:
+        self.destroy_node()
 
-    def _destroy_endpoint(self, endpoint: Any) -> bool:
-        if endpoint not in self._entities:
-            return False
-        del self._entities[endpoint]
-        self.graph.remove(endpoint)
-        endpoint.retire()
-        return True
 
-    def _of(self, kind: type[E]) -> Iterator[E]:
-        return (entity for entity in tuple(self._entities) if isinstance(entity, kind))
+def _by_name(parameters: Mapping[str, Any] | Sequence[Parameter]) -> Mapping[str, Any]:
+    if isinstance(parameters, Mapping):
+        return parameters
+    return {parameter.name: parameter.value for parameter in parameters}

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from linkwright.inertia.properties import MassProperties, to_inertial
+from linkwright.geometry.mass import MassProperties
+from linkwright.inertia.inertial import to_inertial
 
 _DIGITS = 6
 _NOTHING = 1e-9

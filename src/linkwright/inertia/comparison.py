@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import inf
+from math import isfinite
 
 import numpy as np
 
-from linkwright.inertia.properties import MassProperties
-from linkwright.inertia.validity import problems
+from linkwright.geometry.mass import MassProperties
+from linkwright.geometry.validity import problems
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,8 +42,8 @@ def compare(present: MassProperties, computed: MassProperties) -> Comparison:
         ours = computed.principal().moments
         theirs = present.principal().moments
         if ours[0] > 0:
-            with np.errstate(over="ignore"):
+            with np.errstate(all="ignore"):  # beyond doubles there is nothing to compare
                 first, second, third = (float(ratio) for ratio in theirs / ours / mass_ratio)
-            ratios = (first, second, third) if max(map(abs, (first, second, third))) < inf else None
+            ratios = (first, second, third) if all(map(isfinite, (first, second, third))) else None
     distance = float(np.linalg.norm(present.center - computed.center))
     return Comparison(float(present.mass), mass_ratio, distance, ratios, tuple(problems(present)))

@@ -6,9 +6,10 @@ from dataclasses import dataclass
 from typing import Literal
 
 from linkwright.diagnostics import LinkwrightError
+from linkwright.geometry.mass import FARTHEST, MassProperties, combine
+from linkwright.geometry.solids import half_extents, shape_properties
+from linkwright.inertia.inertial import has_mass
 from linkwright.inertia.mesh_library import MeshLibrary
-from linkwright.inertia.properties import FARTHEST, MassProperties, combine, has_mass
-from linkwright.inertia.shapes import half_extents, shape_properties
 from linkwright.urdf import Collision, Link, Mesh, Visual
 
 ShapeKind = Literal["collision", "visual"]

@@ -5,11 +5,11 @@ from __future__ import annotations
 import os.path
 from pathlib import Path
 
-from linkwright.diagnostics import LinkwrightError
-from linkwright.inertia.meshes import TriangleMesh, read_mesh, unreadable
-from linkwright.inertia.properties import FARTHEST
+from linkwright.diagnostics import LinkwrightError, phrase
+from linkwright.geometry.mass import FARTHEST
+from linkwright.geometry.meshes import TriangleMesh, read_mesh, unreadable
+from linkwright.packages import PackageFinder
 from linkwright.urdf import Mesh
-from linkwright.workspace import PackageFinder
 from linkwright.xmltree import Element
 
 
@@ -75,7 +75,7 @@ class MeshLibrary:
         """
         path = self.locate(mesh.filename, element)
         if max(map(abs, mesh.scale)) > FARTHEST:
-            raise unreadable(path, "its scale is beyond all bounds")
+            raise unreadable(path, phrase("its scale is beyond all bounds"))
         return self.read(path).scaled(mesh.scale)
 
     def _base(self, element: Element | None) -> Path:

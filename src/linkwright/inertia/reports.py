@@ -9,10 +9,11 @@ from math import isclose
 from typing import Any
 
 from linkwright.diagnostics import display_path
+from linkwright.geometry.mass import MassProperties
 from linkwright.inertia.blocks import inertial_block
 from linkwright.inertia.comparison import Comparison, compare
 from linkwright.inertia.estimate import Estimate
-from linkwright.inertia.properties import MassProperties, from_inertial, is_computable, to_inertial
+from linkwright.inertia.inertial import from_inertial, is_computable, to_inertial
 from linkwright.inertia.writing import Written
 from linkwright.urdf import Robot
 

@@ -7,9 +7,9 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from math import isclose
 
-from linkwright.diagnostics import SourceText
+from linkwright.diagnostics import SourceText, phrase
+from linkwright.geometry.mass import MassProperties
 from linkwright.inertia.blocks import Attributes, inertial_block, inertial_parts, start_tag
-from linkwright.inertia.properties import MassProperties
 from linkwright.urdf import Link
 from linkwright.xacro.origin import Frame, frames
 from linkwright.xmltree import Element, parse
@@ -71,7 +71,7 @@ def _written_element(link: Link) -> Element:
     """The ``<link>`` as it stands in its file, before any expansion."""
     element = link.element
     if element is None or element.source is None:
-        raise NotWritableError("it is not written in a file")
+        raise NotWritableError(phrase("it is not written in a file"))
     frame = element.origin if isinstance(element.origin, Frame) else None
     macro = next((each.macro for each in frames(frame) if each.macro is not None), None)
     if macro is not None:

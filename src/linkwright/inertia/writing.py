@@ -7,10 +7,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path
-from linkwright.inertia.properties import MassProperties
+from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, phrase
+from linkwright.geometry.mass import MassProperties
 from linkwright.inertia.source_edits import NotWritableError, Replacement, apply, edits_for
 from linkwright.urdf import Link, Robot
+from linkwright.whole_files import write_whole_file
 from linkwright.xmltree.reader import read_bytes
 
 _BYTE_ORDER_MARK = "\ufeff"
@@ -75,11 +76,11 @@ def _current(file: str, text: str) -> str:
     try:
         now = read_bytes(file).decode("utf-8")
     except UnicodeDecodeError:
-        raise NotWritableError("its file is not UTF-8") from None
+        raise NotWritableError(phrase("its file is not UTF-8")) from None
     except LinkwrightError:
-        raise NotWritableError("it is not written in a file") from None
+        raise NotWritableError(phrase("it is not written in a file")) from None
     if len(now.removeprefix(_BYTE_ORDER_MARK)) != len(text):
-        raise NotWritableError("its file has changed since it was read")
+        raise NotWritableError(phrase("its file has changed since it was read"))
     return now
 
 
@@ -87,7 +88,9 @@ def _save(file: str, text: str, changes: list[Replacement]) -> None:
     mark = _BYTE_ORDER_MARK if text.startswith(_BYTE_ORDER_MARK) else ""
     changed = mark + apply(text.removeprefix(_BYTE_ORDER_MARK), changes)
     try:
-        Path(file).write_bytes(changed.encode("utf-8"))
+        write_whole_file(file, changed)
     except OSError as error:
-        message = f"cannot write '{display_path(file)}': {error.strerror or error}"
-        raise LinkwrightError(Diagnostic("INR201", message, hint="make the file writable")) from None
+        message = phrase(
+            "cannot write '{file}': {strerror}", file=display_path(file), strerror=foreign(error.strerror or error)
+        )
+        raise LinkwrightError(Diagnostic("INR201", message, hint=phrase("make the file writable"))) from None

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from linkwright.geometry.arrays import Array
 from linkwright.kinematics.layout import Indices, Layout
-from linkwright.kinematics.quaternions import Array
 
 _BLOCK = 384
 

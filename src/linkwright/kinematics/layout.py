@@ -14,9 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.kinematics.poses import matrix_from_pose
-from linkwright.kinematics.quaternions import Array, quaternion_from_rpy
-from linkwright.urdf import Joint, Pose, Robot, children_of, parent_joints
+from linkwright.geometry.arrays import Array, matrix_from_pose, row_from_pose
+from linkwright.urdf import Joint, Robot, children_of, parent_joints
 
 Indices = NDArray[np.intp]
 
@@ -64,7 +63,7 @@ def lay_out(robot: Robot) -> Layout:
             if above[joint.child] is not joint:
                 continue  # a second parent, which urdfdom forgets
             body = link_bodies[at]
-            to_joint = offsets[at] @ _matrix(joint.origin)
+            to_joint = offsets[at] @ matrix_from_pose(row_from_pose(joint.origin))
             align = _align_z(joint.axis) if joint.type in MOVING else None
             if align is None:
                 link_bodies.append(body)
@@ -92,11 +91,6 @@ def lay_out(robot: Robot) -> Layout:
         place[np.array(link_bodies)],
         np.array(offsets),
     )
-
-
-def _matrix(pose: Pose) -> Array:
-    quaternion = quaternion_from_rpy(pose.rpy) if pose.quaternion is None else np.array(pose.quaternion)
-    return matrix_from_pose(np.concatenate((pose.xyz, quaternion)))
 
 
 def _align_z(axis: tuple[float, float, float]) -> Array | None:

@@ -8,11 +8,11 @@ from math import prod
 import numpy as np
 from numpy.typing import ArrayLike
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, phrase, term
+from linkwright.geometry.arrays import Array
 from linkwright.kinematics.forward import ManyConfigurations, OneConfiguration
 from linkwright.kinematics.layout import MOVING, lay_out
 from linkwright.kinematics.mimic import resolve_mimics
-from linkwright.kinematics.quaternions import Array
 from linkwright.urdf import Robot
 
 
@@ -23,9 +23,9 @@ class UnknownNameError(LinkwrightError):
         name: the name that was asked for.
     """
 
-    def __init__(self, code: str, kind: str, name: str, known: Sequence[str], hint: str | None = None) -> None:
+    def __init__(self, code: str, kind: str, name: str, known: Sequence[str], hint: Phrase | None = None) -> None:
         self.name = name
-        message = f"the robot has no {kind} '{name}'"
+        message = phrase("the robot has no {kind} '{name}'", kind=term(kind), name=name)
         super().__init__(Diagnostic(code, message, hint=hint or did_you_mean(name, known)))
 
 
@@ -131,9 +131,9 @@ class KinematicTree:
     def _unknown_joint(self, name: str) -> UnknownNameError:
         follower = self._followers.get(name)
         if follower is not None:
-            hint = f"it mimics '{follower.leader}': give the position of that joint"
+            hint = phrase("it mimics '{leader}': give the position of that joint", leader=follower.leader)
             return UnknownNameError("KIN102", "joint with a position of its own called", name, (), hint)
         if name in self._types and self._types[name] not in MOVING:
-            hint = f"it is {self._types[name]} and does not move"
+            hint = phrase("it is {types} and does not move", types=self._types[name])
             return UnknownNameError("KIN102", "joint with a position of its own called", name, (), hint)
         return UnknownNameError("KIN101", "joint", name, self.joint_names)

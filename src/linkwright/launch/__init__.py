@@ -1,6 +1,6 @@
 """Launch descriptions: actions, substitutions, conditions, events, and running what they describe."""
 
-from linkwright.launch.engine.hosted_plan import is_viewer
+from linkwright.launch.model.plans import is_viewer
 from linkwright.launch.program import find_program, run_viewer
 from linkwright.launch.ros.executables import Executable, builtin_packages, executables_of
 from linkwright.launch.run import LaunchOptions, print_description, run_launch, show_arguments

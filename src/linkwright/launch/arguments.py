@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, did_you_mean, nearest
-from linkwright.launch.actions import DeclareLaunchArgument
-from linkwright.launch.declared import declared_arguments
-from linkwright.launch.description import LaunchDescription
-from linkwright.launch.substitution import describe
-
-_SINGLE_SIGN = re.compile(r"^([A-Za-z_][\w-]*)(=|:)(?![=])(.*)$", re.DOTALL)
+from linkwright.assignments import parse_assignments
+from linkwright.diagnostics import (
+    Diagnostic,
+    LinkwrightError,
+    Phrase,
+    Severity,
+    did_you_mean,
+    nearest,
+    phrase,
+    quoted_names,
+)
+from linkwright.launch.model.actions import DeclareLaunchArgument
+from linkwright.launch.model.declared_arguments import undeclared_names
+from linkwright.launch.model.description import LaunchDescription
+from linkwright.launch.model.substitution import describe
 
 UNDECLARED = frozenset({"launch-prefix", "sigterm_timeout", "sigkill_timeout", "emulate_tty", "ros_namespace"})
 """Launch configurations that mean something without being declared."""
@@ -24,19 +31,11 @@ def parse_arguments(words: Iterable[str]) -> dict[str, str]:
     Raises:
         LinkwrightError: LAUNCH111, with all words that are not of the form ``name:=value``.
     """
-    arguments: dict[str, str] = {}
-    errors: list[Diagnostic] = []
-    for word in words:
-        name, separator, value = word.partition(":=")
-        if separator and name:
-            arguments[name] = value
-            continue
-        found = _SINGLE_SIGN.match(word)
-        hint = f"write {found[1]}:={found[3]}" if found else "arguments are written name:=value"
-        errors.append(Diagnostic("LAUNCH111", f"malformed launch argument '{word}'", hint=hint))
-    if errors:
-        raise LinkwrightError(*errors)
-    return arguments
+    return parse_assignments(words, _malformed)
+
+
+def _malformed(word: str, hint: Phrase) -> Diagnostic:
+    return Diagnostic("LAUNCH111", phrase("malformed launch argument '{word}'", word=word), hint=hint)
 
 
 def check_arguments(description: LaunchDescription, given: Mapping[str, str]) -> list[Diagnostic]:
@@ -48,13 +47,13 @@ def check_arguments(description: LaunchDescription, given: Mapping[str, str]) ->
     Raises:
         LinkwrightError: LAUNCH112 and LAUNCH114, all wrong values and missing arguments together.
     """
-    declared = declared_arguments(description)
+    declared = description.get_launch_arguments()
     names = [argument.name for argument in declared]
-    undeclared = [name for name in given if name not in names and name not in UNDECLARED]
+    undeclared = undeclared_names(description.entities, [name for name in given if name not in UNDECLARED])
     errors: list[Diagnostic] = []
     for argument in declared:
         value = given.get(argument.name)
-        if value is not None and argument.choices is not None:
+        if value is not None and argument.choices is not None and not argument.conditionally_included:
             errors += _error_of(argument, given)
         elif value is None and argument.default_value is None and not argument.conditionally_included:
             errors += [_misspelt(argument.name, undeclared, error) for error in _error_of(argument, given)]
@@ -64,7 +63,7 @@ def check_arguments(description: LaunchDescription, given: Mapping[str, str]) ->
 
 
 def _error_of(argument: DeclareLaunchArgument, given: Mapping[str, str]) -> Sequence[Diagnostic]:
-    from linkwright.launch.context import LaunchContext
+    from linkwright.launch.model.context import LaunchContext
 
     context = LaunchContext()
     context.launch_configurations.update(given)
@@ -78,21 +77,25 @@ def _error_of(argument: DeclareLaunchArgument, given: Mapping[str, str]) -> Sequ
 def _misspelt(name: str, undeclared: Sequence[str], error: Diagnostic) -> Diagnostic:
     """The error about a missing argument; its hint names the one that was given with nearly the same name."""
     near = nearest(name, undeclared, limit=1)
-    return replace(error, hint=f"'{near[0]}' is given: did you mean '{name}'?") if near else error
+    return (
+        replace(error, hint=phrase("'{near}' is given: did you mean '{name}'?", near=near[0], name=name))
+        if near
+        else error
+    )
 
 
 def _undeclared(name: str, declared: Sequence[str]) -> Diagnostic:
     hint = did_you_mean(name, declared)
     if hint is None:
-        hint = "it declares " + ", ".join(f"'{each}'" for each in declared) if declared else "it declares none"
-    message = f"argument '{name}' is not declared by the launch file"
+        hint = phrase("it declares {names}", names=quoted_names(declared)) if declared else phrase("it declares none")
+    message = phrase("argument '{name}' is not declared by the launch file", name=name)
     return Diagnostic("LAUNCH113", message, severity=Severity.WARNING, hint=hint)
 
 
 def argument_listing(description: LaunchDescription) -> str:
     """What ``ros2 launch --show-args`` prints: names, descriptions and defaults of the declared arguments."""
     lines = ["Arguments (pass arguments as '<name>:=<value>'):"]
-    declared = declared_arguments(description)
+    declared = description.get_launch_arguments()
     for argument in declared:
         lines += ["", f"    '{argument.name}':{'*' if argument.conditionally_included else ''}"]
         lines.append(f"        {argument.description}")

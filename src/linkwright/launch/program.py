@@ -7,16 +7,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from linkwright.launch.description import LaunchDescription
-from linkwright.launch.engine.hosted_plan import VIEWER
-from linkwright.launch.engine.log import LaunchLog
-from linkwright.launch.engine.surroundings import process_environment
 from linkwright.launch.engine.viewer_arguments import USAGE, asks_for_help
+from linkwright.launch.log.launch_log import LaunchLog
+from linkwright.launch.model.description import LaunchDescription
+from linkwright.launch.model.plans import VIEWER
 from linkwright.launch.ros import Node
 from linkwright.launch.ros.executables import Origin, find_executable
-from linkwright.launch.ros.workspace_environment import workspace_environment
 from linkwright.launch.run import LaunchOptions, run_description
-from linkwright.workspace import PackageFinder
+from linkwright.packages import PackageFinder
+from linkwright.packages.programs.child_python import process_environment
+from linkwright.packages.programs.workspace_environment import workspace_environment
 
 
 @dataclass(frozen=True)

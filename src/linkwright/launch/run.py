@@ -10,16 +10,17 @@ from pathlib import Path
 from typing import Any
 
 from linkwright.launch.arguments import argument_listing, check_arguments
-from linkwright.launch.context import LaunchContext
-from linkwright.launch.description import LaunchDescription
-from linkwright.launch.engine.descriptions import Descriptions, use_descriptions
-from linkwright.launch.engine.log import LaunchLog
-from linkwright.launch.engine.session import LaunchSession, SessionOptions
+from linkwright.launch.engine.session import LaunchSession
 from linkwright.launch.engine.signals import SignalWatch, interruption_text
-from linkwright.launch.entity import Action
-from linkwright.launch.launch_file import load_launch_file
+from linkwright.launch.engine.supervisor import SessionOptions
+from linkwright.launch.frontend.launch_file import load_launch_file
+from linkwright.launch.log.launch_log import LaunchLog
+from linkwright.launch.model.action import Action
+from linkwright.launch.model.context import LaunchContext
+from linkwright.launch.model.description import LaunchDescription
+from linkwright.launch.model.descriptions import Descriptions, use_descriptions
 from linkwright.launch.target import LaunchTarget
-from linkwright.workspace import PackageFinder, use_finder
+from linkwright.packages import PackageFinder, use_finder
 
 
 @dataclass(frozen=True)
@@ -31,11 +32,14 @@ class LaunchOptions:
         port: its port; None for the default one, or the next that is free.
         open_browser: whether the page is opened in the user's browser.
         isolate: whether our own nodes run as processes, each by itself.
-        debug: whether it is told in detail what goes on.
-        noninteractive: whether nobody sits at a terminal that would send signals to the processes too.
+        debug: whether it logs in detail.
+        noninteractive: whether there is no terminal that would send signals to the processes too.
         prefix: a command to put before those of processes.
         prefix_filter: a regular expression for the names of the programs that get it.
         foxglove: a port for Foxglove and Lichtblick to connect to; None for none.
+        skip_missing: whether what cannot run because something is not there is left out.
+        command_to_skip_missing: what the user may type to have that; told where something is missing.
+        network: whether the nodes of this process join the ROS 2 network, where other programs see them.
     """
 
     host: str = "127.0.0.1"
@@ -47,6 +51,9 @@ class LaunchOptions:
     prefix: str | None = None
     prefix_filter: str | None = None
     foxglove: int | None = None
+    skip_missing: bool = False
+    command_to_skip_missing: str | None = None
+    network: bool = True
 
     @property
     def configurations(self) -> dict[str, str]:
@@ -56,7 +63,16 @@ class LaunchOptions:
 
     def for_session(self, title: str) -> SessionOptions:
         """The options of the session."""
-        return SessionOptions(self.host, self.port, self.open_browser, title, isolate=self.isolate)
+        return SessionOptions(
+            self.host,
+            self.port,
+            self.open_browser,
+            title,
+            isolate=self.isolate,
+            skip_missing=self.skip_missing,
+            command_to_skip_missing=None if self.skip_missing else self.command_to_skip_missing,
+            network=self.network,
+        )
 
 
 def run_launch(
@@ -99,9 +115,7 @@ def show_arguments(target: LaunchTarget) -> str:
     Raises:
         LinkwrightError: what is wrong with the target or the launch file.
     """
-    finder = target.finder()
-    with use_finder(finder):
-        return argument_listing(load_launch_file(target.resolve(finder)))
+    return _read(target, argument_listing)
 
 
 def print_description(target: LaunchTarget) -> str:
@@ -110,11 +124,21 @@ def print_description(target: LaunchTarget) -> str:
     Raises:
         LinkwrightError: what is wrong with the target or the launch file.
     """
-    from linkwright.launch.introspector import format_launch_description
+    from linkwright.launch.model.introspector import format_launch_description
 
+    return _read(target, format_launch_description)
+
+
+def _read(target: LaunchTarget, tell: Callable[[LaunchDescription], str]) -> str:
+    """What is told of a launch file that is read and not run."""
+    environment = dict(os.environ)
     finder = target.finder()
-    with use_finder(finder):
-        return format_launch_description(load_launch_file(target.resolve(finder)))
+    try:
+        with use_finder(finder):
+            finder.offer_prefix_path(os.environ)
+            return tell(load_launch_file(target.resolve(finder)))
+    finally:
+        _restore(environment)
 
 
 def run_description(
@@ -136,6 +160,7 @@ def run_description(
     log = LaunchLog(debug=options.debug)
     with SignalWatch() as signals, use_finder(finder), use_descriptions(Descriptions(finder)):
         try:
+            finder.offer_prefix_path(os.environ)
             description, values = load(log)
             if options.foxglove is not None:
                 description.add_action(_foxglove_bridge(options.foxglove))

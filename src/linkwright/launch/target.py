@@ -7,10 +7,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, display_path
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, display_path, joined, phrase
 from linkwright.launch.arguments import parse_arguments
-from linkwright.launch.python_file import is_launch_file_name
-from linkwright.workspace import PackageFinder
+from linkwright.launch.frontend.python_file import is_launch_file_name
+from linkwright.packages import PackageFinder
 
 _DEPTH = 4
 
@@ -53,14 +53,27 @@ class LaunchTarget:
         if len(found) == 1:
             return found[0]
         if found:
-            message = f"package '{self.package}' has several launch files '{self.file}'"
+            message = phrase(
+                "package '{package}' has several launch files '{file}'", package=self.package, file=self.file
+            )
             listed = ", ".join(str(path.relative_to(share)) for path in found)
-            raise LinkwrightError(Diagnostic("LAUNCH101", message, hint=f"name one by its path: {listed}"))
+            raise LinkwrightError(
+                Diagnostic("LAUNCH101", message, hint=phrase("name one by its path: {listed}", listed=listed))
+            )
         names = [path.name for path in present]
-        message = f"package '{self.package}' has no launch file '{self.file}' (in {display_path(share)})"
+        message = phrase(
+            "package '{package}' has no launch file '{file}' (in {share})",
+            package=self.package,
+            file=self.file,
+            share=display_path(share),
+        )
         hint = did_you_mean(self.file, names)
         if hint is None:
-            hint = "it has " + ", ".join(names) if names else "it has no launch files; is its setup.py installing them?"
+            hint = (
+                phrase("it has {names}", names=joined(names))
+                if names
+                else phrase("it has no launch files; is its setup.py installing them?")
+            )
         raise LinkwrightError(Diagnostic("LAUNCH101", message, hint=hint))
 
 
@@ -77,13 +90,15 @@ def parse_launch_words(words: Sequence[str]) -> tuple[LaunchTarget, dict[str, st
     named, rest = words[:split], words[split:]
     arguments = parse_arguments(rest)
     if not named:
-        raise _incomplete("no launch file is named", "name a PACKAGE and a FILE in it, or the PATH of a launch file")
+        raise _incomplete(
+            phrase("no launch file is named"), phrase("name a PACKAGE and a FILE in it, or the PATH of a launch file")
+        )
     if len(named) == 1:
         if not _is_file(named[0]) and not _is_path(named[0]):
             files = [path.name for path in _files_of_package(named[0])]
             if files:
-                hint = "it has " + ", ".join(files)
-                raise _incomplete(f"'{named[0]}' is a package: name a launch file in it too", hint)
+                hint = phrase("it has {names}", names=joined(files))
+                raise _incomplete(phrase("'{named}' is a package: name a launch file in it too", named=named[0]), hint)
         return LaunchTarget(named[0]), arguments
     return LaunchTarget(named[1], named[0]), arguments
 
@@ -114,5 +129,5 @@ def _launch_files(folder: Path, depth: int) -> Iterator[Path]:
             yield entry
 
 
-def _incomplete(message: str, hint: str) -> LinkwrightError:
+def _incomplete(message: Phrase, hint: Phrase) -> LinkwrightError:
     return LinkwrightError(Diagnostic("LAUNCH110", message, hint=hint))

@@ -8,14 +8,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.launch.context import LaunchContext
-from linkwright.launch.description import LaunchDescription
-from linkwright.launch.engine.descriptions import XacroCall
-from linkwright.launch.engine.log import LaunchLog
+from linkwright.launch.log.launch_log import LaunchLog
+from linkwright.launch.model.context import LaunchContext
+from linkwright.launch.model.description import LaunchDescription
+from linkwright.launch.model.descriptions import XacroCall
+from linkwright.launch.model.substitution import Substitution
 from linkwright.launch.ros import Node, ParameterValue
 from linkwright.launch.run import LaunchOptions, run_description
-from linkwright.launch.substitution import Substitution
-from linkwright.workspace import PackageFinder
+from linkwright.packages import PackageFinder
 
 if TYPE_CHECKING:
     from linkwright.viewer import RvizConfig
@@ -64,7 +64,7 @@ class ModelViewer(Node):
         def make() -> RvizConfig:
             from linkwright.viewer import RvizConfig
 
-            return RvizConfig.for_model(_root_link(self._call, context))
+            return RvizConfig.for_model(_root_link(self._call, context), name=str(self._call.path))
 
         return make
 
@@ -77,7 +77,7 @@ def run_view(
     Args:
         model_path: the file.
         arguments: name -> value of the xacro arguments.
-        options: how it is run.
+        options: how it is run; when left out, its nodes are seen by no other program.
 
     Returns:
         The exit status, see `linkwright.launch.run_launch`.
@@ -89,7 +89,7 @@ def run_view(
         return describe_view(call), {}
 
     finder = PackageFinder(start=[path.parent, Path.cwd()])
-    return run_description(load, {}, finder, options or LaunchOptions(), path.name)
+    return run_description(load, {}, finder, options or LaunchOptions(network=False), path.name)
 
 
 def describe_view(call: XacroCall) -> LaunchDescription:

@@ -3,7 +3,8 @@
 from linkwright.lint.engine import Checked, check, examine
 from linkwright.lint.finding import Finding
 from linkwright.lint.fix import Edit, Fix
-from linkwright.lint.rule import Option, Rule, Scope
+from linkwright.lint.option import Option
+from linkwright.lint.rule import Rule, Scope
 from linkwright.lint.settings import Settings
 from linkwright.lint.subject import Subject
 

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import os
-import tempfile
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from difflib import unified_diff
 from pathlib import Path
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path
+from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, phrase
 from linkwright.lint.finding import Finding
 from linkwright.lint.fix import Edit, Fix
-from linkwright.workspace import enclosing_package
+from linkwright.packages import enclosing_package
+from linkwright.whole_files import write_whole_file
 from linkwright.xmltree import parse
 from linkwright.xmltree.reader import read_bytes
 
@@ -79,22 +78,14 @@ def write_text(path: Path, text: str) -> None:
     Raises:
         LinkwrightError: LINT201, it cannot be written.
     """
-    target = path.resolve()
     try:
-        before = target.read_bytes()
-        data = (_MARK if before.startswith(_MARK) else b"") + text.encode("utf-8")
-        handle, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.")
-        try:
-            with os.fdopen(handle, "wb") as file:
-                file.write(data)
-            Path(name).chmod(target.stat().st_mode & 0o7777)
-            Path(name).replace(target)
-        except OSError:
-            Path(name).unlink(missing_ok=True)
-            raise
+        before = path.read_bytes()
+        write_whole_file(path, (_MARK if before.startswith(_MARK) else b"") + text.encode("utf-8"))
     except OSError as error:
-        message = f"cannot write '{display_path(path)}': {error.strerror or error}"
-        raise LinkwrightError(Diagnostic("LINT201", message, hint="is the file yours to change?")) from None
+        message = phrase(
+            "cannot write '{path}': {strerror}", path=display_path(path), strerror=foreign(error.strerror or error)
+        )
+        raise LinkwrightError(Diagnostic("LINT201", message, hint=phrase("is the file yours to change?"))) from None
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,13 +9,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
-from linkwright.lint.frames import IDENTITY, Placement, placement
-from linkwright.urdf import Joint, Link
-
-if TYPE_CHECKING:
-    from linkwright.lint.subject import Subject
+from linkwright.geometry.placement import IDENTITY, Placement, placement
+from linkwright.urdf import Joint, Link, Robot
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -37,10 +33,10 @@ class Body:
 
 
 class Bodies:
-    """The bodies of a description; empty when there is no robot."""
+    """The bodies of a robot; none without one."""
 
-    def __init__(self, subject: Subject) -> None:
-        self._subject = subject
+    def __init__(self, robot: Robot | None) -> None:
+        self._robot = robot
 
     @cached_property
     def all(self) -> tuple[Body, ...]:
@@ -53,9 +49,8 @@ class Bodies:
 
     def members(self, body: Body) -> list[Link]:
         """The links of a body."""
-        robot = self._subject.robot
-        assert robot is not None, "there are bodies only where there is a robot"
-        return [robot.links[name] for name in body.frames]
+        assert self._robot is not None, "there are bodies only where there is a robot"
+        return [self._robot.links[name] for name in body.frames]
 
     def mass(self, body: Body) -> float:
         """The positive masses of a body's links together, in kg."""
@@ -64,7 +59,7 @@ class Bodies:
 
     @cached_property
     def _by_link(self) -> Mapping[str, Body]:
-        robot = self._subject.robot
+        robot = self._robot
         if robot is None:
             return {}
         below: dict[str, list[Joint]] = {}

@@ -13,11 +13,24 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, SourceText, Span, did_you_mean
+from linkwright.diagnostics import (
+    Diagnostic,
+    LinkwrightError,
+    Phrase,
+    Severity,
+    SourceText,
+    Span,
+    did_you_mean,
+    foreign,
+    joined,
+    phrase,
+    quoted,
+)
 from linkwright.lint.explain import toml
+from linkwright.lint.option import Option, OptionValue
 from linkwright.lint.registry import find_rule
-from linkwright.lint.rule import Option, OptionValue, Rule
-from linkwright.lint.selectors import canonical, is_selector, selector_hint
+from linkwright.lint.rule import Rule
+from linkwright.lint.selector_words import canonical, is_selector, selector_hint
 from linkwright.lint.settings import Settings
 from linkwright.xmltree.decoding import decode
 from linkwright.xmltree.reader import read_bytes
@@ -31,7 +44,13 @@ KEYS = ("select", "extend-select", "ignore", "severity", "per-file-ignores", "op
 
 _HEADER = re.compile(r"^[ \t]*\[(?!\[)([^\]\n]+)\]", re.MULTILINE)
 _PLACE = re.compile(r"\(at line (\d+), column (\d+)\)")
-_KINDS = {bool: "true or false", int: "a whole number", float: "a number", str: "a text", list: "a list of texts"}
+_KINDS = {
+    bool: phrase("true or false"),
+    int: phrase("a whole number"),
+    float: phrase("a number"),
+    str: phrase("a text"),
+    list: phrase("a list of texts"),
+}
 
 
 def settings_for(path: Path) -> tuple[Settings, tuple[Diagnostic, ...]]:
@@ -95,9 +114,9 @@ def _syntax_error(source: SourceText, error: Exception) -> Diagnostic:
     reason = _PLACE.sub("", message).replace("(at end of document)", "").strip()
     return Diagnostic(
         "LINT101",
-        f"this is not TOML: {reason[:1].lower()}{reason[1:]}",
+        phrase("this is not TOML: {reason}", reason=foreign(f"{reason[:1].lower()}{reason[1:]}")),
         source.span(start),
-        hint='a value is a text in quotes, a number, true, false, or a list: ignore = ["LW204"]',
+        hint=phrase('a value is a text in quotes, a number, true, false, or a list: ignore = ["LW204"]'),
         source=source,
     )
 
@@ -112,12 +131,12 @@ class _Reader:
 
     def settings(self, table: Any, folder: Path) -> Settings:
         if not isinstance(table, dict):
-            self._wrong(("linkwright",), "is not a table", "write [tool.linkwright] above the settings")
+            self._wrong(("linkwright",), phrase("is not a table"), phrase("write [tool.linkwright] above the settings"))
             return Settings(folder=folder)
         for key in table:
             if key not in KEYS:
-                hint = did_you_mean(key, KEYS) or f"the settings are {', '.join(KEYS)}"
-                self._say("LINT102", f"there is no setting '{key}'", (key,), hint)
+                hint = did_you_mean(key, KEYS) or phrase("the settings are {keys}", keys=joined(KEYS))
+                self._say("LINT102", phrase("there is no setting '{key}'", key=key), (key,), hint)
         select = table.get("select")
         return Settings(
             None if select is None else self._selectors(("select",), select),
@@ -133,19 +152,23 @@ class _Reader:
         value = table.get(key, {})
         if isinstance(value, dict):
             return value
-        self._wrong((key,), "is not a table", f"write [{'.'.join((*self._prefix, key))}]")
+        self._wrong((key,), phrase("is not a table"), phrase("write [{value}]", value=".".join((*self._prefix, key))))
         return {}
 
     def _selectors(self, path: tuple[str, ...], value: Any) -> tuple[str, ...]:
         if not isinstance(value, list) or not all(isinstance(each, str) for each in value):
-            self._wrong(path, "is not a list of texts", f'write {_written(path[-1])} = ["LW204", "limit-inverted"]')
+            self._wrong(
+                path,
+                phrase("is not a list of texts"),
+                phrase('write {written} = ["LW204", "limit-inverted"]', written=_written(path[-1])),
+            )
             return ()
         return tuple(word for each in value if (word := self._selector(path, each, each)))
 
     def _selector(self, path: tuple[str, ...], word: str, mark: str) -> str | None:
         if is_selector(word):
             return canonical(word)
-        self._say("LINT104", f"there is no rule '{word}'", path, selector_hint(word), mark=mark)
+        self._say("LINT104", phrase("there is no rule '{word}'", word=word), path, selector_hint(word), mark=mark)
         return None
 
     def _severities(self, table: Mapping[str, Any]) -> Iterator[tuple[str, Severity]]:
@@ -154,8 +177,10 @@ class _Reader:
             path = ("severity", key)
             selector = self._selector(path, key, key)
             if value not in words:
-                hint = did_you_mean(str(value), words) or f"it is one of {', '.join(words)}; to silence, use ignore"
-                self._wrong(path, "is not a severity", hint, shown=value)
+                hint = did_you_mean(str(value), words) or phrase(
+                    "it is one of {words}; to silence, use ignore", words=joined(words)
+                )
+                self._wrong(path, phrase("is not a severity"), hint, shown=value)
             elif selector:
                 yield selector, Severity(value)
 
@@ -167,9 +192,9 @@ class _Reader:
         for key, value in table.items():
             rule = find_rule(key)
             if rule is None:
-                self._say("LINT104", f"there is no rule '{key}'", ("options", key), selector_hint(key))
+                self._say("LINT104", phrase("there is no rule '{key}'", key=key), ("options", key), selector_hint(key))
             elif not isinstance(value, dict):
-                self._wrong(("options", key), "is not a table", f"write [options.{key}]")
+                self._wrong(("options", key), phrase("is not a table"), phrase("write [options.{key}]", key=key))
             else:
                 yield rule.name, dict(self._rule_options(rule, key, value))
 
@@ -180,19 +205,32 @@ class _Reader:
             option = known.get(name)
             if option is None:
                 hint = did_you_mean(name, known) or (
-                    f"its options are {', '.join(known)}" if known else f"{rule.code} has no options"
+                    phrase("its options are {known}", known=joined(known))
+                    if known
+                    else phrase("{code} has no options", code=rule.code)
                 )
-                self._say("LINT102", f"rule '{rule.name}' has no option '{name}'", path, hint)
+                self._say(
+                    "LINT102",
+                    phrase("rule '{name}' has no option '{other_name}'", name=rule.name, other_name=name),
+                    path,
+                    hint,
+                )
             elif not _fits(option, value):
-                self._wrong(path, f"is not {_KINDS[type(option.default)]}", f"the default is {toml(option.default)}")
+                self._wrong(
+                    path,
+                    phrase("is not {kind}", kind=_KINDS[type(option.default)]),
+                    phrase("the default is {toml}", toml=toml(option.default)),
+                )
             else:
                 yield name, value
 
-    def _wrong(self, path: tuple[str, ...], what: str, hint: str, *, shown: object = None) -> None:
-        value = "" if shown is None else f": '{shown}'"
-        self._say("LINT103", f"'{path[-1]}' {what}{value}", path, hint)
+    def _wrong(self, path: tuple[str, ...], what: Phrase, hint: Phrase, *, shown: object = None) -> None:
+        message = phrase("'{key}' {what}", key=path[-1], what=what)
+        if shown is not None:
+            message = joined([message, quoted(shown)], ": ")
+        self._say("LINT103", message, path, hint)
 
-    def _say(self, code: str, message: str, path: tuple[str, ...], hint: str, *, mark: str | None = None) -> None:
+    def _say(self, code: str, message: Phrase, path: tuple[str, ...], hint: Phrase, *, mark: str | None = None) -> None:
         span = _locate(self._source, (*self._prefix, *path), mark)
         self.found.append(Diagnostic(code, message, span, hint=hint, source=self._source))
 

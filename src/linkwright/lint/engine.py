@@ -6,20 +6,20 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Severity
+from linkwright.descriptions import Description, Packages
+from linkwright.descriptions import examine as examine_description
+from linkwright.descriptions.description import TRUE_OF_PARTS
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Severity, counted, phrase
 from linkwright.lint.finding import Finding
-from linkwright.lint.registry import all_rules, find_rule
-from linkwright.lint.rule import Scope
+from linkwright.lint.registry import all_rules, find_rule, unusable_rules
+from linkwright.lint.rule import Rule, Scope
 from linkwright.lint.settings import Settings
 from linkwright.lint.subject import Subject
 from linkwright.lint.suppression import Suppressions
-from linkwright.urdf import Reading, Robot, read
-from linkwright.urdf.library import Packages
-from linkwright.urdf.plaintext import parse_as_urdfdom
-from linkwright.workspace import PackageFinder
-from linkwright.workspace.manifest import MANIFEST
-from linkwright.xmltree import Document, Element
-from linkwright.xmltree.reader import read_bytes
+from linkwright.packages import PackageFinder
+from linkwright.packages.manifest import MANIFEST
+from linkwright.urdf import Reading, Robot
+from linkwright.xmltree import Document, Element, Overlay
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +30,7 @@ class Checked:
         path: the file.
         robot: the robot, or None when there is none.
         diagnostics: everything found, in the order of the text; those of rules are `Finding`.
-        subject: what the rules looked at; None when the file could not be read or expanded.
+        subject: what the rules looked at; None when nothing of the file could be read or expanded.
     """
 
     path: Path
@@ -64,7 +64,7 @@ def examine(
     arguments: Mapping[str, str] | None = None,
     packages: Packages = None,
     settings: Settings | None = None,
-    text: str | None = None,
+    overlay: Overlay | None = None,
     scopes: Collection[Scope] = (Scope.DESCRIPTION, Scope.PACKAGE),
 ) -> Checked:
     """Check a URDF or xacro file; arguments as for `check`.
@@ -74,7 +74,7 @@ def examine(
         arguments: see `check`.
         packages: see `check`.
         settings: see `check`.
-        text: the text to take for that of the file.
+        overlay: texts that stand for those of files, such as ones that are not saved yet.
         scopes: the rules to run.
     """
     path = Path(path)
@@ -83,13 +83,15 @@ def examine(
         from linkwright.lint.configuration import settings_for
 
         settings, trouble = settings_for(path)
+    trouble = (*unusable_rules(), *trouble)
     finder = _finder(path, packages)
     try:
-        subject = _subject(path, arguments, finder, settings, text)
+        description = examine_description(path, arguments=arguments, packages=finder, overlay=overlay, partly=True)
     except LinkwrightError as error:
         return Checked(path, None, (*trouble, *error.diagnostics), None)
-    said = (*(subject.expansion.diagnostics if subject.expansion else ()), *subject.reading.diagnostics)
-    return Checked(path, subject.robot, (*trouble, *_run(subject, scopes, said)), subject)
+    subject = Subject(description, finder, settings)
+    found = _run(subject, scopes, _of_library(subject) if subject.is_library else description.diagnostics)
+    return Checked(path, subject.robot, (*trouble, *found), subject)
 
 
 def _run(subject: Subject, scopes: Collection[Scope], said: Iterable[Diagnostic] = ()) -> list[Diagnostic]:
@@ -106,11 +108,32 @@ def _find(subject: Subject, scopes: Collection[Scope], suppressions: Suppression
     for rule in all_rules():
         if rule.scope not in scopes or not (subject.settings.runs(rule) or suppressions.audits(rule.code)):
             continue
+        if not _may_run(rule, subject):
+            continue
         for diagnostic in rule.check(subject):
             if diagnostic.code != rule.code:
                 raise ValueError(f"{rule.code} reported a finding of {diagnostic.code}")
             found.append(_with_trail(diagnostic))
-    return _without_repetitions(found)
+    unread = subject.meshes.unread.diagnostics if subject.meshes.unread else ()
+    return [*_without_repetitions(found), *(replace(each, severity=Severity.INFO) for each in unread)]
+
+
+def _may_run(rule: Rule, subject: Subject) -> bool:
+    """Whether what a rule finds is true, although parts may be missing or there to be put together by other files."""
+    if rule.scope is Scope.PACKAGE or rule.holds_for_parts:
+        return True
+    return subject.is_whole and (rule.holds_for_libraries or not subject.is_library)
+
+
+def _of_library(subject: Subject) -> Iterator[Diagnostic]:
+    """What there is to say of a file that only defines macros: what is true of each part, and that it is no robot."""
+    described = subject.description
+    yield from (*described.problems, *described.remarks)
+    whole = subject.root.span()
+    yield from (each for each in described.reading.diagnostics if each.code in TRUE_OF_PARTS and each.span != whole)
+    hint = phrase("check the file that includes it, which calls the macros")
+    message = phrase("this file only defines macros and is no robot by itself")
+    yield Diagnostic("LINT302", message, subject.root.span(), Severity.INFO, hint=hint, source=subject.root.source)
 
 
 def in_order(diagnostics: Iterable[Diagnostic], first_file: str) -> list[Diagnostic]:
@@ -126,37 +149,21 @@ def in_order(diagnostics: Iterable[Diagnostic], first_file: str) -> list[Diagnos
     return sorted(diagnostics, key=place)
 
 
-def _subject(
-    path: Path, arguments: Mapping[str, str] | None, finder: PackageFinder, settings: Settings, text: str | None
-) -> Subject:
-    name = str(path)
-    document = parse_as_urdfdom(read_bytes(path) if text is None else text, name)
-    expansion = None
-    if arguments or name.endswith(".xacro") or is_xacro(document.root):
-        from linkwright.xacro import expand
+def examine_package(
+    folder: Path, settings: Settings, finder: PackageFinder | None = None, overlay: Overlay | None = None
+) -> Checked:
+    """Check a package by itself; for its rules the file is the manifest and the description an empty one.
 
-        expansion = expand(name, arguments, packages=finder, text=text)
-        document = expansion.document
-    return Subject(path, document, read(document), expansion=expansion, finder=finder, settings=settings)
-
-
-def is_xacro(root: Element) -> bool:
-    """Whether a document is to be expanded: it declares the prefix of xacro."""
-    return "xmlns:xacro" in root.attributes or root.tag.startswith("xacro:")
-
-
-def examine_package(folder: Path, settings: Settings, finder: PackageFinder | None = None) -> Checked:
-    """Check a package by itself; for its rules the file is the manifest and the description an empty one."""
+    Args:
+        folder: of the package.
+        settings: the settings in force for it.
+        finder: where packages are.
+        overlay: texts that stand for those of files.
+    """
     path = folder / MANIFEST
-    document = Document(Element("robot", {"name": folder.name}))
-    subject = Subject(
-        path,
-        document,
-        Reading(None, ()),
-        expansion=None,
-        finder=finder or _finder(path, None),
-        settings=settings,
-    )
+    empty = Document(Element("robot", {"name": folder.name}))
+    nothing = Description(str(path), empty, Reading(None, ()), overlay=overlay)
+    subject = Subject(nothing, finder or _finder(path, None), settings)
     return Checked(path, None, tuple(_run(subject, (Scope.PACKAGE,))), subject)
 
 
@@ -222,7 +229,12 @@ def _without_repetitions(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
         else:
             more[first[key]] = more.get(first[key], 0) + 1
     for index, count in more.items():
-        what = "once more" if count == 1 else f"{count} more times"
-        note = Note(f"the same place is found wrong {what}, through other macro calls or includes")
+        note = Note(
+            counted(
+                "the same place is found wrong once more, through other macro calls or includes",
+                "the same place is found wrong {count} more times, through other macro calls or includes",
+                count,
+            )
+        )
         kept[index] = replace(kept[index], notes=(*kept[index].notes, note))
     return kept

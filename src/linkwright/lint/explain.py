@@ -11,17 +11,21 @@ from functools import cache
 from inspect import cleandoc
 from pathlib import Path
 
-from linkwright.diagnostics import nearest
+from linkwright.diagnostics import Phrase, joined, nearest, phrase, term, title_of_page
+from linkwright.lint.option import OptionValue
 from linkwright.lint.registry import all_rules, find_rule
-from linkwright.lint.rule import OptionValue, Rule
+from linkwright.lint.rule import Rule
 
 PAGES = Path(__file__).parent / "pages"
 _SECTION = re.compile(r"^## ([A-Z]+[0-9]{3}): (.+?)\n(.*?)(?=^## [A-Z]+[0-9]{3}: |\Z)", re.MULTILINE | re.DOTALL)
 
+_HEADINGS: dict[str, str] = {each: each for each in (phrase("## Why"), phrase("## Example"), phrase("## Use instead"))}
+"""The lines of a rule's docstring that are the same in all; the text between them is in English only."""
+
 
 @dataclass(frozen=True, slots=True)
 class Page:
-    """What there is to say about a code.
+    """What there is to say about a code; what can be translated is a phrase.
 
     Attributes:
         code: of the diagnostic.
@@ -31,14 +35,17 @@ class Page:
     """
 
     code: str
-    title: str
-    text: str
+    title: Phrase
+    text: Phrase
     name: str = ""
 
-    def __str__(self) -> str:
+    @property
+    def markdown(self) -> Phrase:
         """The page as Markdown."""
-        head = f"# {self.code}: {self.name}\n\n{self.title}." if self.name else f"# {self.code}: {self.title}"
-        return f"{head}\n\n{self.text}".rstrip() + "\n"
+        head: list[str] = [phrase("# {code}: {title}", code=self.code, title=self.title)]
+        if self.name:
+            head = [f"# {self.code}: {self.name}", "", phrase("{title}.", title=self.title)]
+        return _lines(*head, "", self.text)
 
 
 def find_page(code_or_name: str) -> Page | None:
@@ -50,14 +57,18 @@ def find_page(code_or_name: str) -> Page | None:
 def rule_page(rule: Rule) -> Page:
     """The page of a rule: its docstring, how it is switched, and its options."""
     title, _, text = cleandoc(rule.__doc__ or "").partition("\n")
-    lines = [f"Severity: {rule.severity.value}. {_state(rule)}", "", text.strip()]
+    severity = phrase("Severity: {severity}. {state}", severity=term(rule.severity.value), state=_state(rule))
+    lines = [severity, "", *(_HEADINGS.get(line, line) for line in text.strip().splitlines())]
     if rule.options:
-        lines += ["", "## Options", ""]
-        lines += [f"- `{option.name}` (default `{toml(option.default)}`): {option.meaning}" for option in rule.options]
+        lines += ["", phrase("## Options"), ""]
+        lines += [
+            phrase("- `{name}` (default `{value}`): {meaning}", name=name, value=toml(default), meaning=meaning)
+            for name, default, meaning in ((option.name, option.default, option.meaning) for option in rule.options)
+        ]
         lines += ["", "```toml", f"[options.{rule.name}]"]
         lines += [f"{option.name} = {toml(option.default)}" for option in rule.options]
         lines += ["```"]
-    return Page(rule.code, title.rstrip("."), "\n".join(lines), rule.name)
+    return Page(rule.code, title_of_page(title.rstrip(".")), _lines(*lines), rule.name)
 
 
 @cache
@@ -66,7 +77,7 @@ def room_pages() -> dict[str, Page]:
     pages = {}
     for file in sorted(PAGES.glob("*.md")):
         for code, title, text in _SECTION.findall(file.read_text(encoding="utf-8")):
-            pages[code] = Page(code, title.strip(), text.strip())
+            pages[code] = Page(code, title_of_page(title.strip()), Phrase(text.strip()))
     return pages
 
 
@@ -95,7 +106,11 @@ def toml(value: OptionValue) -> str:
     return repr(value)
 
 
-def _state(rule: Rule) -> str:
+def _state(rule: Rule) -> Phrase:
     if rule.default:
-        return "On by default."
-    return f'Off by default; `extend-select = ["{rule.code}"]` switches it on.'
+        return phrase("On by default.")
+    return phrase('Off by default; `extend-select = ["{code}"]` switches it on.', code=rule.code)
+
+
+def _lines(*lines: str) -> Phrase:
+    return joined(lines, "\n")

@@ -2,81 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
-from itertools import product
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-from linkwright.inertia import MassProperties, combine, from_inertial, shape_properties
-from linkwright.inertia.properties import FARTHEST, Array, is_computable, pose_rotation
-from linkwright.inertia.shapes import half_extents
-from linkwright.lint.bodies import Body
-from linkwright.lint.frames import Placement
-from linkwright.urdf import Collision, Link, Mesh, Pose, Visual
-
-if TYPE_CHECKING:
-    from linkwright.lint.subject import Subject
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Bounds:
-    """A box along the axes of some frame: its lowest and highest corner in m, each of shape (3,)."""
-
-    low: Array
-    high: Array
-
-    @property
-    def size(self) -> Array:
-        """The edges in m; shape (3,)."""
-        edges: Array = self.high - self.low
-        return edges
-
-    @property
-    def center(self) -> Array:
-        """The middle in m; shape (3,)."""
-        middle: Array = (self.low + self.high) / 2.0
-        return middle
-
-    @property
-    def diagonal(self) -> float:
-        """The distance of opposite corners in m."""
-        return float(np.linalg.norm(self.size))
-
-    def gap(self, other: Bounds) -> float:
-        """How far two boxes are apart, in m; 0 where they touch."""
-        apart = np.maximum(0.0, np.maximum(self.low - other.high, other.low - self.high))
-        return float(np.linalg.norm(apart))
-
-    def moved(self, matrix: Array) -> Bounds:
-        """The box around this one in a parent frame; `matrix` is the frame in it, homogeneous, shape (4, 4)."""
-        corners = np.array(list(product(*zip(self.low, self.high, strict=True))))
-        return around(corners @ matrix[:3, :3].T + matrix[:3, 3])
-
-
-def around(points: Array) -> Bounds:
-    """The box around points; shape (points, 3)."""
-    return Bounds(points.min(axis=0), points.max(axis=0))
-
-
-def union(boxes: Iterable[Bounds]) -> Bounds | None:
-    """The box around several; None without any."""
-    listed = list(boxes)
-    return around(np.array([corner for box in listed for corner in (box.low, box.high)])) if listed else None
+from linkwright.geometry.arrays import Array, matrix_from_pose, row_from_pose
+from linkwright.geometry.bounds import Bounds, union
+from linkwright.geometry.mass import FARTHEST, MassProperties, combine
+from linkwright.geometry.placement import Placement
+from linkwright.geometry.solids import half_extents, shape_properties
+from linkwright.inertia.inertial import from_inertial, is_computable
+from linkwright.lint.bodies import Bodies, Body
+from linkwright.lint.meshes import MeshFacts
+from linkwright.urdf import Collision, Link, Mesh, Visual
 
 
 class Extents:
     """How large the shapes of a description are, each measured once."""
 
-    def __init__(self, subject: Subject) -> None:
-        self._subject = subject
+    def __init__(self, bodies: Bodies, meshes: MeshFacts) -> None:
+        self._bodies = bodies
+        self._meshes = meshes
         self._measured: dict[int, Bounds | None] = {}
 
     def mass_properties(self, body: Body) -> MassProperties:
         """What the ``<inertial>`` of a body's links come to, in the frame of its first link."""
         parts = []
-        for link, frame in zip(self._subject.bodies.members(body), body.frames.values(), strict=True):
+        for link, frame in zip(self._bodies.members(body), body.frames.values(), strict=True):
             inertial, matrix = link.inertial, frame_matrix(frame)
             if inertial is not None and inertial.mass > 0 and is_computable(inertial):
                 own = from_inertial(inertial)
@@ -101,12 +51,12 @@ class Extents:
 
     def body_bounds(self, link: Link) -> Bounds | None:
         """The box around the whole body of a link in that link's frame; None when a shape cannot be measured."""
-        body = self._subject.bodies.of(link.name)
+        body = self._bodies.of(link.name)
         if body is None:
             return None
         back = np.linalg.inv(frame_matrix(body.frames[link.name]))
         boxes = []
-        for member, frame in zip(self._subject.bodies.members(body), body.frames.values(), strict=True):
+        for member, frame in zip(self._bodies.members(body), body.frames.values(), strict=True):
             if not (member.visuals or member.collisions):
                 continue
             bounds = self.link_bounds(member)
@@ -139,7 +89,7 @@ class Extents:
         if max(map(abs, shape.origin.xyz)) > FARTHEST:
             return None
         if isinstance(geometry, Mesh):
-            mesh = self._subject.meshes.triangles(shape)
+            mesh = self._meshes.triangles(shape)
             if mesh is None:
                 return None
             low, high = mesh.bounds
@@ -149,15 +99,7 @@ class Extents:
             if half.max() > FARTHEST:
                 return None
             box = Bounds(-half, half)
-        return box.moved(pose_matrix(shape.origin))
-
-
-def pose_matrix(pose: Pose) -> Array:
-    """A pose as a homogeneous matrix, shape (4, 4); places beyond all bounds are moved to their edge."""
-    matrix = np.eye(4)
-    matrix[:3, :3] = pose_rotation(pose)
-    matrix[:3, 3] = np.clip(pose.xyz, -FARTHEST, FARTHEST)
-    return matrix
+        return box.moved(matrix_from_pose(row_from_pose(shape.origin)))
 
 
 def frame_matrix(frame: Placement) -> Array:

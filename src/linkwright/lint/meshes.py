@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -13,8 +13,9 @@ from linkwright.urdf import Collision, Link, Mesh, Visual
 from linkwright.xmltree import Element
 
 if TYPE_CHECKING:
-    from linkwright.inertia import MeshLibrary, TriangleMesh
-    from linkwright.lint.subject import Subject
+    from linkwright.geometry.meshes import TriangleMesh
+    from linkwright.inertia import MeshLibrary
+    from linkwright.packages import PackageFinder
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,10 +45,19 @@ class MeshFacts:
 
     Nothing is looked up before a rule asks for it. A URI that leads nowhere gives no path, and a file that cannot be
     read no triangles; the rules about files tell of them, all others leave such a mesh alone.
+
+    Args:
+        links: the links whose visuals and collisions are looked at.
+        finder: for ``package://`` addresses.
+        folder: what relative addresses start from.
     """
 
-    def __init__(self, subject: Subject) -> None:
-        self._subject = subject
+    def __init__(self, links: Iterable[Link], finder: PackageFinder, folder: Path) -> None:
+        self._links = tuple(links)
+        self._finder = finder
+        self._folder = folder
+        self.unread: LinkwrightError | None = None
+        """Why no mesh could be read although a rule wanted one: the library for it is not installed."""
 
     @cached_property
     def uses(self) -> tuple[MeshUse, ...]:
@@ -70,7 +80,7 @@ class MeshFacts:
     def problem(self, use: MeshUse) -> LinkwrightError | None:
         """Why the file of a use cannot be read, if it is there and cannot."""
         try:
-            self._library.load(use.mesh, use.element)
+            self._load(use.mesh, use.element)
         except LinkwrightError as error:
             return error
         return None
@@ -80,18 +90,26 @@ class MeshFacts:
         if not isinstance(shape.geometry, Mesh):
             return None
         try:
-            return self._library.load(shape.geometry, shape.element)
+            return self._load(shape.geometry, shape.element)
         except LinkwrightError:
             return None
+
+    def _load(self, mesh: Mesh, element: Element | None) -> TriangleMesh:
+        try:
+            return self._library.load(mesh, element)
+        except LinkwrightError as error:
+            if error.diagnostics[0].code == "INR104":
+                self.unread = error
+            raise
 
     @cached_property
     def _library(self) -> MeshLibrary:
         from linkwright.inertia import MeshLibrary  # not above: a robot without meshes is checked without numpy
 
-        return MeshLibrary(self._subject.finder, self._subject.path.absolute().parent)
+        return MeshLibrary(self._finder, self._folder)
 
     def _all_uses(self) -> Iterator[MeshUse]:
-        for link in self._subject.links:
+        for link in self._links:
             shapes: list[Visual | Collision] = [*link.visuals, *link.collisions]
             for shape in shapes:
                 element = shape_element(shape)

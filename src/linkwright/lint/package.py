@@ -6,52 +6,70 @@ import os
 from collections.abc import Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import LinkwrightError, SourceText
-from linkwright.lint.cmake_reader import CMakeFile, read_cmake
-from linkwright.lint.launch_reader import LaunchFile, is_launch_file, read_launch_file
-from linkwright.lint.manifest_reader import Manifest
-from linkwright.lint.setup_reader import SetupFile, read_setup
-from linkwright.workspace.sources import SKIPPED_FOLDERS
-from linkwright.xmltree import Document, parse_file
+from linkwright.packages.sources import SKIPPED_FOLDERS
+from linkwright.xmltree import Document, Overlay, parse_file
 from linkwright.xmltree.decoding import decode
 from linkwright.xmltree.reader import read_bytes
+
+if TYPE_CHECKING:
+    from linkwright.packages.readers.cmake import CMakeFile
+    from linkwright.packages.readers.launch_files import LaunchFile
+    from linkwright.packages.readers.package_xml import Manifest
+    from linkwright.packages.readers.setup_py import SetupFile
 
 MANIFEST = "package.xml"
 _MOST_FILES = 20_000
 _DESCRIPTIONS = (".xacro", ".urdf")
 
 
-def find_package(path: Path) -> PackageContext | None:
-    """The package that a file or folder lies in: the nearest folder upwards with a ``package.xml``; or None."""
+def find_package(path: Path, overlay: Overlay | None = None) -> PackageContext | None:
+    """The package that a file or folder lies in: the nearest folder upwards with a ``package.xml``; or None.
+
+    Args:
+        path: the file or folder.
+        overlay: texts that stand for those of files.
+    """
     path = path.absolute()
     for folder in (path, *path.parents):
         if (folder / MANIFEST).is_file():
-            return PackageContext(folder)
+            return PackageContext(folder, overlay)
     return None
 
 
 class PackageContext:
     """A ROS package. Files are read when somebody asks, and nothing in them is run.
 
+    The readers are imported then too: a check of one robot needs few of them.
+
+    Args:
+        folder: the folder with the ``package.xml``.
+        overlay: texts that stand for those of files.
+
     Attributes:
-        folder: the folder with the ``package.xml``, absolute.
+        folder: the same, absolute.
     """
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, overlay: Overlay | None = None) -> None:
         self.folder = folder.absolute()
+        self._overlay = overlay
 
     @cached_property
     def _manifest(self) -> Manifest | LinkwrightError:
+        from linkwright.packages.readers.package_xml import Manifest
+
         try:
-            return Manifest(parse_file(self.folder / MANIFEST))
+            unsaved = None if self._overlay is None else self._overlay.document(str(self.folder / MANIFEST))
+            return Manifest(unsaved or parse_file(self.folder / MANIFEST))
         except LinkwrightError as error:
             return error
 
     @property
     def manifest(self) -> Manifest | None:
         """Its ``package.xml``; None where that is not XML."""
-        return self._manifest if isinstance(self._manifest, Manifest) else None
+        return None if isinstance(self._manifest, LinkwrightError) else self._manifest
 
     @property
     def manifest_error(self) -> LinkwrightError | None:
@@ -84,6 +102,9 @@ class PackageContext:
     def text(self, path: str) -> SourceText | None:
         """The text of a file of the package, or None where there is none or it cannot be read."""
         full = str(self.folder / path)
+        unsaved = None if self._overlay is None else self._overlay.text(full)
+        if unsaved is not None:
+            return SourceText(full, unsaved)
         try:
             return SourceText(full, decode(read_bytes(full), full))
         except LinkwrightError:
@@ -92,18 +113,24 @@ class PackageContext:
     @cached_property
     def setup(self) -> SetupFile | None:
         """Its ``setup.py``, or None."""
+        from linkwright.packages.readers.setup_py import read_setup
+
         source = self.text("setup.py")
         return None if source is None else read_setup(source)
 
     @cached_property
     def cmake(self) -> CMakeFile | None:
         """Its ``CMakeLists.txt``, or None."""
+        from linkwright.packages.readers.cmake import read_cmake
+
         source = self.text("CMakeLists.txt")
-        return None if source is None else read_cmake(source)
+        return None if source is None else read_cmake(source, self.folder)
 
     @cached_property
     def launch_files(self) -> Mapping[str, LaunchFile]:
         """Its Python launch files: path below the package -> what it says."""
+        from linkwright.packages.readers.launch_files import is_launch_file, read_launch_file
+
         found = {}
         for file in self.files:
             if is_launch_file(file):
@@ -121,6 +148,8 @@ class PackageContext:
         for file in self.files:
             if file.endswith(_DESCRIPTIONS):
                 path = self.folder / file
+                if not path.is_file():  # a pipe would never end
+                    continue
                 try:
                     found[path] = sources.read(str(path))
                 except LinkwrightError:

@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from enum import Enum
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar, TypeVar
 
-from linkwright.diagnostics import Diagnostic, Note, Severity, SourceText, Span
+from linkwright.diagnostics import Diagnostic, Note, Phrase, Severity, SourceText, Span
 from linkwright.lint.finding import Finding
 from linkwright.lint.fix import Fix
+from linkwright.lint.option import Option
+from linkwright.lint.subject import Subject
 from linkwright.xmltree import Element
 
-if TYPE_CHECKING:
-    from linkwright.lint.subject import Subject
-
-OptionValue = bool | int | float | str | list[str]
-"""What an option of a rule may be, as TOML has it."""
+Value = TypeVar("Value", bool, int, float, str, list[str])
 
 
 class Scope(Enum):
@@ -30,21 +27,6 @@ class Scope(Enum):
     """The comments that suppress findings; the engine reports for the rule, which is not run."""
 
 
-@dataclass(frozen=True, slots=True)
-class Option:
-    """A setting of a rule, written in ``[options.RULE-NAME]`` of the configuration.
-
-    Attributes:
-        name: in kebab-case.
-        default: the value in force when nobody sets it; another value must be of its type.
-        meaning: one phrase for the documentation, with the unit.
-    """
-
-    name: str
-    default: OptionValue
-    meaning: str
-
-
 class Rule:
     """A lint rule: one small subclass for each; its docstring is its page in the documentation.
 
@@ -52,11 +34,15 @@ class Rule:
     ``## Use instead``.
 
     Attributes:
-        code: ``LW`` and three digits, never reused for another meaning.
+        code: ``LW`` and three digits, never reused for another meaning; rules of other packages have another prefix.
         name: in kebab-case; a name may be used wherever a code may.
         severity: of its findings, where a finding does not say otherwise.
         default: whether the rule is on when nobody selects it; pedantic rules are not.
         scope: what it looks at.
+        holds_for_parts: whether what it finds is true of a description of which parts are missing, since it looks at
+            one element, or one text, by itself.
+        holds_for_libraries: whether it looks at files as they are written, so that it has something to say of one that
+            only defines macros. Rules that hold for parts do too.
         options: its settings.
         replaces: codes of findings that one of this rule stands for, where both are at one place.
     """
@@ -66,6 +52,8 @@ class Rule:
     severity: ClassVar[Severity] = Severity.WARNING
     default: ClassVar[bool] = True
     scope: ClassVar[Scope] = Scope.DESCRIPTION
+    holds_for_parts: ClassVar[bool] = False
+    holds_for_libraries: ClassVar[bool] = False
     options: ClassVar[tuple[Option, ...]] = ()
     replaces: ClassVar[tuple[str, ...]] = ()
 
@@ -73,16 +61,31 @@ class Rule:
         """What the rule finds; it never raises for what the description says."""
         raise NotImplementedError(f"{self.code} cannot check {subject.path}")
 
+    def option(self, subject: Subject, name: str, kind: type[Value]) -> Value:
+        """The value of an option in the settings for a subject, or its default.
+
+        Args:
+            subject: what is checked.
+            name: of the option, one of `options`.
+            kind: its type; ``float`` takes a whole number too.
+        """
+        declared = next(option for option in self.options if option.name == name)
+        value = subject.settings.options.get(self.name, {}).get(name, declared.default)
+        if kind is float and isinstance(value, int):
+            return kind(value)
+        assert isinstance(value, kind), "the settings were checked against the option's default"
+        return value
+
     def report(
         self,
-        message: str,
+        message: Phrase,
         element: Element | None = None,
         attribute: str | None = None,
         *,
         span: Span | None = None,
         source: SourceText | None = None,
         notes: Iterable[Note] = (),
-        hint: str | None = None,
+        hint: Phrase | None = None,
         fix: Fix | None = None,
         severity: Severity | None = None,
     ) -> Finding:

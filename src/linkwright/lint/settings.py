@@ -6,10 +6,25 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
 from pathlib import Path
+from typing import Protocol
 
 from linkwright.diagnostics import Severity
-from linkwright.lint.rule import OptionValue, Rule
+from linkwright.lint.option import OptionValue
 from linkwright.lint.selectors import specificity
+
+
+class Switched(Protocol):
+    """What settings switch on and off: a rule."""
+
+    @property
+    def code(self) -> str:
+        """The code of its findings."""
+        ...
+
+    @property
+    def default(self) -> bool:
+        """Whether it is on when nobody says anything about it."""
+        ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +51,7 @@ class Settings:
     options: Mapping[str, Mapping[str, OptionValue]] = field(default_factory=dict)
     folder: Path | None = None
 
-    def runs(self, rule: Rule) -> bool:
+    def runs(self, rule: Switched) -> bool:
         """Whether a rule is to run at all."""
         return self.selects(rule.code, default=rule.default)
 

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from contextlib import suppress
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING
 
+from linkwright.descriptions import Description
 from linkwright.diagnostics import LinkwrightError
-from linkwright.lint.rule import Rule
 from linkwright.lint.settings import Settings
-from linkwright.urdf import Joint, Link, Reading, Robot
+from linkwright.urdf import Joint, Link, Robot
 from linkwright.xmltree import Document, Element
 
 if TYPE_CHECKING:
@@ -20,10 +19,8 @@ if TYPE_CHECKING:
     from linkwright.lint.extents import Extents
     from linkwright.lint.meshes import MeshFacts
     from linkwright.lint.package import PackageContext
-    from linkwright.workspace import PackageFinder
-    from linkwright.xacro import Expansion
-
-Value = TypeVar("Value", bool, int, float, str, list[str])
+    from linkwright.lint.xacro_facts import XacroFacts
+    from linkwright.packages import PackageFinder
 
 
 class Subject:
@@ -31,31 +28,38 @@ class Subject:
 
     What is expensive is worked out when a rule first asks for it and kept for the next one.
 
+    Args:
+        description: what is checked.
+        finder: where packages are.
+        settings: the settings in force for its file.
+
     Attributes:
+        description: what is checked.
         path: the file that is checked; relative addresses in the description start at its folder.
         document: the expanded document; its elements know the file and place they were written at.
         reading: what the URDF reader made of it.
         expansion: the expansion, or None for plain URDF.
-        finder: where packages are.
-        settings: the settings in force for this file.
+        is_whole: whether all of the description is here; if not, it is what could be expanded, and there is no robot.
     """
 
-    def __init__(
-        self,
-        path: Path,
-        document: Document,
-        reading: Reading,
-        *,
-        expansion: Expansion | None,
-        finder: PackageFinder,
-        settings: Settings,
-    ) -> None:
-        self.path = path
-        self.document = document
-        self.reading = reading
-        self.expansion = expansion
+    def __init__(self, description: Description, finder: PackageFinder, settings: Settings) -> None:
+        self.path = Path(description.name)
+        self.document = description.document
+        self.reading = description.reading
+        self.expansion = description.expansion
         self.finder = finder
         self.settings = settings
+        self.is_whole = not description.problems
+        self.description = description
+
+    @cached_property
+    def is_library(self) -> bool:
+        """Whether it is a xacro file for others to include: it defines macros and describes no robot by itself."""
+        if self.expansion is None or self.robot is not None or not self.is_whole:
+            return False
+        main = next(iter(self.sources.values()), None)
+        defines = main is not None and next(main.root.elements("xacro:macro"), None) is not None
+        return defines and ("name" not in self.root.attributes or next(self.elements("link"), None) is None)
 
     @property
     def robot(self) -> Robot | None:
@@ -76,36 +80,28 @@ class Subject:
         """All joints in file order, those of a refused model as far as they can be read; names may repeat there."""
         if self.robot is not None:
             return tuple(self.robot.joints.values())
-        from linkwright.urdf.findings import Findings
+        from linkwright.urdf.explain import UrdfReport
         from linkwright.urdf.joints import read_joint
 
-        return tuple(read_joint(element, Findings()) for element in self.elements("joint"))
+        return tuple(read_joint(element, UrdfReport()) for element in self.elements("joint"))
 
     @cached_property
     def links(self) -> tuple[Link, ...]:
         """All links in file order, those of a refused model as far as they can be read; names may repeat there."""
         if self.robot is not None:
             return tuple(self.robot.links.values())
-        from linkwright.urdf.findings import Findings
+        from linkwright.urdf.explain import UrdfReport
         from linkwright.urdf.links import read_link
         from linkwright.urdf.materials import MaterialTable
 
-        findings = Findings()
+        findings = UrdfReport()
         table = MaterialTable(findings)
         return tuple(read_link(element, table, findings) for element in self.elements("link"))
 
-    @cached_property
+    @property
     def sources(self) -> Mapping[Path, Document]:
         """Every XML file that was read, as it is written (not expanded), the checked file first."""
-        if self.expansion is None:
-            return {self.path: self.document}
-        from linkwright.xacro import sources
-
-        found: dict[Path, Document] = {}
-        for path in self.expansion.dependencies:
-            with suppress(LinkwrightError):  # YAML files are among them
-                found[path] = sources.read(str(path))
-        return found
+        return self.description.sources
 
     @cached_property
     def tree(self) -> KinematicTree | None:
@@ -124,40 +120,32 @@ class Subject:
         """What is known of the mesh files that the description names."""
         from linkwright.lint.meshes import MeshFacts
 
-        return MeshFacts(self)
+        return MeshFacts(self.links, self.finder, self.path.absolute().parent)
+
+    @cached_property
+    def xacro(self) -> XacroFacts:
+        """What its xacro files define and use."""
+        from linkwright.lint.xacro_facts import XacroFacts
+
+        return XacroFacts(self.path, self.sources, self.expansion, self.package, is_library=not self.links)
 
     @cached_property
     def bodies(self) -> Bodies:
         """The links that fixed joints make one body."""
         from linkwright.lint.bodies import Bodies
 
-        return Bodies(self)
+        return Bodies(self.robot)
 
     @cached_property
     def extents(self) -> Extents:
         """The space that shapes take, and the mass properties of bodies."""
         from linkwright.lint.extents import Extents
 
-        return Extents(self)
+        return Extents(self.bodies, self.meshes)
 
     @cached_property
     def package(self) -> PackageContext | None:
         """The ROS package that the file lies in, or None."""
         from linkwright.lint.package import find_package
 
-        return find_package(self.path)
-
-    def option(self, rule: Rule, name: str, kind: type[Value]) -> Value:
-        """The value of a rule's option, from the settings or its default.
-
-        Args:
-            rule: the rule.
-            name: of the option, which the rule declares in `Rule.options`.
-            kind: its type; ``float`` takes a whole number too.
-        """
-        declared = next(option for option in rule.options if option.name == name)
-        value = self.settings.options.get(rule.name, {}).get(name, declared.default)
-        if kind is float and isinstance(value, int):
-            return kind(value)
-        assert isinstance(value, kind), "the settings were checked against the option's default"
-        return value
+        return find_package(self.path, self.description.overlay)

@@ -12,11 +12,12 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, SourceText
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, SourceText, phrase
 from linkwright.lint.finding import Finding
 from linkwright.lint.fix import Edit, Fix, element_range
 from linkwright.lint.registry import find_rule
-from linkwright.lint.selectors import canonical, is_selector, matches, selector_hint
+from linkwright.lint.selector_words import canonical, is_selector, selector_hint
+from linkwright.lint.selectors import matches
 from linkwright.lint.settings import Settings
 from linkwright.lint.subject import Subject
 from linkwright.xmltree import Element
@@ -76,7 +77,7 @@ class Suppressions:
     def __init__(self, subject: Subject, settings: Settings) -> None:
         self._settings = settings
         unused = find_rule(UNUSED)
-        self._audits = unused is not None and settings.runs(unused)
+        self._audits = unused is not None and settings.runs(unused) and subject.is_whole
         self._directives: dict[str, list[Directive]] = {}
         for path, document in subject.sources.items():
             if document.source is not None:
@@ -127,7 +128,7 @@ class Suppressions:
                 if is_selector(selector):
                     continue
                 yield rule.report(
-                    f"there is no rule '{selector}' to ignore",
+                    phrase("there is no rule '{selector}' to ignore", selector=selector),
                     span=directive.source.span(offset, offset + len(selector)),
                     source=directive.source,
                     hint=selector_hint(selector),
@@ -147,10 +148,10 @@ class Suppressions:
             if len(unused) == max(len(directive.selectors), 1):
                 fix = Fix((_removal(directive),))
             yield rule.report(
-                f"this comment is to ignore {what}, of which there is nothing here",
+                phrase("this comment is to ignore {what}, of which there is nothing here", what=what),
                 span=directive.source.span(directive.start, directive.end),
                 source=directive.source,
-                hint="remove it" if fix else f"remove {what} from it",
+                hint=phrase("remove it") if fix else phrase("remove {what} from it", what=what),
                 fix=fix,
             )
 

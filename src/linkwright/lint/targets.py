@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.workspace import enclosing_package
-from linkwright.workspace.manifest import MANIFEST
-from linkwright.workspace.sources import IGNORE_MARKERS, SKIPPED_FOLDERS
+from linkwright.packages import enclosing_package
+from linkwright.packages.manifest import MANIFEST
+from linkwright.packages.sources import IGNORE_MARKERS, SKIPPED_FOLDERS
 from linkwright.xacro import sources
 from linkwright.xmltree import Element
 
@@ -28,20 +28,21 @@ class Targets:
 
     Attributes:
         files: the descriptions, each once.
-        packages: the folders of the packages that they lie in or that were named, each once.
+        packages: the folders of the packages to check, each once.
     """
 
     files: tuple[Path, ...]
     packages: tuple[Path, ...]
 
 
-def find_targets(paths: Iterable[Path]) -> Targets:
+def find_targets(paths: Iterable[Path], *, around: bool = False) -> Targets:
     """The descriptions and packages that files and folders mean.
 
-    A file is checked whatever it is. Of a folder and those below it, what is checked are the packages and, of the files
-    that no other there includes, the ``.urdf`` files and those ``.xacro`` files that describe a robot by themselves:
-    their root is a ``<robot>`` with a name, and they hold more than declarations. Build products and hidden folders are
-    left out, and so are files with nothing in them.
+    A file is checked whatever it is; the package that it lies in is checked only if `around` says so. Of a folder and
+    those below it, what is checked are the packages, that around the folder too, and, of the files that no other there
+    includes, the ``.urdf`` files and those ``.xacro`` files that describe a robot by themselves: their root is a
+    ``<robot>`` with a name, and they hold more than declarations. Build products and hidden folders are left out, and
+    so are files with nothing in them.
     """
     files: dict[Path, None] = {}
     packages: dict[Path, None] = {}
@@ -52,10 +53,11 @@ def find_targets(paths: Iterable[Path]) -> Targets:
             packages.update(dict.fromkeys(below))
         else:
             files[path] = None
-    for file in list(files):
-        around = enclosing_package(file.absolute().parent)
-        if around is not None:
-            packages[around[1]] = None
+    for path in paths:
+        if around or path.is_dir():
+            package = enclosing_package((path if path.is_dir() else path.parent).absolute())
+            if package is not None:
+                packages[package[1]] = None
     return Targets(tuple(files), tuple(packages))
 
 
@@ -70,7 +72,8 @@ def _walk(folder: Path) -> tuple[list[Path], list[Path]]:
         folders[:] = sorted(name for name in folders if not name.startswith(".") and name not in SKIPPED_FOLDERS)
         if MANIFEST in names:
             packages.append(Path(place).absolute())
-        found += [Path(place, name) for name in sorted(names) if name.endswith((_URDF, _XACRO))]
+        described = [Path(place, name) for name in sorted(names) if name.endswith((_URDF, _XACRO))]
+        found += [path for path in described if not path.is_fifo()]
     return found, packages
 
 

@@ -8,8 +8,8 @@ from difflib import SequenceMatcher
 from linkwright.diagnostics import Span, nearest
 from linkwright.lint.subject import Subject
 from linkwright.lint.walk import Place, known_elements
+from linkwright.schema import ElementRule
 from linkwright.urdf import schema
-from linkwright.urdf.schema import ElementRule
 from linkwright.xmltree import Element
 
 EXTENSIONS = frozenset({"gazebo", "transmission", "ros2_control", "sensor", "mujoco", "simulation", "plugin"})
@@ -101,8 +101,7 @@ def meant_element(rule: ElementRule, child: Element) -> str | None:
         return other
     if rule is schema.ROBOT:
         return close_name(child.tag, [*known, *EXTENSIONS])
-    near = nearest(child.tag, known, limit=1)
-    return near[0] if near else None
+    return close_name(child.tag, known)
 
 
 def is_misspelt(tag: str, meant: str) -> bool:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from linkwright.diagnostics import phrase, term
+from linkwright.schema import ElementRule
 from linkwright.urdf import Joint, schema
-from linkwright.urdf.schema import ElementRule
 from linkwright.urdf.values import number, numbers
 from linkwright.xmltree import Element
 
@@ -60,7 +62,11 @@ def known_elements(subject: Subject) -> Iterator[Place]:
 def owner_name(element: Element) -> str:
     """A link, joint or material as messages name it."""
     name = element.attributes.get("name")
-    return f"a {element.tag} without a name" if name is None else f"{element.tag} '{name}'"
+    return (
+        phrase("a {tag} without a name", tag=term(element.tag))
+        if name is None
+        else phrase("{tag} '{name}'", tag=term(element.tag), name=name)
+    )
 
 
 def joints(subject: Subject) -> Iterator[tuple[Joint, Element]]:
@@ -76,6 +82,23 @@ def parts(subject: Subject, tag: str) -> Iterator[tuple[Joint, Element, Element]
         part = element.first(tag)
         if part is not None:
             yield joint, element, part
+
+
+_SIMULATORS = re.compile(r"gz|gazebo|ign|mujoco|webots|isaac|unity|drake|bullet", re.IGNORECASE)
+
+
+def is_for_simulation(subject: Subject) -> bool:
+    """Whether a description says that it is simulated: it speaks to Gazebo or names a simulator's hardware plugin.
+
+    Hardware that only pretends, such as ``mock_components/GenericSystem``, needs no physics.
+    """
+    plugins = (
+        plugin.text()
+        for system in subject.elements("ros2_control")
+        for hardware in system.elements("hardware")
+        for plugin in hardware.elements("plugin")
+    )
+    return next(subject.elements("gazebo"), None) is not None or any(map(_SIMULATORS.search, plugins))
 
 
 BOUNDED = ("revolute", "prismatic")

@@ -7,14 +7,13 @@ name alone, without scopes: xacro's scopes are dynamic, and a rule that calls so
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from weakref import WeakKeyDictionary
+from typing import TYPE_CHECKING, TypeVar
 
 from linkwright.diagnostics import LinkwrightError, Span
-from linkwright.lint.subject import Subject
 from linkwright.lint.xacro_names import Mentions, identifiers, mentions
 from linkwright.xacro.faults import Fault
 from linkwright.xacro.macros import Parameter, parse_parameters
@@ -22,12 +21,18 @@ from linkwright.xacro.symbols import MATHEMATICS
 from linkwright.xmltree import Comment, Document, Element, Text
 from linkwright.xmltree.positions import attribute_value_range
 
+if TYPE_CHECKING:
+    from linkwright.lint.package import PackageContext
+    from linkwright.xacro import Expansion
+
 TAGS = frozenset(
     f"xacro:{name}"
     for name in ("arg", "attribute", "call", "element", "if", "include", "insert_block", "macro", "property", "unless")
 )
 _DIRECTIVE_IN_COMMENT = "xacro:eval-comments"
 _LARGEST_FOLDER = 200
+_DEEPEST = 1_000
+"""Levels below which nothing is looked at: an expansion does not go deeper either."""
 
 
 @dataclass(frozen=True)
@@ -68,6 +73,18 @@ class Use:
     order: int
 
 
+_Inside = TypeVar("_Inside", Definition, Use)
+
+
+def _by_macro(things: Iterable[_Inside]) -> Mapping[int, Sequence[_Inside]]:
+    found: dict[int, list[_Inside]] = {}
+    for thing in things:
+        for parent in thing.parents:
+            if parent.tag == "xacro:macro":
+                found.setdefault(id(parent), []).append(thing)
+    return found
+
+
 @dataclass
 class FileFacts:
     """What one file defines and uses.
@@ -95,6 +112,33 @@ class FileFacts:
     calls_open: bool = False
     has_content: bool = False
 
+    @cached_property
+    def calls_by_macro(self) -> Mapping[int, Sequence[Definition]]:
+        """The calls that stand in each macro, by the identity of the macro's element."""
+        return _by_macro(self.calls)
+
+    @cached_property
+    def uses_by_macro(self) -> Mapping[int, Sequence[Use]]:
+        """What is mentioned in each macro, by the identity of the macro's element."""
+        return _by_macro(self.uses)
+
+    @cached_property
+    def uses_of_parameters(self) -> Mapping[int, Sequence[Use]]:
+        """What the parameters of each macro mention, by the identity of the macro's element."""
+        found: dict[int, list[Use]] = {}
+        for use in self.uses:
+            if use.attribute == "params":
+                found.setdefault(id(use.element), []).append(use)
+        return found
+
+    @cached_property
+    def macros_by_name(self) -> Mapping[str, Sequence[Definition]]:
+        """The macros of each name."""
+        found: dict[str, list[Definition]] = {}
+        for macro in self.macros:
+            found.setdefault(macro.name, []).append(macro)
+        return found
+
     @classmethod
     def of(cls, document: Document) -> FileFacts:
         """The facts of a parsed file."""
@@ -116,6 +160,8 @@ class FileFacts:
             element, parents = stack.pop()
             order += 1
             self._take(element, parents, order)
+            if len(parents) > _DEEPEST:
+                continue
             inner = (*parents, element)
             below: list[tuple[Element, tuple[Element, ...]]] = []
             evaluates_comments = False
@@ -137,8 +183,8 @@ class FileFacts:
                 self._mention(value, element, attribute, parents, order)
         tag = element.tag
         if not tag.startswith("xacro:"):
-            if parents and not any(parent.tag == "xacro:macro" for parent in parents):
-                self.has_content = self.has_content or not _in_block_property(parents)
+            if parents and not self.has_content and not any(parent.tag == "xacro:macro" for parent in parents):
+                self.has_content = not _in_block_property(parents)
             return
         definition = Definition(element.attributes.get("name", ""), element, parents, order)
         if tag == "xacro:property":
@@ -195,12 +241,27 @@ class XacroFacts:
     """What all files of a description define and use.
 
     Attributes:
+        path: the checked file.
+        expansion: what came of it.
+        package: the package that it lies in, or None.
+        is_library: whether it makes no robot of its own: it is there for others to include.
         files: path -> facts, the checked file first.
     """
 
-    def __init__(self, subject: Subject) -> None:
-        self._subject = subject
-        self.files: dict[Path, FileFacts] = {path: FileFacts.of(document) for path, document in subject.sources.items()}
+    def __init__(
+        self,
+        path: Path,
+        sources: Mapping[Path, Document],
+        expansion: Expansion | None,
+        package: PackageContext | None,
+        *,
+        is_library: bool,
+    ) -> None:
+        self.path = path
+        self.expansion = expansion
+        self.package = package
+        self.is_library = is_library
+        self.files: dict[Path, FileFacts] = {path: FileFacts.of(document) for path, document in sources.items()}
 
     @property
     def main(self) -> FileFacts:
@@ -208,23 +269,23 @@ class XacroFacts:
         return next(iter(self.files.values()))
 
     @property
-    def is_library(self) -> bool:
-        """Whether the file makes no robot of its own: it is there for others to include."""
-        return not self._subject.links
+    def given(self) -> Mapping[str, str]:
+        """Name -> final value of every argument that was given or declared."""
+        return self.expansion.arguments if self.expansion else {}
 
     @cached_property
     def own(self) -> Mapping[Path, FileFacts]:
         """The files that belong to the author of the checked one: those of its package, else those of its folder."""
-        package = self._subject.package
-        folder = (package.folder if package else self._subject.path.parent).absolute()
+        package = self.package
+        folder = (package.folder if package else self.path.parent).absolute()
         main = next(iter(self.files))
         return {path: facts for path, facts in self.files.items() if path == main or _lies_in(path, folder)}
 
     @cached_property
     def neighbours(self) -> Mapping[Path, FileFacts]:
         """The other description files of the same package (or folder), which may use what this one defines."""
-        package = self._subject.package
-        documents = _descriptions_beside(self._subject.path) if package is None else package.descriptions
+        package = self.package
+        documents = _descriptions_beside(self.path) if package is None else package.descriptions
         known = {path.absolute() for path in self.files}
         return {path: FileFacts.of(document) for path, document in documents.items() if path.absolute() not in known}
 
@@ -234,7 +295,7 @@ class XacroFacts:
         found: set[str] = set()
         for facts in self._all():
             found |= facts.names | facts.blocks
-        expansion = self._subject.expansion
+        expansion = self.expansion
         pasted = {name for facts in self._all() for name in facts.pasted}
         if pasted and expansion is not None:
             for value in expansion.arguments.values():
@@ -285,17 +346,6 @@ class XacroFacts:
         yield from self.neighbours.values()
 
 
-_known: WeakKeyDictionary[Subject, XacroFacts] = WeakKeyDictionary()
-
-
-def xacro_facts(subject: Subject) -> XacroFacts:
-    """The facts about a subject's files, gathered once for each subject."""
-    facts = _known.get(subject)
-    if facts is None:
-        facts = _known[subject] = XacroFacts(subject)
-    return facts
-
-
 def is_global(name: str) -> bool:
     """Whether xacro provides a name that properties may hide, such as ``pi``."""
     return name in MATHEMATICS
@@ -341,7 +391,7 @@ def _descriptions_beside(path: Path) -> dict[Path, Document]:
     except OSError:
         return found
     for candidate in candidates:
-        if candidate.suffix in (".xacro", ".urdf"):
+        if candidate.suffix in (".xacro", ".urdf") and candidate.is_file():  # a pipe would never end
             try:
                 found[candidate] = sources.read(str(candidate))
             except LinkwrightError:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import struct
 from typing import Any, TypeVar
 
+from linkwright.diagnostics import foreign, phrase
 from linkwright.messages.cdr_reader import READ_FAULTS, compile_reader
 from linkwright.messages.cdr_values import DataFaultError
 from linkwright.messages.classes import class_of
@@ -63,12 +64,15 @@ def deserialize(data: bytes | bytearray | memoryview, message_class: type[Messag
 def _reader_for(data: bytes, message_class: type[Any]) -> Any:
     if data[:2] != _BIG or len(data) < 4:
         if len(data) < 4:
-            why = f"{len(data)} bytes are too few for the header"
+            why = phrase("{count} bytes are too few for the header", count=len(data))
         elif data[:2] in _HEADERS:
-            why = f"its header says {_HEADERS[data[:2]]}; ROS 2 sends plain CDR"
+            why = phrase("its header says {headers}; ROS 2 sends plain CDR", headers=_HEADERS[data[:2]])
         else:
-            why = f"it begins with {data[:4].hex(' ')} instead of the header of CDR"
-        raise data_error("MSG201", f"this is no message of type '{message_class.TYPE_NAME}': {why}")
+            why = phrase("it begins with {hex} instead of the header of CDR", hex=data[:4].hex(" "))
+        raise data_error(
+            "MSG201",
+            phrase("this is no message of type '{type_name}': {why}", type_name=message_class.TYPE_NAME, why=why),
+        )
     name = message_class.TYPE_NAME
     reader = _big_readers.get(name)
     if reader is None:
@@ -78,18 +82,27 @@ def _reader_for(data: bytes, message_class: type[Any]) -> Any:
 
 def _unreadable(message_class: type[Any], data: bytes, fault: Exception) -> MessageDataError:
     if isinstance(fault, UnicodeDecodeError):
-        why = "a text in it is not UTF-8"
+        why = phrase("a text in it is not UTF-8")
     elif isinstance(fault, DataFaultError):
-        why = str(fault)
+        why = foreign(fault)
     else:
-        why = f"the data, {len(data)} bytes, ends in the middle of the message"
-    return data_error("MSG201", f"this is no message of type '{message_class.TYPE_NAME}': {why}")
+        why = phrase("the data, {count} bytes, ends in the middle of the message", count=len(data))
+    return data_error(
+        "MSG201", phrase("this is no message of type '{type_name}': {why}", type_name=message_class.TYPE_NAME, why=why)
+    )
 
 
 def _unwritable(message: object, fault: Exception) -> MessageDataError:
     if not isinstance(message, Message):
-        return data_error("MSG202", f"'{type(message).__name__}' is no message class")
-    return data_error("MSG202", f"this '{message.TYPE_NAME}' cannot be written: {_bad_field(message, '') or fault}")
+        return data_error("MSG202", phrase("'{name}' is no message class", name=type(message).__name__))
+    return data_error(
+        "MSG202",
+        phrase(
+            "this '{type_name}' cannot be written: {bad_field}",
+            type_name=message.TYPE_NAME,
+            bad_field=foreign(_bad_field(message, "") or fault),
+        ),
+    )
 
 
 def _bad_field(message: Message, path: str) -> str | None:
@@ -100,7 +113,7 @@ def _bad_field(message: Message, path: str) -> str | None:
             value = getattr(message, field.name)
             setattr(type(message)(), field.name, value)
         except AttributeError:
-            return f"'{here}' was never set"
+            return phrase("'{here}' was never set", here=here)
         except AssertionError as error:
             return str(error).replace(f"'{field.name}'", f"'{here}'", 1)
         within = [value] if isinstance(value, Message) else value if "/" in field.type.base else ()

@@ -10,6 +10,8 @@ import struct
 from array import array
 from typing import Any
 
+from linkwright.diagnostics import phrase
+
 _LENGTH = struct.Struct("<I")
 _LONGEST_KEPT = 128
 _MOST_TEXTS = 4096
@@ -151,22 +153,22 @@ def write_wide_text(text: str) -> bytes:
 
 def truncated() -> None:
     """The data ends before the message does, or a length in it is nonsense."""
-    raise DataFaultError("the data ends in the middle of the message, or a length in it is wrong")
+    raise DataFaultError(phrase("the data ends in the middle of the message, or a length in it is wrong"))
 
 
 def unterminated() -> None:
     """A text without the NUL that belongs behind it."""
-    raise DataFaultError("a text in it does not end where its length says")
+    raise DataFaultError(phrase("a text in it does not end where its length says"))
 
 
 def bad_bool(value: int) -> None:
     """A byte that is neither of the two."""
-    raise DataFaultError(f"a bool in it is {value}")
+    raise DataFaultError(phrase("a bool in it is {value}", value=value))
 
 
 def too_long(name: str, bound: int) -> None:
     """More than a bound allows."""
-    raise DataFaultError(f"'{name}' is longer than its bound of {bound}")
+    raise DataFaultError(phrase("'{name}' is longer than its bound of {bound}", name=name, bound=bound))
 
 
 def check_bounds(name: str, texts: list[str], bound: int) -> None:

@@ -1,4 +1,4 @@
-"""What may be assigned to a field: the rules and the texts of rosidl_generator_py's classes (Humble).
+"""Checks of values that are assigned to fields: rules and texts of rosidl_generator_py's classes (Humble).
 
 The setters that `linkwright.messages.classes` compiles test for the usual case themselves and come here for all others.
 The functions return the value to be kept, or raise the AssertionError that rclpy's users know. Beyond rclpy, numpy

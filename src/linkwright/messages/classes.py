@@ -1,4 +1,4 @@
-"""The classes of messages, services and actions, made when they are first asked for and then always the same."""
+"""Makes the classes of messages, services and actions, each once, when it is first asked for."""
 
 from __future__ import annotations
 
@@ -57,6 +57,11 @@ def class_of(structure: Structure) -> type[Any]:
     return cast("type[Any]", _made(structure))
 
 
+def add_class(message_class: type[Message]) -> None:
+    """Have a class that was written by hand stand for its type."""
+    _classes[message_class.TYPE_NAME] = message_class
+
+
 def _named(name: str, base: type, kind: str) -> type[Any]:
     found = _classes.get(name)
     if found is None:
@@ -86,10 +91,6 @@ def _make(definition: Definition) -> type:
 
 
 def _make_message(structure: Structure) -> type:
-    if structure.type_name == "tf2_msgs/msg/TFMessage":
-        from linkwright.messages.transforms import TFMessage
-
-        return TFMessage
     parts = {name: _made(LIBRARY.structure(name)) for name in structure.references}
     base = _BASES.get(structure.type_name, Message)
     return build_class(structure, base, parts, python_module(structure.type_name))
@@ -147,3 +148,7 @@ class _LazyClass:
 
     def __get__(self, instance: object, owner: type) -> type:
         return cast("type", _made(self._structure))
+
+
+Message._class_named = staticmethod(get_message)
+Message._class_of = staticmethod(class_of)

@@ -1,8 +1,8 @@
-"""The errors of this room, and the little that their diagnostics share."""
+"""The errors of this room."""
 
 from __future__ import annotations
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase
 
 
 class InterfaceNotFoundError(LinkwrightError):
@@ -29,6 +29,6 @@ class WrongValueError(FieldValueError, TypeError):
     """A value that a field cannot have."""
 
 
-def data_error(code: str, message: str, hint: str | None = None) -> MessageDataError:
+def data_error(code: str, message: Phrase, hint: Phrase | None = None) -> MessageDataError:
     """The error for bytes or for a message on its way to them."""
     return MessageDataError(Diagnostic(code, message, hint=hint))

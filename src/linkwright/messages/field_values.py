@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from linkwright.diagnostics import Diagnostic, did_you_mean
+from linkwright.diagnostics import Diagnostic, Phrase, did_you_mean, foreign, joined, phrase, quoted
 from linkwright.messages.classes import get_message
 from linkwright.messages.definition import Container, FieldType
 from linkwright.messages.errors import UnknownFieldError, WrongValueError
@@ -67,10 +67,11 @@ class _Setter:
 
     def fields(self, message: Message, values: Any, path: str) -> None:
         if not isinstance(values, Mapping):
-            what = f"'{path}'" if path else f"a {message.TYPE_NAME}"
-            names = ", ".join(field.name for field in definition_of(type(message)).fields)
+            what = quoted(path) if path else phrase("a {type}", type=message.TYPE_NAME)
+            names = joined(field.name for field in definition_of(type(message)).fields)
             self._wrong(
-                f"{what} is given as {_shown(values)}, not as fields and values", f"its fields: {names or 'none'}"
+                phrase("{what} is given as {values}, not as fields and values", what=what, values=_shown(values)),
+                phrase("its fields: {names}", names=names or phrase("none")),
             )
             return
         kinds = {field.name: field.type for field in definition_of(type(message)).fields}
@@ -87,10 +88,16 @@ class _Setter:
         try:
             setattr(message, name, self._value(kind, value, path))
         except _Unfit as unfit:
-            self._wrong(f"'{path}' cannot be {_shown(value)}", f"it is {unfit}")
+            self._wrong(
+                phrase("'{path}' cannot be {value}", path=path, value=_shown(value)),
+                phrase("it is {unfit}", unfit=unfit),
+            )
         except AssertionError as error:
             reason = str(error).partition(" must ")[2]
-            self._wrong(f"'{path}' cannot be {_shown(value)}", f"it must {reason}")
+            self._wrong(
+                phrase("'{path}' cannot be {value}", path=path, value=_shown(value)),
+                phrase("it must {reason}", reason=foreign(reason)),
+            )
 
     def _is_stamp(self, message: Message, name: str, kind: FieldType, value: Any) -> bool:
         if kind.container is not Container.ONE:
@@ -117,7 +124,7 @@ class _Setter:
         values = [self._value(one, each, f"{path}[{number}]") for number, each in enumerate(value)]
         exact = kind.container is Container.ARRAY
         if kind.size is not None and (len(values) > kind.size or (exact and len(values) < kind.size)):
-            raise _Unfit(f"{_described(kind)}, not of {len(values)} values")
+            raise _Unfit(phrase("{list}, not of {count} values", list=_described(kind), count=len(values)))
         return values
 
     def _message(self, kind: FieldType, value: Any, path: str) -> Any:
@@ -132,11 +139,17 @@ class _Setter:
 
     def _unknown(self, message: Message, name: str, path: str) -> None:
         names = [field.name for field in definition_of(type(message)).fields]
-        hint = did_you_mean(name, names) or f"its fields: {', '.join(names) or 'none'}"
-        where = f" ('{path}')" if path else ""
-        self.found.append(Diagnostic("MSG301", f"{message.TYPE_NAME}{where} has no field '{name}'", hint=hint))
+        hint = did_you_mean(name, names) or phrase("its fields: {names}", names=joined(names) or phrase("none"))
+        called = phrase("{type} ('{path}')", type=message.TYPE_NAME, path=path) if path else message.TYPE_NAME
+        self.found.append(
+            Diagnostic(
+                "MSG301",
+                phrase("{called} has no field '{name}'", called=called, name=name),
+                hint=hint,
+            )
+        )
 
-    def _wrong(self, message: str, hint: str) -> None:
+    def _wrong(self, message: Phrase, hint: Phrase) -> None:
         self.found.append(Diagnostic("MSG302", message, hint=hint))
 
 
@@ -177,25 +190,25 @@ def _as_byte(value: Any) -> bytes:
         return bytes([value])
     if isinstance(value, str) and len(value) == 1 and ord(value) <= 255:
         return value.encode("latin-1")
-    raise _Unfit("a byte, 0 to 255")
+    raise _Unfit(phrase("a byte, 0 to 255"))
 
 
-def _described(kind: FieldType) -> str:
+def _described(kind: FieldType) -> Phrase:
     words = {
-        int: "a whole number",
-        float: "a number",
-        str: "a text",
-        bool: "true or false",
-        bytes: "a byte, 0 to 255",
+        int: phrase("a whole number"),
+        float: phrase("a number"),
+        str: phrase("a text"),
+        bool: phrase("true or false"),
+        bytes: phrase("a byte, 0 to 255"),
     }
     primitive = kind.primitive
-    one = f"{kind.base}" if primitive is None else words[primitive.python]
+    one = phrase("{type}", type=kind.base) if primitive is None else words[primitive.python]
     if primitive is not None and primitive.is_integer:
-        one += f", {primitive.low} to {primitive.high}"
+        one = phrase("{one}, {low} to {high}", one=one, low=primitive.low, high=primitive.high)
     if kind.container is Container.ARRAY:
-        return f"a list of {kind.size} ({kind.spelled()})"
+        return phrase("a list of {size} ({spelled})", size=kind.size, spelled=kind.spelled())
     if kind.container is Container.SEQUENCE:
-        return f"a list ({kind.spelled()})"
+        return phrase("a list ({spelled})", spelled=kind.spelled())
     return one
 
 

@@ -11,7 +11,7 @@ import re
 from collections.abc import Iterator
 from typing import NamedTuple, NoReturn
 
-from linkwright.diagnostics import Diagnostic, SourceText, did_you_mean
+from linkwright.diagnostics import Diagnostic, Phrase, SourceText, did_you_mean, phrase, quoted, term
 from linkwright.messages.definition import (
     EMPTY_MEMBER,
     Constant,
@@ -80,7 +80,7 @@ def _assembled(reader: _Reader, source: SourceText, type_name: str) -> Definitio
         name = type_name + suffix
         if name not in reader.structures:
             hint = did_you_mean(name, reader.structures)
-            message = f"the file does not define the structure '{name.replace('/', '::')}'"
+            message = phrase("the file does not define the structure '{name}'", name=name.replace("/", "::"))
             raise DefinitionError(Diagnostic("MSG118", message, source.span(0), hint=hint, source=source))
         fields = tuple(field for field in reader.structures[name] if field.name != EMPTY_MEMBER)
         parts.append(Structure(name, fields, tuple(reader.constants.get(name, ()))))
@@ -104,7 +104,7 @@ class _Reader:
         while at < len(text):
             match = _TOKEN.match(text, at)
             if match is None:
-                self._fail("MSG120", f"'{text[at]}' is not expected here", at, 1)
+                self._fail("MSG120", phrase("'{text}' is not expected here", text=text[at]), at, 1)
             assert match.lastgroup is not None
             if match.lastgroup != "skip":
                 yield _Token(match.lastgroup, match.group(), at)
@@ -134,8 +134,13 @@ class _Reader:
             elif word.text == "const":
                 self._constant(scope)
             else:
-                self._fail("MSG120", f"'{word.text}' is not understood in the IDL of messages", word.start,
-                           len(word.text), "write the interface as a .msg, .srv or .action file")  # fmt: skip
+                self._fail(
+                    "MSG120",
+                    phrase("'{text}' is not understood in the IDL of messages", text=word.text),
+                    word.start,
+                    len(word.text),
+                    phrase("write the interface as a .msg, .srv or .action file"),
+                )
 
     def _structure(self, scope: tuple[str, ...]) -> None:
         name = "/".join((*scope, self._take("name").text))
@@ -163,11 +168,21 @@ class _Reader:
         self._expect(";")
         owner = "/".join(scope).removesuffix("_Constants")
         if kind.primitive is None or kind.container is not Container.ONE:
-            self._fail("MSG114", f"the constant '{name}' is of no primitive type", value.start, len(value.text))
+            self._fail(
+                "MSG114",
+                phrase("the constant '{name}' is of no primitive type", name=name),
+                value.start,
+                len(value.text),
+            )
         try:
             constant = Constant(name, kind.base, read_constant(_plain(value), kind.base))
         except LiteralFault as fault:
-            self._fail("MSG114", f"the value of '{name}' is wrong: {fault}", value.start, len(value.text))
+            self._fail(
+                "MSG114",
+                phrase("the value of '{name}' is wrong: {fault}", name=name, fault=fault),
+                value.start,
+                len(value.text),
+            )
         self.constants.setdefault(owner, []).append(constant)
 
     def _annotations(self) -> _Token | None:
@@ -183,7 +198,7 @@ class _Reader:
             while depth:
                 token = self._next()
                 if token.kind == "end":
-                    self._fail("MSG120", "the file ends inside of an annotation", token.start, 0)
+                    self._fail("MSG120", phrase("the file ends inside of an annotation"), token.start, 0)
                 depth += {"(": 1, ")": -1}.get(token.text, 0)
                 if name == "default" and token.text == "=":
                     default = self._now
@@ -200,7 +215,9 @@ class _Reader:
         try:
             return read_default(text, kind)
         except LiteralFault as fault:
-            self._fail("MSG114", f"the default value is wrong: {fault}", token.start, len(token.text))
+            self._fail(
+                "MSG114", phrase("the default value is wrong: {fault}", fault=fault), token.start, len(token.text)
+            )
 
     # --- types ----------------------------------------------------------------------------------------------
 
@@ -219,15 +236,15 @@ class _Reader:
         if text in self._typedefs:
             return self._typedefs[text]
         if text in _NOT_IN_MESSAGES:
-            self._fail("MSG120", f"'{text}' is not supported in messages", token.start, len(text))
+            self._fail("MSG120", phrase("'{text}' is not supported in messages", text=text), token.start, len(text))
         parts = text.split("::")
         if len(parts) != 3:
-            self._fail("MSG111", f"there is no type '{text}'", token.start, len(text),
+            self._fail("MSG111", phrase("there is no type '{text}'", text=text), token.start, len(text),
                        did_you_mean(text, [*_PRIMITIVES, "string", "sequence", *self._typedefs]))  # fmt: skip
         name = "/".join(parts)
         if name not in self.structures and not self._known.has_message(name):
             hint = self._known.hint_for(name)
-            self._fail("MSG111", f"there is no message '{name}'", token.start, len(text), hint)
+            self._fail("MSG111", phrase("there is no message '{name}'", name=name), token.start, len(text), hint)
         return FieldType(name)
 
     def _sequence(self, token: _Token) -> FieldType:
@@ -239,7 +256,9 @@ class _Reader:
             size = self._size()
         self._expect(">")
         if one.container is not Container.ONE:
-            self._fail("MSG120", "sequences of sequences and arrays are not supported in messages", token.start, 8)
+            self._fail(
+                "MSG120", phrase("sequences of sequences and arrays are not supported in messages"), token.start, 8
+            )
         return FieldType(one.base, one.string_bound, Container.SEQUENCE, size)
 
     def _declared(self, kind: FieldType) -> tuple[str, FieldType]:
@@ -251,7 +270,7 @@ class _Reader:
         size = self._size()
         self._expect("]")
         if kind.container is not Container.ONE or self._now.text == "[":
-            self._fail("MSG120", "arrays of arrays and sequences are not supported in messages", token.start,
+            self._fail("MSG120", phrase("arrays of arrays and sequences are not supported in messages"), token.start,
                        len(token.text))  # fmt: skip
         return token.text, FieldType(kind.base, kind.string_bound, Container.ARRAY, size)
 
@@ -264,8 +283,12 @@ class _Reader:
     def _size(self) -> int:
         token = self._next()
         if not token.text.isdigit() or int(token.text) == 0:
-            self._fail("MSG119", f"'{token.text}' is no length: it is a whole number above 0", token.start,
-                       len(token.text))  # fmt: skip
+            self._fail(
+                "MSG119",
+                phrase("'{text}' is no length: it is a whole number above 0", text=token.text),
+                token.start,
+                len(token.text),
+            )
         return int(token.text)
 
     # --- tokens ---------------------------------------------------------------------------------------------
@@ -283,25 +306,30 @@ class _Reader:
     def _take(self, kind: str) -> _Token:
         token = self._next()
         if token.kind != kind:
-            self._unexpected(token, f"a {kind}")
+            self._unexpected(token, phrase("a {kind}", kind=term(kind)))
         return token
 
     def _value(self) -> _Token:
         token = self._next()
         if token.kind not in {"number", "text", "name"}:
-            self._unexpected(token, "a value")
+            self._unexpected(token, phrase("a value"))
         return token
 
     def _expect(self, mark: str) -> None:
         token = self._next()
         if token.text != mark:
-            self._unexpected(token, f"'{mark}'")
+            self._unexpected(token, quoted(mark))
 
-    def _unexpected(self, token: _Token, wanted: str) -> NoReturn:
-        found = f"'{token.text}'" if token.text else "the end of the file"
-        self._fail("MSG120", f"{found} stands where {wanted} is expected", token.start, len(token.text))
+    def _unexpected(self, token: _Token, wanted: Phrase) -> NoReturn:
+        found = quoted(token.text) if token.text else phrase("the end of the file")
+        self._fail(
+            "MSG120",
+            phrase("{found} stands where {wanted} is expected", found=found, wanted=wanted),
+            token.start,
+            len(token.text),
+        )
 
-    def _fail(self, code: str, message: str, start: int, length: int, hint: str | None = None) -> NoReturn:
+    def _fail(self, code: str, message: Phrase, start: int, length: int, hint: Phrase | None = None) -> NoReturn:
         span = self._source.span(start, start + length)
         raise DefinitionError(Diagnostic(code, message, span, hint=hint, source=self._source))
 

@@ -12,16 +12,29 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
-from linkwright.diagnostics import Diagnostic, Note, SourceText, Span, did_you_mean, display_path
+from linkwright.diagnostics import (
+    Diagnostic,
+    Note,
+    Phrase,
+    SourceText,
+    Span,
+    did_you_mean,
+    display_path,
+    foreign,
+    joined,
+    phrase,
+    quoted,
+    term,
+)
 from linkwright.messages import catalogue
 from linkwright.messages.definition import Action, Definition, Service, Structure, structures_of
 from linkwright.messages.derived import parts_of
 from linkwright.messages.errors import DefinitionError, InterfaceNotFoundError
 from linkwright.messages.names import KINDS, InterfaceName, split_name
 from linkwright.messages.parser import KnownMessages, parse_interface
-from linkwright.workspace import PackageFinder
-from linkwright.workspace.active import active_finder
-from linkwright.workspace.interface_files import interface_file, interface_files
+from linkwright.packages import PackageFinder
+from linkwright.packages.active import active_finder
+from linkwright.packages.interface_files import interface_file, interface_files
 
 _FINDER_KEPT_S = 1.0
 """For so long after a question about it the workspace is taken to be as it was."""
@@ -167,7 +180,7 @@ class Library:
         share = self._finder().find(package)
         return share is not None and interface_file(share, *rest.split("/")) is not None
 
-    def hint_for(self, type_name: str) -> str | None:
+    def hint_for(self, type_name: str) -> Phrase | None:
         """What may have been meant by the name of a message that there is not."""
         name = split_name(type_name)
         return None if name is None else self._unknown(name, ("msg",)).hint
@@ -211,33 +224,39 @@ class Library:
 
     def _unknown(self, name: InterfaceName, kinds: tuple[str, ...]) -> Diagnostic:
         wanted = (name.kind,) if name.kind in kinds else kinds
-        what = " or ".join(KIND_NAMES[kind] for kind in wanted if kind)
+        what = joined([term(KIND_NAMES[kind]) for kind in wanted if kind], " or ")
         same_package = [other for kind in wanted if kind for other in self.names(kind, name.package)]
         notes: list[Note] = []
         if same_package:
             listed = [other.rpartition("/")[2] for other in same_package]
             hint = did_you_mean(name.name, listed) or self._same_name_elsewhere(name, wanted)
             if hint is None:
-                hint = f"'{name.package}' has {', '.join(listed[:8])}{', ...' if len(listed) > 8 else ''}"
+                hint = phrase("'{package}' has {names}", package=name.package, names=joined(listed[:8]))
+                if len(listed) > 8:
+                    hint = phrase("{list}, ...", list=hint)
         else:
             packages = {*catalogue.packages(), *self._finder().packages()}
             if name.package in packages:
-                notes.append(Note(f"the package '{name.package}' has no {what}"))
+                notes.append(Note(phrase("the package '{package}' has no {what}", package=name.package, what=what)))
                 hint = None
             else:
-                notes.append(Note(f"there is no package '{name.package}'"))
+                notes.append(Note(phrase("there is no package '{package}'", package=name.package)))
                 hint = did_you_mean(name.package, packages)
             hint = hint or self._same_name_elsewhere(name, wanted)
         if hint is None:
             others = [other for kind in KINDS if kind not in wanted for other in self.names(kind, name.package)]
-            hint = next((f"there is '{other}'" for other in others if other.endswith("/" + name.name)), None)
-        return Diagnostic("MSG101", f"there is no {what} '{name}'", notes=tuple(notes), hint=hint)
+            hint = next(
+                (phrase("there is '{other}'", other=other) for other in others if other.endswith("/" + name.name)), None
+            )
+        return Diagnostic(
+            "MSG101", phrase("there is no {what} '{name}'", what=what, name=name), notes=tuple(notes), hint=hint
+        )
 
-    def _same_name_elsewhere(self, name: InterfaceName, kinds: tuple[str | None, ...]) -> str | None:
+    def _same_name_elsewhere(self, name: InterfaceName, kinds: tuple[str | None, ...]) -> Phrase | None:
         for kind in kinds:
             for other in self.names(kind) if kind else ():
                 if other.rpartition("/")[2] == name.name:
-                    return f"did you mean '{other}'?"
+                    return phrase("did you mean {names}?", names=quoted(other))
         return None
 
 
@@ -248,7 +267,7 @@ class _Trusted:
         """True."""
         return True
 
-    def hint_for(self, type_name: str) -> str | None:  # noqa: ARG002 - the protocol's
+    def hint_for(self, type_name: str) -> Phrase | None:  # noqa: ARG002 - the protocol's
         """None."""
         return None
 
@@ -265,8 +284,12 @@ def _parsed(source: SourceText, base: str, known: KnownMessages) -> Definition:
 def not_of_kind(definition: Definition, kind: str) -> Diagnostic:
     """What to say about an interface that is there but is no message, service or action, as was wanted."""
     name = definition.type_name
-    is_a = {Structure: "a message", Service: "a service", Action: "an action"}[type(definition)]
-    return Diagnostic("MSG101", f"there is no {KIND_NAMES[kind]} '{name}'", hint=f"'{name}' is {is_a}")
+    is_a = {Structure: phrase("a message"), Service: phrase("a service"), Action: phrase("an action")}[type(definition)]
+    return Diagnostic(
+        "MSG101",
+        phrase("there is no {kind_names} '{name}'", kind_names=KIND_NAMES[kind], name=name),
+        hint=phrase("'{name}' is {is_a}", name=name, is_a=is_a),
+    )
 
 
 def _read(path: Path) -> SourceText:
@@ -276,19 +299,25 @@ def _read(path: Path) -> SourceText:
     except UnicodeDecodeError as error:
         raise DefinitionError(
             Diagnostic(
-                "MSG121", f"'{name}' is not text in UTF-8", hint=f"the byte at {error.start} begins no character"
+                "MSG121",
+                phrase("'{name}' is not text in UTF-8", name=name),
+                hint=phrase("the byte at {start} begins no character", start=error.start),
             )
         ) from None
     except OSError as error:
-        raise DefinitionError(Diagnostic("MSG121", f"cannot read '{name}': {error.strerror}")) from None
+        raise DefinitionError(
+            Diagnostic(
+                "MSG121", phrase("cannot read '{name}': {strerror}", name=name, strerror=foreign(error.strerror))
+            )
+        ) from None
 
 
 def _not_a_name(text: str) -> Diagnostic:
-    hint = "the form is 'package/kind/Name', such as 'sensor_msgs/msg/JointState'"
+    hint = phrase("the form is 'package/kind/Name', such as 'sensor_msgs/msg/JointState'")
     guess = re.sub(r"\.|::", "/", text)
     if guess != text and split_name(guess):
-        hint = f"did you mean '{guess}'?"
-    return Diagnostic("MSG102", f"'{text}' is no name of a message, service or action", hint=hint)
+        hint = phrase("did you mean {names}?", names=quoted(guess))
+    return Diagnostic("MSG102", phrase("'{text}' is no name of a message, service or action", text=text), hint=hint)
 
 
 def _span_of(source: SourceText, reference: str, owner: str) -> Span:
@@ -303,7 +332,12 @@ def _span_of(source: SourceText, reference: str, owner: str) -> Span:
 def _recursive(source: SourceText, way: tuple[str, ...]) -> Diagnostic:
     span = _span_of(source, way[-1], way[-2])
     inside = way[0] if len(way) == 2 else f"{way[0]} by way of " + ", ".join(way[1:-1])
-    return Diagnostic("MSG116", f"'{way[-1]}' would contain itself: it is part of {inside}", span, source=source)
+    return Diagnostic(
+        "MSG116",
+        phrase("'{way}' would contain itself: it is part of {inside}", way=way[-1], inside=inside),
+        span,
+        source=source,
+    )
 
 
 LIBRARY = Library()

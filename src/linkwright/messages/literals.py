@@ -6,6 +6,7 @@ import math
 import re
 from typing import cast
 
+from linkwright.diagnostics import phrase
 from linkwright.messages.definition import Container, FieldType
 from linkwright.messages.primitives import PRIMITIVES, Primitive
 
@@ -28,16 +29,30 @@ def read_default(text: str, kind: FieldType) -> object:
     """
     primitive = kind.primitive
     if primitive is None:
-        raise LiteralFault(f"a field of type '{kind.spelled()}' cannot have a default value")
+        raise LiteralFault(phrase("a field of type '{spelled}' cannot have a default value", spelled=kind.spelled()))
     if kind.container is Container.ONE:
         return _read_bounded(text, kind, primitive)
     if not (text.startswith("[") and text.endswith("]")):
-        raise LiteralFault(f"the default of '{kind.spelled()}' is a list in square brackets")
+        raise LiteralFault(phrase("the default of '{spelled}' is a list in square brackets", spelled=kind.spelled()))
     values = tuple(_read_bounded(item, kind, primitive) for item in split_list(text[1:-1]))
     if kind.container is Container.ARRAY and len(values) != kind.size:
-        raise LiteralFault(f"'{kind.spelled()}' takes {kind.size} values, not {len(values)}")
+        raise LiteralFault(
+            phrase(
+                "'{spelled}' takes {size} values, not {count}",
+                spelled=kind.spelled(),
+                size=kind.size,
+                count=len(values),
+            )
+        )
     if kind.container is Container.SEQUENCE and kind.size is not None and len(values) > kind.size:
-        raise LiteralFault(f"'{kind.spelled()}' takes at most {kind.size} values, not {len(values)}")
+        raise LiteralFault(
+            phrase(
+                "'{spelled}' takes at most {size} values, not {count}",
+                spelled=kind.spelled(),
+                size=kind.size,
+                count=len(values),
+            )
+        )
     return values
 
 
@@ -69,7 +84,7 @@ def split_list(text: str) -> list[str]:
 def _read_bounded(text: str, kind: FieldType, primitive: Primitive) -> Value:
     value = _read(text, kind.base, primitive)
     if kind.string_bound is not None and len(cast(str, value)) > kind.string_bound:
-        raise LiteralFault(f"the text is longer than {kind.string_bound} characters")
+        raise LiteralFault(phrase("the text is longer than {string_bound} characters", string_bound=kind.string_bound))
     return value
 
 
@@ -83,7 +98,15 @@ def _read(text: str, type_name: str, primitive: Primitive) -> Value:
     number = _read_int(text)
     low, high = (0, 255) if primitive.python is bytes else (primitive.low, primitive.high)
     if not low <= number <= high:
-        raise LiteralFault(f"{text} is outside of {type_name}'s range, which is {low} to {high}")
+        raise LiteralFault(
+            phrase(
+                "{text} is outside of {type_name}'s range, which is {low} to {high}",
+                text=text,
+                type_name=type_name,
+                low=low,
+                high=high,
+            )
+        )
     return bytes([number]) if primitive.python is bytes else number
 
 
@@ -93,7 +116,7 @@ def _read_bool(text: str) -> bool:
         return True
     if word in {"false", "0"}:
         return False
-    raise LiteralFault(f"'{text}' is neither true nor false")
+    raise LiteralFault(phrase("'{text}' is neither true nor false", text=text))
 
 
 def _read_int(text: str) -> int:
@@ -101,16 +124,16 @@ def _read_int(text: str) -> int:
     try:
         return int(text, 0 if digits[:1] == "0" and digits[1:2] in {"x", "X", "o", "O", "b", "B"} else 10)
     except ValueError:
-        raise LiteralFault(f"'{text}' is no whole number") from None
+        raise LiteralFault(phrase("'{text}' is no whole number", text=text)) from None
 
 
 def _read_float(text: str, type_name: str, primitive: Primitive) -> float:
     try:
         number = float(text)
     except ValueError:
-        raise LiteralFault(f"'{text}' is no number") from None
+        raise LiteralFault(phrase("'{text}' is no number", text=text)) from None
     if math.isfinite(number) and abs(number) > primitive.high:
-        raise LiteralFault(f"{text} is outside of {type_name}'s range")
+        raise LiteralFault(phrase("{text} is outside of {type_name}'s range", text=text, type_name=type_name))
     return number
 
 
@@ -119,7 +142,7 @@ def _read_text(text: str) -> str:
     if quote not in {'"', "'"}:
         return text
     if len(text) < 2 or not text.endswith(quote) or _closes_early(text, quote):
-        raise LiteralFault(f"the text that begins with {quote} does not end with it")
+        raise LiteralFault(phrase("the text that begins with {quote} does not end with it", quote=quote))
     return _ESCAPE.sub(lambda match: _ESCAPES.get(match.group(1), match.group(0)), text[1:-1])
 
 

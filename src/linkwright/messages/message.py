@@ -1,7 +1,8 @@
-"""What every message class has, and what the classes of services and actions are."""
+"""The base classes of messages, services and actions."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, ClassVar
 
 from numpy import ndarray
@@ -44,6 +45,10 @@ class Message:
 
     _definition: ClassVar[Structure]
 
+    # What `linkwright.messages.classes` makes classes with; it puts these here.
+    _class_named: ClassVar[Callable[[str], type[Any]]]
+    _class_of: ClassVar[Callable[[Structure], type[Any]]]
+
     def _write(self) -> bytes:
         """The message as CDR. The function for the class is compiled when it is first needed, as that of `_read`."""
         from linkwright.messages.cdr_writer import compile_writer
@@ -56,9 +61,8 @@ class Message:
     def _read(cls, data: bytes) -> Any:
         """The message of bytes with a little-endian header."""
         from linkwright.messages.cdr_reader import compile_reader
-        from linkwright.messages.classes import class_of
 
-        reader = compile_reader(cls._definition, class_of)
+        reader = compile_reader(cls._definition, cls._class_of)
         cls._read = staticmethod(reader)  # type: ignore[assignment]
         return reader(data)
 
@@ -98,9 +102,7 @@ class Message:
 
 def _remade(type_name: str, values: tuple[Any, ...]) -> Message:
     """A message from its slots' values: how copies and pickles come back, without a look for modules by their names."""
-    from linkwright.messages.classes import get_message
-
-    cls = get_message(type_name)
+    cls = Message._class_named(type_name)
     message: Message = object.__new__(cls)
     for slot, value in zip(cls.__slots__, values, strict=True):
         setattr(message, slot, value)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import Protocol
 
-from linkwright.diagnostics import Diagnostic, SourceText, did_you_mean
+from linkwright.diagnostics import Diagnostic, Phrase, SourceText, counted, did_you_mean, phrase
 from linkwright.messages.definition import Constant, Container, Definition, Field, FieldType, Structure, interface_of
 from linkwright.messages.errors import DefinitionError
 from linkwright.messages.literals import LiteralFault, read_constant, read_default
@@ -27,7 +27,10 @@ _ROS1_TYPES = {
     "Header": "'std_msgs/Header'",
 }
 
-_WITH_MORE_PARTS = {1: "requests and responses are written in a .srv file", 2: "goals are written in a .action file"}
+_WITH_MORE_PARTS = {
+    1: phrase("requests and responses are written in a .srv file"),
+    2: phrase("goals are written in a .action file"),
+}
 
 
 class _Section:
@@ -45,7 +48,7 @@ class KnownMessages(Protocol):
     def has_message(self, type_name: str) -> bool:
         """Whether there is a message of this full name."""
 
-    def hint_for(self, type_name: str) -> str | None:
+    def hint_for(self, type_name: str) -> Phrase | None:
         """What may have been meant by the name of a message that there is not."""
 
 
@@ -88,7 +91,12 @@ class _Reader:
         if len(sections) < len(suffixes):
             self._report(
                 "MSG118",
-                f"a .{self._kind} file has {len(suffixes)} parts with '---' between them, this one has {len(sections)}",
+                phrase(
+                    "a .{kind} file has {count} parts with '---' between them, this one has {other_count}",
+                    kind=self._kind,
+                    count=len(suffixes),
+                    other_count=len(sections),
+                ),
                 offset,
                 0,
             )
@@ -105,7 +113,12 @@ class _Reader:
         if count == most + 1:
             self._report(
                 "MSG118",
-                f"a .{self._kind} file has {most} part{'s' if most > 1 else ''}, this '---' begins another",
+                counted(
+                    "a .{kind} file has {count} part, this '---' begins another",
+                    "a .{kind} file has {count} parts, this '---' begins another",
+                    most,
+                    kind=self._kind,
+                ),
                 start,
                 3,
                 _WITH_MORE_PARTS.get(most),
@@ -114,8 +127,12 @@ class _Reader:
     def _read_line(self, code: str, start: int, section: _Section) -> None:
         match = _LINE.fullmatch(code)
         if match is None:
-            self._report("MSG110", f"'{code}' is neither a field ('TYPE name') nor a constant ('TYPE NAME=value')",
-                         start, len(code))  # fmt: skip
+            self._report(
+                "MSG110",
+                phrase("'{code}' is neither a field ('TYPE name') nor a constant ('TYPE NAME=value')", code=code),
+                start,
+                len(code),
+            )
             return
         kind = self._read_type(match, start)
         name, rest = match["name"], match["rest"]
@@ -133,19 +150,28 @@ class _Reader:
         string_bound = None
         sound = base is not None
         if match["bound"] is not None:
-            string_bound = self._number(match["string_bound"], start + match.start("string_bound"), "a string")
+            string_bound = self._number(match["string_bound"], start + match.start("string_bound"), phrase("a string"))
             sound = sound and string_bound is not None
             if base is not None and base not in {"string", "wstring"}:
-                hint = f"a bounded sequence is written '{match['base']}[<={match['string_bound']}]'"
-                self._report("MSG119", f"'{match['base']}' is no string and has no length to bound", start,
-                             len(match["base"]), hint)  # fmt: skip
+                hint = phrase(
+                    "a bounded sequence is written '{base}[<={string_bound}]'",
+                    base=match["base"],
+                    string_bound=match["string_bound"],
+                )
+                self._report(
+                    "MSG119",
+                    phrase("'{base}' is no string and has no length to bound", base=match["base"]),
+                    start,
+                    len(match["base"]),
+                    hint,
+                )
                 sound = False
         brackets = match["container"]
         if brackets is not None:
             inside, at = brackets[1:-1].strip(), start + match.start("container") + 1
             container = Container.SEQUENCE if not inside or inside.startswith("<=") else Container.ARRAY
             if inside:
-                what = "an array" if container is Container.ARRAY else "a sequence"
+                what = phrase("an array") if container is Container.ARRAY else phrase("a sequence")
                 number = inside.removeprefix("<=").lstrip()
                 size = self._number(number, at + brackets[1:].index(inside) + len(inside) - len(number), what)
                 sound = sound and size is not None
@@ -161,30 +187,40 @@ class _Reader:
             if len(parts) == 2 and is_package_name(parts[0]) and is_interface_name(parts[1]):
                 return self._message(f"{parts[0]}/msg/{parts[1]}", text, start)
             self._report(
-                "MSG111", f"'{text}' is no type: another package's is written 'package/Name'", start, len(text)
+                "MSG111",
+                phrase("'{text}' is no type: another package's is written 'package/Name'", text=text),
+                start,
+                len(text),
             )
             return None
         own = f"{self._package}/msg/{text}"
         if text in _ROS1_TYPES and not self._known.has_message(own):
-            self._report("MSG117", f"the type '{text}' is ROS 1's", start, len(text),
-                         f"in ROS 2 it is {_ROS1_TYPES[text]}")  # fmt: skip
+            self._report("MSG117", phrase("the type '{text}' is ROS 1's", text=text), start, len(text),
+                         phrase("in ROS 2 it is {name}", name=_ROS1_TYPES[text]))  # fmt: skip
             return None
         if is_interface_name(text):
             return self._message(own, text, start)
-        self._report("MSG111", f"there is no type '{text}'", start, len(text), did_you_mean(text, PRIMITIVES))
+        self._report(
+            "MSG111", phrase("there is no type '{text}'", text=text), start, len(text), did_you_mean(text, PRIMITIVES)
+        )
         return None
 
     def _message(self, type_name: str, text: str, start: int) -> str | None:
         if self._known.has_message(type_name):
             return type_name
         hint = self._known.hint_for(type_name)
-        self._report("MSG111", f"there is no message '{type_name}'", start, len(text), hint)
+        self._report("MSG111", phrase("there is no message '{type_name}'", type_name=type_name), start, len(text), hint)
         return None
 
-    def _number(self, text: str, at: int, what: str) -> int | None:
+    def _number(self, text: str, at: int, what: Phrase) -> int | None:
         if text.isascii() and text.isdigit() and int(text) > 0:
             return int(text)
-        self._report("MSG119", f"'{text}' is no length of {what}: it is a whole number above 0", at, max(len(text), 1))
+        self._report(
+            "MSG119",
+            phrase("'{text}' is no length of {what}: it is a whole number above 0", text=text, what=what),
+            at,
+            max(len(text), 1),
+        )
         return None
 
     # --- fields and constants -------------------------------------------------------------------------------
@@ -193,11 +229,11 @@ class _Reader:
         self, section: _Section, kind: FieldType | None, name: str, at: int, default: str, default_at: int
     ) -> None:
         if not is_field_name(name):
-            hint = "field names are lower case with single underscores"
+            hint = phrase("field names are lower case with single underscores")
             near = re.sub(r"_+", "_", re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower()).strip("_")
             if is_field_name(near):
-                hint += f", such as '{near}'"
-            self._report("MSG112", f"'{name}' is no name for a field", at, len(name), hint)
+                hint = phrase("field names are lower case with single underscores, such as '{near}'", near=near)
+            self._report("MSG112", phrase("'{name}' is no name for a field", name=name), at, len(name), hint)
             return
         if not self._is_new(section, name, at) or kind is None:
             return
@@ -206,7 +242,12 @@ class _Reader:
             try:
                 value = read_default(default, kind)
             except LiteralFault as fault:
-                self._report("MSG114", f"the default value of '{name}' is wrong: {fault}", default_at, len(default))
+                self._report(
+                    "MSG114",
+                    phrase("the default value of '{name}' is wrong: {fault}", name=name, fault=fault),
+                    default_at,
+                    len(default),
+                )
                 return
         section.fields.append(Field(name, kind, value))
 
@@ -214,30 +255,47 @@ class _Reader:
         self, section: _Section, kind: FieldType | None, name: str, at: int, value: str, value_at: int
     ) -> None:
         if not is_constant_name(name):
-            hint = "constants are upper case with single underscores"
+            hint = phrase("constants are upper case with single underscores")
             if is_field_name(name):
-                hint += "; the default value of a field is written without '='"
-            self._report("MSG113", f"'{name}' is no name for a constant", at, len(name), hint)
+                hint = phrase(
+                    "constants are upper case with single underscores;"
+                    " the default value of a field is written without '='"
+                )
+            self._report("MSG113", phrase("'{name}' is no name for a constant", name=name), at, len(name), hint)
             return
         if not self._is_new(section, name, at) or kind is None:
             return
         if kind.primitive is None or kind.container is not Container.ONE:
-            self._report("MSG114", f"the constant '{name}' cannot be of type '{kind.spelled(self._package)}'", at,
-                         len(name), "constants are numbers, bools and strings")  # fmt: skip
+            self._report(
+                "MSG114",
+                phrase(
+                    "the constant '{name}' cannot be of type '{spelled}'",
+                    name=name,
+                    spelled=kind.spelled(self._package),
+                ),
+                at,
+                len(name),
+                phrase("constants are numbers, bools and strings"),
+            )
             return
         try:
             section.constants.append(Constant(name, kind.base, read_constant(value, kind.base)))
         except LiteralFault as fault:
-            self._report("MSG114", f"the value of '{name}' is wrong: {fault}", value_at, max(len(value), 1))
+            self._report(
+                "MSG114",
+                phrase("the value of '{name}' is wrong: {fault}", name=name, fault=fault),
+                value_at,
+                max(len(value), 1),
+            )
 
     def _is_new(self, section: _Section, name: str, at: int) -> bool:
         if name in section.names:
-            self._report("MSG115", f"there are two '{name}'", at, len(name))
+            self._report("MSG115", phrase("there are two '{name}'", name=name), at, len(name))
             return False
         section.names.add(name)
         return True
 
-    def _report(self, code: str, message: str, start: int, length: int, hint: str | None = None) -> None:
+    def _report(self, code: str, message: Phrase, start: int, length: int, hint: Phrase | None = None) -> None:
         span = self._source.span(start, start + length)
         self._found.append(Diagnostic(code, message, span, hint=hint, source=self._source))
 

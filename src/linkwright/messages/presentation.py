@@ -1,4 +1,4 @@
-"""An interface as a reader meets it: the text of its definition, and a message to fill in."""
+"""Interfaces for display: the text of a definition, and a prototype to fill in."""
 
 from __future__ import annotations
 

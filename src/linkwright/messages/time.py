@@ -1,4 +1,4 @@
-"""What the classes of builtin_interfaces can do beside holding their fields: count in nanoseconds."""
+"""Base classes of builtin_interfaces' Time and Duration, which count in nanoseconds."""
 
 from __future__ import annotations
 

@@ -3,7 +3,7 @@
 Each is in a module of its own, which is imported when it is started.
 """
 
-from linkwright.nodes.executables import EXECUTABLES
-from linkwright.nodes.options import Factory, FinishingNode, NodeOptions, RunningNode
+from linkwright.nodes.options import Factory, FinishingNode, NodeOptions, NodeWithSliders, RunningNode
+from linkwright.nodes.registry import COMPONENTS, EXECUTABLES
 
-__all__ = ["EXECUTABLES", "Factory", "FinishingNode", "NodeOptions", "RunningNode"]
+__all__ = ["COMPONENTS", "EXECUTABLES", "Factory", "FinishingNode", "NodeOptions", "NodeWithSliders", "RunningNode"]

@@ -6,11 +6,11 @@ from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from typing import Any
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean
+from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, joined, phrase
 from linkwright.graph import Graph, Parameter
 from linkwright.messages import get_service
-from linkwright.nodes.components import COMPONENTS
 from linkwright.nodes.options import NodeOptions, RunningNode, SingleNode, create_node, starting
+from linkwright.nodes.registry import COMPONENTS
 
 OnLoaded = Callable[[RunningNode, NodeOptions], None]
 
@@ -122,12 +122,18 @@ def load_request() -> Any:
 
 
 def _unknown(package: str, plugin: str) -> LinkwrightError:
-    message = f"Failed to find class with the requested plugin name: package '{package}' has no component '{plugin}'"
+    message = phrase(
+        "Failed to find class with the requested plugin name: package '{package}' has no component '{plugin}'",
+        package=package,
+        plugin=plugin,
+    )
     here = [name for owner, name in COMPONENTS if owner == package]
     near = did_you_mean(plugin, here) or did_you_mean(plugin, [name for _, name in COMPONENTS])
     if near is None and here:
-        near = "it has: " + ", ".join(here)
-    hint = near or "without ROS only the nodes that come with Linkwright can be composed; others are compiled libraries"
+        near = phrase("it has: {names}", names=joined(here))
+    hint = near or phrase(
+        "without ROS only the nodes that come with Linkwright can be composed; others are compiled libraries"
+    )
     return LinkwrightError(Diagnostic("NODE601", message, hint=hint))
 
 

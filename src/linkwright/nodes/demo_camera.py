@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.diagnostics import Diagnostic, LinkwrightError, joined, phrase
 from linkwright.graph import Graph
-from linkwright.graph.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy
+from linkwright.graph.qos.profile import HistoryPolicy, QoSProfile, ReliabilityPolicy
 from linkwright.messages import get_message
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 
@@ -39,7 +39,10 @@ class DemoCamera(SingleNode):
         for name, value in (("frequency", frequency), ("width", width), ("height", height), ("depth", depth)):
             if value <= 0:
                 raise LinkwrightError(
-                    Diagnostic("NODE421", f"parameter '{name}' must be more than 0, and it is {value}")
+                    Diagnostic(
+                        "NODE421",
+                        phrase("parameter '{name}' must be more than 0, and it is {value}", name=name, value=value),
+                    )
                 )
         qos = QoSProfile(
             depth=depth,
@@ -81,6 +84,10 @@ def _policy(kind: type[HistoryPolicy | ReliabilityPolicy], name: str, value: str
     known = [each.name.lower() for each in kind if each.name not in ("UNKNOWN", "BEST_AVAILABLE")]
     if value not in known:
         raise LinkwrightError(
-            Diagnostic("NODE421", f"parameter '{name}' is '{value}'", hint=f"it is one of {', '.join(known)}")
+            Diagnostic(
+                "NODE421",
+                phrase("parameter '{name}' is '{value}'", name=name, value=value),
+                hint=phrase("it is one of {known}", known=joined(known)),
+            )
         )
     return value.upper()

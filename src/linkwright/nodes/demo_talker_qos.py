@@ -6,7 +6,7 @@ import argparse
 import asyncio
 from collections.abc import Sequence
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.graph import SENSOR_DATA_QOS, Graph, QoSProfile
 from linkwright.messages import String
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
@@ -80,4 +80,6 @@ def _read(name: str, words: Sequence[str]) -> argparse.Namespace:
     try:
         return parser.parse_known_args(words)[0]
     except argparse.ArgumentError as error:
-        raise LinkwrightError(Diagnostic("NODE602", f"arguments of {name}: {error}")) from error
+        raise LinkwrightError(
+            Diagnostic("NODE602", phrase("arguments of {name}: {error}", name=name, error=foreign(error)))
+        ) from error

@@ -9,7 +9,7 @@ from math import isfinite, pi
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.nodes.joint_settings import Dependence, JointSettings
 from linkwright.nodes.robot_transforms import MOVING_TYPES
 from linkwright.urdf import Joint, JointType, Robot
@@ -116,7 +116,7 @@ def _resolve(name: str, dependent: Mapping[str, Dependence]) -> tuple[str, float
         factor *= link.factor
         name = link.parent
         if name in chain:
-            message = f"Found an infinite recursive mimic chain: {[*chain, name]}"
+            message = phrase("Found an infinite recursive mimic chain: {value}", value=[*chain, name])
             raise LinkwrightError(Diagnostic("NODE202", message))
         chain.append(name)
     return name, factor, offset

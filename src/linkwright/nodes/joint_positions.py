@@ -1,4 +1,4 @@
-"""Where the joints of joint_state_publisher are."""
+"""The positions of the joints of joint_state_publisher."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class JointPositions:
     def __init__(self, settings: JointSettings) -> None:
         self.layout = empty_layout()
         self._rows: dict[str, int] = {}
-        self._direction = np.ones(0)
+        self._direction: NDArray[np.float64] = np.ones(0)
         self._position, self._velocity, self._effort = (_Quantity(np.zeros(0)) for _ in range(3))
         self.take_over(self.layout, settings)
 

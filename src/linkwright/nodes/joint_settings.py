@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from math import isfinite
 from typing import Any
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, phrase
 from linkwright.graph import Node, ParameterDescriptor, ParameterType
 
 _DEPENDENT_FIELDS = ("parent", "factor", "offset")
@@ -110,21 +110,21 @@ class _Reader:
     def flag(self, name: str) -> bool:
         value = self._values[name]
         if not isinstance(value, bool):
-            self._complain(name, "true or false")
+            self._complain(name, phrase("true or false"))
         return bool(value)
 
     def number(self, name: str, *, positive: bool = False) -> float:
         value = self._values[name]
         valid = isinstance(value, (int, float)) and not isinstance(value, bool) and isfinite(value)
         if not valid or (positive and value <= 0):
-            self._complain(name, "a positive number" if positive else "a number")
+            self._complain(name, phrase("a positive number") if positive else phrase("a number"))
             return 1.0
         return float(value)
 
     def texts(self, name: str) -> tuple[str, ...]:
         value = self._values[name]
         if not isinstance(value, Sequence) or isinstance(value, str) or not all(isinstance(v, str) for v in value):
-            self._complain(name, "a list of topic names")
+            self._complain(name, phrase("a list of topic names"))
             return ()
         return tuple(value)
 
@@ -137,8 +137,11 @@ class _Reader:
                 self.problems.append(
                     Diagnostic(
                         "NODE201",
-                        f"invalid dependent_joint name '{rest}': allowed are JOINT.parent, JOINT.factor and "
-                        "JOINT.offset",
+                        phrase(
+                            "invalid dependent_joint name '{rest}': allowed are JOINT.parent, JOINT.factor and"
+                            " JOINT.offset",
+                            rest=rest,
+                        ),
                         hint=did_you_mean(entry, _DEPENDENT_FIELDS),
                     )
                 )
@@ -149,13 +152,18 @@ class _Reader:
     def _dependence(self, joint: str, names: Mapping[str, str]) -> Dependence:
         parent = self._values.get(names.get("parent", ""))
         if not isinstance(parent, str):
-            self._complain(f"dependent_joints.{joint}.parent", "the name of a joint")
+            self._complain(f"dependent_joints.{joint}.parent", phrase("the name of a joint"))
             parent = ""
         factor = self.number(names["factor"]) if "factor" in names else 1.0
         offset = self.number(names["offset"]) if "offset" in names else 0.0
         return Dependence(parent, factor, offset)
 
-    def _complain(self, name: str, expected: str) -> None:
+    def _complain(self, name: str, expected: Phrase) -> None:
         value = self._values.get(name)
-        given = f"it is {value!r}" if value is not None else "it is not given"
-        self.problems.append(Diagnostic("NODE201", f"parameter '{name}' must be {expected}, and {given}"))
+        given = phrase("it is {value}", value=repr(value)) if value is not None else phrase("it is not given")
+        self.problems.append(
+            Diagnostic(
+                "NODE201",
+                phrase("parameter '{name}' must be {expected}, and {given}", name=name, expected=expected, given=given),
+            )
+        )

@@ -16,7 +16,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Protocol
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.graph import (
     DEFAULT_QOS,
     DESCRIPTION_QOS,
@@ -64,6 +64,7 @@ class JointStatePublisher(SingleNode):
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._library = options.library
         self._node, arguments = create_node(graph, options, "joint_state_publisher")
+        self._clock = self._node.get_clock()
         self._watchers: list[Watcher] = []
         self._robot: Robot | None = None
         self._sources: list[Subscription[JointState]] = []
@@ -102,14 +103,22 @@ class JointStatePublisher(SingleNode):
         if len(arguments) > 1:
             unknown = " ".join(arguments[1:])
             raise LinkwrightError(
-                Diagnostic("NODE204", f"unrecognized arguments: {unknown}", hint="the only argument is a URDF file")
+                Diagnostic(
+                    "NODE204",
+                    phrase("unrecognized arguments: {unknown}", unknown=unknown),
+                    hint=phrase("the only argument is a URDF file"),
+                )
             )
         path = arguments[0]
         try:
             text = Path(path).read_text(encoding="utf-8")
         except (OSError, UnicodeDecodeError) as error:
             reason = getattr(error, "strerror", None) or error
-            raise LinkwrightError(Diagnostic("NODE203", f"URDF file '{path}' cannot be read: {reason}")) from error
+            raise LinkwrightError(
+                Diagnostic(
+                    "NODE203", phrase("URDF file '{path}' cannot be read: {reason}", path=path, reason=foreign(reason))
+                )
+            ) from error
         reading = self._library.read(text)
         if reading.robot is None:
             other = _other_format(text)
@@ -117,8 +126,8 @@ class JointStatePublisher(SingleNode):
                 raise LinkwrightError(
                     Diagnostic(
                         "NODE205",
-                        f"'{path}' is {other}, and this node reads URDF",
-                        hint="the ROS node reads SDF and COLLADA too; convert the file to URDF",
+                        phrase("'{path}' is {other}, and this node reads URDF", path=path, other=other),
+                        hint=phrase("the ROS node reads SDF and COLLADA too; convert the file to URDF"),
                     )
                 )
             raise LinkwrightError(*reading.diagnostics)
@@ -203,7 +212,7 @@ class JointStatePublisher(SingleNode):
         self._publish()
 
     def _publish(self) -> None:
-        message = JointState(Header(self._node.get_clock().now().to_msg()))
+        message = JointState(Header(self._clock.now().to_msg()))
         self._joints.fill(message)
         if message.name:
             self._publisher.publish(message)

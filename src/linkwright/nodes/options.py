@@ -1,4 +1,4 @@
-"""What a node of this room is started with, and what starting one gives."""
+"""How a node is started, and what starting it returns."""
 
 from __future__ import annotations
 
@@ -6,20 +6,21 @@ import asyncio
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import Graph, Node
-from linkwright.graph.names import absolute_namespace, join
-from linkwright.graph.remapping import Remappings
-from linkwright.graph.ros_arguments import RosArguments, parse
+from linkwright.graph.command_line.ros_arguments import RosArguments, parse
+from linkwright.graph.names.remapping import Remappings
+from linkwright.graph.names.rules import absolute_namespace, join
 
 if TYPE_CHECKING:
-    from linkwright.urdf import DescriptionLibrary
+    from linkwright.descriptions import DescriptionLibrary
+    from linkwright.nodes.joint_panel import JointPanel
 
 
 def _library() -> DescriptionLibrary:
-    from linkwright.urdf import DescriptionLibrary
+    from linkwright.descriptions import DescriptionLibrary
 
     return DescriptionLibrary()
 
@@ -52,7 +53,7 @@ class NodeOptions:
 
 
 class RunningNode(Protocol):
-    """A node that was started. One that ends by itself has an attribute ``finished`` besides; see `FinishingNode`."""
+    """A node that was started; some are more, see `FinishingNode` and `NodeWithSliders`."""
 
     @property
     def node(self) -> Node:
@@ -62,11 +63,21 @@ class RunningNode(Protocol):
         """End it and take it out of the graph."""
 
 
+@runtime_checkable
 class FinishingNode(RunningNode, Protocol):
     """A node that ends by itself."""
 
     finished: asyncio.Future[int]
     """Gets the exit status when the node is done; it is to be closed then."""
+
+
+@runtime_checkable
+class NodeWithSliders(RunningNode, Protocol):
+    """A node whose joints can be moved by sliders."""
+
+    @property
+    def panel(self) -> JointPanel:
+        """The sliders."""
 
 
 class SingleNode:

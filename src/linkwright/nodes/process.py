@@ -9,12 +9,12 @@ import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, print_diagnostics
+from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, joined, phrase, print_diagnostics
 from linkwright.event_loop import run_coroutine
 from linkwright.interruption import raise_interrupts
 
 if TYPE_CHECKING:
-    from linkwright.graph.log.setup import Logging
+    from linkwright.graph.command_line.log_setup import Logging
     from linkwright.nodes.options import Factory
 
 _SIGNALS = (signal.SIGINT, signal.SIGTERM)
@@ -31,8 +31,8 @@ def main(package: str, executable: str, arguments: Sequence[str]) -> int:
     Returns:
         The exit status: 0, the node's own, or 1 when it could not start.
     """
-    from linkwright.graph.log.setup import set_up
-    from linkwright.graph.ros_arguments import parse
+    from linkwright.graph.command_line.log_setup import set_up
+    from linkwright.graph.command_line.ros_arguments import parse
 
     try:
         factory = _factory(package, executable)
@@ -53,7 +53,7 @@ def main(package: str, executable: str, arguments: Sequence[str]) -> int:
 
 async def _run(factory: Factory, arguments: list[str], logging: Logging) -> int:
     from linkwright.graph import Graph
-    from linkwright.nodes.options import NodeOptions
+    from linkwright.nodes.options import FinishingNode, NodeOptions
 
     loop = asyncio.get_running_loop()
     ended = asyncio.Event()
@@ -65,13 +65,10 @@ async def _run(factory: Factory, arguments: list[str], logging: Logging) -> int:
     try:
         _join_network(graph)
         running = factory(graph, NodeOptions(arguments=arguments))
-        finished: asyncio.Future[int] | None = getattr(running, "finished", None)
-        waiting: list[asyncio.Future[object]] = [asyncio.ensure_future(ended.wait())]
-        if finished is not None:
-            waiting.append(finished)  # type: ignore[arg-type]  # a future of a status is one of an object
-        await asyncio.wait(waiting, return_when=asyncio.FIRST_COMPLETED)
-        waiting[0].cancel()
-        status = finished.result() if finished is not None and finished.done() else 0
+        if isinstance(running, FinishingNode):
+            running.finished.add_done_callback(lambda _: ended.set())
+        await ended.wait()
+        status = running.finished.result() if isinstance(running, FinishingNode) and running.finished.done() else 0
         running.close()
         return status
     finally:
@@ -79,21 +76,31 @@ async def _run(factory: Factory, arguments: list[str], logging: Logging) -> int:
 
 
 def _join_network(graph: object) -> None:
-    from linkwright.graph.dds import join
+    from linkwright.wire.dds import join
 
     join(graph)  # type: ignore[arg-type]
 
 
 def _factory(package: str, executable: str) -> Factory:
-    from linkwright.nodes.executables import EXECUTABLES
+    from linkwright.nodes.registry import EXECUTABLES
 
     factory = EXECUTABLES.get((package, executable))
     if factory is not None:
         return factory
     packages = sorted({name for name, _ in EXECUTABLES})
     if package not in packages:
-        hint = did_you_mean(package, packages) or f"there is {', '.join(packages)}"
-        raise LinkwrightError(Diagnostic("NODE001", f"package '{package}' has no node that comes with us", hint=hint))
+        hint = did_you_mean(package, packages) or phrase("there is {packages}", packages=joined(packages))
+        raise LinkwrightError(
+            Diagnostic(
+                "NODE001", phrase("package '{package}' has no node that comes with us", package=package), hint=hint
+            )
+        )
     executables = sorted(name for owner, name in EXECUTABLES if owner == package)
-    hint = did_you_mean(executable, executables) or f"there is {', '.join(executables)}"
-    raise LinkwrightError(Diagnostic("NODE001", f"package '{package}' has no executable '{executable}'", hint=hint))
+    hint = did_you_mean(executable, executables) or phrase("there is {executables}", executables=joined(executables))
+    raise LinkwrightError(
+        Diagnostic(
+            "NODE001",
+            phrase("package '{package}' has no executable '{executable}'", package=package, executable=executable),
+            hint=hint,
+        )
+    )

@@ -16,9 +16,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
-from typing import Literal
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.graph import (
     DESCRIPTION_QOS,
     SENSOR_DATA_QOS,
@@ -29,18 +28,22 @@ from linkwright.graph import (
     SetParametersResult,
     Timer,
 )
-from linkwright.graph.parameters.qos_overrides import QoSOverridingOptions, override_qos
-from linkwright.graph.qos import QoSPolicyKind, QoSProfile
+from linkwright.graph.parameters.qos_overrides import QoSOverridingOptions
+from linkwright.graph.qos.profile import QoSPolicyKind
 from linkwright.messages import JointState, String, TFMessage
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 from linkwright.nodes.robot_transforms import MOVING_TYPES, RobotTransforms
 from linkwright.nodes.throttle import JointGroup, Throttle
 from linkwright.urdf import Robot
 
-EMPTY_DESCRIPTION = "robot_description parameter must not be empty"
+EMPTY_DESCRIPTION = phrase("robot_description parameter must not be empty")
 EMPTY_UPDATE = "Empty URDF is not allowed"
-BAD_DESCRIPTION = "Unable to initialize urdf::model from robot description"
-BAD_FREQUENCY = "publish_frequency must be between 0 and 1000"
+BAD_DESCRIPTION = phrase("Unable to initialize urdf::model from robot description")
+_OVERRIDES = QoSOverridingOptions([QoSPolicyKind.DEPTH, QoSPolicyKind.HISTORY, QoSPolicyKind.RELIABILITY])
+_TF_OVERRIDES = QoSOverridingOptions([*_OVERRIDES.policy_kinds, QoSPolicyKind.DURABILITY])
+"""What parameters ``qos_overrides.*`` may say, as with the ROS node."""
+
+BAD_FREQUENCY = phrase("publish_frequency must be between 0 and 1000")
 
 _NANOSECONDS_PER_MILLISECOND = 1_000_000
 
@@ -89,32 +92,32 @@ class RobotStatePublisher(SingleNode):
                 Diagnostic(
                     "NODE101",
                     EMPTY_DESCRIPTION,
-                    hint="give it the URDF text: parameters=[{'robot_description': Command(['xacro ', path])}]",
+                    hint=phrase("give it the URDF text: parameters=[{'robot_description': Command(['xacro ', path])}]"),
                 )
             )
         robot = self._read(text)
         frequency: float = node.declare_parameter("publish_frequency", 20.0).value
         if not _is_valid_frequency(frequency):
-            raise LinkwrightError(Diagnostic("NODE103", f"{BAD_FREQUENCY}, and it is {frequency:g}"))
+            raise LinkwrightError(
+                Diagnostic(
+                    "NODE103",
+                    phrase("{rule}, and it is {frequency:g}", rule=BAD_FREQUENCY, frequency=frequency),
+                )
+            )
         self._throttle = Throttle(_interval_ns(frequency))
         self._ignore_timestamp: bool = node.declare_parameter("ignore_timestamp", False).value
         node.declare_parameter("frame_prefix", "")
         self._description_publisher = node.create_publisher(String, "robot_description", DESCRIPTION_QOS)
-        self._tf_publisher = node.create_publisher(TFMessage, "/tf", self._qos("publisher", "/tf", TF_QOS))
-        static_qos = self._qos("publisher", "/tf_static", STATIC_TF_PUBLISHER_QOS)
-        self._static_publisher = node.create_publisher(TFMessage, "/tf_static", static_qos)
-        sensor_qos = self._qos("subscription", node.resolve_topic_name("joint_states"), SENSOR_DATA_QOS)
-        node.create_subscription(JointState, "joint_states", self._on_joint_state, sensor_qos)
+        self._tf_publisher = node.create_publisher(TFMessage, "/tf", TF_QOS, qos_overriding_options=_TF_OVERRIDES)
+        self._static_publisher = node.create_publisher(
+            TFMessage, "/tf_static", STATIC_TF_PUBLISHER_QOS, qos_overriding_options=_OVERRIDES
+        )
+        node.create_subscription(
+            JointState, "joint_states", self._on_joint_state, SENSOR_DATA_QOS, qos_overriding_options=_OVERRIDES
+        )
         node.add_on_set_parameters_callback(self._check_parameters)
         node.add_post_set_parameters_callback(self._apply_parameters)
         self._set_up(text, robot)
-
-    def _qos(self, entity: Literal["publisher", "subscription"], topic: str, qos: QoSProfile) -> QoSProfile:
-        """The profile with what parameters ``qos_overrides.*`` say; the policies are those of the ROS node."""
-        kinds = [QoSPolicyKind.DEPTH, QoSPolicyKind.HISTORY, QoSPolicyKind.RELIABILITY]
-        if topic == "/tf":
-            kinds.append(QoSPolicyKind.DURABILITY)
-        return override_qos(self._node, entity, topic, qos, QoSOverridingOptions(kinds))
 
     def _description_from_file(self, path: str) -> str:
         self._node.get_logger().warning(
@@ -125,7 +128,14 @@ class RobotStatePublisher(SingleNode):
             return Path(path).read_text(encoding="utf-8")
         except (OSError, UnicodeDecodeError) as error:
             raise LinkwrightError(
-                Diagnostic("NODE104", f"URDF file '{path}' cannot be read: {getattr(error, 'strerror', error)}")
+                Diagnostic(
+                    "NODE104",
+                    phrase(
+                        "URDF file '{path}' cannot be read: {error}",
+                        path=path,
+                        error=foreign(getattr(error, "strerror", error)),
+                    ),
+                )
             ) from error
 
     def _read(self, text: str) -> Robot:
@@ -133,9 +143,9 @@ class RobotStatePublisher(SingleNode):
         if reading.robot is None:
             hint = None
             if "<" not in text:
-                hint = (
-                    f"'{text.strip()[:80]}' is not URDF; if it is a file's name, pass the file's text: "
-                    "Command(['xacro ', path])"
+                hint = phrase(
+                    "'{text}' is not URDF; if it is a file's name, pass the file's text: Command(['xacro ', path])",
+                    text=text.strip()[:80],
                 )
             raise LinkwrightError(Diagnostic("NODE102", BAD_DESCRIPTION, hint=hint), *reading.diagnostics)
         return reading.robot

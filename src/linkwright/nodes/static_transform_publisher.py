@@ -7,13 +7,13 @@ import secrets
 import string
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import sqrt
 
 import numpy as np
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+from linkwright.geometry.arrays import quaternion_from_rpy
+from linkwright.geometry.single import normalized
 from linkwright.graph import STATIC_TF_PUBLISHER_QOS, Graph
-from linkwright.kinematics import quaternion_from_rpy
 from linkwright.messages import TFMessage, TransformBatch
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 
@@ -63,15 +63,15 @@ def parse_arguments(arguments: Sequence[str]) -> StaticTransform:
     if old_style:
         names = {8: _OLD_WITH_ANGLES, 9: _OLD_WITH_QUATERNION}.get(len(positional))
         if names is None:
-            raise _usage_error("Extra unparsed arguments on command-line")
+            raise _usage_error(phrase("Extra unparsed arguments on command-line"))
         if given:
-            raise _usage_error("Cannot specify both new-style (flags) and old-style (arguments)")
+            raise _usage_error(phrase("Cannot specify both new-style (flags) and old-style (arguments)"))
         given = dict(zip(names, positional, strict=True))
     if any(name in given for name in _ANGLES) and any(name in given for name in _QUATERNION):
-        raise _usage_error("Cannot specify both quaternion and Euler rotations")
+        raise _usage_error(phrase("Cannot specify both quaternion and Euler rotations"))
     for name, what in zip(_FRAMES, ("Frame id", "Child frame id"), strict=True):
         if not given.get(name):
-            raise _usage_error(f"{what} must not be empty")
+            raise _usage_error(phrase("{what} must not be empty", what=what))
     x, y, z = (_number(given, name, 0.0) for name in _TRANSLATION)
     return StaticTransform(
         (x, y, z), _rotation(given), given["--frame-id"], given["--child-frame-id"], old_style=old_style
@@ -128,7 +128,7 @@ def _split(arguments: Sequence[str]) -> tuple[dict[str, str], list[str]]:
         if argument in known:
             value = next(waiting, None)
             if value is None:
-                raise _usage_error(f"Not enough arguments for {argument}")
+                raise _usage_error(phrase("Not enough arguments for {argument}", argument=argument))
             named[argument] = value
         else:
             positional.append(argument)
@@ -141,10 +141,9 @@ def _rotation(given: dict[str, str]) -> tuple[float, float, float, float]:
         return x, y, z, w
     x, y, z = (_number(given, name, 0.0) for name in _QUATERNION[:3])
     w = _number(given, "--qw", 1.0)
-    length = sqrt(x * x + y * y + z * z + w * w)
-    if length == 0.0:
-        raise _usage_error("The quaternion must not be zero")
-    return x / length, y / length, z / length, w / length
+    if x == y == z == w == 0.0:
+        raise _usage_error(phrase("The quaternion must not be zero"))
+    return normalized(x, y, z, w)
 
 
 def _number(given: dict[str, str], name: str, default: float) -> float:
@@ -154,10 +153,14 @@ def _number(given: dict[str, str], name: str, default: float) -> float:
     try:
         return float(text)
     except ValueError:
-        raise _usage_error(f"Failed to parse {name} argument as float") from None
+        raise _usage_error(phrase("Failed to parse {name} argument as float", name=name)) from None
 
 
 def _usage_error(reason: str) -> LinkwrightError:
     return LinkwrightError(
-        Diagnostic("NODE301", f"error parsing command line arguments: {reason}", hint=f"usage: {USAGE}")
+        Diagnostic(
+            "NODE301",
+            phrase("error parsing command line arguments: {reason}", reason=reason),
+            hint=phrase("usage: {usage}", usage=USAGE),
+        )
     )

@@ -6,7 +6,7 @@ from typing import Any
 
 from linkwright.graph import ActionServer, Graph, TransformException
 from linkwright.graph.actions.goal import CancelResponse, ServerGoalHandle
-from linkwright.graph.time import Duration, Time
+from linkwright.graph.time.values import Duration, Time
 from linkwright.graph.transforms.core import BufferCore
 from linkwright.graph.transforms.errors import (
     ConnectivityException,

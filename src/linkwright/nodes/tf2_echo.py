@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+from linkwright.geometry.arrays import rotation_matrix
 from linkwright.graph import Graph, TransformException
-from linkwright.graph.time import Time
+from linkwright.graph.time.values import Time
 from linkwright.graph.transforms.core import BufferCore
 from linkwright.graph.transforms.listener import TransformListener
-from linkwright.kinematics import rotation_matrix
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 
 USAGE = """Usage: tf2_echo source_frame target_frame [echo_rate]
@@ -117,6 +117,6 @@ def _rate(text: str) -> float:
     except ValueError:
         rate = 0.0
     if not 0.0 < rate < float("inf"):
-        message = f"Failed to convert rate argument '{text}' to a floating-point number"
-        raise LinkwrightError(Diagnostic("NODE401", message, hint="give the echoes a second, such as 2.0"))
+        message = phrase("Failed to convert rate argument '{text}' to a floating-point number", text=text)
+        raise LinkwrightError(Diagnostic("NODE401", message, hint=phrase("give the echoes a second, such as 2.0")))
     return rate

@@ -7,7 +7,7 @@ from collections import deque
 from collections.abc import Iterable
 
 from linkwright.graph import STATIC_TF_SUBSCRIPTION_QOS, TF_QOS, Graph, TransformException
-from linkwright.graph.time import Time
+from linkwright.graph.time.values import Time
 from linkwright.graph.transforms.core import BufferCore, nanoseconds_of
 from linkwright.messages import TFMessage
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node

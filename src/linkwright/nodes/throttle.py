@@ -37,9 +37,9 @@ class Throttle:
         self.interval_ns = interval_ns
         self._places: dict[str, int] = {}
         self._groups: dict[tuple[str, ...], JointGroup] = {}
-        self._sent_ns = np.zeros(0, dtype=np.int64)
-        self._moved_ns = np.zeros(0, dtype=np.int64)
-        self._stamp_ns = np.zeros(0, dtype=np.int64)
+        self._sent_ns: NDArray[np.int64] = np.zeros(0, dtype=np.int64)
+        self._moved_ns: NDArray[np.int64] = np.zeros(0, dtype=np.int64)
+        self._stamp_ns: NDArray[np.int64] = np.zeros(0, dtype=np.int64)
 
     def group(self, names: Sequence[str]) -> JointGroup:
         """The group of these joints, at least one."""

@@ -9,11 +9,12 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.graph import Graph
 from linkwright.graph.transforms.listener import DEFAULT_STATIC_TF_TOPIC, DEFAULT_TF_TOPIC, TransformListener
 from linkwright.graph.transforms.waiting import Buffer
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.whole_files import write_whole_file
 
 
 class ViewFrames(SingleNode):
@@ -65,10 +66,17 @@ class ViewFrames(SingleNode):
         seconds = self._node.get_clock().now().nanoseconds / 1e9
         dot = frames_as_dot(yaml.safe_load(text) or {}, seconds)
         try:
-            drawing.write_text(dot, encoding="utf-8")
+            write_whole_file(drawing, dot)
         except OSError as error:
             raise LinkwrightError(
-                Diagnostic("NODE412", f"'{drawing}' cannot be written: {error.strerror or error}")
+                Diagnostic(
+                    "NODE412",
+                    phrase(
+                        "'{drawing}' cannot be written: {strerror}",
+                        drawing=drawing,
+                        strerror=foreign(error.strerror or error),
+                    ),
+                )
             ) from error
         render(dot, picture)
 
@@ -123,9 +131,13 @@ def _parse(arguments: Sequence[str]) -> argparse.Namespace:
         settings, unknown = parser.parse_known_args(arguments)
     except argparse.ArgumentError as problem:
         raise LinkwrightError(
-            Diagnostic("NODE411", f"view_frames: {problem}", hint=parser.format_usage().strip())
+            Diagnostic(
+                "NODE411",
+                phrase("view_frames: {problem}", problem=foreign(problem)),
+                hint=foreign(parser.format_usage().strip()),
+            )
         ) from problem
     if unknown:
-        message = f"view_frames does not know the arguments {' '.join(unknown)}"
-        raise LinkwrightError(Diagnostic("NODE411", message, hint=parser.format_usage().strip()))
+        message = phrase("view_frames does not know the arguments {unknown}", unknown=" ".join(unknown))
+        raise LinkwrightError(Diagnostic("NODE411", message, hint=foreign(parser.format_usage().strip())))
     return settings

@@ -19,8 +19,8 @@ from colcon_core.task import TaskExtensionPoint, create_file, install  # type: i
 from colcon_ros.package_identification.ros import RosPackageIdentification  # type: ignore[import-untyped]
 
 from linkwright.diagnostics import SourceText
-from linkwright.shell.install_rules import InstallRules, read_install_rules
-from linkwright.workspace import MANIFEST
+from linkwright.packages import MANIFEST
+from linkwright.packages.readers.cmake import CMakeFile, read_cmake
 
 COPIED = "ros.ament_cmake_copied"
 """The type that colcon knows such packages by."""
@@ -42,7 +42,7 @@ class CopiedPackageIdentification(RosPackageIdentification):  # type: ignore[mis
 
 
 class CopyingAmentCmakeTask(TaskExtensionPoint):  # type: ignore[misc]  # its base has no types
-    """Installs an ``ament_cmake`` package that compiles nothing."""
+    """Installs what an ``ament_cmake`` package copies, and says what it leaves out: what is compiled."""
 
     async def build(self) -> int:
         """Copy its files; the exit status.
@@ -54,14 +54,14 @@ class CopyingAmentCmakeTask(TaskExtensionPoint):  # type: ignore[misc]  # its ba
         folder = Path(args.path)
         try:
             text = (folder / "CMakeLists.txt").read_text(encoding="utf-8", errors="replace")
-            rules = read_install_rules(SourceText("CMakeLists.txt", text), package.name)
-            if rules.obstacle is not None:
-                _LOGGER.error(
-                    f"'{package.name}' cannot be built without ROS 2: {rules.obstacle}. "
-                    "Pass over it with --packages-ignore, or build where ament_cmake is installed."
+            cmake = read_cmake(SourceText("CMakeLists.txt", text), folder)
+            left_out = _left_out(cmake)
+            if left_out:
+                _LOGGER.warning(
+                    f"'{package.name}' is not built in full without ROS 2: {'; '.join(left_out)}. "
+                    "The rest is installed. Build it where ament_cmake is installed to have all of it."
                 )
-                return 1
-            _install_all(args, package.name, folder, rules)
+            _install_all(args, package.name, folder, cmake)
         except FileNotFoundError as error:
             missing = error.filename or error
             _LOGGER.error(f"'{package.name}' installs '{missing}', which is not there")  # noqa: TRY400  # no traceback
@@ -69,7 +69,7 @@ class CopyingAmentCmakeTask(TaskExtensionPoint):  # type: ignore[misc]  # its ba
         hooks = create_environment_hook(
             "ament_prefix_path", Path(args.install_base), package.name, "AMENT_PREFIX_PATH", "", mode="prepend"
         )
-        if rules.modules:
+        if cmake.modules:
             hooks += create_environment_hook(
                 "pythonpath", Path(args.install_base), package.name, "PYTHONPATH", _site(), mode="prepend"
             )
@@ -77,19 +77,27 @@ class CopyingAmentCmakeTask(TaskExtensionPoint):  # type: ignore[misc]  # its ba
         return 0
 
 
-def _install_all(args: Any, name: str, folder: Path, rules: InstallRules) -> None:
+def _left_out(cmake: CMakeFile) -> list[str]:
+    compiled = ", ".join(f"'{name}'" for name in dict.fromkeys(cmake.compiled))
+    return [*([f"{compiled} would have to be compiled"] if compiled else []), *dict.fromkeys(cmake.unknown)]
+
+
+def _install_all(args: Any, name: str, folder: Path, cmake: CMakeFile) -> None:
     create_file(args, f"{_INDEX}/packages/{name}")
     install(args, MANIFEST, f"share/{name}/{MANIFEST}")
-    for source, destination in rules.files(folder):
-        install(args, source, destination)
-    for interface in rules.interfaces:
+    for file in cmake.installed(folder):
+        if file.values is None:
+            install(args, file.source, file.destination)
+        else:
+            create_file(args, file.destination, content=file.text(folder))
+    for interface in cmake.interfaces:
         install(args, interface, f"share/{name}/{interface}")
-    if rules.interfaces:
-        create_file(args, f"{_INDEX}/rosidl_interfaces/{name}", content="\n".join(sorted(rules.interfaces)) + "\n")
-    for module in rules.modules:
-        for file in sorted((folder / module).rglob("*.py")):
-            inside = Path(module).name / file.relative_to(folder / module)
-            install(args, file.relative_to(folder).as_posix(), f"{_site()}/{inside.as_posix()}")
+    if cmake.interfaces:
+        create_file(args, f"{_INDEX}/rosidl_interfaces/{name}", content="\n".join(sorted(cmake.interfaces)) + "\n")
+    for module in cmake.modules:
+        for path in sorted((folder / module).rglob("*.py")):
+            inside = Path(module).name / path.relative_to(folder / module)
+            install(args, path.relative_to(folder).as_posix(), f"{_site()}/{inside.as_posix()}")
 
 
 def _site() -> str:

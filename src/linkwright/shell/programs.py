@@ -11,7 +11,7 @@ from collections.abc import MutableMapping
 from contextlib import suppress
 from pathlib import Path
 
-from linkwright.workspace.cache import cache_folder
+from linkwright.packages.cache import cache_folder
 
 PROGRAMS = {
     "ros2": ("linkwright.cli.tools", "ros2"),

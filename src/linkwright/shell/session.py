@@ -7,17 +7,17 @@ and then a file of ours.
 
 from __future__ import annotations
 
-import contextlib
 import os
 import shlex
 import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean
+from linkwright.diagnostics import phrase
+from linkwright.shell.instead import no_such_command
 from linkwright.shell.programs import PROGRAMS, write_programs
 from linkwright.standins import process
 
@@ -25,12 +25,17 @@ MARK = "LINKWRIGHT_SHELL"
 """Set in the environment of the shell, to the folder of its programs."""
 
 
-def run_shell(command: Sequence[str] = (), environment: Mapping[str, str] | None = None) -> int:
+def run_shell(
+    command: Sequence[str] = (),
+    environment: Mapping[str, str] | None = None,
+    additions: Callable[[str], str] | None = None,
+) -> int:
     """Run the user's shell, or one command, until it ends.
 
     Args:
         command: program and arguments; the user's interactive shell when empty.
         environment: what it starts from; that of this process when left out.
+        additions: gives what ``bash``, ``zsh`` or ``fish`` reads besides when it starts.
 
     Returns:
         The exit status; 128 and the number of the signal for what a signal ended, as shells have it.
@@ -43,18 +48,14 @@ def run_shell(command: Sequence[str] = (), environment: Mapping[str, str] | None
         folder.mkdir()
         write_programs(folder)
         variables = shell_environment(folder, os.environ if environment is None else environment)
-        words = list(command) or _interactive(Path(scratch), variables)
+        words = list(command) or _interactive(Path(scratch), variables, additions or (lambda _: ""))
         path = shutil.which(words[0], path=variables["PATH"])
         if path is None:
-            raise LinkwrightError(
-                Diagnostic(
-                    "SHELL101", f"there is no command '{words[0]}'", hint=did_you_mean(words[0], PROGRAMS) or _QUOTES
-                )
-            )
+            raise no_such_command(words[0], tuple(PROGRAMS), _QUOTES)
         return _run([path, *words[1:]], variables)
 
 
-_QUOTES = "one command and its words follow `--`; for several write `linkwright shell -- bash -c '...'`"
+_QUOTES = phrase("one command and its words follow `--`; for several write `linkwright shell -- bash -c '...'`")
 
 
 def shell_environment(folder: Path, base: Mapping[str, str]) -> dict[str, str]:
@@ -80,7 +81,7 @@ def shell_environment(folder: Path, base: Mapping[str, str]) -> dict[str, str]:
 _STARTED_BY_A_FILE = ("bash", "zsh", "fish")
 
 
-def _interactive(scratch: Path, variables: dict[str, str]) -> list[str]:
+def _interactive(scratch: Path, variables: dict[str, str], additions: Callable[[str], str]) -> list[str]:
     """The words that start the user's shell so that it keeps our search path after its own start-up files."""
     if sys.platform == "win32":
         return [os.environ.get("COMSPEC", "cmd.exe")]
@@ -91,12 +92,13 @@ def _interactive(scratch: Path, variables: dict[str, str]) -> list[str]:
         variables["PATH"] = os.pathsep.join(part for part in parts if part != variables[MARK])
     if kind == "bash":
         start = scratch / "bashrc"
-        start.write_text(_start_file("~/.bashrc", variables), encoding="utf-8")
+        start.write_text(_start_file("~/.bashrc", variables) + additions(kind), encoding="utf-8")
         return [shell, "--rcfile", str(start), "-i"]
     if kind == "zsh":
         home = variables.get("ZDOTDIR") or variables.get("HOME") or "~"
         (scratch / ".zshrc").write_text(
-            f"ZDOTDIR={shlex.quote(home)}\n" + _start_file(f"{home}/.zshrc", variables), encoding="utf-8"
+            f"ZDOTDIR={shlex.quote(home)}\n" + _start_file(f"{home}/.zshrc", variables) + additions(kind),
+            encoding="utf-8",
         )
         variables["ZDOTDIR"] = str(scratch)
         return [shell, "-i"]
@@ -104,7 +106,14 @@ def _interactive(scratch: Path, variables: dict[str, str]) -> list[str]:
         settings = "; ".join(
             f"set -gx {name} {shlex.quote(variables[name])}" for name in ("PYTHONPATH", MARK) if name in variables
         )
-        return [shell, "-i", "--init-command", f"{settings}; set -gx PATH $PATH ${MARK}"]
+        start = scratch / "start.fish"
+        start.write_text(additions(kind), encoding="utf-8")
+        return [
+            shell,
+            "-i",
+            "--init-command",
+            f"{settings}; set -gx PATH $PATH ${MARK}; source {shlex.quote(str(start))}",
+        ]
     return [shell, "-i"]
 
 
@@ -122,7 +131,11 @@ PS1="(linkwright) $PS1"
 
 
 def _run(words: Sequence[str], variables: Mapping[str, str]) -> int:
-    """Run it to its end. Ctrl-C reaches it as it reaches us, and is for it; other signals are passed on."""
+    """Run it to its end. Ctrl-C reaches it as it reaches us, and is for it; other signals are passed on.
+
+    Ctrl-C must not become a KeyboardInterrupt here: one that is raised when the wait for the command has just ended
+    loses its exit status, and `subprocess` gives 0 for that.
+    """
     import signal
 
     child: subprocess.Popen[bytes] | None = None
@@ -131,30 +144,24 @@ def _run(words: Sequence[str], variables: Mapping[str, str]) -> int:
     def pass_on(number: int, _frame: object) -> None:
         if child is None:
             early.append(number)
-        else:
+        elif number != signal.SIGINT:
             child.send_signal(number)
 
-    previous = {number: signal.signal(number, pass_on) for number in _passed_signals()}
+    previous = {number: signal.signal(number, pass_on) for number in _heard_signals()}
     try:
         with subprocess.Popen(words, env=dict(variables)) as child:  # noqa: S603 - the user's own command
             for number in early:
                 child.send_signal(number)
-            status = _wait(child)
+            status = child.wait()
     finally:
         for number, handler in previous.items():
             signal.signal(number, handler)
     return status if status >= 0 else 128 - status
 
 
-def _passed_signals() -> list[int]:
+def _heard_signals() -> list[int]:
+    """Those that the command is to hear of; what this process was started to ignore is ignored by the command too."""
     import signal
 
-    names = ("SIGTERM", "SIGHUP")
-    return [getattr(signal, name) for name in names if hasattr(signal, name)]
-
-
-def _wait(child: subprocess.Popen[bytes]) -> int:
-    while child.returncode is None:
-        with contextlib.suppress(KeyboardInterrupt):
-            child.wait()
-    return child.returncode
+    known = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
+    return [number for number in known if signal.getsignal(number) is not signal.SIG_IGN]

@@ -1,4 +1,4 @@
-"""Making the stand-ins importable under the names of the modules they stand in for."""
+"""Makes our modules importable as ``launch``, ``rclpy`` and so on."""
 
 from __future__ import annotations
 
@@ -6,10 +6,9 @@ import importlib
 import sys
 from collections.abc import Mapping, Sequence
 from importlib.machinery import ModuleSpec
-from pathlib import Path
 from types import ModuleType
 
-_FOLDER = Path(__file__).parent / "path"
+from linkwright.standins import modules
 
 LAUNCH_MODULES = ("launch", "launch_ros", "ament_index_python", "xacro")
 """What launch files import. These are always ours when Linkwright runs a launch file, beside a sourced ROS too:
@@ -19,30 +18,30 @@ the real ones would describe the launch to a launcher that is not running."""
 def activate() -> None:
     """Let launch files be imported; may be called again.
 
-    The folder of the stand-ins is the last on ``sys.path``: a module that is installed comes before ours of the same
+    The folder of the tables is the last on ``sys.path``: a module that is installed comes before ours of the same
     name, with the exception of `LAUNCH_MODULES`. Processes that launch files start find the stand-ins too.
     """
-    folder = str(_FOLDER)
-    if folder not in sys.path:
-        sys.path.append(folder)
+    modules.install()
+    if modules.FOLDER not in sys.path:
+        sys.path.append(modules.FOLDER)
     if not any(isinstance(finder, _InterfacesWhenAsked) for finder in sys.meta_path):
         sys.meta_path += [_ModulesOfWorkspace(), _InterfacesWhenAsked()]
     _provide_for_processes()
-    missing = [name for name in LAUNCH_MODULES if not _is_ours(name)]
+    missing = [name for name in LAUNCH_MODULES if not modules.is_ours(sys.modules.get(name))]
     if not missing:
         return
     for name in [name for name in sys.modules if name.partition(".")[0] in missing]:
         del sys.modules[name]
-    sys.path.insert(0, folder)
+    sys.path.insert(0, modules.FOLDER)
     try:
         for name in missing:
             importlib.import_module(name)
     finally:
-        sys.path.remove(folder)
+        sys.path.remove(modules.FOLDER)
 
 
 class _InterfacesWhenAsked:
-    """Loads what makes ``std_msgs.msg`` and the like importable when a module is asked for that no other finder has.
+    """Makes ``std_msgs.msg`` and its kind importable, once a module is asked for that no other finder has.
 
     It is a finder by its method alone: the class of finders takes long to import.
     """
@@ -65,7 +64,7 @@ class _InterfacesWhenAsked:
 
 
 class _ModulesOfWorkspace:
-    """Finds the Python modules of packages in the workspace for launch files, and for modules of users' packages."""
+    """Finds Python modules in the workspace's packages, for launch files and for users' modules that they import."""
 
     def find_spec(
         self,
@@ -74,19 +73,19 @@ class _ModulesOfWorkspace:
         target: ModuleType | None = None,  # noqa: ARG002 - the protocol's
     ) -> ModuleSpec | None:
         """The module, if a user's file asks for it while a launch is read or runs, and a package has it."""
-        from linkwright.workspace.active import active_finder
+        from linkwright.packages.active import active_finder
 
         finder = active_finder()
         if finder is None or path is not None or not _asked_by_user():
             return None
-        from linkwright.launch.ros.python_modules import find_module
+        from linkwright.packages.programs.python_modules import find_module
 
         return find_module(finder, fullname)
 
 
 def _asked_by_user() -> bool:
-    """Whether the import that goes on is one of a user's file: libraries try a lot that need not be there."""
-    from linkwright.launch.user_errors import is_users
+    """Whether the running import stands in a user's file: libraries try imports that may well fail."""
+    from linkwright.launch.errors.user_code import is_users
 
     frame = sys._getframe(2)
     while frame.f_back is not None and frame.f_code.co_filename.startswith("<frozen importlib"):
@@ -95,7 +94,7 @@ def _asked_by_user() -> bool:
 
 
 def _may_be_interfaces(name: str) -> bool:
-    """Whether it is worth loading the message classes to see if a module is one of interfaces."""
+    """Whether a module may be one of messages, so that it is worth loading their classes to find out."""
     package, _, kind = name.partition(".")
     if kind:
         return kind in ("msg", "srv", "action")
@@ -106,8 +105,8 @@ def _may_be_interfaces(name: str) -> bool:
 
 
 def _provide_for_processes() -> None:
-    """Have the launch room start users' processes so that they can import the stand-ins too."""
-    from linkwright.launch.engine import surroundings
+    """Let the processes that launch files start import our modules too."""
+    from linkwright.packages.programs import child_python as surroundings
 
     surroundings.provide(_environment, _python_command)
 
@@ -122,8 +121,3 @@ def _python_command(arguments: Sequence[str]) -> Sequence[str]:
     from linkwright.standins import process
 
     return process.python_command(arguments)
-
-
-def _is_ours(name: str) -> bool:
-    file = getattr(sys.modules.get(name), "__file__", None)
-    return file is not None and Path(file).is_relative_to(_FOLDER)

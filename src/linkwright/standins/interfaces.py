@@ -15,7 +15,7 @@ from importlib.machinery import ModuleSpec
 from types import ModuleType
 from typing import Any
 
-from linkwright.diagnostics import LinkwrightError, did_you_mean
+from linkwright.diagnostics import LinkwrightError, did_you_mean, phrase
 from linkwright.messages import catalogue
 from linkwright.messages.classes import get_interface
 from linkwright.messages.errors import InterfaceNotFoundError
@@ -25,7 +25,7 @@ from linkwright.messages.names import KINDS, is_package_name, snake_case
 
 
 class InterfaceFinder(MetaPathFinder):
-    """Finds the packages of interfaces, their modules ``msg``, ``srv`` and ``action``, and those within these."""
+    """Finds interface packages, their modules ``msg``, ``srv`` and ``action``, and the modules inside these."""
 
     def find_spec(
         self,
@@ -33,12 +33,12 @@ class InterfaceFinder(MetaPathFinder):
         path: Sequence[str] | None = None,  # noqa: ARG002 - the protocol's
         target: ModuleType | None = None,  # noqa: ARG002 - the protocol's
     ) -> ModuleSpec | None:
-        """The module of this name, or None when it is none of interfaces."""
+        """The interface module of this name, or None."""
         return find_spec(fullname)
 
 
 class NamespaceFinder(MetaPathFinder):
-    """Finds ``my_msgs.msg`` where Python would take folders for it.
+    """Finds ``my_msgs.msg`` where Python would take folders for namespace packages.
 
     In a folder that has a package's sources in it, a folder ``my_msgs/msg`` of ``.msg`` files, Python has modules of
     these names that are empty (namespace packages). So this finder, which comes before Python's own, takes the modules
@@ -51,7 +51,7 @@ class NamespaceFinder(MetaPathFinder):
         path: Sequence[str] | None = None,  # noqa: ARG002 - the protocol's
         target: ModuleType | None = None,  # noqa: ARG002 - the protocol's
     ) -> ModuleSpec | None:
-        """The module of interfaces in a namespace package, or None."""
+        """The interface module in a namespace package, or None."""
         package, _, kind = fullname.rpartition(".")
         if kind not in KINDS or getattr(sys.modules.get(package), "__file__", None) is not None:
             return None
@@ -59,14 +59,14 @@ class NamespaceFinder(MetaPathFinder):
 
 
 def install() -> None:
-    """Let the packages of interfaces be imported; may be called again."""
+    """Let interface packages be imported; may be called again."""
     if not any(isinstance(finder, InterfaceFinder) for finder in sys.meta_path):
         sys.meta_path.insert(0, NamespaceFinder())
         sys.meta_path.append(InterfaceFinder())
 
 
 def find_spec(name: str) -> ModuleSpec | None:
-    """The module of interfaces of this name: ``std_msgs``, ``std_msgs.msg`` or ``std_msgs.msg._string``; else None."""
+    """The interface module of this name: ``std_msgs``, ``std_msgs.msg`` or ``std_msgs.msg._string``; else None."""
     package, *rest = name.split(".")
     if len(rest) > 2 or (rest and rest[0] not in KINDS) or not is_package_name(package):
         return None
@@ -84,13 +84,13 @@ def find_spec(name: str) -> ModuleSpec | None:
 
 
 def _interfaces(package: str, kind: str) -> list[str]:
-    """The names of a package's interfaces; of one that comes with us without a look at the disk, if it has any."""
+    """The names of a package's interfaces. For a package that comes with Linkwright the disk is not searched."""
     shipped = [name.rpartition("/")[2] for name in catalogue.texts(package) if name.startswith(kind + "/")]
     return sorted(shipped) or [name.rpartition("/")[2] for name in LIBRARY.names(kind, package)]
 
 
 class _PackageLoader(Loader):
-    """Makes the module of a package, which is empty but for what is imported from below it."""
+    """Makes the module of a package, which has nothing but its submodules."""
 
     def create_module(self, spec: ModuleSpec) -> ModuleType | None:  # noqa: ARG002 - the protocol's
         return None
@@ -107,7 +107,7 @@ class _PackageLoader(Loader):
 
 
 class _KindLoader(Loader):
-    """Makes the module ``<package>.msg`` and its like; classes are made when somebody takes them from it."""
+    """Makes a module such as ``<package>.msg``, whose classes are made when they are first used."""
 
     def __init__(self, names: list[str]) -> None:
         self._names = names

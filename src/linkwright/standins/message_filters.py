@@ -10,8 +10,8 @@ import threading
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
-from linkwright.graph.clock import ROSClock
-from linkwright.graph.time import Duration, Time
+from linkwright.graph.time.clock import ROSClock
+from linkwright.graph.time.values import Duration, Time
 from linkwright.standins.rclpy_api.logging import get_logger
 
 _HEADERLESS = (
@@ -21,7 +21,7 @@ _HEADERLESS = (
 
 
 class SimpleFilter:
-    """Something with an output that callbacks, and other filters, can be connected to.
+    """The base of filters: an output that callbacks and other filters connect to.
 
     Attributes:
         callbacks: each callback with the arguments that it gets after those of the filter, by its number.
@@ -43,7 +43,7 @@ class SimpleFilter:
 
 
 class Subscriber(SimpleFilter):
-    """A subscription as the beginning of filters; it has the attributes of the subscription as well.
+    """A subscription as the first filter of a chain, with the attributes of the subscription.
 
     Args:
         node: the node that subscribes.
@@ -74,7 +74,7 @@ class Subscriber(SimpleFilter):
 
 
 class Cache(SimpleFilter):
-    """Keeps the newest messages of a filter, to be asked for by time, and hands each on.
+    """Keeps the newest messages of a filter for look-ups by time, and passes each one on.
 
     Args:
         f: the filter whose messages are kept.
@@ -138,7 +138,7 @@ class Cache(SimpleFilter):
 
 
 class TimeSynchronizer(SimpleFilter):
-    """Puts out sets of messages, one of each filter, whose stamps are the same.
+    """Outputs sets of messages, one from each filter, that have the same stamp.
 
     Args:
         fs: the filters.
@@ -178,7 +178,7 @@ class TimeSynchronizer(SimpleFilter):
 
 
 class ApproximateTimeSynchronizer(TimeSynchronizer):
-    """Puts out sets of messages, one of each filter, whose stamps are near each other.
+    """Outputs sets of messages, one from each filter, whose stamps are close together.
 
     Args:
         fs: the filters.
@@ -232,7 +232,7 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
 
 
 def _time_of(msg: Any, *, allow_headerless: bool, logger: str) -> Time | None:
-    """The time of a message; None, which is logged, where it has none and that of its arrival may not stand for it."""
+    """The stamp of a message, or its time of arrival where that is allowed; without either None, and a warning."""
     stamp = getattr(getattr(msg, "header", None), "stamp", None)
     if stamp is not None:
         return _time(stamp)

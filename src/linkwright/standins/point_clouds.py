@@ -21,7 +21,7 @@ _FLOAT32 = 7
 def dtype_from_fields(
     fields: Iterable[Any], point_step: int | None = None, *, is_bigendian: bool = False
 ) -> np.dtype[Any]:
-    """What a point is for numpy.
+    """The numpy type of one point.
 
     Args:
         fields: the fields of a point (sensor_msgs/msg/PointField). One with a count of n becomes n fields.
@@ -151,7 +151,7 @@ def _names(dtype: np.dtype[Any]) -> tuple[str, ...]:
 
 
 def _rows(cloud: Any, dtype: np.dtype[Any]) -> NDArray[Any]:
-    """The points one after the other; rows of an organised cloud may have something behind them."""
+    """The points one after another, without the padding at the ends of rows."""
     data = np.frombuffer(cloud.data, np.uint8)
     width, height = cloud.width, cloud.height
     if height > 1 and cloud.row_step > width * dtype.itemsize:
@@ -186,7 +186,7 @@ def _structured(points: Iterable[Any] | NDArray[Any], dtype: np.dtype[Any]) -> N
 
 
 def _filled(points: list[Any] | NDArray[Any], dtype: np.dtype[Any]) -> NDArray[Any]:
-    """A structured array with zeros between the fields, where numpy leaves whatever was in memory."""
+    """A structured array with zeros in the gaps between fields, which numpy does not initialise."""
     rows = np.zeros(np.shape(points)[:1] if isinstance(points, list) else points.shape, dtype)
     rows[...] = points
     return rows

@@ -1,4 +1,4 @@
-"""Processes of users' own programs, in which ``import rclpy`` gives the stand-in where the real one is absent."""
+"""Runs users' programs so that ``import rclpy`` finds ours where no real one is installed."""
 
 from __future__ import annotations
 
@@ -10,12 +10,15 @@ from pathlib import Path
 
 _STARTUP = Path(__file__).parent / "startup"
 
-_NEEDED = ("linkwright", "numpy", "yaml", "rosbags", "cyclonedds")
+_NEEDED = ("linkwright", "numpy", "PIL", "yaml", "rosbags", "cyclonedds")
 """What the stand-ins import, for programs that run in an environment of their own."""
 
 
 def standin_path() -> str:
-    """The folder to put on ``PYTHONPATH``. It holds nothing but a ``sitecustomize``, which goes on to the next one."""
+    """The folder to put on ``PYTHONPATH``.
+
+    It holds only a ``sitecustomize``, which runs the next one too, and ``linkwright_pytest``, which pytest loads.
+    """
     return str(_STARTUP)
 
 

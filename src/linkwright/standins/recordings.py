@@ -11,13 +11,13 @@ from typing import Any
 
 from linkwright.bag import STORAGES, BagReader, BagWriter
 from linkwright.diagnostics import LinkwrightError
-from linkwright.graph.qos import QoSProfile
-from linkwright.graph.time import ClockType, Duration, Time
+from linkwright.graph.qos.profile import QoSProfile
+from linkwright.graph.time.values import ClockType, Duration, Time
 
 
 @dataclass
 class StorageOptions:
-    """Where a recording is, and in which format; what bounds its files is taken and not looked at."""
+    """Where a recording is, and in which format. Limits of its files are accepted and ignored."""
 
     uri: str
     storage_id: str = ""
@@ -132,7 +132,7 @@ class SequentialReader:
         self._begin()
 
     def open_uri(self, uri: str) -> None:
-        """As `open`, for where a recording is alone."""
+        """Open a recording by its place alone."""
         self.open(StorageOptions(uri))
 
     def close(self) -> None:
@@ -195,7 +195,7 @@ class SequentialReader:
         self.set_filter(StorageFilter())
 
     def seek(self, timestamp: int) -> None:
-        """Go on with the first message that is not from before a time, in nanoseconds since the epoch."""
+        """Continue with the first message at or after a time, in nanoseconds since the epoch."""
         self._begin(timestamp)
 
     def _opened(self) -> BagReader:
@@ -218,7 +218,7 @@ class SequentialReader:
 
 
 class SequentialWriter:
-    """Writes messages; the recording is complete once this is closed, or is no more."""
+    """Writes messages. The recording is complete once this is closed or garbage collected."""
 
     _compressed = False
 

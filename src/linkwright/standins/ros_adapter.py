@@ -1,4 +1,4 @@
-"""A node of rclpy for launch files that want one of their own (``launch_ros.ros_adapters``)."""
+"""The rclpy node of a launch (``launch_ros.ros_adapters``)."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ import threading
 from collections.abc import Sequence
 from typing import Any
 
-from linkwright.launch.context import LaunchContext
-from linkwright.launch.event_handlers import OnShutdown
+from linkwright.launch.model.context import LaunchContext
+from linkwright.launch.model.event_handlers import OnShutdown
 
 _LOOK_SECONDS = 0.2
 
@@ -52,7 +52,7 @@ class ROSAdapter:
         self._thread.start()
 
     def shutdown(self) -> None:
-        """Spin no more, and take the node away.
+        """Stop spinning and destroy the node.
 
         Raises:
             RuntimeError: it does not run.

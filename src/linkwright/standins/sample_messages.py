@@ -1,8 +1,9 @@
-"""Messages of ``test_msgs`` with something in them, for tests of what handles messages of any kind."""
+"""Sample messages of ``test_msgs``, for tests of code that handles any message type."""
 
 from __future__ import annotations
 
 import re
+from functools import partial
 from typing import Any
 
 from linkwright.messages import Message, get_message
@@ -79,6 +80,15 @@ _FIXTURES = (
 )
 
 
-def of_type(name: str) -> Any:
-    """A function without arguments that gives the samples of a type."""
-    return lambda: samples(name)
+get_msg_arrays = partial(samples, "Arrays")
+get_msg_basic_types = partial(samples, "BasicTypes")
+get_msg_bounded_sequences = partial(samples, "BoundedSequences")
+get_msg_builtins = partial(samples, "Builtins")
+get_msg_constants = partial(samples, "Constants")
+get_msg_defaults = partial(samples, "Defaults")
+get_msg_empty = partial(samples, "Empty")
+get_msg_multi_nested = partial(samples, "MultiNested")
+get_msg_nested = partial(samples, "Nested")
+get_msg_strings = partial(samples, "Strings")
+get_msg_unbounded_sequences = partial(samples, "UnboundedSequences")
+get_msg_wstrings = partial(samples, "WStrings")

@@ -14,6 +14,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from linkwright.geometry import arrays
+
 Matrix = NDArray[np.float64]
 Vector = NDArray[np.float64]
 
@@ -172,21 +174,12 @@ def quaternion_from_matrix(matrix: ArrayLike) -> Vector:
 
 def quaternion_multiply(quaternion1: ArrayLike, quaternion0: ArrayLike) -> Vector:
     """The product: the turn by `quaternion0`, then by `quaternion1`, seen from outside; x y z w."""
-    x0, y0, z0, w0 = np.asarray(quaternion0, dtype=float)
-    x1, y1, z1, w1 = np.asarray(quaternion1, dtype=float)
-    return np.array(
-        [
-            x1 * w0 + y1 * z0 - z1 * y0 + w1 * x0,
-            -x1 * z0 + y1 * w0 + z1 * x0 + w1 * y0,
-            x1 * y0 - y1 * x0 + z1 * w0 + w1 * z0,
-            -x1 * x0 - y1 * y0 - z1 * z0 + w1 * w0,
-        ]
-    )
+    return arrays.quaternion_multiply(quaternion1, quaternion0)
 
 
 def quaternion_conjugate(quaternion: ArrayLike) -> Vector:
     """The quaternion x y z w with its vector part turned round."""
-    return np.asarray(quaternion, dtype=float) * (-1.0, -1.0, -1.0, 1.0)
+    return arrays.quaternion_inverse(quaternion)
 
 
 def quaternion_inverse(quaternion: ArrayLike) -> Vector:

@@ -92,7 +92,7 @@ class SteppedGraph:
 
     @property
     def errors(self) -> list[BaseException]:
-        """What callbacks raised, where that is not raised by the step."""
+        """What callbacks raised, where the step does not raise it."""
         return self._steps.errors
 
     @property
@@ -101,7 +101,7 @@ class SteppedGraph:
         return self._steps.now
 
     def init_rclpy(self, args: list[str] | None = None) -> Context:
-        """Do what ``rclpy.init`` does, with the test's graph in place of one of its own; it ends with the test.
+        """Initialise rclpy with the test's graph; it is shut down with the test.
 
         Args:
             args: the command line, with ROS arguments; none when left out.
@@ -109,7 +109,7 @@ class SteppedGraph:
         Returns:
             The default context of rclpy, in which nodes are made.
         """
-        from linkwright.standins.rclpy_api.session import use_graph
+        from linkwright.standins.rclpy_api.defaults import use_graph
 
         self._context = use_graph(self.graph, args or [])
         return self._context

@@ -1,14 +1,13 @@
 """The robot model: reading, writing and printing URDF."""
 
+from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere
+from linkwright.geometry.single import Pose, Quaternion
+from linkwright.geometry.vectors import Vector3
 from linkwright.urdf.gv import to_gv
-from linkwright.urdf.library import DescriptionLibrary, examine, load
 from linkwright.urdf.listing import tree_text
 from linkwright.urdf.model import (
-    Box,
     Calibration,
-    Capsule,
     Collision,
-    Cylinder,
     Dynamics,
     Geometry,
     Inertial,
@@ -19,12 +18,8 @@ from linkwright.urdf.model import (
     Material,
     Mesh,
     Mimic,
-    Pose,
-    Quaternion,
     Robot,
     Safety,
-    Sphere,
-    Vector3,
     Visual,
 )
 from linkwright.urdf.reader import Reading, read
@@ -37,7 +32,6 @@ __all__ = [
     "Capsule",
     "Collision",
     "Cylinder",
-    "DescriptionLibrary",
     "Dynamics",
     "Geometry",
     "Inertial",
@@ -57,8 +51,6 @@ __all__ = [
     "Vector3",
     "Visual",
     "children_of",
-    "examine",
-    "load",
     "parent_joints",
     "read",
     "save",

@@ -4,7 +4,17 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, display_path
+from linkwright.diagnostics import (
+    Diagnostic,
+    LinkwrightError,
+    did_you_mean,
+    display_path,
+    foreign,
+    joined,
+    missing_extra,
+    phrase,
+)
+from linkwright.whole_files import write_whole_file
 
 PICTURE_ENDINGS = (".pdf", ".svg", ".png")
 
@@ -19,15 +29,23 @@ def render(gv_text: str, path: str | Path) -> None:
     path = Path(path)
     ending = path.suffix.lower()
     if ending not in PICTURE_ENDINGS:
-        hint = did_you_mean(ending, PICTURE_ENDINGS) or f"it is one of {', '.join(PICTURE_ENDINGS)}"
+        hint = did_you_mean(ending, PICTURE_ENDINGS) or phrase(
+            "it is one of {picture_endings}", picture_endings=joined(PICTURE_ENDINGS)
+        )
         raise LinkwrightError(
-            Diagnostic("URDF201", f"a picture cannot be written as '{ending or path.name}'", hint=hint)
+            Diagnostic(
+                "URDF201", phrase("a picture cannot be written as '{ending}'", ending=ending or path.name), hint=hint
+            )
         )
     try:
         from pygraphviz import AGraph  # type: ignore[import-untyped]  # it ships no types
+    except ModuleNotFoundError as error:
+        raise missing_extra("URDF202", error) from None
     except ImportError as error:
-        hint = "install pygraphviz 2.0 or newer, whose wheels carry Graphviz"
-        raise LinkwrightError(Diagnostic("URDF202", f"Graphviz is not available: {error}", hint=hint)) from error
+        hint = phrase("install pygraphviz 2.0 or newer, whose wheels carry Graphviz")
+        raise LinkwrightError(
+            Diagnostic("URDF202", phrase("Graphviz is not available: {error}", error=foreign(error)), hint=hint)
+        ) from error
     try:
         graph = AGraph(string=gv_text)
         for node in graph.nodes_iter():
@@ -35,10 +53,19 @@ def render(gv_text: str, path: str | Path) -> None:
             if not node.attr["label"]:
                 node.attr["label"] = r"\N"
         picture = graph.draw(format=ending[1:], prog="dot")
-        path.write_bytes(picture)
+        write_whole_file(path, picture)
     except OSError as error:
         raise LinkwrightError(
-            Diagnostic("URDF203", f"'{display_path(path)}' cannot be written: {error.strerror or error}")
+            Diagnostic(
+                "URDF203",
+                phrase(
+                    "'{path}' cannot be written: {strerror}",
+                    path=display_path(path),
+                    strerror=foreign(error.strerror or error),
+                ),
+            )
         ) from error
     except Exception as error:
-        raise LinkwrightError(Diagnostic("URDF203", f"Graphviz could not lay out the diagram: {error}")) from error
+        raise LinkwrightError(
+            Diagnostic("URDF203", phrase("Graphviz could not lay out the diagram: {error}", error=foreign(error)))
+        ) from error

@@ -1,18 +1,19 @@
-"""Why an element could not be read: every missing or malformed attribute of it, from the schema.
-
-The reader tries the straight way first. Only when that fails does it come here, so that clear messages cost nothing on
-the good path.
-"""
+"""Words for what is wrong with an element, from its rule and what is written in its place."""
 
 from __future__ import annotations
 
-from linkwright.diagnostics import did_you_mean, nearest
+from typing import Any
+
+from linkwright.diagnostics import Phrase, counted, did_you_mean, joined, nearest, phrase, quoted, term
+from linkwright.schema.report import UNREADABLE
+from linkwright.schema.rules import AttributeRule, ElementRule
 from linkwright.urdf.findings import Findings
-from linkwright.urdf.schema import JOINT_TYPES, JOINT_TYPES_TEXT, AttributeRule, ElementRule, Kind
-from linkwright.urdf.values import number, number_hint, numbers, vector_hint
+from linkwright.urdf.value_types import COUNTS, JOINT_TYPE, JOINT_TYPES, NUMBER, RGBA, TEXT
+from linkwright.urdf.values import number_hint, numbers, vector_hint
 from linkwright.xmltree import Element
 
-_COUNTS = {Kind.VECTOR3: 3, Kind.QUATERNION: 4, Kind.RGBA: 4}
+BLACK = (0.0, 0.0, 0.0, 1.0)
+
 _JOINT_ALIASES = {
     "hinge": "revolute",
     "rotational": "revolute",
@@ -35,116 +36,198 @@ _JOINT_ALIASES = {
 _SHAPE_ALIASES = {"cube": "box", "cuboid": "box", "ball": "sphere", "tube": "cylinder", "rod": "cylinder"}
 
 
-def explain_attributes(element: Element, rule: ElementRule, owner: str, findings: Findings) -> None:
-    """Report each attribute of an element that is required and missing, or whose value is malformed."""
-    for attribute in rule.attributes:
-        if findings.version < attribute.since:
-            continue
-        value = element.attributes.get(attribute.name)
-        if value is not None:
-            _explain_value(element, rule, attribute, value, owner, findings)
-        elif attribute.is_required(findings.version):
-            findings.error(
-                "URDF120",
-                f"<{rule.tag}> of {owner} has no '{attribute.name}'",
-                element,
-                hint=_missing_attribute_hint(element, rule, attribute),
-            )
+def owner_name(owner: Element) -> Phrase:
+    """What messages call the element that another is part of: ``joint 'elbow'``, ``the robot``."""
+    name = owner.attributes.get("name")
+    if owner.tag == "joint":
+        return phrase("a joint without a name") if name is None else phrase("joint '{name}'", name=name)
+    if owner.tag == "link":
+        return phrase("link '{name}'", name=name)
+    if owner.tag == "material":
+        return phrase("material '{material}'", material=name or "")
+    return phrase("the robot")
 
 
-def explain_missing_child(element: Element, rule: ElementRule, tag: str, owner: str, findings: Findings) -> None:
-    """Report that an element lacks a required child."""
-    candidates = [child for child in element.elements() if rule.child(child.tag) is None]
-    like = nearest(tag, [child.tag for child in candidates], limit=1)
-    misspelt = next((child for child in candidates if child.tag in like), None)
-    wanted = rule.child(tag)
-    assert wanted is not None
-    hint = f"add <{tag}{_usual_attributes(wanted)}/>: {wanted.meaning}"
-    if misspelt is not None:
-        hint = f"did you mean '{tag}' where it says '{misspelt.tag}'?"
-    whose = owner if rule.tag in ("link", "joint") else f"<{rule.tag}> of {owner}"
-    findings.error("URDF130", f"{whose} has no <{tag}>", misspelt or element, hint=hint)
+class UrdfReport(Findings):
+    """The findings of one reading, and the words for what the reader of elements meets (`linkwright.schema.report`)."""
 
+    __slots__ = ()
 
-def joint_type_hint(written: str) -> str:
-    """How to mend an unknown joint type."""
-    folded = written.strip().casefold()
-    if folded in JOINT_TYPES:
-        return f"write '{folded}'"
-    if folded in _JOINT_ALIASES:
-        meant = _JOINT_ALIASES[folded]
-        return f"did you mean '{meant}'?" if meant else "URDF has no such joint: build it from revolute joints"
-    return did_you_mean(written, JOINT_TYPES) or f"it is one of {JOINT_TYPES_TEXT}"
+    def missing_attribute(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> None:
+        """A required attribute is not there."""
+        hint = _missing_attribute_hint(element, rule, attribute)
+        if attribute.name == "name" and rule.tag == "link":
+            message, hint = phrase("a link has no 'name'"), phrase('add name="..."')
+        elif attribute.name == "name" and rule.tag == "joint":
+            message, hint = phrase("a joint has no 'name'"), phrase('add name="..."')
+        elif attribute.type is JOINT_TYPE:
+            message = phrase("{owner} has no 'type'", owner=owner_name(owner))
+            hint = phrase('add type="...": {names}', names=joined(JOINT_TYPES))
+        else:
+            name = attribute.name
+            message = phrase("<{tag}> of {owner} has no '{name}'", tag=rule.tag, owner=owner_name(owner), name=name)
+        self.error("URDF120", message, element, hint=hint)
 
-
-def shape_hint(written: str, shapes: tuple[ElementRule, ...]) -> str:
-    """How to mend an unknown shape."""
-    if written.startswith("xacro:"):
-        return "xacro did not evaluate this: expand the file with xacro first"
-    names = [shape.tag for shape in shapes]
-    meant = _SHAPE_ALIASES.get(written.casefold())
-    if meant:
-        return f"did you mean '{meant}'?"
-    return did_you_mean(written, names) or "it is one of " + ", ".join(names)
-
-
-def _explain_value(
-    element: Element, rule: ElementRule, attribute: AttributeRule, value: str, owner: str, findings: Findings
-) -> None:
-    where = f"'{attribute.name}' in <{rule.tag}> of {owner}"
-    if attribute.kind is Kind.NUMBER:
-        try:
-            number(value)
-        except ValueError:
-            hint = number_hint(value)
-            if rule.tag == "limit" and attribute.usual and "inf" in value.casefold():
-                hint = "only finite numbers are read; a joint that turns without bounds is 'continuous'"
-            findings.error("URDF121", f"{where} is not a number: '{value}'", element, attribute.name, hint=hint)
-    elif attribute.kind in _COUNTS:
-        count = _COUNTS[attribute.kind]
+    def malformed(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> Any:
+        """An attribute does not say what it must; a colour of too few numbers is black, one of others is none."""
+        name, value = attribute.name, element.attributes[attribute.name]
+        told = {"name": name, "tag": rule.tag, "owner": owner_name(owner), "value": value}
+        if attribute.type is JOINT_TYPE:
+            message = phrase("'{written}' is not a joint type, in {owner}", written=value, owner=owner_name(owner))
+            self.error("URDF140", message, element, name, hint=_joint_type_hint(value))
+            return UNREADABLE
+        if attribute.type is NUMBER:
+            message = phrase("'{name}' in <{tag}> of {owner} is not a number: '{value}'", **told)
+            self.error("URDF121", message, element, name, hint=_number_hint(rule, attribute, value))
+            return UNREADABLE
+        count = COUNTS[attribute.type]
         try:
             found = numbers(value)
         except ValueError:
-            findings.error(
-                "URDF121",
-                f"{where} is not {count} numbers: '{value}'",
-                element,
-                attribute.name,
-                hint=vector_hint(value, count),
+            message = phrase("'{name}' in <{tag}> of {owner} is not {count} numbers: '{value}'", **told, count=count)
+            self.error("URDF121", message, element, name, hint=vector_hint(value, count))
+            return None if attribute.type is RGBA else UNREADABLE
+        if attribute.type is RGBA:
+            return self._malformed_color(element, found, owner)
+        message = counted(
+            "'{name}' in <{tag}> of {owner} has 1 number where {wanted} are expected: '{value}'",
+            "'{name}' in <{tag}> of {owner} has {count} numbers where {wanted} are expected: '{value}'",
+            len(found),
+            **told,
+            wanted=count,
+        )
+        self.error("URDF122", message, element, name, hint=_count_hint(rule, attribute, found))
+        return UNREADABLE
+
+    def too_new(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> None:
+        """An attribute is ignored, because it came with a later version of URDF."""
+        message = phrase(
+            "'{name}' in <{tag}> of {owner} is ignored: it needs URDF {version}",
+            name=attribute.name,
+            tag=rule.tag,
+            owner=owner_name(owner),
+            version=f"{attribute.since[0]}.{attribute.since[1]}",
+        )
+        hint = phrase('write <robot version="1.2" ...>')
+        if attribute.name == "quat_xyzw":
+            hint = phrase('write <robot version="1.1" ...>, or give rpy')
+        self.warning("URDF171", message, element, attribute.name, hint=hint)
+
+    def missing_child(
+        self, element: Element, rule: ElementRule, child: ElementRule, owner: Element, kind: str = ""
+    ) -> None:
+        """A required child is not there; `kind` is the type of a joint where only such joints want it."""
+        candidates = [each for each in element.elements() if rule.child(each.tag) is None]
+        like = nearest(child.tag, [each.tag for each in candidates], limit=1)
+        misspelt = next((each for each in candidates if each.tag in like), None)
+        hint = phrase(
+            "add <{tag}/>: {meaning}", tag=f"{child.tag}{_usual_attributes(child)}", meaning=term(child.meaning)
+        )
+        if misspelt is not None:
+            hint = phrase(
+                "did you mean '{tag}' where it says '{misspelt_tag}'?", tag=child.tag, misspelt_tag=misspelt.tag
+            )
+        whose = owner_name(owner)
+        if kind:
+            whose = phrase("{kind} {owner}", kind=kind, owner=whose)
+        elif rule.tag not in ("link", "joint"):
+            whose = phrase("<{tag}> of {owner}", tag=rule.tag, owner=whose)
+        message = phrase("{whose} has no <{tag}>", whose=whose, tag=child.tag)
+        self.error("URDF130", message, misspelt or element, hint=hint)
+
+    def empty_choice(self, element: Element, rule: ElementRule, owner: Element) -> None:
+        """There is no shape."""
+        assert rule.tag == "geometry"
+        hint = phrase("put a box, cylinder, sphere or mesh in it")
+        self.error("URDF131", phrase("<geometry> of {owner} is empty", owner=owner_name(owner)), element, hint=hint)
+
+    def unknown_choice(self, child: Element, rule: ElementRule, owner: Element) -> None:
+        """What should be a shape is none, or not in this version."""
+        if rule.child(child.tag) is not None:
+            hint = phrase('write <robot version="1.1" ...>, or build it from a cylinder and two spheres')
+            self.error(
+                "URDF132", phrase("<capsule> of {owner} needs URDF 1.1", owner=owner_name(owner)), child, hint=hint
             )
             return
-        if len(found) != count:
-            findings.error(
-                "URDF122",
-                f"{where} has {_numbers(len(found))} where {count} are expected: '{value}'",
-                element,
-                attribute.name,
-                hint=_count_hint(rule, attribute, found),
-            )
+        message = phrase("<{tag}> in <geometry> of {owner} is not a shape", tag=child.tag, owner=owner_name(owner))
+        self.error("URDF132", message, child, hint=_shape_hint(child.tag, rule.children))
+
+    def _malformed_color(self, color: Element, found: tuple[float, ...], material: Element) -> Any:
+        text = color.attributes["rgba"]
+        owner = phrase("material '{material}'", material=material.attributes.get("name", ""))
+        if any(not 0 <= part <= 1 for part in found):
+            hint = None
+            if all(0 <= part <= 255 for part in found):
+                scaled = [f"{part / 255:.3g}" if part > 1 else f"{part:g}" for part in found]
+                hint = phrase("colours go from 0 to 1, not to 255: '{scaled}'", scaled=" ".join(scaled))
+            message = phrase("'rgba' of {owner} has a number outside 0 to 1: '{text}'", owner=owner, text=text)
+            self.error("URDF123", message, color, "rgba", hint=hint)
+            return None
+        hint = phrase("give red, green, blue and alpha")
+        if len(found) == 3:
+            hint = phrase("add the alpha: '{text} 1'", text=text.strip())
+        message = phrase(
+            "'rgba' of {owner} has {count} numbers where 4 are expected, so it is black: '{text}'",
+            owner=owner,
+            count=len(found),
+            text=text,
+        )
+        self.warning("URDF122", message, color, "rgba", hint=hint)
+        return BLACK  # urdfdom says nothing here and paints it black
 
 
-def _count_hint(rule: ElementRule, attribute: AttributeRule, found: tuple[float, ...]) -> str:
+def _number_hint(rule: ElementRule, attribute: AttributeRule, value: str) -> Phrase | None:
+    if rule.tag == "limit" and attribute.usual and "inf" in value.casefold():
+        return phrase("only finite numbers are read; a joint that turns without bounds is 'continuous'")
+    return number_hint(value)
+
+
+def _joint_type_hint(written: str) -> Phrase:
+    """How to mend an unknown joint type."""
+    folded = written.strip().casefold()
+    if folded in JOINT_TYPES:
+        return phrase("write '{folded}'", folded=folded)
+    if folded in _JOINT_ALIASES:
+        meant = _JOINT_ALIASES[folded]
+        if meant is None:
+            return phrase("URDF has no such joint: build it from revolute joints")
+        return phrase("did you mean {names}?", names=quoted(meant))
+    return did_you_mean(written, JOINT_TYPES) or phrase("it is one of {names}", names=joined(JOINT_TYPES))
+
+
+def _shape_hint(written: str, shapes: tuple[ElementRule, ...]) -> Phrase:
+    """How to mend an unknown shape."""
+    if written.startswith("xacro:"):
+        return phrase("xacro did not evaluate this: expand the file with xacro first")
+    names = [shape.tag for shape in shapes]
+    meant = _SHAPE_ALIASES.get(written.casefold())
+    if meant:
+        return phrase("did you mean {names}?", names=quoted(meant))
+    return did_you_mean(written, names) or phrase("it is one of {names}", names=joined(names))
+
+
+def _count_hint(rule: ElementRule, attribute: AttributeRule, found: tuple[float, ...]) -> Phrase:
     if rule.tag == "mesh" and len(found) == 1:
-        return f"give a factor for each axis: '{' '.join([f'{found[0]:g}'] * 3)}'"
-    return f"give {attribute.kind.value}, separated by spaces: {attribute.meaning}"
+        return phrase("give a factor for each axis: '{value}'", value=" ".join([f"{found[0]:g}"] * 3))
+    return phrase(
+        "give {value}, separated by spaces: {meaning}", value=term(attribute.type.name), meaning=term(attribute.meaning)
+    )
 
 
-def _numbers(count: int) -> str:
-    return "1 number" if count == 1 else f"{count} numbers"
-
-
-def _missing_attribute_hint(element: Element, rule: ElementRule, attribute: AttributeRule) -> str:
+def _missing_attribute_hint(element: Element, rule: ElementRule, attribute: AttributeRule) -> Phrase:
     unknown = [name for name in element.attributes if rule.attribute(name) is None]
     like = nearest(attribute.name, unknown, limit=1)
     if like:
-        return f"did you mean '{attribute.name}' where it says '{like[0]}'?"
+        return phrase("did you mean '{name}' where it says '{like}'?", name=attribute.name, like=like[0])
     text = element.text().strip()
-    if text and not unknown and attribute.kind in (Kind.TEXT, Kind.NUMBER):
-        return f'write <{rule.tag} {attribute.name}="{text}"/>'
+    if text and not unknown and attribute.type in (TEXT, NUMBER):
+        return phrase('write <{tag} {name}="{text}"/>', tag=rule.tag, name=attribute.name, text=text)
     if rule.tag == "sphere" and "diameter" in unknown:
-        return "give the radius, half the diameter"
-    unit = f" ({attribute.unit})" if attribute.unit else ""
-    return f'add {attribute.name}="...": {attribute.meaning}{unit}'
+        return phrase("give the radius, half the diameter")
+    told = {"name": attribute.name, "meaning": term(attribute.meaning)}
+    if attribute.unit:
+        return phrase('add {name}="...": {meaning} ({unit})', **told, unit=term(attribute.unit))
+    return phrase('add {name}="...": {meaning}', **told)
 
 
 def _usual_attributes(rule: ElementRule) -> str:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from linkwright.diagnostics import Diagnostic, Note, Severity
-from linkwright.urdf.schema import Version
+from linkwright.diagnostics import Diagnostic, Note, Phrase, Severity, phrase, term
+from linkwright.schema.rules import Version
 from linkwright.xmltree import Element
 
 
@@ -16,28 +16,27 @@ class Findings:
     Attributes:
         version: the URDF version the file is read as.
         rejected: whether urdfdom would refuse the model.
+        count: how many findings there are so far.
         error_count: how many of the findings so far are errors.
     """
 
-    __slots__ = ("_found", "error_count", "rejected", "version")
+    __slots__ = ("_found", "count", "error_count", "rejected", "version")
 
-    def __init__(self) -> None:
-        self.version: Version = (1, 0)
+    def __init__(self, version: Version = (1, 0)) -> None:
+        self.version = version
         self.rejected = False
+        self.count = 0
         self.error_count = 0
         self._found: list[Diagnostic] = []
-
-    def __len__(self) -> int:
-        return len(self._found)
 
     def reject(
         self,
         code: str,
-        message: str,
+        message: Phrase,
         element: Element,
         attribute: str | None = None,
         *,
-        hint: str | None = None,
+        hint: Phrase | None = None,
         notes: Sequence[Note] = (),
     ) -> None:
         """Report an error that leaves no robot."""
@@ -47,11 +46,11 @@ class Findings:
     def error(
         self,
         code: str,
-        message: str,
+        message: Phrase,
         element: Element,
         attribute: str | None = None,
         *,
-        hint: str | None = None,
+        hint: Phrase | None = None,
         notes: Sequence[Note] = (),
     ) -> None:
         """Report an error in a part that urdfdom drops or misreads while it keeps the model."""
@@ -60,11 +59,11 @@ class Findings:
     def warning(
         self,
         code: str,
-        message: str,
+        message: Phrase,
         element: Element,
         attribute: str | None = None,
         *,
-        hint: str | None = None,
+        hint: Phrase | None = None,
         notes: Sequence[Note] = (),
     ) -> None:
         """Report something that is read without complaint and is hardly meant."""
@@ -72,16 +71,26 @@ class Findings:
 
     def duplicate(self, kind: str, name: str, element: Element, first: Element | None) -> None:
         """Report a second element of one kind and name."""
-        notes = (Note("first defined here", first.span()),) if first else ()
-        hint = f"give each {kind} a name of its own"
-        self.reject("URDF110", f"{kind} '{name}' is defined twice", element, "name", hint=hint, notes=notes)
+        notes = (Note(phrase("first defined here"), first.span()),) if first else ()
+        hint = phrase("give each {kind} a name of its own", kind=term(kind))
+        self.reject(
+            "URDF110",
+            phrase("{kind} '{name}' is defined twice", kind=term(kind), name=name),
+            element,
+            "name",
+            hint=hint,
+            notes=notes,
+        )
 
-    def annotate(self, since: int, note: Note) -> None:
-        """Add a note to the first error after the first `since` findings."""
-        for index in range(since, len(self._found)):
-            found = self._found[index]
-            if found.severity is Severity.ERROR:
-                self._found[index] = replace(found, notes=(*found.notes, note))
+    def first_error(self) -> Diagnostic:
+        """The error that was found first; there is one."""
+        return next(found for found in self._found if found.severity is Severity.ERROR)
+
+    def annotate(self, finding: Diagnostic, note: Note) -> None:
+        """Add a note to a finding, the latest one that is equal."""
+        for index in range(len(self._found) - 1, -1, -1):
+            if self._found[index] == finding:
+                self._found[index] = replace(finding, notes=(*finding.notes, note))
                 return
 
     def in_order(self) -> tuple[Diagnostic, ...]:
@@ -100,12 +109,13 @@ class Findings:
         self,
         severity: Severity,
         code: str,
-        message: str,
+        message: Phrase,
         element: Element,
         attribute: str | None,
-        hint: str | None,
+        hint: Phrase | None,
         notes: Sequence[Note],
     ) -> None:
+        self.count += 1
         if severity is Severity.ERROR:
             self.error_count += 1
         span = element.attribute_span(attribute) if attribute else element.span()

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from linkwright.geometry.single import quaternion_of, rpy_from_quaternion
 from linkwright.urdf.model import Robot
-from linkwright.urdf.rotation import quaternion_of, rpy_from_quaternion
 from linkwright.urdf.tree import parent_joints, walk
 
 

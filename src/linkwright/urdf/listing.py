@@ -5,9 +5,15 @@ from __future__ import annotations
 from linkwright.urdf.model import Robot
 from linkwright.urdf.tree import children_of, walk
 
+DEEPEST = 200
+"""How many levels are told apart by blanks."""
+
 
 def tree_text(robot: Robot) -> str:
-    """The robot's name and its links, children in the order of their joints' names, four blanks a level."""
+    """The robot's name and its links, children in the order of their joints' names, four blanks a level.
+
+    From level `DEEPEST` on the blanks stay as many: those of a chain of a hundred thousand links fill the memory.
+    """
     lines = [
         f"robot name is: {robot.name}",
         "---------- Successfully Parsed XML ---------------",
@@ -19,5 +25,5 @@ def tree_text(robot: Robot) -> str:
         if len(counts) < depth:
             counts.append(0)
         counts[depth - 1] += 1
-        lines.append(f"{'    ' * depth}child({counts[depth - 1]}):  {joint.child}")
+        lines.append(f"{'    ' * min(depth, DEEPEST)}child({counts[depth - 1]}):  {joint.child}")
     return "\n".join(lines) + "\n"

@@ -11,58 +11,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
+from linkwright.geometry.shapes import SimpleShape
+from linkwright.geometry.single import IDENTITY_POSE, Pose
+from linkwright.geometry.vectors import Vector3
 from linkwright.xmltree import Element
 
-Vector3 = tuple[float, float, float]
-Quaternion = tuple[float, float, float, float]
-"""x, y, z, w, of unit length."""
-
 JointType = Literal["revolute", "continuous", "prismatic", "fixed", "floating", "planar"]
-
-
-@dataclass(frozen=True, slots=True)
-class Pose:
-    """A child frame in its parent frame.
-
-    Attributes:
-        xyz: translation in metres.
-        rpy: roll, pitch, yaw in radians about the fixed axes x, y, z: R = Rz(yaw) Ry(pitch) Rx(roll) (REP 103).
-        quaternion: set only where the file gave ``quat_xyzw`` (URDF 1.1); then `rpy` is derived from it.
-    """
-
-    xyz: Vector3 = (0.0, 0.0, 0.0)
-    rpy: Vector3 = (0.0, 0.0, 0.0)
-    quaternion: Quaternion | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class Box:
-    """Edge lengths along x, y, z in metres, centred at the origin."""
-
-    size: Vector3
-
-
-@dataclass(frozen=True, slots=True)
-class Cylinder:
-    """Along z, centred at the origin; metres."""
-
-    radius: float
-    length: float
-
-
-@dataclass(frozen=True, slots=True)
-class Capsule:
-    """Along z, centred at the origin; `length` is that of the cylindrical part, in metres (URDF 1.1)."""
-
-    radius: float
-    length: float
-
-
-@dataclass(frozen=True, slots=True)
-class Sphere:
-    """Centred at the origin; metres."""
-
-    radius: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +27,7 @@ class Mesh:
     scale: Vector3 = (1.0, 1.0, 1.0)
 
 
-Geometry = Box | Cylinder | Capsule | Sphere | Mesh
+Geometry = SimpleShape | Mesh
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +45,7 @@ class Visual:
     """A shape to draw. `material` is resolved by urdfdom's rules (first definition in the file wins), or None."""
 
     geometry: Geometry
-    origin: Pose = Pose()
+    origin: Pose = IDENTITY_POSE
     name: str = ""
     material_name: str = ""
     material: Material | None = None
@@ -103,7 +57,7 @@ class Collision:
     """A shape for contacts."""
 
     geometry: Geometry
-    origin: Pose = Pose()
+    origin: Pose = IDENTITY_POSE
     name: str = ""
     element: Element | None = field(default=None, compare=False, repr=False)
 
@@ -119,7 +73,7 @@ class Inertial:
     iyy: float
     iyz: float
     izz: float
-    origin: Pose = Pose()
+    origin: Pose = IDENTITY_POSE
     element: Element | None = field(default=None, compare=False, repr=False)
 
 
@@ -190,7 +144,7 @@ class Joint:
     type: JointType
     parent: str
     child: str
-    origin: Pose = Pose()
+    origin: Pose = IDENTITY_POSE
     axis: Vector3 = (1.0, 0.0, 0.0)
     limit: Limit | None = None
     mimic: Mimic | None = None

@@ -9,23 +9,24 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from linkwright.diagnostics import Diagnostic, did_you_mean
-from linkwright.urdf.findings import Findings
+from linkwright.diagnostics import Diagnostic, did_you_mean, joined, phrase
+from linkwright.schema.rules import Version
+from linkwright.urdf.explain import UrdfReport
 from linkwright.urdf.joints import read_joint
 from linkwright.urdf.links import read_link
 from linkwright.urdf.materials import MaterialTable
 from linkwright.urdf.model import Joint, Link, Robot
-from linkwright.urdf.schema import NEWEST_VERSION, Version
+from linkwright.urdf.schema import NEWEST_VERSION
 from linkwright.urdf.tree import find_root
 from linkwright.xmltree import Document, Element
 
 _INTEGER = re.compile(r"\s*([+-]?[0-9]+)").fullmatch
 _OTHER_FORMATS = {
-    "sdf": "an SDF model",
-    "mujoco": "a MuJoCo model",
-    "launch": "a launch file",
-    "package": "a package.xml",
-    "COLLADA": "a COLLADA mesh",
+    "sdf": phrase("an SDF model"),
+    "mujoco": phrase("a MuJoCo model"),
+    "launch": phrase("a launch file"),
+    "package": phrase("a package.xml"),
+    "COLLADA": phrase("a COLLADA mesh"),
 }
 _FIRST_NAMES = 3
 
@@ -46,18 +47,18 @@ class Reading:
 
 def read(document: Document) -> Reading:
     """Read a URDF document; it never raises for what the document says."""
-    findings = Findings()
+    findings = UrdfReport()
     robot = _read_robot(document.root, findings)
     return Reading(None if findings.rejected else robot, findings.in_order())
 
 
-def _read_robot(root: Element, findings: Findings) -> Robot | None:
+def _read_robot(root: Element, findings: UrdfReport) -> Robot | None:
     if root.tag != "robot":
         _explain_root(root, findings)
         return None
     name = root.attributes.get("name")
     if name is None:
-        findings.reject("URDF103", "<robot> has no 'name'", root, hint='add name="..."')
+        findings.reject("URDF103", phrase("<robot> has no 'name'"), root, hint=phrase('add name="..."'))
         name = ""
     findings.version = _read_version(root, findings)
 
@@ -73,7 +74,7 @@ def _read_robot(root: Element, findings: Findings) -> Robot | None:
             elif tag == "joint":
                 joint_elements.append(child)
             elif tag == "material":
-                materials.define(child)
+                materials.define(child, root)
             else:
                 extensions.append(child)
 
@@ -112,59 +113,66 @@ def _read_robot(root: Element, findings: Findings) -> Robot | None:
     )
 
 
-def _read_version(root: Element, findings: Findings) -> Version:
+def _read_version(root: Element, findings: UrdfReport) -> Version:
     written = root.attributes.get("version")
     if written is None:
         return 1, 0
     parts = written.split(".")
     numbers = [int(match[1]) for part in parts if (match := _INTEGER(part))]
     if len(parts) != 2 or len(numbers) != 2 or min(numbers) < 0:
-        message = f"'version' of <robot> is not of the form x.y: '{written}'"
-        findings.reject("URDF104", message, root, "version", hint="write 1.0, 1.1 or 1.2, or leave it out")
+        message = phrase("'version' of <robot> is not of the form x.y: '{written}'", written=written)
+        findings.reject("URDF104", message, root, "version", hint=phrase("write 1.0, 1.1 or 1.2, or leave it out"))
         return NEWEST_VERSION
     version = numbers[0], numbers[1]
     if not (1, 0) <= version <= NEWEST_VERSION:
-        message = f"there is no URDF version '{written}'"
-        findings.reject("URDF104", message, root, "version", hint="the versions are 1.0, 1.1 and 1.2")
+        message = phrase("there is no URDF version '{written}'", written=written)
+        findings.reject("URDF104", message, root, "version", hint=phrase("the versions are 1.0, 1.1 and 1.2"))
         return NEWEST_VERSION
     return version
 
 
-def _explain_root(root: Element, findings: Findings) -> None:
+def _explain_root(root: Element, findings: UrdfReport) -> None:
     if root.tag.startswith("xacro:"):
-        hint = "a xacro file has <robot> as its root too"
+        hint = phrase("a xacro file has <robot> as its root too")
     elif root.tag in _OTHER_FORMATS:
-        hint = f"this is {_OTHER_FORMATS[root.tag]}, not a robot description"
+        hint = phrase("this is {format}, not a robot description", format=_OTHER_FORMATS[root.tag])
     else:
-        hint = did_you_mean(root.tag, ["robot"]) or "a URDF file has <robot> as its root"
-    findings.reject("URDF101", f"the root element is <{root.tag}>, not <robot>", root, hint=hint)
+        hint = did_you_mean(root.tag, ["robot"]) or phrase("a URDF file has <robot> as its root")
+    findings.reject("URDF101", phrase("the root element is <{tag}>, not <robot>", tag=root.tag), root, hint=hint)
 
 
-def _explain_no_links(root: Element, extensions: list[Element], findings: Findings) -> None:
+def _explain_no_links(root: Element, extensions: list[Element], findings: UrdfReport) -> None:
     text = root.source.text if root.source is not None else ""
     macro = re.search(r"<xacro:macro\s[^>]*?name\s*=\s*[\"']([^\"'\s]+)", text)
     if any(element.tag.startswith("xacro:") for element in extensions):
-        hint = "expand the file with xacro first"
+        hint = phrase("expand the file with xacro first")
     elif macro:
-        hint = f"it only defines macros: include it in another file and call one there, <xacro:{macro[1]} .../>"
+        hint = phrase(
+            "it only defines macros: include it in another file and call one there, <xacro:{macro} .../>",
+            macro=macro[1],
+        )
     else:
-        hint = 'add <link name="base_link"/>'
-    findings.reject("URDF106", "the robot has no links", root, hint=hint)
+        hint = phrase('add <link name="base_link"/>')
+    findings.reject("URDF106", phrase("the robot has no links"), root, hint=hint)
 
 
-def _report_leftover_xacro(root: Element, extensions: list[Element], findings: Findings) -> None:
+def _report_leftover_xacro(root: Element, extensions: list[Element], findings: UrdfReport) -> None:
     left = [element for element in extensions if element.tag.startswith("xacro:")]
     if not left:
         return
     names = list(dict.fromkeys(f"<{element.tag}>" for element in left))
-    shown = ", ".join(names[:_FIRST_NAMES]) + (", ..." if len(names) > _FIRST_NAMES else "")
-    hint = "expand the file with xacro"
+    shown = joined(names[:_FIRST_NAMES])
+    if len(names) > _FIRST_NAMES:
+        shown = phrase("{names}, ...", names=shown)
+    hint = phrase("expand the file with xacro")
     if "xmlns:xacro" not in root.attributes:
-        hint += '; <robot> must declare xmlns:xacro="http://www.ros.org/wiki/xacro"'
-    findings.warning("URDF102", f"xacro did not evaluate {shown}, which URDF readers ignore", left[0], hint=hint)
+        hint = phrase('expand the file with xacro; <robot> must declare xmlns:xacro="http://www.ros.org/wiki/xacro"')
+    findings.warning(
+        "URDF102", phrase("xacro did not evaluate {shown}, which URDF readers ignore", shown=shown), left[0], hint=hint
+    )
 
 
-def _check_mimics(joints: dict[str, Joint], findings: Findings) -> None:
+def _check_mimics(joints: dict[str, Joint], findings: UrdfReport) -> None:
     """Warn of mimic joints that follow nothing; urdfdom does not look."""
     for joint in joints.values():
         if joint.mimic is None:
@@ -174,7 +182,7 @@ def _check_mimics(joints: dict[str, Joint], findings: Findings) -> None:
         assert element is not None
         target = joint.mimic.joint
         if target not in joints:
-            message = f"joint '{joint.name}' mimics '{target}', which does not exist"
+            message = phrase("joint '{name}' mimics '{target}', which does not exist", name=joint.name, target=target)
             findings.warning(
                 "URDF180", message, element, "joint", hint=did_you_mean(target, joints.keys() - {joint.name})
             )
@@ -188,7 +196,7 @@ def _check_mimics(joints: dict[str, Joint], findings: Findings) -> None:
             target = mimic.joint
         else:
             if target == joint.name:
-                message = f"joint '{joint.name}' mimics itself"
+                message = phrase("joint '{name}' mimics itself", name=joint.name)
                 if len(chain) > 1:
-                    message = f"the mimic joints go in a circle: {' -> '.join([*chain, target])}"
-                findings.warning("URDF181", message, element, "joint", hint="one joint must move by itself")
+                    message = phrase("the mimic joints go in a circle: {value}", value=" -> ".join([*chain, target]))
+                findings.warning("URDF181", message, element, "joint", hint=phrase("one joint must move by itself"))

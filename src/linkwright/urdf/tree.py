@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 
-from linkwright.diagnostics import Note, Span, did_you_mean
+from linkwright.diagnostics import Note, Span, did_you_mean, phrase, quoted_names, term
 from linkwright.urdf.findings import Findings
 from linkwright.urdf.model import Joint, Link, Robot
 from linkwright.xmltree import Element
@@ -60,7 +60,7 @@ def find_root(links: Mapping[str, Link], joints: Sequence[Joint], findings: Find
     roots = [name for name in links if name not in moved]
     if not roots:
         findings.rejected = True
-        _report_loop(_loop_from(joints[0].child, joints), joints, "no link is the root", findings)
+        _report_loop(_loop_from(joints[0].child, joints), joints, phrase("no link is the root"), findings)
         return ""
     if len(roots) > 1:
         _report_roots(roots, links, findings)
@@ -83,25 +83,35 @@ def _ends_exist(links: Mapping[str, Link], joints: Sequence[Joint], findings: Fi
             assert joint.element is not None
             end = joint.element.first(tag)
             assert end is not None
-            near = did_you_mean(name, links) if len(findings) < _MOST_COMPARED else None
-            hint = near or f'add <link name="{name}"/>'
-            message = f"{tag} link '{name}' of joint '{joint.name}' does not exist"
+            near = did_you_mean(name, links) if findings.count < _MOST_COMPARED else None
+            hint = near or phrase('add <link name="{name}"/>', name=name)
+            message = phrase(
+                "{tag} link '{name}' of joint '{joint_name}' does not exist",
+                tag=term(tag),
+                name=name,
+                joint_name=joint.name,
+            )
             findings.reject("URDF150", message, end, "link", hint=hint)
     return good
 
 
 def _report_roots(roots: Sequence[str], links: Mapping[str, Link], findings: Findings) -> None:
-    quoted = [f"'{name}'" for name in roots]
-    listed = f"{', '.join(quoted[:-1])} and {quoted[-1]}" if len(roots) < 6 else f"{', '.join(quoted[:5])}, ..."
-    places = [Note(f"'{name}' has no parent", _place(links[name].element)) for name in roots[:5]]
+    listed = quoted_names(roots, " and ") if len(roots) < 6 else phrase("{list}, ...", list=quoted_names(roots[:5]))
+    places = [Note(phrase("'{name}' has no parent", name=name), _place(links[name].element)) for name in roots[:5]]
     element = links[roots[1]].element
     assert element is not None
     findings.reject(
         "URDF152",
-        f"{len(roots)} links have no parent joint where a robot has one root: {listed}",
+        phrase(
+            "{count} links have no parent joint where a robot has one root: {listed}", count=len(roots), listed=listed
+        ),
         element,
         "name",
-        hint=f"connect all but one of them with joints, such as a fixed joint from '{roots[0]}' to '{roots[1]}'",
+        hint=phrase(
+            "connect all but one of them with joints, such as a fixed joint from '{roots}' to '{other_roots}'",
+            roots=roots[0],
+            other_roots=roots[1],
+        ),
         notes=places,
     )
 
@@ -134,11 +144,16 @@ def _check_parents(joints: Sequence[Joint], findings: Findings) -> None:
         assert end is not None
         findings.error(
             "URDF151",
-            f"link '{joint.child}' is the child of two joints, '{first.name}' and '{joint.name}'",
+            phrase(
+                "link '{child}' is the child of two joints, '{name}' and '{joint_name}'",
+                child=joint.child,
+                name=first.name,
+                joint_name=joint.name,
+            ),
             end,
             "link",
-            hint="a link has one parent: remove one of the joints, or add a link for it",
-            notes=(Note(f"'{first.name}' is here", _place(first.element)),),
+            hint=phrase("a link has one parent: remove one of the joints, or add a link for it"),
+            notes=(Note(phrase("'{name}' is here", name=first.name), _place(first.element)),),
         )
 
 
@@ -159,7 +174,7 @@ def _check_reachable(root: str, links: Mapping[str, Link], joints: Sequence[Join
             loop = [link for link, _ in stack]
             loop = [*loop[loop.index(child) :], child]
             findings.rejected = True
-            _report_loop(loop, joints, "a robot is a tree", findings)
+            _report_loop(loop, joints, phrase("a robot is a tree"), findings)
             return
         elif child not in seen:
             seen.add(child)
@@ -167,7 +182,7 @@ def _check_reachable(root: str, links: Mapping[str, Link], joints: Sequence[Join
             stack.append((child, iter(below.get(child, ()))))
     lost = [name for name in links if name not in seen]
     if lost:
-        consequence = f"{len(lost)} links do not hang from the root '{root}'"
+        consequence = phrase("{count} links do not hang from the root '{root}'", count=len(lost), root=root)
         _report_loop(_loop_from(lost[0], joints), joints, consequence, findings)
 
 
@@ -189,10 +204,10 @@ def _report_loop(loop: Sequence[str], joints: Sequence[Joint], consequence: str,
     assert end is not None
     findings.error(
         "URDF153",
-        f"the joints go in a circle, {' -> '.join(loop)}, and {consequence}",
+        phrase("the joints go in a circle, {loop}, and {consequence}", loop=" -> ".join(loop), consequence=consequence),
         end,
         "link",
-        hint="remove or turn around one of these joints; URDF cannot describe a closed chain",
+        hint=phrase("remove or turn around one of these joints; URDF cannot describe a closed chain"),
     )
 
 

@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import re
 from functools import lru_cache
-from math import isinf, radians
+from math import isfinite, isinf, radians
 
-from linkwright.urdf.model import Vector3
+from linkwright.diagnostics import Phrase, phrase
+from linkwright.geometry.vectors import Vector3
 
 _DIGITS = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 _NUMBER = re.compile(rf"[ \t\n\v\f\r]*{_DIGITS}").fullmatch
@@ -21,15 +22,15 @@ _VECTOR3 = re.compile(rf" *{_PIECE} +{_PIECE} +{_PIECE} *").fullmatch
 _PLAIN = re.compile(r"[-+.0-9eE ]*").fullmatch
 
 _UNITS = {
-    "deg": ("angles are in radians", 0.017453292519943295),
-    "degrees": ("angles are in radians", 0.017453292519943295),
-    "°": ("angles are in radians", 0.017453292519943295),
-    "rad": ("the unit is not written", 1.0),
-    "m": ("the unit is not written", 1.0),
-    "mm": ("lengths are in metres", 0.001),
-    "cm": ("lengths are in metres", 0.01),
-    "kg": ("the unit is not written", 1.0),
-    "g": ("masses are in kilograms", 0.001),
+    "deg": (phrase("angles are in radians"), 0.017453292519943295),
+    "degrees": (phrase("angles are in radians"), 0.017453292519943295),
+    "°": (phrase("angles are in radians"), 0.017453292519943295),
+    "rad": (phrase("the unit is not written"), 1.0),
+    "m": (phrase("the unit is not written"), 1.0),
+    "mm": (phrase("lengths are in metres"), 0.001),
+    "cm": (phrase("lengths are in metres"), 0.01),
+    "kg": (phrase("the unit is not written"), 1.0),
+    "g": (phrase("masses are in kilograms"), 0.001),
 }
 _WITH_UNIT = re.compile(rf"\s*({_DIGITS})\s*(\D+?)\s*").fullmatch
 
@@ -37,7 +38,6 @@ _WITH_UNIT = re.compile(rf"\s*({_DIGITS})\s*(\D+?)\s*").fullmatch
 _REMEMBERED = 4096
 
 
-@lru_cache(maxsize=_REMEMBERED)
 def number(text: str) -> float:
     """The number an attribute says.
 
@@ -66,7 +66,7 @@ def vector3(text: str) -> Vector3:
         if not match:
             raise ValueError(text)
         x, y, z = map(float, match.groups())
-    if isinf(x) or isinf(y) or isinf(z):
+    if not isfinite(x + y + z) and (isinf(x) or isinf(y) or isinf(z)):  # one call where all is well
         raise ValueError(text)
     return x, y, z
 
@@ -80,56 +80,56 @@ def numbers(text: str) -> tuple[float, ...]:
     return tuple(number(piece) for piece in text.split(" ") if piece)
 
 
-def number_hint(text: str) -> str | None:
+def number_hint(text: str) -> Phrase | None:
     """How to mend a value that is no number, or None when it cannot be guessed."""
     stripped = text.strip()
     if not stripped:
-        return "give a number"
+        return phrase("give a number")
     if "${" in text or "$(" in text:
-        return "xacro did not evaluate this: expand the file with xacro first"
+        return phrase("xacro did not evaluate this: expand the file with xacro first")
     if _reads(stripped):
-        return f"remove the blank after it: '{text.rstrip()}'"
+        return phrase("remove the blank after it: '{text}'", text=text.rstrip())
     if _reads(stripped.replace("\u2212", "-")):
-        return f"write the minus sign as a hyphen: '{stripped.replace(chr(0x2212), '-')}'"
+        return phrase("write the minus sign as a hyphen: '{stripped}'", stripped=stripped.replace(chr(8722), "-"))
     if stripped.count(",") == 1 and _reads(stripped.replace(",", ".")):
-        return f"write the decimal point as a point: '{stripped.replace(',', '.')}'"
+        return phrase("write the decimal point as a point: '{stripped}'", stripped=stripped.replace(",", "."))
     if stripped.lower().lstrip("+-") in ("inf", "infinity", "nan") or re.fullmatch(_DIGITS, stripped):
-        return "only finite numbers are read"
+        return phrase("only finite numbers are read")
     if re.fullmatch("[+-]?0[xX][0-9a-fA-F]+", stripped):
-        return f"write it in decimal: '{int(stripped, 16)}'"
+        return phrase("write it in decimal: '{int}'", int=int(stripped, 16))
     if "pi" in stripped.lower():
-        return "URDF has no 'pi': write 3.14159..., or use xacro, where ${pi} works"
+        return phrase("URDF has no 'pi': write 3.14159..., or use xacro, where ${pi} works")
     if len(stripped.split()) > 1 and all(map(_reads, stripped.split())):
-        return "give one number"
+        return phrase("give one number")
     united = _WITH_UNIT(text)
     if united and united[2] in _UNITS:
         why, factor = _UNITS[united[2]]
-        return f"{why}: '{float(united[1]) * factor:.6g}'"
+        return phrase("{why}: '{value:.6g}'", why=why, value=float(united[1]) * factor)
     return None
 
 
-def vector_hint(text: str, count: int) -> str | None:
+def vector_hint(text: str, count: int) -> Phrase | None:
     """How to mend a value that is not `count` numbers separated by spaces, or None."""
     if "${" in text or "$(" in text:
         return number_hint(text)
     if not text.strip():
-        return f"give {count} numbers separated by spaces"
+        return phrase("give {count} numbers separated by spaces", count=count)
     pieces = text.split()
     if len(pieces) == count and all(map(_reads, pieces)):
-        return f"separate the numbers with spaces, not tabs or line breaks: '{' '.join(pieces)}'"
+        return phrase("separate the numbers with spaces, not tabs or line breaks: '{pieces}'", pieces=" ".join(pieces))
     pieces = [piece for piece in re.split(r"[,;\s]+", text.strip()) if piece]
     if len(pieces) == count and all(map(_reads, pieces)) and re.search("[,;]", text):
-        return f"separate the numbers with spaces, not commas: '{' '.join(pieces)}'"
+        return phrase("separate the numbers with spaces, not commas: '{pieces}'", pieces=" ".join(pieces))
     pieces = text.replace(",", ".").split()
     if "," in text and len(pieces) == count and all(map(_reads, pieces)):
-        return f"write the decimal point as a point: '{' '.join(pieces)}'"
+        return phrase("write the decimal point as a point: '{pieces}'", pieces=" ".join(pieces))
     bad = next((piece for piece in text.split() if not _reads(piece)), None)
     if bad is None:
-        return f"give {count} numbers, not {len(text.split())}"
+        return phrase("give {count} numbers, not {text_split}", count=count, text_split=len(text.split()))
     if bad.startswith("(") and "," in bad:
-        return "a comma in an expression makes a pair of numbers; write the decimal point as a point"
+        return phrase("a comma in an expression makes a pair of numbers; write the decimal point as a point")
     hint = number_hint(bad)
-    return f"'{bad}': {hint}" if hint else f"'{bad}' is not a number"
+    return phrase("'{bad}': {hint}", bad=bad, hint=hint) if hint else phrase("'{bad}' is not a number", bad=bad)
 
 
 def looks_like_degrees(*angles: float) -> bool:
@@ -139,9 +139,18 @@ def looks_like_degrees(*angles: float) -> bool:
     return any(not -10 < angle < 10 and angle % 5 == 0 and -720 <= angle <= 720 for angle in angles)
 
 
-def degrees_hint(*angles: float) -> str:
+def looks_like_degree_limits(lower: float, upper: float) -> bool:
+    """Whether the bounds of a joint can hardly be radians.
+
+    As `looks_like_degrees`, and one of them is an angle that joints have in degrees: limits of 10, 50 or 100 rad are
+    written where none are meant, or for a joint with a gear.
+    """
+    return looks_like_degrees(lower, upper) and any(30 <= abs(end) <= 360 and end % 15 == 0 for end in (lower, upper))
+
+
+def degrees_hint(*angles: float) -> Phrase:
     """What angles are in radians, taken as degrees."""
-    return f"angles are in radians: '{' '.join(f'{radians(angle):.6g}' for angle in angles)}'"
+    return phrase("angles are in radians: '{angles}'", angles=" ".join(f"{radians(angle):.6g}" for angle in angles))
 
 
 def plain(value: float) -> str:

@@ -13,13 +13,13 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, Span, did_you_mean
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, Span, did_you_mean, phrase
 from linkwright.xacro.directives import DIRECTIVES
-from linkwright.xacro.engine import Inputs, main_document
 from linkwright.xacro.expander import Directive, Expander, Site
 from linkwright.xacro.faults import Fault, attribute_part, text_part
-from linkwright.xacro.observed import ObservedSession, expand_observed
+from linkwright.xacro.inputs import Inputs, main_document
 from linkwright.xacro.scope import Scope
+from linkwright.xacro.traced import TracedSession, expand_traced
 from linkwright.xmltree import Document, Element, Text
 
 _MOST_FILES = 1_000
@@ -78,7 +78,7 @@ def examine_arguments(inputs: Inputs) -> Arguments:
     problems: tuple[Diagnostic, ...] = ()
     directives: dict[str, Directive] = {**DIRECTIVES, "xacro:arg": session.declare}
     try:
-        expand_observed(inputs, session, directives)
+        expand_traced(inputs, session, directives)
     except LinkwrightError as error:
         problems = error.diagnostics
         _follow_includes(session)
@@ -86,7 +86,7 @@ def examine_arguments(inputs: Inputs) -> Arguments:
     return Arguments(found.arguments(), found.unused(), problems)
 
 
-class _Session(ObservedSession):
+class _Session(TracedSession):
     """A session in which no argument is missing.
 
     Attributes:
@@ -178,7 +178,11 @@ class _Findings:
         return tuple(
             Diagnostic(
                 "XAC215",
-                f"the argument '{name}' is given, but '{self.inputs.name}' does not use it",
+                phrase(
+                    "the argument '{name}' is given, but '{inputs_name}' does not use it",
+                    name=name,
+                    inputs_name=self.inputs.name,
+                ),
                 severity=Severity.WARNING,
                 hint=did_you_mean(name, known),
             )

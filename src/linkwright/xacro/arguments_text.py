@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from linkwright.diagnostics import Diagnostic, Note, Severity
+import re
+from collections.abc import Iterable
+
+from linkwright.diagnostics import Diagnostic, Note, Severity, phrase
 from linkwright.xacro.arguments import Argument, Arguments
-from linkwright.xacro.story_text import place
+from linkwright.xacro.provenance_text import place
 
 
 def arguments_text(arguments: tuple[Argument, ...]) -> str:
@@ -25,11 +28,24 @@ def incomplete(examined: Arguments) -> list[Diagnostic]:
     if not examined.problems:
         return []
     first = examined.problems[0]
-    message = "the file cannot be expanded with the arguments given, so some may be missing from the list"
-    required = [f"{argument.name}:=..." for argument in examined.arguments if argument.required]
-    hint = f"give {' '.join(required)}" if required else None
+    message = phrase("the file cannot be expanded with the arguments given, so some may be missing from the list")
+    blamed = _blamed(examined.arguments, first.message)
+    required = [f"{argument.name}:=..." for argument in blamed or examined.arguments if blamed or argument.required]
+    hint = phrase("give {required}", required=" ".join(required)) if required else None
     notes = (Note(first.message), *first.notes)
     return [Diagnostic("XAC803", message, first.span, Severity.WARNING, notes, hint, first.source)]
+
+
+def _blamed(arguments: Iterable[Argument], message: str) -> list[Argument]:
+    """The arguments whose defaults made a message, as a file is missing that is named by one of them."""
+    return [
+        argument
+        for argument in arguments
+        if argument.default
+        and not argument.given
+        and "$" not in argument.default
+        and re.search(rf"(?<!\w){re.escape(argument.default)}(?!\w)", message)
+    ]
 
 
 def _default(argument: Argument) -> str:

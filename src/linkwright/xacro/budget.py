@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from time import thread_time
 
+from linkwright.diagnostics import phrase
 from linkwright.xacro.faults import Fault
 from linkwright.xacro.limits import Limits
 
@@ -39,8 +40,12 @@ class Budget:
 
     def too_many_elements(self) -> Fault:
         """What is wrong when no elements are left: XAC602."""
-        message = f"the expansion makes more than {self._limits.elements:,} elements, macro calls counting as {_MACRO}"
-        return Fault("XAC602", message, hint="look for macros that call each other without end")
+        message = phrase(
+            "the expansion makes more than {limit:,} elements, macro calls counting as {macro}",
+            limit=self._limits.elements,
+            macro=_MACRO,
+        )
+        return Fault("XAC602", message, hint=phrase("look for macros that call each other without end"))
 
     def text(self, length: int) -> None:
         """Pay for a long text that comes out.
@@ -50,7 +55,10 @@ class Budget:
         """
         self._characters -= length
         if self._characters < 0:
-            raise Fault("XAC605", f"the expansion has more than {self._limits.characters:,} characters")
+            raise Fault(
+                "XAC605",
+                phrase("the expansion has more than {characters:,} characters", characters=self._limits.characters),
+            )
 
     def macro(self) -> None:
         """Pay for a call of a macro or an include.
@@ -74,8 +82,10 @@ class Budget:
         self._steps -= count
         if self._steps < self._look_at:
             if self._steps < 0:
-                message = f"the expressions take more than {self._limits.steps:,} steps"
-                raise Fault("XAC603", message, hint="look for a comprehension or function over a long list or range")
+                message = phrase("the expressions take more than {steps:,} steps", steps=self._limits.steps)
+                raise Fault(
+                    "XAC603", message, hint=phrase("look for a comprehension or function over a long list or range")
+                )
             self._look_at = max(0, self._steps - _STEPS_BETWEEN_LOOKS)
             self._look_at_clock()
 
@@ -88,7 +98,7 @@ class Budget:
         self.step(_LAMBDA)
         self._call_depth += 1
         if self._call_depth > _CALL_DEPTH:
-            raise Fault("XAC604", f"lambdas call each other more than {_CALL_DEPTH} deep")
+            raise Fault("XAC604", phrase("lambdas call each other more than {call_depth} deep", call_depth=_CALL_DEPTH))
 
     def leave_lambda(self) -> None:
         """The call that was entered last is over."""
@@ -96,5 +106,5 @@ class Budget:
 
     def _look_at_clock(self) -> None:
         if thread_time() > self._ends:
-            message = f"the expansion takes more than {self._limits.seconds:g} seconds"
-            raise Fault("XAC606", message, hint="look for macros or comprehensions that multiply")
+            message = phrase("the expansion takes more than {seconds:g} seconds", seconds=self._limits.seconds)
+            raise Fault("XAC606", message, hint=phrase("look for macros or comprehensions that multiply"))

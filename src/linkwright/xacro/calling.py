@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import Any
 
 from linkwright.xacro import sandbox
+from linkwright.xacro.bounded import HASHING, check_codec, keys
 from linkwright.xacro.budget import Budget
 from linkwright.xacro.functions import Function
 from linkwright.xacro.yamldata import YamlDict, YamlList
@@ -42,7 +43,13 @@ def call(budget: Budget, function: Any, arguments: list[Any], keywords: dict[str
     """
     sandbox.check_call(function)
     steps = _CALL
-    if getattr(function, "__name__", None) not in _QUICK:
+    name = getattr(function, "__name__", None)
+    if name in HASHING:
+        arguments = [keys(argument) for argument in arguments]
+    elif function is str and (len(arguments) > 1 or keywords):
+        value = arguments[0] if arguments else keywords.get("object")
+        check_codec(value, arguments[1] if len(arguments) > 1 else keywords.get("encoding", "utf-8"))
+    if name not in _QUICK:
         for argument in arguments:
             steps += cost(argument)
         owner = getattr(function, "__self__", None)

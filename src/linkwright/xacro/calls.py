@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, NoReturn
 
-from linkwright.diagnostics import Note, did_you_mean
+from linkwright.diagnostics import Note, counted, did_you_mean, joined, phrase, quoted_names
 from linkwright.xacro.expander import Expander, Site
 from linkwright.xacro.faults import Fault, attribute_name, definition_elsewhere
 from linkwright.xacro.macros import Macro, MacroTable, Parameter, parse_parameters
@@ -23,15 +23,17 @@ def define_macro(expander: Expander, site: Site) -> None:
     name = node.attributes["name"]
     if name == "call":
         span = node.attribute_span("name")
-        expander.fail_at("XAC407", "a macro cannot be named 'call'", node, span, "'xacro:call' has another meaning")
+        expander.fail_at(
+            "XAC407", phrase("a macro cannot be named 'call'"), node, span, phrase("'xacro:call' has another meaning")
+        )
     if "." in name:
         span = node.attribute_span("name")
-        hint = "a dot stands between a namespace and a macro"
-        expander.fail_at("XAC407", f"the name of the macro '{name}' has a dot", node, span, hint)
+        hint = phrase("a dot stands between a namespace and a macro")
+        expander.fail_at("XAC407", phrase("the name of the macro '{name}' has a dot", name=name), node, span, hint)
     if name.startswith(PREFIX):
         name = name[len(PREFIX) :]
-        message = f"the macro '{name}' is named with the prefix 'xacro:', which only its calls have"
-        expander.session.warn("XAC411", message, node.attribute_span("name"), f'write name="{name}"')
+        message = phrase("the macro '{name}' is named with the prefix 'xacro:', which only its calls have", name=name)
+        expander.session.warn("XAC411", message, node.attribute_span("name"), phrase('write name="{name}"', name=name))
     try:
         parameters = parse_parameters(node.attributes.get("params", ""))
     except Fault as fault:
@@ -41,7 +43,7 @@ def define_macro(expander: Expander, site: Site) -> None:
     if len(macro.known) < len(parameters):
         names = [parameter.name for parameter in parameters]
         twice = next(given for given in names if names.count(given) > 1)
-        message = f"the macro '{name}' declares its parameter '{twice}' twice"
+        message = phrase("the macro '{name}' declares its parameter '{twice}' twice", name=name, twice=twice)
         expander.session.warn("XAC413", message, node.attribute_span("params"))
     site.macros.define(name, macro)
 
@@ -50,7 +52,7 @@ def call_dynamically(expander: Expander, site: Site) -> None:
     """``<xacro:call macro>``: calls the macro whose name the attribute gives."""
     node = site.node
     if not node.attributes.get("macro"):
-        expander.fail_at("XAC301", "'xacro:call' lacks its attribute 'macro'", node, node.span())
+        expander.fail_at("XAC301", phrase("'xacro:call' lacks its attribute 'macro'"), node, node.span())
     name = expander.text_value(node, "macro", site.scope)
     attributes = {given: value for given, value in node.attributes.items() if given != "macro"}
     call = Element(PREFIX + name, attributes, node.source, node.offset)
@@ -119,17 +121,16 @@ class _Call:
     def _report_unknown(self) -> NoReturn:
         node, name = self._node, self._name
         known = list(self._site.macros.names())
-        hint = f"write xacro:{_TAGS[name]}" if name in _TAGS else did_you_mean(name, known)
+        hint = phrase("write xacro:{tag}", tag=_TAGS[name]) if name in _TAGS else did_you_mean(name, known)
         if hint is None and known:
-            listed = ", ".join(sorted(set(known))[:10])
-            hint = f"the macros defined so far are {listed}"
+            hint = phrase("the macros defined so far are {names}", names=joined(sorted(set(known))[:10]))
         elif hint is None:
-            hint = "no macro is defined before this; is an include missing?"
+            hint = phrase("no macro is defined before this; is an include missing?")
         span = node.span() if self._written_in is None else node.attribute_span(self._written_in)
         notes = definition_elsewhere(node.source, "macro", name) if node.source else []
         if notes and not known:
-            hint = "move its definition above this call"
-        self._expander.fail_at("XAC401", f"there is no macro '{name}'", node, span, hint, *notes)
+            hint = phrase("move its definition above this call")
+        self._expander.fail_at("XAC401", phrase("there is no macro '{name}'", name=name), node, span, hint, *notes)
 
     # binding the parameters
 
@@ -155,10 +156,7 @@ class _Call:
     def _take_blocks(self, macro: Macro, left: list[Parameter], scope: Scope) -> list[Parameter]:
         if not left and not self._node.children:
             return left
-        container = Element(self._node.tag)
-        if self._node.children:
-            self._expander.children(self._node, container, self._site.scope, self._site.macros)
-        blocks = container.elements()
+        blocks = self._expander.blocks(self._node, self._site.scope, self._site.macros).elements()
         remaining = []
         for parameter in left:
             if not parameter.is_block:
@@ -190,8 +188,12 @@ class _Call:
             if parameter.forward and parameter.name in caller:
                 return caller.lookup(parameter.name)
             if parameter.default is None:
-                message = f"there is no property '{parameter.name}' to forward to the macro '{macro.name}'"
-                hint = f'define it before the call, or write {parameter.name}="..."'
+                message = phrase(
+                    "there is no property '{name}' to forward to the macro '{macro_name}'",
+                    name=parameter.name,
+                    macro_name=macro.name,
+                )
+                hint = phrase('define it before the call, or write {name}="..."', name=parameter.name)
                 fault = Fault("XAC409", message, hint=hint)
                 fault.notes.append(self._definition(macro, parameter))
                 fault.place_at(node)
@@ -204,7 +206,7 @@ class _Call:
                 if fault.start is None and parameter.default is not None:
                     fault.start, fault.end = 0, len(parameter.default)
                 fault.place_in_attribute(macro.body, "params", parameter.default_start)
-                fault.passing = f"the default of '{parameter.name}' is used by this call"
+                fault.passing = phrase("the default of '{name}' is used by this call", name=parameter.name)
                 fault.place_at(node)
             self._expander.fail(fault)
 
@@ -236,12 +238,14 @@ class _Call:
         known = [parameter.name for parameter in macro.parameters if not parameter.is_block]
         hint = did_you_mean(name, [candidate for candidate in known if candidate not in node.attributes])
         if f"{name}," in known:
-            hint = "separate the parameters of the macro with blanks, without commas"
+            hint = phrase("separate the parameters of the macro with blanks, without commas")
         if hint is None and f"*{name}" in {parameter.name.replace("**", "*") for parameter in macro.parameters}:
-            hint = f"'{name}' is a block: write it as an element inside the call"
+            hint = phrase("'{name}' is a block: write it as an element inside the call", name=name)
         if hint is None:
-            hint = f"its parameters are {', '.join(known)}" if known else "it has no parameters"
-        message = f"the macro '{macro.name}' has no parameter '{name}'"
+            hint = (
+                phrase("its parameters are {known}", known=joined(known)) if known else phrase("it has no parameters")
+            )
+        message = phrase("the macro '{name}' has no parameter '{other_name}'", name=macro.name, other_name=name)
         span = attribute_name(node, name)
         self._expander.fail_at("XAC402", message, node, span, hint, self._definition(macro))
 
@@ -249,41 +253,50 @@ class _Call:
         node = self._node
         twice = [parameter.name for parameter in missing if parameter.name in node.attributes]
         if twice:
-            message = f"the macro '{macro.name}' declares its parameter '{twice[0]}' twice"
+            message = phrase(
+                "the macro '{name}' declares its parameter '{twice}' twice", name=macro.name, twice=twice[0]
+            )
             span = node.span()
             self._expander.fail_at("XAC408", message, node, span, None, self._definition(macro, missing[0]))
-        names = [f"'{parameter.name}'" for parameter in missing]
-        what = f"parameter {names[0]}" if len(names) == 1 else f"parameters {', '.join(names)}"
-        message = f"the call of the macro '{macro.name}' lacks its {what}"
-        hint = "write " + " ".join(f'{parameter.name}="..."' for parameter in missing)
+        message = counted(
+            "the call of the macro '{name}' lacks its parameter {parameters}",
+            "the call of the macro '{name}' lacks its parameters {parameters}",
+            len(missing),
+            name=macro.name,
+            parameters=quoted_names(parameter.name for parameter in missing),
+        )
+        hint = phrase("write {attributes}", attributes=" ".join(f'{parameter.name}="..."' for parameter in missing))
         if not all(parameter.name.lstrip("*").isidentifier() for parameter in missing):
-            hint = "a default with blanks in it ends at the first one; put it in quotes"
+            hint = phrase("a default with blanks in it ends at the first one; put it in quotes")
         note = self._definition(macro, missing[0])
         self._expander.fail_at("XAC403", message, node, node.span(), hint, note)
 
     def _report_missing_block(self, macro: Macro, parameter: Parameter) -> NoReturn:
         node = self._node
         name = parameter.name.lstrip("*")
-        message = f"the call of the macro '{macro.name}' lacks an element for its block '{name}'"
-        hint = "write the element between the tags of the call"
+        message = phrase(
+            "the call of the macro '{name}' lacks an element for its block '{other_name}'",
+            name=macro.name,
+            other_name=name,
+        )
+        hint = phrase("write the element between the tags of the call")
         note = self._definition(macro, parameter)
         self._expander.fail_at("XAC404", message, node, node.span(), hint, note)
 
     def _report_unused_block(self, macro: Macro, block: Element) -> None:
         count = sum(parameter.is_block for parameter in macro.parameters)
-        takes = "no element" if count == 0 else "one element" if count == 1 else f"{count} elements"
-        message = f"the element '{block.tag}' is one too many for the macro '{macro.name}'"
-        hint = f"it takes {takes}"
+        message = phrase("the block <{tag}> is one too many for the macro '{name}'", tag=block.tag, name=macro.name)
+        hint = counted("it takes one block", "it takes {count} blocks", count) if count else phrase("it takes no block")
         note = self._definition(macro)
         self._expander.fail_at("XAC405", message, block, block.span(), hint, note)
 
     def _definition(self, macro: Macro, parameter: Parameter | None = None) -> Note:
         body = macro.body
         if parameter is not None:
-            fault = Fault("", "", parameter.start, parameter.start + len(parameter.name))
+            fault = Fault("", phrase("a parameter"), parameter.start, parameter.start + len(parameter.name))
             fault.place_in_attribute(body, "params")
-            return Note(f"'{parameter.name}' is declared here", fault.span)
-        return Note(f"the macro '{macro.name}' is defined here", body.span())
+            return Note(phrase("'{name}' is declared here", name=parameter.name), fault.span)
+        return Note(phrase("the macro '{name}' is defined here", name=macro.name), body.span())
 
 
 _TAGS = {"insert": "insert_block", "block": "insert_block", "prop": "property", "else": "unless", "elif": "if"}

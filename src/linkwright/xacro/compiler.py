@@ -11,17 +11,17 @@ import ast
 import operator
 import re
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from linkwright.diagnostics import Phrase, foreign, phrase
 from linkwright.xacro import sandbox
+from linkwright.xacro.bounded import keys
 from linkwright.xacro.calling import call, cost, made
 from linkwright.xacro.faults import Fault
 from linkwright.xacro.functions import Function, bind_parameters
-from linkwright.xacro.sandbox import RefusalError
+from linkwright.xacro.refusal import RefusalError
+from linkwright.xacro.scope import Environment
 from linkwright.xacro.yamldata import YamlDict
-
-if TYPE_CHECKING:
-    from linkwright.xacro.scope import Environment
 
 Closure = Callable[[Any], Any]
 _Binder = Callable[["Environment", Any], None]
@@ -79,16 +79,24 @@ def failure(error: Exception, segment: str, start: int, end: int) -> Fault:
     if len(segment) > 60:
         segment = f"{segment[:57]}..."
     if isinstance(error, RefusalError):
-        return Fault("XAC204", f"'{segment}' is refused: {error}", start, end)
+        message = phrase("'{segment}' is refused: {error}", segment=segment, error=foreign(error))
+        bounds = phrase("what expressions may do is bounded, so that opening a stranger's robot is safe")
+        return Fault("XAC204", message, start, end, bounds)
     words = str(error) or error.__class__.__name__
     hint = None
     if isinstance(error, KeyError):
-        words = f"there is no key {error}"
+        words = phrase("there is no key {error}", error=foreign(error))
     elif isinstance(error, TypeError) and "str" in words and ("concatenate" in words or "+:" in words):
-        hint = "turn the number into text with str(...)"
+        hint = phrase("turn the number into text with str(...)")
     elif isinstance(error, RecursionError):
-        words = "it is nested too deeply"
-    return Fault("XAC202", f"cannot evaluate '{segment}': {words}", start, end, hint)
+        words = phrase("it is nested too deeply")
+    return Fault(
+        "XAC202",
+        phrase("cannot evaluate '{segment}': {words}", segment=segment, words=foreign(words)),
+        start,
+        end,
+        hint,
+    )
 
 
 class Compiler:
@@ -118,10 +126,15 @@ class Compiler:
         method = _METHODS.get(node.__class__)
         if method is None:
             start, end = self._place(node)
-            raise Fault("XAC204", f"'{self._segment(start, end)}' may not be used in an expression", start, end)
+            raise Fault(
+                "XAC204",
+                phrase("'{segment}' may not be used in an expression", segment=self._segment(start, end)),
+                start,
+                end,
+            )
         self._depth += 1
         if self._depth > _DEEPEST:
-            raise Fault("XAC102", "the expression is nested too deeply")
+            raise Fault("XAC102", phrase("the expression is nested too deeply"))
         closure = method(self, node)
         self._depth -= 1
         return closure
@@ -145,19 +158,28 @@ class Compiler:
     def _failure(self, error: Exception, start: int, end: int) -> Fault:
         return failure(error, self._segment(start, end), start, end)
 
-    def _operand_hint(self, error: Exception, *operands: tuple[ast.expr, Any]) -> str | None:
+    def _operand_hint(self, error: Exception, *operands: tuple[ast.expr, Any]) -> Phrase | None:
         """Which operand is not what it should be, for what is written as a name or reached through one."""
         for node, value in operands:
             written = self._segment(*self._place(node))
             if isinstance(node, ast.Constant) or len(written) > 40:
                 continue
             if isinstance(error, ZeroDivisionError) and node is operands[-1][0]:
-                return f"'{written}' is {value!r} here; where it may be, write 'A / {written} if {written} else B'"
+                return phrase(
+                    "'{written}' is {value} here; where it may be, write 'A / {written} if {written} else B'",
+                    written=written,
+                    value=repr(value),
+                )
             if isinstance(error, TypeError) and isinstance(value, str) and len(value) <= 40:
                 united = _WITH_UNIT.fullmatch(value)
                 if united:
-                    return f"'{written}' is the text '{value}' here; write the number alone: '{united[1]}'"
-                return f"'{written}' is the text '{value}' here, not a number"
+                    return phrase(
+                        "'{written}' is the text '{value}' here; write the number alone: '{united}'",
+                        written=written,
+                        value=value,
+                        united=united[1],
+                    )
+                return phrase("'{written}' is the text '{value}' here, not a number", written=written, value=value)
         return None
 
     # names and constants
@@ -166,7 +188,7 @@ class Compiler:
         """The closure of a name that stands at an offset of the source."""
         place = (start + self._shift, start + self._shift + len(name))
         if name.startswith("__"):
-            raise Fault("XAC204", f"the name '{name}' may not be used in an expression", *place)
+            raise Fault("XAC204", phrase("the name '{name}' may not be used in an expression", name=name), *place)
 
         def look_up(env: Environment) -> Any:
             try:
@@ -281,7 +303,7 @@ class Compiler:
         start, end = self._place(node)
         start_of_name = end - len(name)
         if name.startswith("__"):
-            raise Fault("XAC204", f"'.{name}' may not be used in an expression", start_of_name, end)
+            raise Fault("XAC204", phrase("'.{name}' may not be used in an expression", name=name), start_of_name, end)
 
         def attribute(env: Environment) -> Any:
             owner = value(env)
@@ -289,7 +311,7 @@ class Compiler:
                 return sandbox.attribute(owner, name)
             except AttributeError as error:
                 hint = env.session.nearest_attribute(owner, name)
-                raise Fault("XAC205", str(error), start_of_name, end, hint) from None
+                raise Fault("XAC205", foreign(error), start_of_name, end, hint) from None
             except FAILURES as error:
                 raise self._failure(error, start, end) from None
 
@@ -304,7 +326,11 @@ class Compiler:
             try:
                 result = sandbox.subscript(owner, index)
             except (AttributeError, KeyError) as error:
-                words = f"there is no key {error}" if isinstance(error, KeyError) else str(error)
+                words = (
+                    phrase("there is no key {error}", error=foreign(error))
+                    if isinstance(error, KeyError)
+                    else foreign(error)
+                )
                 hint = env.session.nearest_attribute(owner, str(index))
                 raise Fault("XAC205", words, start, end, hint) from None
             except FAILURES as error:
@@ -368,7 +394,7 @@ class Compiler:
         return self._display(node, tuple)
 
     def _set(self, node: ast.Set) -> Closure:
-        return self._display(node, set)
+        return self._display(node, lambda items: set(keys(items)))
 
     def _display(self, node: ast.List | ast.Tuple | ast.Set, kind: Callable[[list[Any]], Any]) -> Closure:
         items = [self._argument(item) for item in node.elts]
@@ -393,7 +419,7 @@ class Compiler:
             result: dict[Any, Any] = {}
             try:
                 for key, value in items:
-                    result.update(value(env) if key is None else {key(env): value(env)})
+                    result.update(keys(value(env)) if key is None else {key(env): value(env)})
                 return made(env.session.budget, result)
             except (RefusalError, TypeError, ValueError) as error:
                 raise self._failure(error, start, end) from None
@@ -448,7 +474,7 @@ class Compiler:
         loops = []
         for generator in generators:
             if generator.is_async:
-                raise Fault("XAC204", "'async' may not be used in an expression")
+                raise Fault("XAC204", phrase("'async' may not be used in an expression"))
             conditions = [self.compile(condition) for condition in generator.ifs]
             loops.append((self._target(generator.target), self.compile(generator.iter), conditions))
 
@@ -476,13 +502,24 @@ class Compiler:
             def unpack(env: Environment, value: Any) -> None:
                 values = list(value)
                 if len(values) != len(binders):
-                    raise ValueError(f"{len(binders)} values are expected and {len(values)} given")
+                    raise ValueError(
+                        phrase(
+                            "{count} values are expected and {other_count} given",
+                            count=len(binders),
+                            other_count=len(values),
+                        )
+                    )
                 for bind, item in zip(binders, values, strict=True):
                     bind(env, item)
 
             return unpack
         start, end = self._place(node)
-        raise Fault("XAC204", f"'{self._segment(start, end)}' may not be used in an expression", start, end)
+        raise Fault(
+            "XAC204",
+            phrase("'{segment}' may not be used in an expression", segment=self._segment(start, end)),
+            start,
+            end,
+        )
 
 
 _METHODS: dict[type[ast.AST], Callable[[Compiler, Any], Closure]] = {

@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
-from linkwright.diagnostics import did_you_mean
+from linkwright.diagnostics import did_you_mean, phrase, term
 from linkwright.xacro.calls import call_dynamically, define_macro
 from linkwright.xacro.expander import Directive, Expander, Site
 from linkwright.xacro.includes import include
@@ -42,8 +42,12 @@ def expand_condition(expander: Expander, site: Site) -> None:
     try:
         keep = truth(value)
     except ValueError:
-        message = f"the condition '{node.attributes['value']}' gives '{value}', which is neither true nor false"
-        hint = "it must be true, false or a whole number"
+        message = phrase(
+            "the condition '{value}' gives '{other_value}', which is neither true nor false",
+            value=node.attributes["value"],
+            other_value=value,
+        )
+        hint = phrase("it must be true, false or a whole number")
         expander.fail_at("XAC305", message, node, node.attribute_span("value"), hint)
     if keep is (node.tag == "xacro:if"):
         if "$" in node.attributes["value"] and session.changes(node.attributes["value"]):
@@ -71,15 +75,17 @@ def insert_block(expander: Expander, site: Site) -> None:
         known = [block.lstrip("*") for block in scope.blocks()]
         hint = did_you_mean(name, known)
         if hint is None and name in scope:
-            hint = f"'{name}' is a property with a value: write ${{{name}}}"
-        expander.fail_at("XAC406", f"there is no block '{name}'", node, node.attribute_span("name"), hint)
+            hint = phrase("'{name}' is a property with a value: write ${{{name}}}", name=name)
+        expander.fail_at(
+            "XAC406", phrase("there is no block '{name}'", name=name), node, node.attribute_span("name"), hint
+        )
 
 
 def expand_element(expander: Expander, site: Site) -> None:
     """``<xacro:element xacro:name>``: an element whose tag is evaluated; it may turn out to be any tag."""
     node = site.node
     if "xacro:name" not in node.attributes:
-        expander.fail_at("XAC301", "'xacro:element' lacks its attribute 'xacro:name'", node, node.span())
+        expander.fail_at("XAC301", phrase("'xacro:element' lacks its attribute 'xacro:name'"), node, node.span())
     tag = expander.text_value(node, "xacro:name", site.scope)
     _check_name(expander, node, "xacro:name", "element", tag)
     attributes = {name: value for name, value in node.attributes.items() if name != "xacro:name"}
@@ -102,7 +108,11 @@ def set_attribute(expander: Expander, site: Site) -> None:
 
 def _check_name(expander: Expander, node: Element, attribute: str, what: str, name: str) -> None:
     if not _NAME.fullmatch(name):
-        message = f"'{name}' cannot be the name of an {what}" if name else f"the name of this {what} is empty"
+        message = (
+            phrase("'{name}' cannot be the name of an {what}", name=name, what=term(what))
+            if name
+            else phrase("the name of this {what} is empty", what=term(what))
+        )
         expander.fail_at("XAC309", message, node, node.attribute_span(attribute))
 
 

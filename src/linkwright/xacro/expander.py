@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import NamedTuple, NoReturn
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Span
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, Span, phrase
 from linkwright.xacro.budget import LONG
 from linkwright.xacro.comments import CommentSweeper
 from linkwright.xacro.faults import Fault
@@ -22,10 +22,6 @@ from linkwright.xacro.session import Session
 from linkwright.xmltree import Comment, Document, Element, Node, Text
 
 _MOST_ERRORS = 20
-_ROOT_HINT = (
-    "the attributes of the root come before what it holds; "
-    'write <xacro:attribute name="{name}" value="{value}"/> inside it instead'
-)
 
 
 class Site(NamedTuple):
@@ -79,6 +75,18 @@ class Expander:
         Raises:
             LinkwrightError: the mistakes found, each at its place.
         """
+        expanded = self.walk(document)
+        if expanded is None or self._errors:
+            raise LinkwrightError(*self.errors, *self.session.diagnostics)
+        return expanded
+
+    @property
+    def errors(self) -> tuple[Diagnostic, ...]:
+        """The mistakes found, each once."""
+        return tuple(_without_repeats(self._errors))
+
+    def walk(self, document: Document) -> Document | None:
+        """What a document expands to in spite of the mistakes in `errors`; None where the walk had to stop."""
         root = document.root
         container = Element("")
         target = root.attributes.get("xacro:targetNamespace")
@@ -90,10 +98,10 @@ class Expander:
             self.element(root, container.children, scope, MacroTable())
         except LinkwrightError as error:
             self._errors += error.diagnostics
+            return None
         except RecursionError:
             self._errors.append(self._out_of_stack())
-        if self._errors:
-            raise LinkwrightError(*_without_repeats(self._errors), *self.session.diagnostics)
+            return None
         expanded = container.children[0]
         assert isinstance(expanded, Element), "an ordinary element comes out as an element"
         result = Document(expanded, document.source)
@@ -154,6 +162,13 @@ class Expander:
         if plan.steps:
             self.children(node, made, scope, macros)
 
+    def blocks(self, node: Element, scope: Scope, macros: MacroTable) -> Element:
+        """What the elements inside of a macro call expand to, in a container."""
+        container = Element(node.tag)
+        if node.children:
+            self.children(node, container, scope, macros)
+        return container
+
     def attributes(self, node: Element, scope: Scope) -> dict[str, str]:
         """The attributes of an element, evaluated; those of the language are left out."""
         session, plan = self.session, plan_of(node)
@@ -167,7 +182,12 @@ class Expander:
                 except Fault as fault:
                     fault.place_in_attribute(node, name)
                     if fault.code == "XAC211" and node is self._root:
-                        fault.hint = _ROOT_HINT.format(name=name, value=value)
+                        fault.hint = phrase(
+                            "the attributes of the root come before what it holds;"
+                            ' write <xacro:attribute name="{name}" value="{value}"/> inside it instead',
+                            name=name,
+                            value=value,
+                        )
                     self.note(fault)
             if len(value) > LONG:
                 self._pay_text(node, value)
@@ -257,7 +277,12 @@ class Expander:
             if not name.startswith("xmlns:"):
                 continue
             if attributes.setdefault(name, value) != value:
-                message = f"'{name}' is declared as '{value}' here and as '{attributes[name]}' around it"
+                message = phrase(
+                    "'{name}' is declared as '{value}' here and as '{attributes}' around it",
+                    name=name,
+                    value=value,
+                    attributes=attributes[name],
+                )
                 self.session.warn("XAC504", message, site.node.span())
 
     def enter(self, frame: Frame) -> None:
@@ -268,8 +293,8 @@ class Expander:
         """
         limit = self.session.limits.depth
         if frame.depth > limit:
-            fault = Fault("XAC601", f"macro calls and includes are nested more than {limit} deep")
-            fault.hint = "end the recursion with xacro:if or xacro:unless"
+            fault = Fault("XAC601", phrase("macro calls and includes are nested more than {limit} deep", limit=limit))
+            fault.hint = phrase("end the recursion with xacro:if or xacro:unless")
             fault.place_at(frame.site)
             self.fail(fault)
         try:
@@ -295,7 +320,7 @@ class Expander:
         self.fail(fault)
 
     def _too_deep(self, node: Element) -> NoReturn:
-        fault = Fault("XAC601", f"elements are nested more than {self._deepest} deep")
+        fault = Fault("XAC601", phrase("elements are nested more than {deepest} deep", deepest=self._deepest))
         fault.place_at(next(node.elements(), node))
         self.fail(fault)
 
@@ -304,26 +329,38 @@ class Expander:
     def _out_of_stack(self) -> Diagnostic:
         place = self.session.place
         span = place.span() if isinstance(place, Element) else None
-        message = "the description is nested too deeply"
+        message = phrase("the description is nested too deeply")
         return Diagnostic(
             "XAC601", message, span, notes=trail(self.session.frame), source=place.source if place else None
         )
 
     def note(self, fault: Fault) -> None:
         """Keep a mistake after which the walk can go on, unless it is one too many."""
-        diagnostic = self._diagnostic(fault)
-        if fault.code.startswith("XAC6") or fault.code == "XAC701":
+        self.keep(self._diagnostic(fault))
+
+    def keep(self, diagnostic: Diagnostic) -> None:
+        """Keep a mistake after which the walk can go on.
+
+        Raises:
+            LinkwrightError: it is one too many, or one that ends every walk.
+        """
+        if is_final(diagnostic):
             raise LinkwrightError(diagnostic)
         self._errors.append(diagnostic)
-        if len(_without_repeats(self._errors)) >= _MOST_ERRORS:
+        if self.has_too_many_errors:
             raise LinkwrightError(diagnostic)
+
+    @property
+    def has_too_many_errors(self) -> bool:
+        """Whether more mistakes would be of no use to the reader."""
+        return len(_without_repeats(self._errors)) >= _MOST_ERRORS
 
     def fail(self, fault: Fault) -> NoReturn:
         """Stop because of a mistake that has its place."""
         raise LinkwrightError(self._diagnostic(fault)) from None
 
     def fail_at(
-        self, code: str, message: str, node: Element, span: Span | None, hint: str | None = None, *notes: Note
+        self, code: str, message: Phrase, node: Element, span: Span | None, hint: Phrase | None = None, *notes: Note
     ) -> NoReturn:
         """Stop because of a mistake at a place."""
         notes = (*notes, *trail(self.session.frame))
@@ -332,14 +369,19 @@ class Expander:
     def _diagnostic(self, fault: Fault) -> Diagnostic:
         elsewhere = fault.elsewhere()
         if elsewhere and fault.hint is None:
-            fault.hint = "move its definition above this, and out of any macro that ends before"
+            fault.hint = phrase("move its definition above this, and out of any macro that ends before")
         notes = (*fault.notes, *elsewhere, *trail(self.session.frame))
         return Diagnostic(fault.code, fault.message, fault.span, notes=notes, hint=fault.hint, source=fault.source)
 
 
+def is_final(diagnostic: Diagnostic) -> bool:
+    """Whether a mistake ends every walk: a bound of the expansion, or what the description itself says is fatal."""
+    return diagnostic.code.startswith("XAC6") or diagnostic.code == "XAC701"
+
+
 def _check_comment(data: str) -> None:
     if "--" in data or data.endswith("-"):
-        raise Fault("XAC311", f"the comment would hold '--': '{data.strip()}'")
+        raise Fault("XAC311", phrase("the comment would hold '--': '{data}'", data=data.strip()))
 
 
 def _with_attribute(element: Element, name: str, value: str) -> Element:

@@ -10,13 +10,13 @@ import ast
 import re
 import warnings
 from types import GeneratorType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from linkwright.diagnostics import foreign, phrase
+from linkwright.xacro.compiled import TextCompiler
 from linkwright.xacro.compiler import FAILURES, Closure, Compiler, failure
 from linkwright.xacro.faults import Fault
-
-if TYPE_CHECKING:
-    from linkwright.xacro.scope import Scope
+from linkwright.xacro.scope import Scope
 
 _LONGEST = 20_000
 _ITERATORS = frozenset({GeneratorType, enumerate, filter, map, reversed, zip})
@@ -24,12 +24,12 @@ _ITERATORS = frozenset({GeneratorType, enumerate, filter, map, reversed, zip})
 _WARNS = re.compile(r"\\|\d\.?[^\W\d]")
 _CLOSING = {"(": ")", "[": "]"}
 _HINTS = (
-    ("{", "'}' ends the expression, so there is no way to write a dict or set in it; load one from YAML"),
-    ("&&", "write 'and'"),
-    ("||", "write 'or'"),
-    ("!", "write 'not'"),
-    ("$", "names in an expression are written without a dollar sign"),
-    ("?", "write 'A if CONDITION else B'"),
+    ("{", phrase("'}' ends the expression, so there is no way to write a dict or set in it; load one from YAML")),
+    ("&&", phrase("write 'and'")),
+    ("||", phrase("write 'or'")),
+    ("!", phrase("write 'not'")),
+    ("$", phrase("names in an expression are written without a dollar sign")),
+    ("?", phrase("write 'A if CONDITION else B'")),
 )
 
 
@@ -64,6 +64,20 @@ _KEYWORDS = frozenset(
 )
 
 
+_compiler = TextCompiler(Expression)
+expressions = _compiler.forms
+"""The expressions compiled so far, by their sources; those inside of templates are the templates' own."""
+
+
+def compile_expression(source: str) -> Expression:
+    """The compiled form of an expression; the same source gives the same one.
+
+    Raises:
+        Fault: XAC102 or XAC204 when it is malformed or forbidden.
+    """
+    return expressions.get(source) or _compiler.make(source)
+
+
 def _run_through(closure: Closure, source: str) -> Closure:
     """A closure whose value is nothing that is still to be run through."""
 
@@ -92,9 +106,11 @@ def is_identifier(name: str) -> bool:
 
 def _parse(source: str, stripped: str) -> ast.Expression:
     if not stripped:
-        raise Fault("XAC102", "the expression is empty", hint="write a property or a value between the braces")
+        raise Fault(
+            "XAC102", phrase("the expression is empty"), hint=phrase("write a property or a value between the braces")
+        )
     if len(stripped) > _LONGEST:
-        raise Fault("XAC102", f"the expression is longer than {_LONGEST:,} characters")
+        raise Fault("XAC102", phrase("the expression is longer than {longest:,} characters", longest=_LONGEST))
     try:
         if _WARNS.search(stripped):
             with warnings.catch_warnings():
@@ -105,7 +121,12 @@ def _parse(source: str, stripped: str) -> ast.Expression:
         raise _syntax_fault(source, stripped, error) from None
     except (ValueError, MemoryError, RecursionError) as error:
         raise Fault(
-            "XAC102", f"'{_shortened(stripped)}' is not an expression: {str(error) or 'it is nested too deeply'}"
+            "XAC102",
+            phrase(
+                "'{shortened}' is not an expression: {error}",
+                shortened=_shortened(stripped),
+                error=foreign(str(error) or phrase("it is nested too deeply")),
+            ),
         ) from None
 
 
@@ -117,12 +138,14 @@ def _syntax_tree(source: str) -> ast.Expression:
 
 def _syntax_fault(source: str, stripped: str, error: SyntaxError) -> Fault:
     words = error.msg.removeprefix("f-string: ")
-    message = f"'{_shortened(stripped)}' is not an expression: {words}"
+    message = phrase(
+        "'{shortened}' is not an expression: {words}", shortened=_shortened(stripped), words=foreign(words)
+    )
     hint = next((hint for sign, hint in _HINTS if sign in stripped), None)
     if "!=" in stripped and hint == "write 'not'":
         hint = None
     if hint is None and "was never closed" in words:
-        hint = f"close it with '{_CLOSING.get(words[1:2], ')')}'"
+        hint = phrase("close it with '{closing}'", closing=_CLOSING.get(words[1:2], ")"))
     fault = Fault("XAC102", message, hint=hint)
     lines = stripped.split("\n")
     if error.lineno and error.offset and error.lineno <= len(lines):

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 
-from linkwright.diagnostics import Note, SourceText, Span
+from linkwright.diagnostics import Note, Phrase, SourceText, Span, phrase, term
 from linkwright.xmltree import Element, Text
 from linkwright.xmltree.positions import attribute_name_range, attribute_value_range, raw_offset
 
@@ -30,7 +30,7 @@ class Fault(Exception):  # noqa: N818 - it is on its way to a diagnostic, and no
     """
 
     def __init__(
-        self, code: str, message: str, start: int | None = None, end: int | None = None, hint: str | None = None
+        self, code: str, message: Phrase, start: int | None = None, end: int | None = None, hint: Phrase | None = None
     ) -> None:
         super().__init__(message)
         self.code = code
@@ -41,7 +41,7 @@ class Fault(Exception):  # noqa: N818 - it is on its way to a diagnostic, and no
         self.span: Span | None = None
         self.source: SourceText | None = None
         self.notes: list[Note] = []
-        self.passing = "from here"
+        self.passing = phrase("from here")
         self.missing: str | None = None
 
     def within(self, start: int, end: int, shift: int | None = None) -> None:
@@ -73,7 +73,7 @@ class Fault(Exception):  # noqa: N818 - it is on its way to a diagnostic, and no
             return []
         found = definition_elsewhere(self.source, "property", self.missing)
         if not found and (bare := definition_elsewhere(self.source, "property", self.missing, prefix="")):
-            self.hint = "write <xacro:property where it is defined: without its prefix the tag means nothing"
+            self.hint = phrase("write <xacro:property where it is defined: without its prefix the tag means nothing")
             return bare
         return found
 
@@ -93,8 +93,17 @@ def definition_elsewhere(source: SourceText, tag: str, name: str, prefix: str = 
         return []
     span = source.span(match.start(), match.start() + len(f"<{prefix}{tag}"))
     if not prefix:
-        return [Note(f"a {tag} '{name}' is written here without the prefix 'xacro:'", span)]
-    return [Note(f"a {tag} '{name}' is defined here, which is too late or not in scope there", span)]
+        return [
+            Note(phrase("a {tag} '{name}' is written here without the prefix 'xacro:'", tag=term(tag), name=name), span)
+        ]
+    return [
+        Note(
+            phrase(
+                "a {tag} '{name}' is defined here, which is too late or not in scope there", tag=term(tag), name=name
+            ),
+            span,
+        )
+    ]
 
 
 def attribute_part(element: Element, name: str, start: int | None, end: int | None) -> Span | None:

@@ -6,6 +6,7 @@ import ast
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+from linkwright.diagnostics import phrase
 from linkwright.xacro.scope import Environment, Local
 
 _Closure = Callable[[Any], Any]
@@ -39,26 +40,32 @@ class Parameters(NamedTuple):
         values: dict[str, Any] = dict(zip(self.positional, arguments, strict=False))
         further = arguments[len(self.positional) :]
         if further and self.rest is None:
-            raise TypeError(f"the lambda takes {len(self.positional)} arguments and {len(arguments)} are given")
+            raise TypeError(
+                phrase(
+                    "the lambda takes {count} arguments and {other_count} are given",
+                    count=len(self.positional),
+                    other_count=len(arguments),
+                )
+            )
         if self.rest is not None:
             values[self.rest] = further
         others: dict[str, Any] = {}
         for name, value in named.items():
             known = name in self.positional[self.positional_only :] or name in self.keyword_only
             if known and name in values:
-                raise TypeError(f"the lambda is given '{name}' twice")
+                raise TypeError(phrase("the lambda is given '{name}' twice", name=name))
             if known:
                 values[name] = value
             elif self.keywords is not None:
                 others[name] = value
             else:
-                raise TypeError(f"the lambda has no parameter '{name}'")
+                raise TypeError(phrase("the lambda has no parameter '{name}'", name=name))
         if self.keywords is not None:
             values[self.keywords] = others
         for name in (*self.positional, *self.keyword_only):
             if name not in values:
                 if name not in self.defaults:
-                    raise TypeError(f"the lambda is not given its parameter '{name}'")
+                    raise TypeError(phrase("the lambda is not given its parameter '{name}'", name=name))
                 values[name] = self.defaults[name]
         return values
 

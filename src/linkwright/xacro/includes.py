@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import re
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, display_path
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, display_path, phrase
 from linkwright.xacro.expander import Expander, Site
 from linkwright.xacro.literals import truth
 from linkwright.xacro.macros import MacroTable
@@ -26,7 +26,7 @@ def include(expander: Expander, site: Site) -> None:
     optional = _is_optional(expander, node)
     child = next(node.elements(), None)
     if child is not None:
-        session.warn("XAC503", f"'{child.tag}' inside an include means nothing", child.span())
+        session.warn("XAC503", phrase("'{tag}' inside an include means nothing", tag=child.tag), child.span())
     contents: list[Element] = []
     for path in _paths(expander, site):
         session.depends_on(path)
@@ -61,8 +61,8 @@ def _is_optional(expander: Expander, node: Element) -> bool:
     try:
         return truth(written)
     except ValueError:
-        message = f"'optional' is '{written}', which is neither true nor false"
-        hint = "write true or false; it is not evaluated"
+        message = phrase("'optional' is '{written}', which is neither true nor false", written=written)
+        hint = phrase("write true or false; it is not evaluated")
         expander.fail_at("XAC305", message, node, node.attribute_span("optional"), hint)
 
 
@@ -77,7 +77,7 @@ def _paths(expander: Expander, site: Site) -> list[str]:
     paths = sorted(glob(path, root_dir=root))  # noqa: PTH207 - kept as it is written
     if not paths:
         span = site.node.attribute_span("filename")
-        expander.session.warn("XAC502", f"no file matches '{path}'", span)
+        expander.session.warn("XAC502", phrase("no file matches '{path}'", path=path), span)
     return paths
 
 
@@ -129,16 +129,16 @@ def _document(expander: Expander, site: Site, path: str) -> Document:
         raise LinkwrightError(diagnostic) from None
 
 
-def xml_hint(diagnostic: Diagnostic) -> str | None:
+def xml_hint(diagnostic: Diagnostic) -> Phrase | None:
     """The hint of a mistake in the XML; for the prefix of this language it says how that is declared."""
     if diagnostic.code == "XML205" and diagnostic.message.startswith("the prefix 'xacro'"):
-        return 'declare it on the root element: xmlns:xacro="http://www.ros.org/wiki/xacro"'
+        return phrase('declare it on the root element: xmlns:xacro="http://www.ros.org/wiki/xacro"')
     return diagnostic.hint
 
 
-def _nearest_file(path: str) -> str | None:
+def _nearest_file(path: str) -> Phrase | None:
     folder, name = os.path.split(path)
     try:
         return did_you_mean(name, os.listdir(folder or "."))  # noqa: PTH208 - names are wanted, not paths
     except (OSError, ValueError):
-        return f"there is no folder '{display_path(folder)}'"
+        return phrase("there is no folder '{folder}'", folder=display_path(folder))

@@ -11,6 +11,7 @@ import re
 from enum import Enum
 from typing import NamedTuple
 
+from linkwright.diagnostics import phrase
 from linkwright.xacro.faults import Fault
 
 
@@ -80,10 +81,12 @@ def tokenize(text: str) -> list[Token]:
 def _not_a_token(text: str, at: int) -> Fault:
     for opening, closing in (("${", "}"), ("$(", ")")):
         if text.startswith(opening, at):
-            message = f"'{opening}' is never closed: '{_shortened(text[at:])}'"
-            return Fault("XAC101", message, at, len(text), f"close it with '{closing}'")
-    message = f"'$$' means nothing here: '{_shortened(text[at:])}'"
-    hint = "'$$' is only for a literal '${' or '$('; write one '$' for a dollar sign"
+            message = phrase(
+                "'{opening}' is never closed: '{shortened}'", opening=opening, shortened=_shortened(text[at:])
+            )
+            return Fault("XAC101", message, at, len(text), phrase("close it with '{closing}'", closing=closing))
+    message = phrase("'$$' means nothing here: '{shortened}'", shortened=_shortened(text[at:]))
+    hint = phrase("'$$' is only for a literal '${' or '$('; write one '$' for a dollar sign")
     return Fault("XAC101", message, at, at + 2, hint)
 
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from functools import lru_cache
 from typing import NamedTuple
 
+from linkwright.diagnostics import phrase
 from linkwright.xacro.faults import Fault
 from linkwright.xmltree import Element
 
@@ -66,7 +67,7 @@ def parse_parameters(text: str) -> tuple[Parameter, ...]:
             with_sign[name] = parameter
         elif _SIGN.match(text, at):
             end = len(text.rstrip())
-            raise Fault("XAC412", "this parameter's default has a quote that is never closed", at, end)
+            raise Fault("XAC412", phrase("this parameter's default has a quote that is never closed"), at, end)
         else:
             match = _BARE.match(text, at)
             if match is None:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import groupby
 
-from linkwright.diagnostics import Note, Span
+from linkwright.diagnostics import Note, Span, phrase
 from linkwright.xmltree import Element
 
 _SHOWN = 10
@@ -32,7 +32,11 @@ class Frame:
 
     def note(self) -> Note:
         """What a message says of it."""
-        what = "included from here" if self.macro is None else f"in macro '{self.macro}' called here"
+        what = (
+            phrase("included from here")
+            if self.macro is None
+            else phrase("in macro '{macro}' called here", macro=self.macro)
+        )
         return Note(what, self.site.span())
 
 
@@ -63,11 +67,11 @@ def trail(innermost: Frame | None) -> tuple[Note, ...]:
     for site, group in groupby(frames(innermost), key=lambda frame: frame.site):
         repeated = list(group)
         if len(notes) == _SHOWN and repeated[0].depth > 1:
-            notes.append(Note(f"and {repeated[0].depth} more calls and includes around it"))
+            notes.append(Note(phrase("and {depth} more calls and includes around it", depth=repeated[0].depth)))
             break
         note = repeated[0].note()
         if len(repeated) > 1:
-            note = Note(f"{note.message}, {len(repeated)} times", site.span())
+            note = Note(phrase("{message}, {count} times", message=note.message, count=len(repeated)), site.span())
         notes.append(note)
     return tuple(notes)
 

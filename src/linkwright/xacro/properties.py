@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from linkwright.diagnostics import phrase
 from linkwright.xacro.expander import Expander, Site
 from linkwright.xacro.expression import is_identifier
 from linkwright.xacro.literals import truth
@@ -25,14 +26,14 @@ def define_property(expander: Expander, site: Site) -> None:
         return
     remove = _flag(expander, node, "remove", scope, default=False)
     if ("value" in attributes) + ("default" in attributes) + remove > 1:
-        message = f"the property '{name}' has more than one of 'value', 'default' and 'remove'"
-        expander.fail_at("XAC304", message, node, node.span(), "keep one of them")
+        message = phrase("the property '{name}' has more than one of 'value', 'default' and 'remove'", name=name)
+        expander.fail_at("XAC304", message, node, node.span(), phrase("keep one of them"))
     if remove:
         _remove(expander, node, name, scope)
         return
     if "default" in attributes:
         if "scope" in attributes:
-            message = f"the default of '{name}' is for this scope only; 'scope' means nothing with it"
+            message = phrase("the default of '{name}' is for this scope only; 'scope' means nothing with it", name=name)
             expander.session.warn("XAC308", message, node.attribute_span("scope"))
         if name in scope:
             return
@@ -55,11 +56,11 @@ def _name(expander: Expander, node: Element, scope: Scope) -> str:
     if "$" in name:
         name = expander.text_value(node, "name", scope)
     if not is_identifier(name):
-        message = f"'{name}' cannot be the name of a property"
-        hint = "a name consists of letters, digits and underscores, and is no word of Python's"
+        message = phrase("'{name}' cannot be the name of a property", name=name)
+        hint = phrase("a name consists of letters, digits and underscores, and is no word of Python's")
         expander.fail_at("XAC303", message, node, node.attribute_span("name"), hint)
     if name.startswith("__"):
-        message = f"the name '{name}' begins with two underscores"
+        message = phrase("the name '{name}' begins with two underscores", name=name)
         expander.fail_at("XAC303", message, node, node.attribute_span("name"))
     return name
 
@@ -71,16 +72,20 @@ def _flag(expander: Expander, node: Element, attribute: str, scope: Scope, *, de
     try:
         return truth(value)
     except ValueError:
-        message = f"'{attribute}' is '{value}', which is neither true nor false"
-        expander.fail_at("XAC305", message, node, node.attribute_span(attribute), "write true or false")
+        message = phrase(
+            "'{attribute}' is '{value}', which is neither true nor false", attribute=attribute, value=value
+        )
+        expander.fail_at("XAC305", message, node, node.attribute_span(attribute), phrase("write true or false"))
 
 
 def _remove(expander: Expander, node: Element, name: str, scope: Scope) -> None:
     span = node.attribute_span("name")
     if name not in scope:
-        expander.session.warn("XAC310", f"there is no property '{name}' to remove", span)
+        expander.session.warn("XAC310", phrase("there is no property '{name}' to remove", name=name), span)
     elif name in expander.session.globals.values:
-        expander.session.warn("XAC310", f"'{name}' is a name that xacro provides and cannot be removed", span)
+        expander.session.warn(
+            "XAC310", phrase("'{name}' is a name that xacro provides and cannot be removed", name=name), span
+        )
     scope.remove(name)
 
 
@@ -96,7 +101,7 @@ def _target(expander: Expander, node: Element, name: str, scope: Scope) -> tuple
         while isinstance(target, Namespace):
             target = target.parent
     if target is None or target.parent is None:
-        message = f"there is no scope around this one for '{name}'"
-        hint = "'scope' is for properties defined inside a macro; leave it out here"
+        message = phrase("there is no scope around this one for '{name}'", name=name)
+        hint = phrase("'scope' is for properties defined inside a macro; leave it out here")
         expander.fail_at("XAC307", message, node, node.attribute_span("scope"), hint)
     return target, False

@@ -7,12 +7,12 @@ from typing import Any
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.xacro.directives import DIRECTIVES
-from linkwright.xacro.engine import Inputs
 from linkwright.xacro.expander import Expander, Site
-from linkwright.xacro.observed import PROBE, ObservedSession, echo, expand_observed
+from linkwright.xacro.inputs import Inputs
 from linkwright.xacro.references import shown
 from linkwright.xacro.scope import Lazy, Scope
 from linkwright.xacro.session import Session
+from linkwright.xacro.traced import PROBE, TracedSession, echo, expand_traced
 from linkwright.xmltree import Element
 
 
@@ -26,7 +26,7 @@ def log_properties(inputs: Inputs, put: Callable[[str], None], *, everywhere: bo
     """
     log = _Log(put, everywhere=everywhere)
     try:
-        expand_observed(inputs, ObservedSession(inputs), {**DIRECTIVES, PROBE: log.probe})
+        expand_traced(inputs, TracedSession(inputs), {**DIRECTIVES, PROBE: log.probe})
     except LinkwrightError:
         put("the expansion ends here")
 

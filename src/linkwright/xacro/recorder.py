@@ -13,10 +13,10 @@ from linkwright.xacro.expander import Directive, Expander, Site
 from linkwright.xacro.faults import Fault, attribute_part
 from linkwright.xacro.literals import literal
 from linkwright.xacro.macros import Parameter, parse_parameters
-from linkwright.xacro.observed import PROBE, echo
 from linkwright.xacro.origin import Frame
 from linkwright.xacro.references import Reference, Value, references, shown, written_attribute
 from linkwright.xacro.scope import Lazy, Scope
+from linkwright.xacro.traced import PROBE, echo
 from linkwright.xmltree import Element, Text
 
 

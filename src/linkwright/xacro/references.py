@@ -57,10 +57,11 @@ def references(text: str) -> list[Reference]:
 def shown(value: Any) -> str:
     """A value as Python writes it, cut when it is long."""
     from linkwright.xacro import sandbox
+    from linkwright.xacro.refusal import RefusalError
 
     try:
         text = repr(value) if isinstance(value, str) else sandbox.as_text(value)
-    except (sandbox.RefusalError, ValueError):
+    except (RefusalError, ValueError):
         text = f"a {type(value).__name__}"
     return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 3]}..."
 

@@ -12,6 +12,9 @@ import re
 from collections.abc import Callable
 from typing import Any
 
+from linkwright.diagnostics import phrase
+from linkwright.xacro import bounded
+from linkwright.xacro.refusal import RefusalError
 from linkwright.xacro.scope import Namespace
 from linkwright.xacro.yamldata import YamlDict, YamlList
 
@@ -21,10 +24,6 @@ MAX_BITS = 20_000
 """How many bits a whole number may have."""
 MAX_DIGITS = 1_000
 """How wide or precise a formatted number may be."""
-
-
-class RefusalError(Exception):
-    """An expression tried something that expressions may not do."""
 
 
 class Module:
@@ -45,17 +44,17 @@ _SET = {
     *("copy", "difference", "intersection", "isdisjoint", "issubset", "issuperset", "symmetric_difference", "union"),
 }
 _STRING = {
-    *("capitalize", "casefold", "count", "encode", "endswith", "find", "index", "isalnum", "isalpha", "isascii"),
+    *("capitalize", "casefold", "count", "endswith", "find", "index", "isalnum", "isalpha", "isascii"),
     *("isdecimal", "isdigit", "isidentifier", "islower", "isnumeric", "isprintable", "isspace", "istitle", "isupper"),
-    *("lower", "lstrip", "partition", "removeprefix", "removesuffix", "rfind", "rindex", "rpartition", "rsplit"),
-    *("rstrip", "split", "splitlines", "startswith", "strip", "swapcase", "title", "upper"),
+    *("lower", "partition", "removeprefix", "removesuffix", "split", "splitlines", "startswith", "swapcase", "title"),
+    "upper",
 }
 _LIST = {*_SEQUENCE, "append", "clear", "copy", "insert", "pop", "remove", "reverse", "sort"}
 _DICT = {"clear", "copy", "get", "items", "keys", "pop", "popitem", "setdefault", "update", "values"}
 
 _ATTRIBUTES: dict[type, set[str]] = {
     str: _STRING,
-    bytes: {"decode", "hex", *_SEQUENCE},
+    bytes: {"hex", *_SEQUENCE},
     int: {"as_integer_ratio", "bit_length", "conjugate", "denominator", "imag", "numerator", "real"},
     bool: {"imag", "numerator", "denominator", "real"},
     float: {"as_integer_ratio", "conjugate", "hex", "imag", "is_integer", "real"},
@@ -89,12 +88,12 @@ def attribute(value: Any, name: str) -> Any:
     """
     kind = value.__class__
     if kind is Module:
-        return _member(value.values, name, f"'{value.name}' has no '{name}'")
+        return _member(value.values, name, phrase("'{name}' has no '{other_name}'", name=value.name, other_name=name))
     if isinstance(value, Namespace):
         try:
             return value.lookup(name)
         except KeyError:
-            raise AttributeError(f"the namespace has no property '{name}'") from None
+            raise AttributeError(phrase("the namespace has no property '{name}'", name=name)) from None
     if name in _ATTRIBUTES.get(kind, ()):
         return getattr(value, name)
     grown = _GROWING.get((kind, name))
@@ -104,11 +103,14 @@ def attribute(value: Any, name: str) -> Any:
         return value[name]
     if kind.__module__ == "datetime" and name in _DATES:
         return getattr(value, name)
-    if kind is type and value in _ATTRIBUTES and name in _ATTRIBUTES[value]:
-        return getattr(value, name)
+    if kind is type and value in _ATTRIBUTES:
+        if name in _ATTRIBUTES[value]:
+            return getattr(value, name)
+        if (value, name) in bounded.METHODS:
+            return bounded.METHODS[value, name]
     if name.startswith("_") or hasattr(value, name):
-        raise RefusalError(f"'.{name}' is not available in expressions")
-    raise AttributeError(f"'{kind.__name__}' has no attribute '{name}'")
+        raise RefusalError(phrase("'.{name}' is not available in expressions", name=name))
+    raise AttributeError(phrase("'{kind}' has no attribute '{name}'", kind=kind.__name__, name=name))
 
 
 def subscript(value: Any, key: Any) -> Any:
@@ -116,9 +118,9 @@ def subscript(value: Any, key: Any) -> Any:
     if isinstance(value, Namespace):
         return value.lookup(key)
     if value.__class__ is Module:
-        return _member(value.values, key, f"'{value.name}' has no '{key}'")
+        return _member(value.values, key, phrase("'{name}' has no '{key}'", name=value.name, key=key))
     if isinstance(value, type):
-        raise TypeError(f"'{value.__name__}' is a type and has no items")
+        raise TypeError(phrase("'{name}' is a type and has no items", name=value.__name__))
     return value[key]
 
 
@@ -134,7 +136,7 @@ def check_call(function: Any) -> None:
         RefusalError: it is a type that expressions may not make values of.
     """
     if isinstance(function, type) and function not in CALLABLE_TYPES:
-        raise RefusalError(f"'{function.__name__}' may not be called in expressions")
+        raise RefusalError(phrase("'{name}' may not be called in expressions", name=function.__name__))
 
 
 def check_size(value: Any) -> Any:
@@ -159,7 +161,7 @@ def weight(value: Any) -> int:
     if kind is int:
         bits: int = value.bit_length()
         if bits > MAX_BITS:
-            raise RefusalError(f"the number has more than {MAX_BITS:,} bits")
+            raise RefusalError(phrase("the number has more than {max_bits:,} bits", max_bits=MAX_BITS))
         return bits // 64
     if kind is str or kind is bytes:
         _check_length(len(value))
@@ -194,7 +196,7 @@ def as_text(value: Any) -> str:
 
 def _check_length(length: int) -> None:
     if length > MAX_LENGTH:
-        raise RefusalError(f"the value has more than {MAX_LENGTH:,} characters or items")
+        raise RefusalError(phrase("the value has more than {max_length:,} characters or items", max_length=MAX_LENGTH))
 
 
 def _weigh(value: Any) -> int:
@@ -253,14 +255,14 @@ def power(base: Any, exponent: Any) -> Any:
         and abs(base) > 1
         and base.bit_length() * exponent > MAX_BITS
     ):
-        raise RefusalError(f"the number has more than {MAX_BITS:,} bits")
+        raise RefusalError(phrase("the number has more than {max_bits:,} bits", max_bits=MAX_BITS))
     return base**exponent
 
 
 def shift_left(value: Any, by: Any) -> Any:
     """``value << by``."""
     if isinstance(value, int) and isinstance(by, int) and value.bit_length() + by > MAX_BITS:
-        raise RefusalError(f"the number has more than {MAX_BITS:,} bits")
+        raise RefusalError(phrase("the number has more than {max_bits:,} bits", max_bits=MAX_BITS))
     return value << by
 
 
@@ -273,7 +275,13 @@ def modulo(left: Any, right: Any) -> Any:
         pattern = left if isinstance(left, str) else left.decode("latin-1")
         for digits in (part for found in _FORMAT.findall(pattern) for part in found):
             if digits == "*" or len(digits) > len(str(MAX_DIGITS)) or int(digits or 0) > MAX_DIGITS:
-                raise RefusalError(f"a width or precision of '{digits}' may be more than {MAX_DIGITS:,}")
+                raise RefusalError(
+                    phrase(
+                        "a width or precision of '{digits}' may be more than {max_digits:,}",
+                        digits=digits,
+                        max_digits=MAX_DIGITS,
+                    )
+                )
         check_size(right)
     return left % right
 
@@ -301,14 +309,14 @@ OPERATORS: dict[str, Callable[[Any, Any], Any]] = {
 class _Bound:
     """A guarded method of a value."""
 
-    __slots__ = ("_method", "_value")
+    __slots__ = ("__self__", "_method")
 
     def __init__(self, method: Callable[..., Any], value: Any) -> None:
         self._method = method
-        self._value = value
+        self.__self__ = value
 
-    def __call__(self, *arguments: Any) -> Any:
-        return self._method(self._value, *arguments)
+    def __call__(self, *arguments: Any, **keywords: Any) -> Any:
+        return self._method(self.__self__, *arguments, **keywords)
 
 
 def _padded(name: str) -> Callable[..., Any]:
@@ -350,4 +358,5 @@ _GROWING: dict[tuple[type, str], Callable[..., Any]] = {
     (str, "replace"): _replace,
     (list, "extend"): _extend,
     (YamlList, "extend"): _extend,
+    **bounded.METHODS,
 }

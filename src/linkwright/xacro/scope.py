@@ -7,14 +7,61 @@ include with a namespace opens a `Namespace`, and the outermost one holds the na
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
+from linkwright.diagnostics import Phrase, phrase
+from linkwright.xacro.budget import Budget
 from linkwright.xacro.faults import Fault
+from linkwright.xacro.limits import Limits
 from linkwright.xacro.literals import literal
+from linkwright.xmltree import Element, Text
 
-if TYPE_CHECKING:
-    from linkwright.xacro.session import Session
-    from linkwright.xmltree import Element
+
+class Context(Protocol):
+    """The expansion in which a text is evaluated, as far as evaluation needs to know it; a `Session` is one.
+
+    Attributes:
+        arguments: name -> value of every argument given or declared so far.
+        limits: the bounds of the expansion.
+        budget: what is left of them.
+        file: the file being processed.
+        place: the element or text being processed.
+        attribute: the attribute of that element which is being evaluated, or None.
+        resolving: the properties being evaluated because of one another, outermost first.
+    """
+
+    arguments: dict[str, str]
+    limits: Limits
+    budget: Budget
+    file: str
+    place: Element | Text | None
+    attribute: str | None
+    resolving: list[str]
+
+    @property
+    def working_directory(self) -> str:
+        """What ``$(cwd)`` gives."""
+        ...
+
+    def evaluate(self, text: str, scope: Scope) -> Any:
+        """The value of a text in a scope; raises a `Fault` when it has none."""
+        ...
+
+    def argument(self, name: str) -> str:
+        """The value of an argument; raises a `Fault` when it is neither declared nor given."""
+        ...
+
+    def package(self, name: str) -> str:
+        """The share folder of a package; raises a `Fault` when there is no such package."""
+        ...
+
+    def undefined(self, name: str, environment: Environment, start: int, end: int) -> Fault:
+        """The fault for a name that no scope has."""
+        ...
+
+    def nearest_attribute(self, owner: Any, name: str) -> Phrase | None:
+        """A hint for a name that a value does not have."""
+        ...
 
 
 class Lazy:
@@ -34,7 +81,7 @@ class Scope:
 
     __slots__ = ("parent", "session", "values")
 
-    def __init__(self, parent: Scope | None, session: Session, values: dict[str, Any] | None = None) -> None:
+    def __init__(self, parent: Scope | None, session: Context, values: dict[str, Any] | None = None) -> None:
         self.parent = parent
         self.session = session
         self.values: dict[str, Any] = {} if values is None else values
@@ -127,10 +174,14 @@ class Scope:
         chain = self.session.resolving
         if lazy.resolving:
             circle = " -> ".join([*chain[chain.index(name) :], name])
-            hint = 'evaluate one of them where it is written: lazy_eval="false"'
-            raise Fault("XAC203", f"the property '{name}' is defined by itself: {circle}", hint=hint)
+            hint = phrase('evaluate one of them where it is written: lazy_eval="false"')
+            raise Fault(
+                "XAC203",
+                phrase("the property '{name}' is defined by itself: {circle}", name=name, circle=circle),
+                hint=hint,
+            )
         if len(chain) >= self.session.limits.depth:
-            raise Fault("XAC601", f"more than {len(chain)} properties are defined by one another")
+            raise Fault("XAC601", phrase("more than {count} properties are defined by one another", count=len(chain)))
         session = self.session
         around = session.place, session.attribute
         if lazy.element is not None:
@@ -142,7 +193,7 @@ class Scope:
         except Fault as fault:
             if lazy.element is not None:
                 fault.place_in_attribute(lazy.element, lazy.attribute)
-            fault.passing = f"the property '{name}' is used here"
+            fault.passing = phrase("the property '{name}' is used here", name=name)
             raise
         finally:
             lazy.resolving = False
@@ -166,7 +217,7 @@ class Local:
     def __init__(self, around: Environment, values: dict[str, Any]) -> None:
         self._around = around
         self._values = values
-        self.session: Session = around.session
+        self.session: Context = around.session
 
     def lookup(self, name: str) -> Any:
         """The value of a name; see `Scope.lookup`."""

@@ -7,18 +7,21 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any, Protocol
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, did_you_mean
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, Severity, did_you_mean, foreign, phrase
 from linkwright.xacro import sandbox, sources, symbols
+from linkwright.xacro.bounded import keys
 from linkwright.xacro.budget import Budget
+from linkwright.xacro.expression import compile_expression
 from linkwright.xacro.faults import Fault, attribute_part, text_part
 from linkwright.xacro.limits import Limits
 from linkwright.xacro.origin import Frame, trail
+from linkwright.xacro.refusal import RefusalError
 from linkwright.xacro.sandbox import Module
 from linkwright.xacro.scope import Namespace, Scope
 from linkwright.xacro.substitution import package_fault
 from linkwright.xacro.template import compile_template, templates
 from linkwright.xacro.yamldata import YamlDict, YamlError, dotted
-from linkwright.xmltree import Document, Element, Text
+from linkwright.xmltree import Document, Element, Overlay, Text
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -28,7 +31,7 @@ if TYPE_CHECKING:
 
 
 class Packages(Protocol):
-    """What finds the share folder of a package; `linkwright.workspace.PackageFinder` does."""
+    """What finds the share folder of a package; `linkwright.packages.PackageFinder` does."""
 
     def share(self, name: str) -> Path:
         """The share folder of a package; raises `LinkwrightError` when there is no such package."""
@@ -63,6 +66,7 @@ class Session:
         packages: PackageSource,
         limits: Limits,
         root_dir: str = "",
+        overlay: Overlay | None = None,
     ) -> None:
         self.arguments: dict[str, str] = {name: str(value) for name, value in arguments.items()}
         self.known_arguments: set[str] = set()
@@ -75,6 +79,7 @@ class Session:
         self.resolving: list[str] = []
         self.dependencies: dict[str, None] = {file: None}
         self.root_dir = root_dir
+        self._overlay = overlay or Overlay()
         self.diagnostics: list[Diagnostic] = []
         self._told: set[tuple[str, str, Span | None]] = set()
         self._packages = packages
@@ -112,8 +117,10 @@ class Session:
             return value
         try:
             return sandbox.as_text(value)
-        except (sandbox.RefusalError, ValueError) as error:
-            raise Fault("XAC202", f"cannot write the value of '{text}': {error}") from None
+        except (RefusalError, ValueError) as error:
+            raise Fault(
+                "XAC202", phrase("cannot write the value of '{text}': {error}", text=text, error=foreign(error))
+            ) from None
 
     def changes(self, text: str) -> bool:
         """Whether evaluating a text may change a value, as ``${items.pop(0)}`` does."""
@@ -126,24 +133,26 @@ class Session:
         provided = self.globals.values
         python = provided["python"].values
         if name in ("true", "false"):
-            hint: str | None = f"write {name.capitalize()}"
+            hint: Phrase | None = phrase("write {name}", name=name.capitalize())
         elif name in python:
-            hint = f"write python.{name}"
+            hint = phrase("write python.{name}", name=name)
         elif name in self.arguments:
-            hint = f"'{name}' is an argument: write $(arg {name})"
+            hint = phrase("'{name}' is an argument: write $(arg {name})", name=name)
         elif name.lower() in provided:
-            hint = f"write {name.lower()}"
+            hint = phrase("write {name}", name=name.lower())
         elif f"**{name}" in set(environment.blocks()):
-            hint = f'\'{name}\' is defined without a value; write <xacro:property name="{name}" value="..."/>'
+            hint = phrase(
+                '\'{name}\' is defined without a value; write <xacro:property name="{name}" value="..."/>', name=name
+            )
         else:
             hint = did_you_mean(name, [known for known in environment.names() if known not in provided])
             if hint is None and len(name) > len("pi"):
                 hint = did_you_mean(name, provided)
-        fault = Fault("XAC201", f"the property '{name}' is not defined", start, end, hint)
+        fault = Fault("XAC201", phrase("the property '{name}' is not defined", name=name), start, end, hint)
         fault.missing = name
         return fault
 
-    def nearest_attribute(self, owner: Any, name: str) -> str | None:
+    def nearest_attribute(self, owner: Any, name: str) -> Phrase | None:
         """A hint for a name that a value does not have."""
         candidates: Iterable[Any] = ()
         if isinstance(owner, Module):
@@ -164,8 +173,8 @@ class Session:
         if value is None:
             hint = did_you_mean(str(name), self.arguments)
             if hint is None:
-                hint = f'declare it before this: <xacro:arg name="{name}" default="..."/>'
-            raise Fault("XAC211", f"the argument '{name}' is not declared", hint=hint)
+                hint = phrase('declare it before this: <xacro:arg name="{name}" default="..."/>', name=name)
+            raise Fault("XAC211", phrase("the argument '{name}' is not declared", name=name), hint=hint)
         self.known_arguments.add(name)
         return value
 
@@ -187,7 +196,7 @@ class Session:
         if packages is None or isinstance(packages, Mapping):
             from pathlib import Path
 
-            from linkwright.workspace import PackageFinder
+            from linkwright.packages import PackageFinder
 
             start = Path(self.on_disk(self._main_file)).resolve().parent
             packages = self._packages = PackageFinder(start=start, extra=packages)
@@ -195,10 +204,6 @@ class Session:
             return str(packages.share(name))
         except LinkwrightError as error:
             raise package_fault(error) from None
-
-    def mathematics(self) -> dict[str, Any]:
-        """The names of ``math``, for ``$(eval ...)``."""
-        return symbols.MATHEMATICS
 
     # files
 
@@ -213,7 +218,7 @@ class Session:
 
     def read(self, path: str) -> Document:
         """The document of a file; see `sources.read`."""
-        return sources.read(self.on_disk(path))
+        return sources.read(self.on_disk(path), self._overlay)
 
     def absolute(self, name: str) -> str:
         """A file name relative to the file being processed, with that file's folder before it."""
@@ -230,13 +235,11 @@ class Session:
             Fault: XAC506 when there is no such file or it is not YAML.
         """
         from linkwright.xacro import yamldata
-        from linkwright.xmltree.decoding import decode
-        from linkwright.xmltree.reader import read_bytes
 
         path = self.absolute(name)
         self.depends_on(path)
         try:
-            text = decode(read_bytes(self.on_disk(path)), path)
+            text = self._overlay.read(self.on_disk(path))
         except LinkwrightError as error:
             fault = Fault("XAC506", error.diagnostics[0].message, hint=_nearest_file(self.on_disk(path)))
             raise fault from None
@@ -246,13 +249,11 @@ class Session:
             raise _yaml_fault(path, text, error) from None
 
     def _unit_value(self, expression: str) -> Any:
-        from linkwright.xacro.template import compile_expression
-
         return compile_expression(expression).evaluate(self.globals)
 
     def dotify(self, mapping: Any = (), **items: Any) -> YamlDict:
         """A mapping whose items are reached with a dot too."""
-        result: YamlDict = dotted(dict(mapping, **items))
+        result: YamlDict = dotted(dict(keys(mapping), **items))
         return result
 
     # findings
@@ -263,14 +264,19 @@ class Session:
         for name in self.arguments:
             if name not in self.known_arguments:
                 hint = did_you_mean(name, self.known_arguments)
-                self.warn("XAC215", f"the argument '{name}' is given, but '{self.file}' does not use it", None, hint)
+                self.warn(
+                    "XAC215",
+                    phrase("the argument '{name}' is given, but '{file}' does not use it", name=name, file=self.file),
+                    None,
+                    hint,
+                )
 
     def warn(
         self,
         code: str,
-        message: str,
+        message: Phrase,
         span: Span | None = None,
-        hint: str | None = None,
+        hint: Phrase | None = None,
         severity: Severity = Severity.WARNING,
         called: str | None = None,
     ) -> None:
@@ -309,7 +315,12 @@ class Session:
         bare = better.partition(".")[2]
 
         def warning(*arguments: Any, **named: Any) -> Any:
-            self.warn("XAC507", f"calling '{bare}' by its bare name is deprecated", hint=f"write {better}", called=bare)
+            self.warn(
+                "XAC507",
+                phrase("calling '{bare}' by its bare name is deprecated", bare=bare),
+                hint=phrase("write {better}", better=better),
+                called=bare,
+            )
             return function(*arguments, **named)
 
         return warning
@@ -318,7 +329,7 @@ class Session:
         """One of the functions with which a description says something to its user."""
 
         def said(*words: Any, **_options: Any) -> str:
-            text = " ".join(map(sandbox.as_text, words)) or "here"
+            text = foreign(" ".join(map(sandbox.as_text, words))) or phrase("here")
             self.warn(code, text, severity=severity, called=f"xacro.{name}")
             return ""
 
@@ -331,27 +342,27 @@ _NOT_XML = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
 def _check_characters(text: str) -> None:
     found = _NOT_XML.search(text)
     if found:
-        message = f"the value has a character that XML cannot hold: U+{ord(found[0]):04X}"
-        raise Fault("XAC206", message, hint="'\\' in a text begins an escape; write '\\\\' for a backslash")
+        message = phrase("the value has a character that XML cannot hold: U+{ord:04X}", ord=ord(found[0]))
+        raise Fault("XAC206", message, hint=phrase("'\\' in a text begins an escape; write '\\\\' for a backslash"))
 
 
 def _yaml_fault(path: str, text: str, error: YamlError) -> Fault:
     from linkwright.diagnostics import SourceText
 
-    fault = Fault("XAC506", f"'{path}' is not valid YAML: {error.message}")
+    fault = Fault("XAC506", phrase("'{path}' is not valid YAML: {message}", path=path, message=foreign(error.message)))
     if error.line:
         fault.source = source = SourceText(path, text)
         at = source.offset(error.line, error.column)
         if text[at - 1 : at] == "\t":
             at -= 1
         fault.span = source.span(at)
-        fault.passing = "the file is loaded here"
+        fault.passing = phrase("the file is loaded here")
         if text[at : at + 1] == "\t":
-            fault.hint = "YAML is indented with blanks, not with tabs"
+            fault.hint = phrase("YAML is indented with blanks, not with tabs")
     return fault
 
 
-def _nearest_file(path: str) -> str | None:
+def _nearest_file(path: str) -> Phrase | None:
     folder, name = os.path.split(path)
     try:
         return did_you_mean(name, os.listdir(folder or "."))  # noqa: PTH208 - names are wanted, not paths

@@ -4,19 +4,33 @@ from __future__ import annotations
 
 import os
 
-from linkwright.xmltree import Document, parse_file
+from linkwright.xmltree import Document, Overlay, parse_file
 
+_LINKS = f"{os.sep}shares{os.sep}"
 _KEPT = 500
+_MOST_TEXT = 16_000_000
+"""Files are kept as long as they have fewer bytes together; a parsed one takes ten times as much."""
 documents: dict[tuple[str, str], tuple[int, int, Document]] = {}
 """Path and current folder -> time of change, size and document."""
 
 
-def read(path: str) -> Document:
+def read(path: str, overlay: Overlay | None = None) -> Document:
     """The document of a file, which must not be changed: others read the same one.
+
+    Args:
+        path: the file.
+        overlay: the texts that stand for those of files.
 
     Raises:
         LinkwrightError: see `linkwright.xmltree.parse_file`.
     """
+    if _LINKS in path:  # a package that is not built
+        from linkwright.packages.share_layout import source_of  # few robots need the room of packages for it
+
+        path = source_of(path)
+    unsaved = None if overlay is None else overlay.document(path)
+    if unsaved is not None:
+        return unsaved
     key = (path, "" if os.path.isabs(path) else os.getcwd())  # noqa: PTH109, PTH117 - strings are faster and shown
     try:
         status = os.stat(path)  # noqa: PTH116
@@ -26,7 +40,7 @@ def read(path: str) -> Document:
     if known is not None and known[:2] == (status.st_mtime_ns, status.st_size):
         return known[2]
     document = parse_file(path)
-    if len(documents) >= _KEPT:
+    if len(documents) >= _KEPT or sum(size for _, size, _ in documents.values()) > _MOST_TEXT:
         documents.clear()
     documents[key] = (status.st_mtime_ns, status.st_size, document)
     return document

@@ -9,20 +9,21 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from linkwright.diagnostics import LinkwrightError
+from linkwright.diagnostics import LinkwrightError, did_you_mean, joined, phrase, term
+from linkwright.xacro.expression import compile_expression
 from linkwright.xacro.faults import Fault
-
-if TYPE_CHECKING:
-    from linkwright.xacro.session import Session
+from linkwright.xacro.sandbox import as_text
+from linkwright.xacro.scope import Context, Scope
+from linkwright.xacro.symbols import MATHEMATICS
 
 _COMMANDS = ("arg", "find", "env", "optenv", "dirname", "cwd", "eval")
-_KNOWN = f"the commands are {', '.join(_COMMANDS)}"
+_KNOWN = phrase("the commands are {commands}", commands=joined(_COMMANDS))
 _REFERENCE = re.compile(r"\$\(([^()$]+)\)")
 
 
-def substitute(body: str, session: Session) -> str:
+def substitute(body: str, session: Context) -> str:
     """The value of ``$(body)``.
 
     Raises:
@@ -46,28 +47,28 @@ def _check_characters(body: str) -> None:
     for sign in "$(":
         at = body.find(sign)
         if at >= 0:
-            raise Fault("XAC213", f"'{sign}' may not stand inside '$(...)'", at, at + 1)
+            raise Fault("XAC213", phrase("'{sign}' may not stand inside '$(...)'", sign=sign), at, at + 1)
 
 
-def _found_again(whole: str, body: str, session: Session) -> str:
+def _found_again(whole: str, body: str, session: Context) -> str:
     words = body.split()
     if words and words[0] in _COMMANDS and words[0] != "find":
         return whole
     return _command(body, session, only_find=True)
 
 
-def _command(body: str, session: Session, *, only_find: bool) -> str:
+def _command(body: str, session: Context, *, only_find: bool) -> str:
     words = [word for word in body.split(" ") if word]
     if not words:
-        raise Fault("XAC213", "there is no command between the parentheses", hint=_KNOWN)
+        raise Fault("XAC213", phrase("there is no command between the parentheses"), hint=_KNOWN)
     command = words[0]
     evaluate = _EVALUATE.get(command)
     if evaluate is None:
-        from linkwright.diagnostics import did_you_mean
-
         hint = did_you_mean(command, _COMMANDS) or _KNOWN
         at = body.find(command)
-        raise Fault("XAC212", f"unknown substitution command '{command}'", at, at + len(command), hint)
+        raise Fault(
+            "XAC212", phrase("unknown substitution command '{command}'", command=command), at, at + len(command), hint
+        )
     try:
         return evaluate(words[1:], session)
     except Fault as fault:
@@ -79,39 +80,48 @@ def _command(body: str, session: Session, *, only_find: bool) -> str:
 
 def _one(command: str, what: str, words: list[str]) -> str:
     if len(words) != 1:
-        given = "none is" if not words else f"{len(words)} are"
-        raise Fault("XAC213", f"'$({command} ...)' takes one {what} and {given} given")
+        raise Fault(
+            "XAC213",
+            phrase(
+                "'$({command} ...)' takes one {what} and {count} are given",
+                command=command,
+                what=term(what),
+                count=len(words),
+            )
+            if words
+            else phrase("'$({command} ...)' takes one {what} and none is given", command=command, what=term(what)),
+        )
     return words[0]
 
 
-def _argument(words: list[str], session: Session) -> str:
+def _argument(words: list[str], session: Context) -> str:
     return session.argument(_one("arg", "name", words))
 
 
-def _package(words: list[str], session: Session) -> str:
+def _package(words: list[str], session: Context) -> str:
     return session.package(_one("find", "package", words))
 
 
-def _variable(words: list[str], _session: Session) -> str:
+def _variable(words: list[str], _session: Context) -> str:
     name = _one("env", "name", words)
     value = os.environ.get(name)
     if value is None:
-        hint = f"write $(optenv {name} DEFAULT) where it need not be set"
-        raise Fault("XAC214", f"the environment variable '{name}' is not set", hint=hint)
+        hint = phrase("write $(optenv {name} DEFAULT) where it need not be set", name=name)
+        raise Fault("XAC214", phrase("the environment variable '{name}' is not set", name=name), hint=hint)
     return value
 
 
-def _optional_variable(words: list[str], _session: Session) -> str:
+def _optional_variable(words: list[str], _session: Context) -> str:
     if not words:
-        raise Fault("XAC213", "'$(optenv ...)' takes a name and a default, and nothing is given")
+        raise Fault("XAC213", phrase("'$(optenv ...)' takes a name and a default, and nothing is given"))
     return os.environ.get(words[0], " ".join(words[1:]))
 
 
-def _directory(_words: list[str], session: Session) -> str:
+def _directory(_words: list[str], session: Context) -> str:
     return os.path.dirname(os.path.realpath(session.file))  # noqa: PTH120 - pathlib takes long to import
 
 
-_EVALUATE: dict[str, Callable[[list[str], Session], str]] = {
+_EVALUATE: dict[str, Callable[[list[str], Context], str]] = {
     "arg": _argument,
     "find": _package,
     "env": _variable,
@@ -120,11 +130,7 @@ _EVALUATE: dict[str, Callable[[list[str], Session], str]] = {
 }
 
 
-def _evaluated(source: str, session: Session) -> str:
-    from linkwright.xacro.sandbox import as_text
-    from linkwright.xacro.scope import Scope
-    from linkwright.xacro.template import compile_expression
-
+def _evaluated(source: str, session: Context) -> str:
     scope = Scope(None, session, _names_for_eval(session))
     try:
         return as_text(compile_expression(source).evaluate(scope))
@@ -132,13 +138,13 @@ def _evaluated(source: str, session: Session) -> str:
         if fault.start is not None and fault.end is not None:
             fault.start, fault.end = fault.start + len("eval "), fault.end + len("eval ")
         if source.count("(") > source.count(")"):
-            fault.hint = "the first ')' ends the substitution; write ${...} for an expression with parentheses"
+            fault.hint = phrase("the first ')' ends the substitution; write ${...} for an expression with parentheses")
         raise
 
 
-def _names_for_eval(session: Session) -> dict[str, Any]:
+def _names_for_eval(session: Context) -> dict[str, Any]:
     names: dict[str, Any] = {name: _typed(value) for name, value in session.arguments.items()}
-    names.update(session.mathematics())
+    names.update(MATHEMATICS)
     names.update({"list": list, "dict": dict, "map": map, "str": str, "float": float, "int": int})
     names.update({"true": True, "false": False})
     names["arg"] = lambda name: _typed(session.argument(name))

@@ -10,15 +10,13 @@ import builtins
 import math
 import re
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
-from linkwright.diagnostics import Severity
-from linkwright.xacro import sandbox
+from linkwright.diagnostics import Severity, foreign, phrase
+from linkwright.xacro import bounded, sandbox
 from linkwright.xacro.faults import Fault
-from linkwright.xacro.sandbox import CALLABLE_TYPES, MAX_BITS, MAX_LENGTH, Module, RefusalError
-
-if TYPE_CHECKING:
-    from linkwright.xacro.session import Session
+from linkwright.xacro.refusal import RefusalError
+from linkwright.xacro.sandbox import CALLABLE_TYPES, MAX_BITS, MAX_LENGTH, Module
 
 _BARE = ("list", "dict", "map", "len", "str", "float", "int", "bool", "min", "max", "round")
 _PYTHON = (
@@ -38,13 +36,13 @@ def _range(*arguments: Any) -> range:
     except OverflowError:
         too_long = True
     if too_long:
-        raise RefusalError(f"the range has more than {MAX_LENGTH:,} items")
+        raise RefusalError(phrase("the range has more than {max_length:,} items", max_length=MAX_LENGTH))
     return result
 
 
 def _round(number: Any, digits: int | None = None) -> Any:
     if isinstance(number, int) and digits is not None and abs(digits) > MAX_BITS:
-        raise RefusalError("it rounds to too many digits")
+        raise RefusalError(phrase("it rounds to too many digits"))
     return round(number, digits)
 
 
@@ -53,7 +51,7 @@ def _sum(items: Any, start: Any = 0) -> Any:
     if isinstance(start, (int, float, complex)):
         return sum(summands, start)
     if len(summands) > _MOST_LISTS:
-        raise RefusalError(f"it adds more than {_MOST_LISTS:,} lists")
+        raise RefusalError(phrase("it adds more than {most_lists:,} lists", most_lists=_MOST_LISTS))
     total = start
     for summand in summands:
         total = sandbox.add(total, summand)
@@ -63,13 +61,13 @@ def _sum(items: Any, start: Any = 0) -> Any:
 def _type(value: Any) -> type:
     kind = type(value)
     if kind not in CALLABLE_TYPES:
-        raise RefusalError(f"the type '{kind.__name__}' is not available in expressions")
+        raise RefusalError(phrase("the type '{name}' is not available in expressions", name=kind.__name__))
     return kind
 
 
 def _vars(value: Any) -> dict[str, Any]:
     if value.__class__ is not Module:
-        raise RefusalError("only the names of 'math', 'python' and 'xacro' can be listed")
+        raise RefusalError(phrase("only the names of 'math', 'python' and 'xacro' can be listed"))
     return dict(value.values)
 
 
@@ -78,7 +76,9 @@ _GUARDED: dict[str, Any] = {"range": _range, "round": _round, "sum": _sum, "type
 
 def _factorial(n: Any) -> int:
     if isinstance(n, int) and n > _LARGEST_FACTORIAL:
-        raise RefusalError(f"the factorial of more than {_LARGEST_FACTORIAL:,}")
+        raise RefusalError(
+            phrase("the factorial of more than {largest_factorial:,}", largest_factorial=_LARGEST_FACTORIAL)
+        )
     return math.factorial(n)
 
 
@@ -87,7 +87,9 @@ def _of_two(name: str) -> Callable[..., int]:
 
     def guarded(n: Any, *k: Any) -> int:
         if isinstance(n, int) and n > _LARGEST_FACTORIAL:
-            raise RefusalError(f"'{name}' of more than {_LARGEST_FACTORIAL:,}")
+            raise RefusalError(
+                phrase("'{name}' of more than {largest_factorial:,}", name=name, largest_factorial=_LARGEST_FACTORIAL)
+            )
         result: int = function(n, *k)
         return result
 
@@ -115,6 +117,7 @@ MATHEMATICS: dict[str, Any] = {
     "lcm": _lcm,
     "perm": _of_two("perm"),
     "prod": _prod,
+    **bounded.MATHEMATICS,
 }
 """Everything public in Python's ``math``."""
 
@@ -125,17 +128,47 @@ def tokenize(text: str, sep: str = ",; ", skip_empty: bool = True) -> list[str]:
     """The parts of a text between any of some characters."""
     inside = re.sub(r"(?<!\\)([\[\]])", r"\\\1", sep)
     try:
-        parts = re.split(f"[{inside}]", text)
+        parts = bounded.split(f"[{inside}]", text)
     except re.error as error:
-        raise ValueError(f"'{sep}' are no characters to split at: {error}") from None
+        raise ValueError(phrase("'{sep}' are no characters to split at: {error}", sep=sep, error=error)) from None
     return [part for part in parts if part] if skip_empty else parts
 
 
 def _fatal(*words: Any) -> None:
-    raise Fault("XAC701", " ".join(map(sandbox.as_text, words)) or "the description stops the expansion here")
+    raise Fault(
+        "XAC701", foreign(" ".join(map(sandbox.as_text, words))) or phrase("the description stops the expansion here")
+    )
 
 
-def global_names(session: Session) -> dict[str, Any]:
+class Provider(Protocol):
+    """What stands behind the functions of ``xacro``; a `Session` does."""
+
+    def load_yaml(self, name: str) -> Any:
+        """The value of a YAML file."""
+        ...
+
+    def absolute(self, name: str) -> str:
+        """A file name relative to the file being processed, with that file's folder before it."""
+        ...
+
+    def dotify(self, mapping: Any = (), **items: Any) -> Any:
+        """A mapping whose items are reached with a dot too."""
+        ...
+
+    def argument(self, name: str) -> str:
+        """The value of an argument."""
+        ...
+
+    def say(self, name: str, code: str, severity: Severity) -> Callable[..., str]:
+        """One of the functions with which a description says something to its user."""
+        ...
+
+    def deprecated(self, better: str, function: Callable[..., Any]) -> Callable[..., Any]:
+        """A function that still has a bare name and warns when it is called by it."""
+        ...
+
+
+def global_names(session: Provider) -> dict[str, Any]:
     """The names of the outermost scope of one expansion."""
     functions: dict[str, Any] = {
         "load_yaml": session.load_yaml,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from linkwright.diagnostics import did_you_mean
+from linkwright.diagnostics import did_you_mean, phrase
 from linkwright.xacro.expander import Expander
 from linkwright.xacro.faults import attribute_name
 from linkwright.xmltree import Element
@@ -18,8 +18,18 @@ def check_attributes(expander: Expander, node: Element, required: tuple[str, ...
     for name in required:
         if name not in attributes:
             near = did_you_mean(name, [given for given in attributes if given not in optional])
-            missing = f"write {name}=\"...\" for '{near[14:-2]}'" if near else f'write {name}="..."'
-            expander.fail_at("XAC301", f"'{node.tag}' lacks its attribute '{name}'", node, node.span(), missing)
+            missing = (
+                phrase("write {name}=\"...\" for '{near}'", name=name, near=near[14:-2])
+                if near
+                else phrase('write {name}="..."', name=name)
+            )
+            expander.fail_at(
+                "XAC301",
+                phrase("'{tag}' lacks its attribute '{name}'", tag=node.tag, name=name),
+                node,
+                node.span(),
+                missing,
+            )
     if len(attributes) == len(required):
         return
     if optional and attributes.keys() <= {*required, *optional}:
@@ -28,13 +38,13 @@ def check_attributes(expander: Expander, node: Element, required: tuple[str, ...
         if name in required or name in optional or name.startswith("xmlns:"):
             continue
         hint = did_you_mean(name, required + optional)
-        message = f"'{node.tag}' knows no attribute '{name}'"
+        message = phrase("'{tag}' knows no attribute '{name}'", tag=node.tag, name=name)
         expander.session.warn("XAC302", message, attribute_name(node, name), hint)
 
 
 def warn_of_global(expander: Expander, node: Element, name: str, attribute: str) -> None:
     """Warn that a name which the language provides gets another meaning."""
     if name in expander.session.globals.values:
-        message = f"'{name}' is a name that xacro provides, and is given another meaning here"
+        message = phrase("'{name}' is a name that xacro provides, and is given another meaning here", name=name)
         span = node.attribute_span(attribute) if attribute == "name" else attribute_name(node, attribute)
         expander.session.warn("XAC306", message, span)

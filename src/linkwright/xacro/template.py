@@ -7,23 +7,20 @@ string. What comes out is not evaluated again.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from linkwright.diagnostics import foreign, phrase
 from linkwright.xacro import sandbox
-from linkwright.xacro.expression import Expression
+from linkwright.xacro.compiled import TextCompiler
+from linkwright.xacro.expression import Expression, compile_expression
 from linkwright.xacro.faults import Fault
 from linkwright.xacro.lexer import Token, TokenKind, tokenize
-from linkwright.xacro.sandbox import RefusalError
+from linkwright.xacro.refusal import RefusalError
+from linkwright.xacro.scope import Scope
 from linkwright.xacro.substitution import substitute
-
-if TYPE_CHECKING:
-    from linkwright.xacro.scope import Scope
 
 _Part = Callable[["Scope"], Any]
 _BRACKET = len("${")
-_KEPT = 20_000
-_KEPT_CHARACTERS = 300_000
-"""How many compiled texts are kept, and how long they may be together; compiled they are a hundred times as large."""
 
 
 class Template:
@@ -77,9 +74,9 @@ class Template:
         return part
 
 
-templates: dict[str, Template] = {}
-expressions: dict[str, Expression] = {}
-"""What was compiled so far, by its text."""
+_compiler = TextCompiler(Template)
+templates = _compiler.forms
+"""The templates compiled so far, by their texts."""
 
 
 def compile_template(text: str) -> Template:
@@ -88,36 +85,7 @@ def compile_template(text: str) -> Template:
     Raises:
         Fault: XAC101 or XAC102 when the text is malformed.
     """
-    template = templates.get(text)
-    if template is None:
-        _make_room(len(text))
-        template = templates[text] = Template(text)
-    return template
-
-
-def compile_expression(source: str) -> Expression:
-    """The compiled form of an expression; the same source gives the same one.
-
-    Raises:
-        Fault: XAC102 or XAC204 when it is malformed or forbidden.
-    """
-    expression = expressions.get(source)
-    if expression is None:
-        _make_room(len(source))
-        expression = expressions[source] = Expression(source)
-    return expression
-
-
-_characters = 0
-
-
-def _make_room(characters: int) -> None:
-    global _characters  # noqa: PLW0603 - the texts kept are those of the whole process too
-    _characters += characters
-    if len(templates) + len(expressions) >= _KEPT or _characters > _KEPT_CHARACTERS:
-        templates.clear()
-        expressions.clear()
-        _characters = characters
+    return templates.get(text) or _compiler.make(text)
 
 
 def _placed(evaluate: _Part, start: int, end: int) -> _Part:
@@ -143,7 +111,7 @@ def _joined(texts: list[str], parts: list[_Part | None]) -> _Part:
         try:
             return sandbox.joined(pieces)
         except RefusalError as error:
-            raise Fault("XAC202", f"cannot write the value: {error}") from None
+            raise Fault("XAC202", phrase("cannot write the value: {error}", error=foreign(error))) from None
 
     return join
 
@@ -154,4 +122,4 @@ def _as_text(value: Any) -> str:
     try:
         return sandbox.as_text(value)
     except (RefusalError, ValueError) as error:
-        raise Fault("XAC202", f"cannot write the value: {error}") from None
+        raise Fault("XAC202", phrase("cannot write the value: {error}", error=foreign(error))) from None

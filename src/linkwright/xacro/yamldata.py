@@ -10,6 +10,8 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+from linkwright.diagnostics import phrase
+
 UNITS = {
     "!radians": 1.0,
     "!degrees": math.pi / 180.0,
@@ -30,7 +32,7 @@ class YamlDict(dict[Any, Any]):
         try:
             return super().__getitem__(key)
         except KeyError:
-            raise AttributeError(f"the YAML mapping has no key '{key}'") from None
+            raise AttributeError(phrase("the YAML mapping has no key '{key}'", key=key)) from None
 
 
 class YamlList(list[Any]):
@@ -136,7 +138,9 @@ def _only_units(construct: Callable[[Any, str, Any], float]) -> Callable[[Any, s
             from yaml.constructor import ConstructorError
 
             known = ", ".join(UNITS)
-            raise ConstructorError(None, None, f"unknown tag '!{tag}' (known are {known})", node.start_mark)
+            raise ConstructorError(
+                None, None, phrase("unknown tag '!{tag}' (known are {known})", tag=tag, known=known), node.start_mark
+            )
         return construct(loader, tag, node)
 
     return constructor

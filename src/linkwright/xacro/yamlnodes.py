@@ -6,6 +6,7 @@ are no scalars, dates, tags) is left to it.
 
 from __future__ import annotations
 
+import sys
 from typing import Any
 
 import yaml
@@ -14,6 +15,8 @@ _PREFIX = "tag:yaml.org,2002:"
 _MOST_REMEMBERED = 10_000
 _DEEPEST = 200
 _MOST_PAIRS = 100_000
+_LONGEST_NUMBER = 4_000
+_MOST_LARGE_NUMBERS = 1_000
 
 tags: dict[str, str] = {}
 """Plain scalar -> its tag; what a plain scalar is does not depend on where it stands."""
@@ -27,6 +30,7 @@ class NodeLoader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore
 
     depth = 0
     merged = 0
+    large = 0
 
     def resolve(self, kind: Any, value: Any, implicit: Any) -> Any:
         """The tag of a node that has none."""
@@ -50,6 +54,19 @@ class NodeLoader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore
         """See `descend_resolver`."""
         self.depth -= 1
 
+    def construct_yaml_int(self, node: Any) -> Any:
+        """A whole number. Those that may have the hash of another one, and so make slow keys, are counted."""
+        if len(node.value) > _LONGEST_NUMBER:
+            message = f"the number has more than {_LONGEST_NUMBER:,} characters"
+            raise yaml.constructor.ConstructorError(None, None, message, node.start_mark)
+        number = super().construct_yaml_int(node)
+        if abs(number) >= sys.hash_info.modulus:
+            self.large += 1
+            if self.large > _MOST_LARGE_NUMBERS:
+                message = f"more than {_MOST_LARGE_NUMBERS:,} numbers have more than 60 bits"
+                raise yaml.constructor.ConstructorError(None, None, message, node.start_mark)
+        return number
+
     def flatten_mapping(self, node: Any) -> None:
         """Put the pairs of merged mappings into a mapping, unless they become too many."""
         super().flatten_mapping(node)
@@ -57,6 +74,9 @@ class NodeLoader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore
         if self.merged > _MOST_PAIRS:
             message = f"the merged mappings have more than {_MOST_PAIRS:,} keys"
             raise yaml.constructor.ConstructorError(None, None, message, node.start_mark)
+
+
+NodeLoader.add_constructor(f"{_PREFIX}int", NodeLoader.construct_yaml_int)
 
 
 class _UnusualError(Exception):

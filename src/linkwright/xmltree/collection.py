@@ -1,8 +1,8 @@
-"""Sparing the garbage collector the sight of trees.
+"""Running Python's garbage collector less often while a tree is built.
 
-Reading and expanding make many small objects at once, nearly all of which stay, and none of which form circles that
-nobody needs. Python looks through them again and again to find that out, which costs up to a tenth of the time; and now
-and then through everything that the program has.
+Reading and expanding make many small objects at once. Nearly all of them stay, and none form reference cycles that are
+garbage. The collector searches them again and again all the same, which costs up to a tenth of the time; now and then
+it searches every object of the program.
 """
 
 from __future__ import annotations

@@ -9,7 +9,7 @@ from __future__ import annotations
 import codecs
 import re
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, SourceText, phrase
 
 _DECLARED = re.compile(rb"""^\s*<\?xml[^>]*?\bencoding\s*=\s*["']([A-Za-z][A-Za-z0-9._-]*)["']""")
 _BYTE_ORDER_MARKS = (
@@ -29,32 +29,36 @@ def decode(data: bytes, name: str) -> str:
     """
     for mark, encoding in _BYTE_ORDER_MARKS:
         if data.startswith(mark):
-            return _decode(data[len(mark) :], encoding, name, "its byte order mark says so")
+            return _decode(data[len(mark) :], encoding, name, phrase("its byte order mark says so"))
     try:
         return data.decode("utf-8")
     except UnicodeDecodeError:
         declared = _DECLARED.match(data)
         if declared is None:
-            return _decode(data, "utf-8", name, "it declares no other encoding")
+            return _decode(data, "utf-8", name, phrase("it declares no other encoding"))
         encoding = declared[1].decode("ascii")
-        return _decode(data, encoding, name, "its XML declaration says so")
+        return _decode(data, encoding, name, phrase("its XML declaration says so"))
 
 
-def _decode(data: bytes, encoding: str, name: str, reason: str) -> str:
+def _decode(data: bytes, encoding: str, name: str, reason: Phrase) -> str:
     try:
         return data.decode(encoding)
     except LookupError:
-        message = f"'{name}' declares the unknown encoding '{encoding}'"
-        raise LinkwrightError(Diagnostic("XML104", message, hint="save the file as UTF-8")) from None
+        message = phrase("'{name}' declares the unknown encoding '{encoding}'", name=name, encoding=encoding)
+        raise LinkwrightError(Diagnostic("XML104", message, hint=phrase("save the file as UTF-8"))) from None
     except UnicodeDecodeError as error:
         before = data[: error.start].decode(encoding, "replace")
         source = SourceText(name, before + data[error.start :].decode(encoding, "replace"))
         raise LinkwrightError(
             Diagnostic(
                 "XML104",
-                f"byte 0x{data[error.start]:02x} is not valid {encoding.upper()}",
+                phrase("byte 0x{data:02x} is not valid {encoding}", data=data[error.start], encoding=encoding.upper()),
                 span=source.span(len(before)),
-                hint=f"the file is read as {encoding.upper()}, because {reason}; save it as UTF-8",
+                hint=phrase(
+                    "the file is read as {encoding}, because {reason}; save it as UTF-8",
+                    encoding=encoding.upper(),
+                    reason=reason,
+                ),
                 source=source,
             )
         ) from None

@@ -6,7 +6,7 @@ import re
 from xml.parsers.expat import ExpatError
 from xml.parsers.expat import errors as expat_errors
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, SourceText
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, SourceText, foreign, phrase
 
 _CODE = expat_errors.codes
 _NO_ELEMENT = _CODE[expat_errors.XML_ERROR_NO_ELEMENTS]
@@ -29,9 +29,9 @@ _NAME = re.compile(r"[^\s=/>\"'&;<]+")
 
 _ADDRESSES = {"xacro": "http://www.ros.org/wiki/xacro", "xi": "http://www.w3.org/2001/XInclude"}
 """Of the prefixes that descriptions use."""
-_AMPERSAND_HINT = "write '&amp;' for the character '&'"
-_AND_HINT = "write 'and' in an expression, or '&amp;' for each '&'"
-_LESS_HINT = "close the quotes of the attribute before it, or write '&lt;' for the character '<'"
+_AMPERSAND_HINT = phrase("write '&amp;' for the character '&'")
+_AND_HINT = phrase("write 'and' in an expression, or '&amp;' for each '&'")
+_LESS_HINT = phrase("close the quotes of the attribute before it, or write '&lt;' for the character '<'")
 
 
 def syntax_error(
@@ -54,22 +54,26 @@ def undeclared_prefix(source: SourceText, offset: int, name: str) -> LinkwrightE
     return LinkwrightError(
         Diagnostic(
             "XML205",
-            f"the prefix '{prefix}' of '{name}' is not declared",
+            phrase("the prefix '{prefix}' of '{name}' is not declared", prefix=prefix, name=name),
             span=source.span(offset, offset + len(name)),
-            hint=f'declare it on the root element: xmlns:{prefix}="{_ADDRESSES.get(prefix, "...")}"',
+            hint=phrase(
+                'declare it on the root element: xmlns:{prefix}="{addresses}"',
+                prefix=prefix,
+                addresses=_ADDRESSES.get(prefix, "..."),
+            ),
             source=source,
         )
     )
 
 
-def forbidden_entity(source: SourceText, offset: int, message: str) -> LinkwrightError:
+def forbidden_entity(source: SourceText, offset: int, message: Phrase) -> LinkwrightError:
     """The error for an entity that would read another file or grow without bound."""
     return LinkwrightError(
         Diagnostic(
             "XML209",
             message,
             span=source.span(offset),
-            hint="write the text itself in place of the entity",
+            hint=phrase("write the text itself in place of the entity"),
             source=source,
         )
     )
@@ -85,8 +89,8 @@ class _Fault:
     def describe(self, error: ExpatError) -> Diagnostic:
         code = error.code
         if not self._text.strip():
-            message = f"'{self._source.name}' is empty"
-            hint = 'a description begins with <robot name="...">; was the file saved?'
+            message = phrase("'{name}' is empty", name=self._source.name)
+            hint = phrase('a description begins with <robot name="...">; was the file saved?')
             return Diagnostic("XML105", message, span=self._source.span(0, 0), hint=hint, source=self._source)
         if code == _MISMATCH:
             return self._mismatched_tag()
@@ -97,30 +101,34 @@ class _Fault:
         if code == _INVALID_TOKEN:
             return self._invalid_token()
         if code == _DUPLICATE:
-            return self._at_name("XML204", "the attribute '{}' is given twice", "keep one of the two")
+            return self._duplicate_attribute()
         if code == _UNDEFINED_ENTITY:
             return self._undefined_entity()
         if code == _JUNK:
             return self._diagnostic(
-                "XML207", "there is content after the end of the root element", hint="a file has one root element"
+                "XML207",
+                phrase("there is content after the end of the root element"),
+                hint=phrase("a file has one root element"),
             )
         if code == _MISPLACED_DECLARATION:
-            message = "the XML declaration '<?xml' must be the very first thing in the file"
-            return self._diagnostic("XML206", message, 5, hint="remove what stands before it")
+            message = phrase("the XML declaration '<?xml' must be the very first thing in the file")
+            return self._diagnostic("XML206", message, 5, hint=phrase("remove what stands before it"))
         if code == _NO_ELEMENT:
-            return self._diagnostic("XML206", "there is no root element", hint="a robot starts with <robot name=...>")
+            return self._diagnostic(
+                "XML206", phrase("there is no root element"), hint=phrase("a robot starts with <robot name=...>")
+            )
         if code == _UNCLOSED_CDATA:
             at = self._text.rfind("<![CDATA[", 0, self._offset)
             return self._diagnostic(
-                "XML203", "this CDATA section is never closed", 9, at=at, hint="close it with ']]>'"
+                "XML203", phrase("this CDATA section is never closed"), 9, at=at, hint=phrase("close it with ']]>'")
             )
         if code == _SYNTAX and self._open == []:
-            hint = "an XML file holds nothing but comments before its root element"
-            return self._diagnostic("XML206", "this is not XML", hint=hint)
+            hint = phrase("an XML file holds nothing but comments before its root element")
+            return self._diagnostic("XML206", phrase("this is not XML"), hint=hint)
         return self._diagnostic("XML206", _words(error))
 
     def _diagnostic(
-        self, code: str, message: str, length: int = 1, *, at: int | None = None, hint: str | None = None
+        self, code: str, message: Phrase, length: int = 1, *, at: int | None = None, hint: Phrase | None = None
     ) -> Diagnostic:
         start = self._offset if at is None else at
         span = self._source.span(start, start + length)
@@ -132,14 +140,20 @@ class _Fault:
         name = closing[1] if closing else ""
         span = self._source.span(start, closing.end() if closing else start + 2)
         if not self._open:
-            return Diagnostic("XML201", f"'</{name}>' closes nothing", span=span, source=self._source)
+            return Diagnostic("XML201", phrase("'</{name}>' closes nothing", name=name), span=span, source=self._source)
         inner, opened_at = self._open[-1]
-        note = Note(f"'<{inner}>' is opened here", self._source.span(opened_at, opened_at + 1 + len(inner)))
+        note = Note(
+            phrase("'<{inner}>' is opened here", inner=inner), self._source.span(opened_at, opened_at + 1 + len(inner))
+        )
         outer = any(name == other for other, _ in self._open[:-1])
-        hint = f"write '</{inner}>' before it" if outer else f"write '</{inner}>', or remove it"
+        hint = (
+            phrase("write '</{inner}>' before it", inner=inner)
+            if outer
+            else phrase("write '</{inner}>', or remove it", inner=inner)
+        )
         return Diagnostic(
             "XML201",
-            f"'</{name}>' does not close '<{inner}>'",
+            phrase("'</{name}>' does not close '<{inner}>'", name=name, inner=inner),
             span=span,
             notes=(note,),
             hint=hint,
@@ -149,71 +163,97 @@ class _Fault:
     def _never_closed(self) -> Diagnostic:
         name, at = self._open[-1]
         span = self._source.span(at, at + 1 + len(name))
-        hint = f"write '</{name}>' where it ends"
-        return Diagnostic("XML202", f"'<{name}>' is never closed", span=span, hint=hint, source=self._source)
+        hint = phrase("write '</{name}>' where it ends", name=name)
+        return Diagnostic(
+            "XML202", phrase("'<{name}>' is never closed", name=name), span=span, hint=hint, source=self._source
+        )
 
     def _unclosed_token(self) -> Diagnostic:
         if self._text.startswith("<!--", self._offset):
-            return self._diagnostic("XML203", "this comment is never closed", 4, hint="close it with '-->'")
+            return self._diagnostic(
+                "XML203", phrase("this comment is never closed"), 4, hint=phrase("close it with '-->'")
+            )
         if self._text.startswith("<![CDATA[", self._offset):
-            return self._diagnostic("XML203", "this CDATA section is never closed", 9, hint="close it with ']]>'")
+            return self._diagnostic(
+                "XML203", phrase("this CDATA section is never closed"), 9, hint=phrase("close it with ']]>'")
+            )
         name = _NAME.match(self._text, self._offset + 1)
         length = 1 + (len(name[0]) if name else 0)
-        hint = "look for a missing '>' or a missing quote"
-        return self._diagnostic("XML203", "this tag is never finished", length, hint=hint)
+        hint = phrase("look for a missing '>' or a missing quote")
+        return self._diagnostic("XML203", phrase("this tag is never finished"), length, hint=hint)
 
     def _invalid_token(self) -> Diagnostic:
         text, at = self._text, self._offset
         character = text[at : at + 1]
         before = text[max(0, at - 200) : at]
         if character and not character.isprintable() and character not in "\t\r\n":
-            return self._diagnostic("XML206", f"the character U+{ord(character):04X} is not allowed in XML")
+            return self._diagnostic(
+                "XML206", phrase("the character U+{ord:04X} is not allowed in XML", ord=ord(character))
+            )
         ampersand = re.search(r"&[^\s;&<>\"']*$", before)
         if ampersand:
             start = at - len(ampersand[0])
             hint = _AND_HINT if text[start : start + 2] == "&&" else _AMPERSAND_HINT
-            return self._diagnostic("XML206", "'&' does not begin an entity", at=start, hint=hint)
+            return self._diagnostic("XML206", phrase("'&' does not begin an entity"), at=start, hint=hint)
         if re.search(r"<!--(?:(?!-->).)*--$", before, re.DOTALL):
-            message = "'--' is not allowed inside a comment"
-            return self._diagnostic("XML206", message, 2, at=at - 2, hint="use other characters, such as '=='")
+            message = phrase("'--' is not allowed inside a comment")
+            return self._diagnostic("XML206", message, 2, at=at - 2, hint=phrase("use other characters, such as '=='"))
         if before.endswith("<"):
-            return self._diagnostic("XML206", "'<' does not begin a tag", at=at - 1, hint="write '&lt;'")
+            return self._diagnostic(
+                "XML206", phrase("'<' does not begin a tag"), at=at - 1, hint=phrase("write '&lt;'")
+            )
         if unquoted := _UNQUOTED.search(before):
             name = unquoted[1]
             value = _NAME.match(text, at)
             curved = character in "\u201c\u201d\u2018\u2019\u201e"
-            hint = f'write {name}="...", with straight quotes' if curved else f'write {name}="..."'
-            message = f"the value of '{name}' is not in quotes"
+            hint = (
+                phrase('write {name}="...", with straight quotes', name=name)
+                if curved
+                else phrase('write {name}="..."', name=name)
+            )
+            message = phrase("the value of '{name}' is not in quotes", name=name)
             return self._diagnostic("XML206", message, len(value[0]) if value else 1, hint=hint)
         if character == "<" and "<!ENTITY" in text and before.rstrip().endswith(">"):
-            hint = "look at the entities that the document declares"
-            return self._diagnostic("XML206", "this is not well-formed once its entities are expanded", hint=hint)
+            hint = phrase("look at the entities that the document declares")
+            return self._diagnostic(
+                "XML206", phrase("this is not well-formed once its entities are expanded"), hint=hint
+            )
         if character == "<":
-            return self._diagnostic("XML206", "'<' is not allowed inside a tag", hint=_LESS_HINT)
+            return self._diagnostic("XML206", phrase("'<' is not allowed inside a tag"), hint=_LESS_HINT)
         if before[-1:] in ('"', "'") and (open_quote := _QUOTE_LEFT_OPEN.search(before)):
             start = at - len(open_quote[0])
-            message = f"the quotes around the value of '{open_quote[1]}' are not closed"
-            return self._diagnostic("XML206", message, len(open_quote[1]), at=start, hint="write a quote where it ends")
+            message = phrase("the quotes around the value of '{open_quote}' are not closed", open_quote=open_quote[1])
+            return self._diagnostic(
+                "XML206", message, len(open_quote[1]), at=start, hint=phrase("write a quote where it ends")
+            )
         if before[-1:] in ('"', "'") and _NAME.match(character):
-            hint = "write a blank here, or look for a missing quote before it"
-            return self._diagnostic("XML206", "a blank is missing between two attributes", hint=hint)
+            hint = phrase("write a blank here, or look for a missing quote before it")
+            return self._diagnostic("XML206", phrase("a blank is missing between two attributes"), hint=hint)
         if bare := _BARE_ATTRIBUTE.search(before):
             at -= len(bare[0])
-            message = f"the attribute '{bare[1]}' has no value"
-            return self._diagnostic("XML206", message, len(bare[1]), at=at, hint=f'write {bare[1]}="..."')
-        return self._diagnostic("XML206", f"{character!r} is not expected here" if character else "the file ends early")
+            message = phrase("the attribute '{bare}' has no value", bare=bare[1])
+            return self._diagnostic(
+                "XML206", message, len(bare[1]), at=at, hint=phrase('write {bare}="..."', bare=bare[1])
+            )
+        return self._diagnostic(
+            "XML206",
+            phrase("{character} is not expected here", character=repr(character))
+            if character
+            else phrase("the file ends early"),
+        )
 
     def _undefined_entity(self) -> Diagnostic:
         name = _NAME.match(self._text, self._offset + 1)
         written = f"&{name[0]};" if name else "&"
-        message = f"the entity '{written}' is not defined"
+        message = phrase("the entity '{written}' is not defined", written=written)
         return self._diagnostic("XML208", message, len(written), hint=_AMPERSAND_HINT)
 
-    def _at_name(self, code: str, message: str, hint: str) -> Diagnostic:
+    def _duplicate_attribute(self) -> Diagnostic:
         name = _NAME.match(self._text, self._offset)
         written = name[0] if name else ""
-        return self._diagnostic(code, message.format(written), max(1, len(written)), hint=hint)
+        message = phrase("the attribute '{name}' is given twice", name=written)
+        return self._diagnostic("XML204", message, max(1, len(written)), hint=phrase("keep one of the two"))
 
 
-def _words(error: ExpatError) -> str:
-    return f"this is not well-formed XML: {str(error).partition(':')[0]}"
+def _words(error: ExpatError) -> Phrase:
+    return phrase("this is not well-formed XML: {partition}", partition=foreign(str(error).partition(":")[0]))

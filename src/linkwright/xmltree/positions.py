@@ -24,22 +24,35 @@ def attribute_value_range(text: str, offset: int, name: str) -> tuple[int, int] 
     Returns:
         Start and end (exclusive), or None when the tag does not have the attribute.
     """
-    at = _TAG_NAME.match(text, offset)
-    while at is not None:
-        at = _ATTRIBUTE.match(text, at.end())
-        if at is not None and at[1] == name:
-            return at.start(2) + 1, at.end(2) - 1
-    return None
+    found = _attributes(text, offset).get(name)
+    return found and found[1]
 
 
 def attribute_name_range(text: str, offset: int, name: str) -> tuple[int, int] | None:
     """Character offsets of an attribute's name in the start tag at `offset`, or None when it is not there."""
+    found = _attributes(text, offset).get(name)
+    return found and found[0]
+
+
+_Ranges = dict[str, tuple[tuple[int, int], tuple[int, int]]]
+_read_last: tuple[str, int, _Ranges] = ("", -1, {})
+"""The tag that was read last: who asks for one attribute often asks for the next, and a tag may have thousands."""
+
+
+def _attributes(text: str, offset: int) -> _Ranges:
+    """Name -> ranges of the name and of the value of each attribute of the start tag at an offset."""
+    global _read_last  # noqa: PLW0603 - one tuple, so that threads see it whole
+    last_text, last_offset, ranges = _read_last
+    if last_text is text and last_offset == offset:
+        return ranges
+    ranges = {}
     at = _TAG_NAME.match(text, offset)
     while at is not None:
         at = _ATTRIBUTE.match(text, at.end())
-        if at is not None and at[1] == name:
-            return at.start(1), at.end(1)
-    return None
+        if at is not None:
+            ranges.setdefault(at[1], (at.span(1), (at.start(2) + 1, at.end(2) - 1)))
+    _read_last = (text, offset, ranges)
+    return ranges
 
 
 def raw_offset(text: str, start: int, end: int, index: int) -> int:

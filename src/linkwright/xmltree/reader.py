@@ -9,7 +9,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, NoReturn
 from xml.parsers.expat import ExpatError, ParserCreate
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText, missing_file_hint
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, SourceText, foreign, missing_file_hint, phrase
 from linkwright.xmltree.decoding import decode
 from linkwright.xmltree.entities import GROWTH_LIMIT, EntityGuard
 from linkwright.xmltree.nodes import Comment, Document, Element, Node, ProcessingInstruction, Text
@@ -58,23 +58,28 @@ def read_bytes(path: str | Path) -> bytes:
             if len(data) == _FIRST_READ:
                 data += file.read(_LARGEST - _FIRST_READ)
     except FileNotFoundError:
-        message = f"no such file: '{path}'"
+        message = phrase("no such file: '{path}'", path=path)
         raise LinkwrightError(Diagnostic("XML101", message, hint=_missing(path))) from None
     except IsADirectoryError:
-        message = f"'{path}' is a folder, not a file"
+        message = phrase("'{path}' is a folder, not a file", path=path)
         hint = _missing(os.path.join(path, "_.xacro"))  # noqa: PTH118 - pathlib takes long to import
         raise LinkwrightError(Diagnostic("XML102", message, hint=hint)) from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        advice = "is it yours to read?" if isinstance(error, PermissionError) else None
-        raise LinkwrightError(Diagnostic("XML103", f"cannot read '{path}': {reason}", hint=advice)) from None
+        advice = phrase("is it yours to read?") if isinstance(error, PermissionError) else None
+        raise LinkwrightError(
+            Diagnostic(
+                "XML103", phrase("cannot read '{path}': {reason}", path=path, reason=foreign(reason)), hint=advice
+            )
+        ) from None
     if len(data) == _LARGEST:  # such as a device that never ends
-        message = f"cannot read '{path}': it has more than {_LARGEST // 1_000_000} million bytes"
+        reason = phrase("it has more than {count} million bytes", count=_LARGEST // 1_000_000)
+        message = phrase("cannot read '{path}': {reason}", path=path, reason=reason)
         raise LinkwrightError(Diagnostic("XML103", message))
     return data
 
 
-def _missing(path: str | Path) -> str:
+def _missing(path: str | Path) -> Phrase:
     from pathlib import Path
 
     return missing_file_hint(Path(path))
@@ -210,7 +215,7 @@ class _Reader:
 
         raise undeclared_prefix(self._source, offset, name)
 
-    def _refuse_entity(self, offset: int, message: str) -> NoReturn:
+    def _refuse_entity(self, offset: int, message: Phrase) -> NoReturn:
         from linkwright.xmltree.faults import forbidden_entity
 
         raise forbidden_entity(self._source, offset, message)
@@ -278,7 +283,10 @@ class _Reader:
             self._doctype += f" [{subset}]"
         self._doctype += ">"
         if self._entities and self._entities.growth(self._source.text) > GROWTH_LIMIT:
-            message = f"the entities of this document expand to more than {GROWTH_LIMIT:,} characters"
+            message = phrase(
+                "the entities of this document expand to more than {growth_limit:,} characters",
+                growth_limit=GROWTH_LIMIT,
+            )
             self._refuse_entity(self._source.text.find("<!ENTITY"), message)
 
     def _entity(
@@ -298,13 +306,15 @@ class _Reader:
         self, context: str | None, _base: str | None, system_id: str | None, _public_id: str | None
     ) -> int:
         offset = self._character(self._parser.CurrentByteIndex)
-        message = f"the entity '&{context};' would read another file ('{system_id}')"
+        message = phrase(
+            "the entity '&{context};' would read another file ('{system_id}')", context=context, system_id=system_id
+        )
         self._refuse_entity(offset, message)
 
     def _skipped_entity(self, name: str, is_parameter: bool) -> None:
         if not is_parameter:
             offset = self._character(self._parser.CurrentByteIndex)
-            self._refuse_entity(offset, f"the entity '&{name};' is not defined")
+            self._refuse_entity(offset, phrase("the entity '&{name};' is not defined", name=name))
 
 
 def _declared_prefixes(element: Element) -> list[str]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.xmltree.nodes import Comment, Document, Element, Node, ProcessingInstruction, Text
 
 _INDENT = "  "
@@ -88,7 +88,7 @@ def _write_nodes(nodes: Iterable[Node], put: Callable[[str], None]) -> None:
 
 
 def _too_deep(element: Element) -> LinkwrightError:
-    message = f"elements are nested more than {_DEEPEST:,} deep"
+    message = phrase("elements are nested more than {deepest:,} deep", deepest=_DEEPEST)
     return LinkwrightError(Diagnostic("XML302", message, element.span(), source=element.source))
 
 
@@ -115,7 +115,7 @@ def _escaped(text: str) -> str:
 def _comment(node: Comment) -> str:
     if "--" in node.data:
         span = node.source.span(node.offset, node.offset + len("<!--")) if node.source else None
-        message = "a comment cannot hold '--'"
+        message = phrase("a comment cannot hold '--'")
         raise LinkwrightError(Diagnostic("XML301", message, span=span, source=node.source))
     return node.data
 

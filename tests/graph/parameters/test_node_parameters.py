@@ -197,6 +197,15 @@ async def test_several_parameters_are_declared_with_a_namespace(graph):
     assert not node.has_parameter("x")
 
 
+async def test_of_several_declarations_with_one_name_the_last_counts(graph):
+    node = graph.create_node("node")
+    declared = node.declare_parameters("", [("a", 1), ("b", 2), ("a", 3)])
+    assert [(each.name, each.value) for each in declared] == [("a", 3), ("b", 2), ("a", 3)]
+    with pytest.raises(ParameterAlreadyDeclaredException, match=r"a.*b"):
+        node.declare_parameters("", [("c", 1), ("a", 1), ("b", 1)])
+    assert not node.has_parameter("c")
+
+
 @pytest.mark.parametrize(
     ("value", "reason"),
     [

@@ -3,8 +3,8 @@ from __future__ import annotations
 import pytest
 
 from linkwright.graph.parameters.qos_overrides import InvalidQosOverridesError, QoSOverridingOptions, override_qos
-from linkwright.graph.qos import DurabilityPolicy, HistoryPolicy, QoSPolicyKind, QoSProfile, ReliabilityPolicy
-from linkwright.graph.time import Duration
+from linkwright.graph.qos.profile import DurabilityPolicy, HistoryPolicy, QoSPolicyKind, QoSProfile, ReliabilityPolicy
+from linkwright.graph.time.values import Duration
 
 START = "qos_overrides./chatter.publisher"
 

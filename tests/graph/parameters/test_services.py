@@ -115,6 +115,8 @@ async def test_a_file_is_loaded(graph, server, client, tmp_path):
     assert list(messages) == ["x.rate", "x.arm.name"]
     with pytest.raises(RuntimeError, match="does not contain parameters for /gone"):
         parameter_dict_from_yaml_file(str(file), target_nodes=["/gone"])
+    with pytest.raises(FileNotFoundError, match=r"parameter file .*gone\.yaml' does not exist"):
+        parameter_dict_from_yaml_file(str(file.with_name("gone.yaml")))
     file.write_text("/**: {ros__parameters: {rate: 1}}\n")
     with pytest.raises(RuntimeError, match="does not contain selected parameters"):
         parameter_dict_from_yaml_file(str(file))

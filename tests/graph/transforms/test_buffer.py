@@ -3,6 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from linkwright.geometry.arrays import compose, invert, quaternion_from_rpy
 from linkwright.graph import (
     STATIC_TF_PUBLISHER_QOS,
     TF_QOS,
@@ -13,7 +14,6 @@ from linkwright.graph import (
     TransformException,
     TransformListener,
 )
-from linkwright.kinematics import compose, invert, quaternion_from_rpy
 from linkwright.messages import TFMessage, TransformBatch
 
 SECOND = 1_000_000_000

@@ -7,6 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from linkwright.geometry.arrays import compose as compose_arrays
+from linkwright.geometry.single import IDENTITY, compose, interpolate, invert
 from linkwright.graph import (
     ConnectivityException,
     ExtrapolationException,
@@ -14,10 +16,8 @@ from linkwright.graph import (
     Logger,
     LookupException,
 )
-from linkwright.graph.time import Duration, Time
+from linkwright.graph.time.values import Duration, Time
 from linkwright.graph.transforms.core import BufferCore
-from linkwright.graph.transforms.pose import IDENTITY, compose, interpolate, invert
-from linkwright.kinematics import compose as compose_arrays
 from linkwright.messages import TFMessage, TransformBatch, TransformStamped
 
 SECOND = 1_000_000_000

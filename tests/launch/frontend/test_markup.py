@@ -15,7 +15,7 @@ from launch_xml import Entity as XmlEntity
 from launch import Action, LaunchContext, LaunchDescription, actions
 from launch.frontend import Entity, Parser, expose_action
 from linkwright.diagnostics import LinkwrightError
-from linkwright.launch.launch_file import load_launch_file
+from linkwright.launch.frontend.launch_file import load_launch_file
 
 
 def parse(text: str) -> LaunchDescription:

@@ -12,8 +12,8 @@ import pytest
 from launch import LaunchContext
 from launch.frontend import Parser
 from linkwright.diagnostics import LinkwrightError
-from linkwright.launch.frontend.expose import action_parse_methods, substitution_parse_methods
-from linkwright.workspace import PackageFinder, use_finder
+from linkwright.launch.model.markup.expose import action_parse_methods, substitution_parse_methods
+from linkwright.packages import PackageFinder, use_finder
 
 MANIFEST = """<package format="3"><name>{}</name><version>0.0.1</version><description>d</description>
 <maintainer email="a@b.c">a</maintainer><license>MIT</license><export><build_type>ament_python</build_type></export>

@@ -22,7 +22,7 @@ interface Cloud {
   data: DisplayData;
   batch: PointBatch;
   perDepth: number;
-  /** Every how manieth point was sent. */
+  /** One of so many points was sent; 1 for all of them. */
   step: number;
 }
 

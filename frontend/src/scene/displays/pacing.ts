@@ -5,6 +5,11 @@ export class Pacing {
 
   constructor(private readonly invalidate: () => void) {}
 
+  /** Whether a frame is still to be asked for. */
+  get waiting(): boolean {
+    return this.timer !== undefined;
+  }
+
   /** Whether to update in the frame of this moment; `interval` in milliseconds, 0 for every frame. */
   due(now: number, interval: number): boolean {
     const wait = this.last + interval - now;

@@ -11,7 +11,7 @@ from linkwright.cli.lookup import absolute
 from linkwright.cli.numbers import positive_float
 from linkwright.cli.session import add_session_arguments, run_in_graph
 from linkwright.cli.values import add_values_arguments, fill, parse_values, read_values
-from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 
 if TYPE_CHECKING:
     from linkwright.cli.session import Session
@@ -50,7 +50,12 @@ def run(arguments: argparse.Namespace) -> int:
         client = ActionClient(session.node, kind, name)
         print("Waiting for an action server to become available...")
         if not await is_ready(session, name, client, client.server_is_ready, arguments.timeout):
-            raise LinkwrightError(Diagnostic("CLI430", f"no server of action '{name}' in {arguments.timeout} s"))
+            raise LinkwrightError(
+                Diagnostic(
+                    "CLI430",
+                    phrase("no server of action '{name}' in {timeout} s", name=name, timeout=arguments.timeout),
+                )
+            )
         print(f"Sending goal:\n     {to_yaml(goal)}")
 
         def feedback(message: Any) -> None:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from linkwright.cli.lookup import absolute, unknown
 from linkwright.cli.session import add_session_arguments, run_in_graph
+from linkwright.diagnostics import phrase
 
 if TYPE_CHECKING:
     from linkwright.cli.session import Session
@@ -27,8 +28,14 @@ def run(arguments: argparse.Namespace) -> int:
     async def job(session: Session) -> int:
         found = dict(session.node.get_action_names_and_types())
         if name not in found:
-            nothing = "`linkwright action list` lists them"
-            raise unknown("CLI429", f"Unknown action '{arguments.action_name}'", name, found, nothing)
+            nothing = phrase("`linkwright action list` lists them")
+            raise unknown(
+                "CLI429",
+                phrase("Unknown action '{action_name}'", action_name=arguments.action_name),
+                name,
+                found,
+                nothing,
+            )
         for each in found[name]:
             print(each)
         return 0

@@ -6,6 +6,7 @@ import argparse
 import sys
 
 from linkwright.cli.bag.storage import add_storage_argument
+from linkwright.diagnostics import print_diagnostics
 
 HELP = "print files, times and topics of a recording"
 
@@ -22,5 +23,7 @@ def run(arguments: argparse.Namespace) -> int:
     from linkwright.bag import BagReader, summary_text
 
     with BagReader(arguments.bag) as bag:
+        if bag.finding is not None:
+            print_diagnostics([bag.finding], sys.stderr)
         sys.stdout.write(summary_text(bag, topic_names_only=arguments.topic_name))
     return 0

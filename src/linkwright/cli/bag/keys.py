@@ -33,9 +33,11 @@ def listening(actions: Mapping[str, Callable[[], object]]) -> Iterator[bool]:
 
     def read() -> None:
         text = os.read(descriptor, 64).decode(errors="replace")
-        for key, act in actions.items():
-            if text == key:
-                act()
+        while text:  # those that are typed quickly come together
+            key = next((each for each in actions if text.startswith(each)), "")
+            if key:
+                actions[key]()
+            text = text[len(key) or 1 :]
 
     tty.setcbreak(descriptor)
     asyncio.get_running_loop().add_reader(descriptor, read)

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 
 if TYPE_CHECKING:
     from linkwright.graph import QoSProfile
@@ -38,5 +38,10 @@ def read_overrides(arguments: argparse.Namespace) -> dict[str, QoSProfile]:
         document = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
         reason = error.strerror if isinstance(error, OSError) else str(error)
-        raise LinkwrightError(Diagnostic("BAG106", f"'{path}' cannot be read as QoS overrides: {reason}")) from error
+        raise LinkwrightError(
+            Diagnostic(
+                "BAG106",
+                phrase("'{path}' cannot be read as QoS overrides: {reason}", path=path, reason=foreign(reason)),
+            )
+        ) from error
     return overrides_of(document, path)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import argparse
 import math
+import sys
 from typing import TYPE_CHECKING
 
 from linkwright.cli.bag.overrides import add_overrides_argument, read_overrides
 from linkwright.cli.bag.storage import add_storage_argument
-from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase, print_diagnostics
 
 if TYPE_CHECKING:
     from linkwright.cli.session import Session
@@ -107,6 +108,8 @@ def run(arguments: argparse.Namespace) -> int:
     remappings = [_remapping(rule) for rule in arguments.remap]
 
     with BagReader(arguments.bag) as bag:
+        if bag.finding is not None:
+            print_diagnostics([bag.finding], sys.stderr)
 
         async def job(session: Session) -> int:
             from linkwright.bag import Player
@@ -152,7 +155,9 @@ def _absolute(name: str) -> str:
 def _remapping(rule: str) -> tuple[str, str]:
     source, separator, target = rule.partition(":=")
     if not separator or not source or not target:
-        raise LinkwrightError(Diagnostic("CLI109", f"'{rule}' is not a remapping", hint="write FROM:=TO"))
+        raise LinkwrightError(
+            Diagnostic("CLI109", phrase("'{rule}' is not a remapping", rule=rule), hint=phrase("write FROM:=TO"))
+        )
     return source, target
 
 

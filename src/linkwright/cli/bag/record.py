@@ -123,6 +123,7 @@ def run(arguments: argparse.Namespace) -> int:
                 without_publishers=arguments.include_unpublished_topics,
                 without_subscriptions=not arguments.ignore_leaf_topics,
                 paused=arguments.start_paused,
+                guarded=session.guarded,
             )
             keys = {} if arguments.disable_keyboard_controls else {SPACE: recorder.toggle_paused}
             try:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from linkwright.cli.calls import call, node_names
 from linkwright.cli.lookup import absolute_or_given, unknown
 from linkwright.cli.param.access import parameter_of
-from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, joined, phrase
 
 if TYPE_CHECKING:
     from linkwright.cli.session import Session
@@ -40,8 +40,8 @@ async def find_container(session: Session, name: str, timeout: float = _APPEARS_
     full = absolute_or_given(name)
     if not await session.until(lambda: full in containers(session), timeout):
         known = containers(session)
-        nothing = f"there are: {', '.join(known)}" if known else "no container is running"
-        raise unknown("CLI432", f"Unable to find container node '{name}'", full, known, nothing)
+        nothing = phrase("there are: {known}", known=joined(known)) if known else phrase("no container is running")
+        raise unknown("CLI432", phrase("Unable to find container node '{name}'", name=name), full, known, nothing)
     return full
 
 
@@ -71,9 +71,12 @@ async def load(session: Session, container: str, arguments: argparse.Namespace) 
         extra_arguments=_assigned(arguments.extra_arguments or []),
     )
     if not response.success:
-        reason = response.error_message or "the container gives no reason"
-        hint = "`linkwright component types` lists what comes with Linkwright"
-        raise LinkwrightError(Diagnostic("CLI433", f"Failed to load component: {reason}", hint=hint))
+        said = response.error_message
+        reason = foreign(said) if said else phrase("the container gives no reason")
+        hint = phrase("`linkwright component types` lists what comes with Linkwright")
+        raise LinkwrightError(
+            Diagnostic("CLI433", phrase("Failed to load component: {reason}", reason=reason), hint=hint)
+        )
     return int(response.unique_id), str(response.full_node_name)
 
 
@@ -85,9 +88,20 @@ async def unload(session: Session, container: str, uid: int) -> None:
     """
     response = await _call(session, container, "unload_node", unique_id=uid)
     if not response.success:
-        message = f"Failed to unload component {uid} from '{container}' container node: {response.error_message}"
+        message = phrase(
+            "Failed to unload component {uid} from '{container}' container node: {error_message}",
+            uid=uid,
+            container=container,
+            error_message=foreign(response.error_message),
+        )
         there = ", ".join(f"{number} {name}" for number, name in await held_nodes(session, container))
-        raise LinkwrightError(Diagnostic("CLI434", message, hint=f"it holds: {there}" if there else "it is empty"))
+        raise LinkwrightError(
+            Diagnostic(
+                "CLI434",
+                message,
+                hint=phrase("it holds: {there}", there=there) if there else phrase("the container is empty"),
+            )
+        )
 
 
 def add_component_arguments(parser: argparse.ArgumentParser) -> None:
@@ -114,7 +128,7 @@ def add_component_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _assigned(words: Sequence[str]) -> list[Any]:
-    from linkwright.cli.assignments import parse_assignments
+    from linkwright.assignments import parse_assignments
 
     return [parameter_of(name, value) for name, value in parse_assignments(words).items()]
 
@@ -131,7 +145,11 @@ def _log_level(text: str | None) -> int:
     except KeyError:
         levels = ", ".join(level.name.lower() for level in LogLevel)
         raise LinkwrightError(
-            Diagnostic("CLI435", f"there is no log level '{text}'", hint=f"levels are {levels}")
+            Diagnostic(
+                "CLI435",
+                phrase("there is no log level '{text}'", text=text),
+                hint=phrase("levels are {levels}", levels=levels),
+            )
         ) from None
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean
+from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, joined, phrase
 
 HELP = "list the components that come with Linkwright"
 
@@ -16,7 +16,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Print their names below their packages, as ros2 does."""
-    from linkwright.nodes.components import COMPONENTS
+    from linkwright.nodes.registry import COMPONENTS
 
     by_package: dict[str, list[str]] = {}
     for package, plugin in sorted(COMPONENTS):
@@ -27,7 +27,9 @@ def run(arguments: argparse.Namespace) -> int:
             print("\n  ".join([package, *plugins]))
         return 0
     if wanted not in by_package:
-        hint = did_you_mean(wanted, by_package) or f"there are: {', '.join(by_package)}"
-        raise LinkwrightError(Diagnostic("CLI436", f"No component types found in package '{wanted}'", hint=hint))
+        hint = did_you_mean(wanted, by_package) or phrase("there are: {by_package}", by_package=joined(by_package))
+        raise LinkwrightError(
+            Diagnostic("CLI436", phrase("No component types found in package '{wanted}'", wanted=wanted), hint=hint)
+        )
     print("\n".join(by_package[wanted]))
     return 0

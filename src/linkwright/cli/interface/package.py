@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 
 from linkwright.cli.interface.kinds import add_kind_arguments, kinds
-from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean
+from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, phrase
 
 HELP = "list the types of a package"
 
@@ -24,8 +24,8 @@ def run(arguments: argparse.Namespace) -> int:
     known = {kind: interface_names(kind) for kind in ("msg", "srv", "action")}
     packages = sorted({name.split("/")[0] for names in known.values() for name in names})
     if package not in packages:
-        hint = did_you_mean(package, packages) or "`linkwright interface packages` lists those with types"
-        raise LinkwrightError(Diagnostic("CLI441", f"Unknown package '{package}'", hint=hint))
+        hint = did_you_mean(package, packages) or phrase("`linkwright interface packages` lists those with types")
+        raise LinkwrightError(Diagnostic("CLI441", phrase("Unknown package '{package}'", package=package), hint=hint))
     names = [name for kind in kinds(arguments) for name in known[kind]]
     for name in sorted(name for name in names if name.startswith(f"{package}/")):
         print(name)

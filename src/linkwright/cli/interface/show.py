@@ -6,7 +6,7 @@ import argparse
 import sys
 
 from linkwright.cli.interface.definition_text import definition_lines
-from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 
 HELP = "print the definition of a type, with those of the types in it"
 
@@ -27,7 +27,7 @@ def run(arguments: argparse.Namespace) -> int:
     if name == "-":
         name = sys.stdin.readline().strip()
         if not name:
-            raise LinkwrightError(Diagnostic("CLI442", "there is no type on standard input"))
+            raise LinkwrightError(Diagnostic("CLI442", phrase("there is no type on standard input")))
     name = get_interface(name).TYPE_NAME
     lines = definition_lines(
         name,

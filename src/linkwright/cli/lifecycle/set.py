@@ -10,7 +10,7 @@ from linkwright.cli.calls import find_node
 from linkwright.cli.lifecycle.arguments import add_node_arguments
 from linkwright.cli.lifecycle.transitions import change, transitions
 from linkwright.cli.session import run_in_graph
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, did_you_mean
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, did_you_mean, phrase
 
 if TYPE_CHECKING:
     from linkwright.cli.session import Session
@@ -36,8 +36,12 @@ def run(arguments: argparse.Namespace) -> int:
             raise LinkwrightError(
                 Diagnostic(
                     "CLI431",
-                    f"Unknown transition requested: node '{node}' cannot make '{arguments.transition}' now",
-                    notes=(Note(f"available ones are:\n{listed}"),),
+                    phrase(
+                        "Unknown transition requested: node '{node}' cannot make '{transition}' now",
+                        node=node,
+                        transition=arguments.transition,
+                    ),
+                    notes=(Note(phrase("available ones are:\n{listed}", listed=listed)),),
                     hint=did_you_mean(arguments.transition, [each.label for each in available]),
                 )
             )

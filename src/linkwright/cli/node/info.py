@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from linkwright.cli.calls import node_names
 from linkwright.cli.lookup import NamesAndTypes, absolute_or_given, unknown, visible
 from linkwright.cli.session import add_session_arguments, run_in_graph
+from linkwright.diagnostics import phrase
 
 if TYPE_CHECKING:
     from linkwright.cli.session import Session
@@ -36,8 +37,8 @@ def run(arguments: argparse.Namespace) -> int:
         names = node_names(session, hidden=hidden)
         count = names.count(full)
         if not count:
-            message = f"Unable to find node '{arguments.node_name}'"
-            raise unknown("CLI423", message, full, names, "`linkwright node list` lists them")
+            message = phrase("Unable to find node '{node_name}'", node_name=arguments.node_name)
+            raise unknown("CLI423", message, full, names, phrase("`linkwright node list` lists them"))
         if count > 1:
             print(
                 f"There are {count} nodes in the graph with the exact name '{full}'."

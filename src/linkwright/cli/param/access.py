@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from linkwright.cli.calls import call, find_node
-from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean
+from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, phrase
 
 if TYPE_CHECKING:
     from linkwright.cli.session import Session
@@ -56,27 +56,27 @@ class RemoteParameters:
 
     async def names(self, prefixes: Sequence[str] = ()) -> list[str]:
         """Names of the declared parameters, sorted; only those below prefixes where some are given."""
-        response = await self._call("ListParameters", "list_parameters", prefixes=list(prefixes))
+        response = await self._call("list_parameters", prefixes=list(prefixes))
         return sorted(response.result.names)
 
     async def values(self, names: Sequence[str]) -> list[Any]:
         """Values (rcl_interfaces/msg/ParameterValue) in the order of the names."""
-        response = await self._call("GetParameters", "get_parameters", names=list(names))
+        response = await self._call("get_parameters", names=list(names))
         return list(response.values)
 
     async def descriptors(self, names: Sequence[str]) -> list[Any]:
         """Descriptors (rcl_interfaces/msg/ParameterDescriptor) in the order of the names."""
-        response = await self._call("DescribeParameters", "describe_parameters", names=list(names))
+        response = await self._call("describe_parameters", names=list(names))
         return list(response.descriptors)
 
     async def set(self, parameters: Sequence[Any]) -> list[Any]:
         """Set parameters (rcl_interfaces/msg/Parameter) one by one; a result for each."""
-        response = await self._call("SetParameters", "set_parameters", parameters=list(parameters))
+        response = await self._call("set_parameters", parameters=list(parameters))
         return list(response.results)
 
     async def set_together(self, parameters: Sequence[Any]) -> Any:
         """Set all parameters or none; the result."""
-        response = await self._call("SetParametersAtomically", "set_parameters_atomically", parameters=list(parameters))
+        response = await self._call("set_parameters_atomically", parameters=list(parameters))
         return response.result
 
     async def must_have(self, names: Sequence[str]) -> None:
@@ -89,8 +89,8 @@ class RemoteParameters:
         missing = [
             Diagnostic(
                 "CLI424",
-                f"Parameter not set: node '{self.node}' has no parameter '{name}'",
-                hint=did_you_mean(name, there) or f"`linkwright param list {self.node}` lists them",
+                phrase("Parameter not set: node '{node}' has no parameter '{name}'", node=self.node, name=name),
+                hint=did_you_mean(name, there) or phrase("`linkwright param list {node}` lists them", node=self.node),
             )
             for name in names
             if name not in there
@@ -98,10 +98,11 @@ class RemoteParameters:
         if missing:
             raise LinkwrightError(*missing)
 
-    async def _call(self, kind: str, service: str, **fields: Any) -> Any:
+    async def _call(self, service: str, **fields: Any) -> Any:
+        from linkwright.graph.parameters.messages import service_type
         from linkwright.messages import get_service
 
-        name = f"rcl_interfaces/srv/{kind}"
+        name = service_type(service)
         request = get_service(name).Request(**fields)
         return await call(self._session, name, f"{self.node}/{service}", request, timeout=self._timeout)
 

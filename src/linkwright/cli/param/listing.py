@@ -12,7 +12,7 @@ from linkwright.cli.calls import NoAnswerError, find_node, node_names
 from linkwright.cli.param.access import TYPE_NAMES, RemoteParameters
 from linkwright.cli.param.arguments import add_node_arguments
 from linkwright.cli.session import run_in_graph
-from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 
 if TYPE_CHECKING:
     from linkwright.cli.session import Session
@@ -38,9 +38,15 @@ def run(arguments: argparse.Namespace) -> int:
     try:
         wanted = re.compile(arguments.filter or "")
     except re.error as error:
-        hint = "names are looked for as regular expressions; write '\\.' for a dot"
+        hint = phrase("names are looked for as regular expressions; write '\\.' for a dot")
         raise LinkwrightError(
-            Diagnostic("CLI425", f"'{arguments.filter}' is not a regular expression: {error}", hint=hint)
+            Diagnostic(
+                "CLI425",
+                phrase(
+                    "'{filter}' is not a regular expression: {error}", filter=arguments.filter, error=foreign(error)
+                ),
+                hint=hint,
+            )
         ) from None
 
     async def job(session: Session) -> int:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from linkwright.cli.param.access import RemoteParameters, print_result
 from linkwright.cli.param.arguments import add_node_arguments
 from linkwright.cli.session import run_in_graph
-from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 
 if TYPE_CHECKING:
     from linkwright.cli.session import Session
@@ -41,7 +41,11 @@ def run(arguments: argparse.Namespace) -> int:
             values = {name: value for name, value in values.items() if name in named}
         if not values:
             nodes = [pattern for pattern, _ in rules]
-            message = f"Param file does not contain parameters for {parameters.node}, only for nodes: {nodes}"
+            message = phrase(
+                "Param file does not contain parameters for {node}, only for nodes: {nodes}",
+                node=parameters.node,
+                nodes=nodes,
+            )
             raise LinkwrightError(Diagnostic("CLI426", message))
         wanted = [Parameter(name, value=value).to_parameter_msg() for name, value in values.items()]
         results = await parameters.set(wanted)

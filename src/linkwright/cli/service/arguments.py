@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from linkwright.cli.lookup import absolute, unknown
 from linkwright.cli.names_listing import add_hidden_argument
 from linkwright.cli.session import add_session_arguments
+from linkwright.diagnostics import phrase
 
 if TYPE_CHECKING:
     from linkwright.cli.session import Session
@@ -30,6 +31,12 @@ def types_of_service(session: Session, arguments: argparse.Namespace) -> list[st
     name = absolute(arguments.service_name)
     services = dict(session.node.get_service_names_and_types())
     if name not in services:
-        nothing = "`linkwright service list` lists them"
-        raise unknown("CLI427", f"Unknown service '{arguments.service_name}'", name, services, nothing)
+        nothing = phrase("`linkwright service list` lists them")
+        raise unknown(
+            "CLI427",
+            phrase("Unknown service '{service_name}'", service_name=arguments.service_name),
+            name,
+            services,
+            nothing,
+        )
     return list(services[name])

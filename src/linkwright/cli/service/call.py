@@ -11,7 +11,7 @@ from linkwright.cli.lookup import absolute
 from linkwright.cli.numbers import positive_float
 from linkwright.cli.session import add_session_arguments, run_in_graph
 from linkwright.cli.values import add_values_arguments, fill, parse_values, read_values
-from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 
 if TYPE_CHECKING:
     from linkwright.cli.session import Session
@@ -48,7 +48,7 @@ def run(arguments: argparse.Namespace) -> int:
             _check_type(session, name, kind.TYPE_NAME)
             print("waiting for service to become available...")
             if not await is_ready(session, name, client, client.service_is_ready, arguments.timeout):
-                message = f"service '{name}' did not appear in {arguments.timeout} s"
+                message = phrase("service '{name}' did not appear in {timeout} s", name=name, timeout=arguments.timeout)
                 raise LinkwrightError(Diagnostic("CLI421", message))
         loop = asyncio.get_running_loop()
         while True:
@@ -56,7 +56,12 @@ def run(arguments: argparse.Namespace) -> int:
             began = loop.time()
             response = await session.answer(client.call_async(request), arguments.timeout)
             if response is None:
-                raise LinkwrightError(Diagnostic("CLI422", f"service '{name}' did not answer in {arguments.timeout} s"))
+                raise LinkwrightError(
+                    Diagnostic(
+                        "CLI422",
+                        phrase("service '{name}' did not answer in {timeout} s", name=name, timeout=arguments.timeout),
+                    )
+                )
             print(f"response:\n{response!r}\n")
             if arguments.rate is None:
                 return 0
@@ -67,10 +72,12 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _check_type(session: Session, name: str, asked: str) -> None:
     """A service that is there with another type will never be ready; say so instead of waiting."""
-    from linkwright.graph.transport import EndpointKind
+    from linkwright.graph.endpoints.info import EndpointKind
 
     servers = [each for each in session.graph.endpoints() if each.kind is EndpointKind.SERVICE and each.name == name]
     types = sorted({each.type_name for each in servers})
     if types and asked not in types:
-        message = f"service '{name}' is of type {', '.join(types)}, not {asked}"
-        raise LinkwrightError(Diagnostic("CLI428", message, hint=f"call it with {types[0]}"))
+        message = phrase(
+            "service '{name}' is of type {types}, not {asked}", name=name, types=", ".join(types), asked=asked
+        )
+        raise LinkwrightError(Diagnostic("CLI428", message, hint=phrase("call it with {types}", types=types[0])))

@@ -32,7 +32,7 @@ def run(arguments: argparse.Namespace) -> int:
     form = EchoFormat.of(arguments)
 
     async def job(session: Session) -> int:
-        from linkwright.graph.service_introspection import EVENT_TOPIC_SUFFIX
+        from linkwright.graph.endpoints.service_introspection import EVENT_TOPIC_SUFFIX
         from linkwright.messages import get_service
 
         kind = get_service(arguments.service_type or types_of_service(session, arguments)[0])
@@ -55,7 +55,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _text(event: Any, form: EchoFormat) -> str:
     """An event as ros2 prints it: in YAML the kind by its name."""
-    from linkwright.graph.service_introspection import EventType
+    from linkwright.graph.endpoints.service_introspection import EventType
 
     kind = event.info.event_type
     named = EventType(kind).name if kind in iter(EventType) else str(kind)

@@ -5,10 +5,10 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Sequence
 
-from linkwright.cli.command import FINE
 from linkwright.cli.command import main as linkwright
+from linkwright.cli.endings import FINDINGS, FINE, status_of
 from linkwright.cli.tools.ros2 import ros2
-from linkwright.diagnostics import LinkwrightError, print_diagnostics
+from linkwright.diagnostics import LinkwrightError, missing_extra, print_diagnostics
 from linkwright.interruption import raise_interrupts
 
 _FAILED = 255
@@ -25,7 +25,7 @@ def main(name: str, words: Sequence[str]) -> int:
     Returns:
         Its exit status.
     """
-    return TOOLS[name](words)
+    return status_of(lambda: TOOLS[name](words))
 
 
 def _xacro(words: Sequence[str]) -> int:
@@ -37,7 +37,8 @@ def _check_urdf(words: Sequence[str]) -> int:
     if not words:
         print("Expect URDF xml file to parse", file=sys.stderr)
         return _FAILED
-    from linkwright.urdf import examine, tree_text
+    from linkwright.descriptions import examine
+    from linkwright.urdf import tree_text
 
     try:
         reading = examine(words[0])
@@ -69,7 +70,11 @@ def _rviz2(words: Sequence[str]) -> int:
 
 
 def _colcon(words: Sequence[str]) -> int:
-    from colcon_core.command import main as colcon  # type: ignore[import-untyped]  # it ships no types
+    try:
+        from colcon_core.command import main as colcon  # type: ignore[import-untyped]  # it ships no types
+    except ModuleNotFoundError as error:
+        print_diagnostics(missing_extra("SHELL102", error).diagnostics, sys.stderr)
+        return FINDINGS
 
     sys.argv[0] = "colcon"
     raise_interrupts()

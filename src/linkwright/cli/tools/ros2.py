@@ -5,8 +5,9 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 
-from linkwright.cli.command import FINE, USAGE, verb
 from linkwright.cli.command import main as linkwright
+from linkwright.cli.command import verb
+from linkwright.cli.endings import FINE, USAGE
 from linkwright.diagnostics import did_you_mean
 
 COMMANDS = (

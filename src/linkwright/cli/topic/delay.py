@@ -11,7 +11,7 @@ from linkwright.cli.qos import add_subscription_qos_arguments
 from linkwright.cli.session import add_session_arguments, run_in_graph
 from linkwright.cli.topic.measuring import add_window_argument, report_until_finished, subscribe
 from linkwright.cli.topic.rates import DelayWindow
-from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 
 if TYPE_CHECKING:
     from linkwright.cli.session import Session
@@ -41,8 +41,10 @@ def run(arguments: argparse.Namespace) -> int:
         kind = await topic_type(session, name, wait=True)
         fields = kind.get_fields_and_field_types()
         if fields.get("header") != "std_msgs/Header":
-            message = f"msg does not have header: topic '{name}' carries {kind.TYPE_NAME}"
-            hint = "only messages with a std_msgs/Header say when they were made"
+            message = phrase(
+                "msg does not have header: topic '{name}' carries {type_name}", name=name, type_name=kind.TYPE_NAME
+            )
+            hint = phrase("only messages with a std_msgs/Header say when they were made")
             raise LinkwrightError(Diagnostic("CLI413", message, hint=hint))
         # Where the header comes first its stamp is read from the bytes, and the rest is left alone.
         raw = next(iter(fields)) == "header"

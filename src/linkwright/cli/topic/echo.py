@@ -15,7 +15,7 @@ from linkwright.cli.topic.filters import compile_filter
 
 if TYPE_CHECKING:
     from linkwright.cli.session import Session
-    from linkwright.graph.transport import MessageInfo
+    from linkwright.graph.endpoints.info import MessageInfo
 
 HELP = "print the messages of a topic"
 
@@ -48,7 +48,7 @@ def run(arguments: argparse.Namespace) -> int:
     form = EchoFormat.of(arguments, field, message_info=arguments.include_message_info)
 
     async def job(session: Session) -> int:
-        from linkwright.graph.events import SubscriptionEventCallbacks
+        from linkwright.graph.endpoints.event_types import SubscriptionEventCallbacks
 
         kind = await topic_type(session, name, arguments.message_type, raw=arguments.raw)
         if not arguments.raw:

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from linkwright.cli.numbers import unsigned_int
-from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean
+from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, phrase
 
 if TYPE_CHECKING:
-    from linkwright.graph.transport import MessageInfo
+    from linkwright.graph.endpoints.info import MessageInfo
 
 _SEPARATOR = "---\n"
 _TRUNCATE = 128
@@ -111,7 +111,11 @@ def field_path(text: str | None) -> tuple[str, ...]:
         return ()
     names = tuple(text.split("."))
     if not all(names):
-        raise LinkwrightError(Diagnostic("CLI414", f"Invalid field '{text}'", hint="names are separated by one dot"))
+        raise LinkwrightError(
+            Diagnostic(
+                "CLI414", phrase("Invalid field '{text}'", text=text), hint=phrase("names are separated by one dot")
+            )
+        )
     return names
 
 
@@ -127,11 +131,13 @@ def select(message: Any, path: Sequence[str]) -> Any:
         if name not in fields:
             whole = ".".join(path)
             what = getattr(part, "TYPE_NAME", type(part).__name__)
-            nothing = f"its fields are {', '.join(fields)}" if fields else "it has no fields"
+            nothing = (
+                phrase("its fields are {fields}", fields=", ".join(fields)) if fields else phrase("it has no fields")
+            )
             raise LinkwrightError(
                 Diagnostic(
                     "CLI414",
-                    f"Invalid field '{whole}': {what} has no field '{name}'",
+                    phrase("Invalid field '{whole}': {what} has no field '{name}'", whole=whole, what=what, name=name),
                     hint=did_you_mean(name, fields) or nothing,
                 )
             )

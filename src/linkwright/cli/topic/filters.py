@@ -7,7 +7,7 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, SourceText, foreign, phrase
 
 _NAME = "<filter>"
 _FORBIDDEN = (ast.Lambda, ast.Await, ast.Yield, ast.YieldFrom, ast.NamedExpr)
@@ -30,7 +30,7 @@ def compile_filter(text: str) -> Callable[[Any], bool]:
     """
     source = SourceText(_NAME, text)
 
-    def fault(message: str, column: int | None = None, hint: str | None = None) -> LinkwrightError:
+    def fault(message: Phrase, column: int | None = None, hint: Phrase | None = None) -> LinkwrightError:
         span = source.span(0, len(text)) if column is None else source.span(column)
         return LinkwrightError(Diagnostic("CLI407", message, span, hint=hint, source=source))
 
@@ -39,19 +39,24 @@ def compile_filter(text: str) -> Callable[[Any], bool]:
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         column = getattr(error, "offset", None)
         raise fault(
-            f"the filter is not a Python expression: {getattr(error, 'msg', error)}", column and column - 1
+            phrase("the filter is not a Python expression: {error}", error=foreign(getattr(error, "msg", error))),
+            column and column - 1,
         ) from None
     for node in ast.walk(tree):
         if isinstance(node, _FORBIDDEN):
-            raise fault(f"a filter cannot hold {type(node).__name__.lower()}", node.col_offset)
+            raise fault(phrase("a filter cannot hold {name}", name=type(node).__name__.lower()), node.col_offset)
         if isinstance(node, ast.Attribute) and node.attr.startswith("_"):
-            raise fault(f"a filter cannot use '{node.attr}'", node.col_offset)
+            raise fault(phrase("a filter cannot use '{attr}'", attr=node.attr), node.col_offset)
         if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load) and node.id not in (*_NAMES, "m"):
             bound = {
                 each.id for each in ast.walk(tree) if isinstance(each, ast.Name) and isinstance(each.ctx, ast.Store)
             }
             if node.id not in bound:
-                raise fault(f"a filter knows no '{node.id}'", node.col_offset, "the message is 'm', as in 'm.data > 3'")
+                raise fault(
+                    phrase("a filter knows no '{id}'", id=node.id),
+                    node.col_offset,
+                    phrase("the message is 'm', as in 'm.data > 3'"),
+                )
     code = compile(tree, _NAME, "eval")
 
     def fits(message: Any) -> bool:
@@ -59,6 +64,6 @@ def compile_filter(text: str) -> Callable[[Any], bool]:
             # The tree was looked through above: no private names, no functions but those listed.
             return bool(eval(code, {"__builtins__": {}, **_NAMES, "m": message}))  # noqa: S307
         except Exception as error:  # noqa: BLE001 - whatever the user's expression raises
-            raise fault(f"the filter fails: {error}") from None
+            raise fault(phrase("the filter fails: {error}", error=foreign(error))) from None
 
     return fits

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from linkwright.cli.endpoints import endpoint_text
 from linkwright.cli.lookup import absolute, unknown
 from linkwright.cli.session import add_session_arguments, run_in_graph
+from linkwright.diagnostics import phrase
 
 if TYPE_CHECKING:
     from linkwright.cli.session import Session
@@ -32,8 +33,8 @@ def run(arguments: argparse.Namespace) -> int:
         node = session.node
         topics = dict(node.get_topic_names_and_types())
         if name not in topics:
-            message = f"Unknown topic '{arguments.topic_name}'"
-            raise unknown("CLI411", message, name, topics, "`linkwright topic list` lists them")
+            message = phrase("Unknown topic '{topic_name}'", topic_name=arguments.topic_name)
+            raise unknown("CLI411", message, name, topics, phrase("`linkwright topic list` lists them"))
         types = list(topics[name])
         end = "\n\n" if arguments.verbose else "\n"
         print(f"Type: {types[0] if len(types) == 1 else types}", end=end)

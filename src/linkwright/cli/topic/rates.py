@@ -7,7 +7,7 @@ from collections import deque
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 
-from linkwright.graph.traffic import TrafficWindow
+from linkwright.graph.introspection.traffic import TrafficWindow
 
 _SECOND = 1_000_000_000
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from linkwright.cli.lookup import absolute, unknown, visible
 from linkwright.cli.session import add_session_arguments, run_in_graph
+from linkwright.diagnostics import phrase
 
 if TYPE_CHECKING:
     from linkwright.cli.session import Session
@@ -27,7 +28,13 @@ def run(arguments: argparse.Namespace) -> int:
     async def job(session: Session) -> int:
         topics = dict(visible(session.node.get_topic_names_and_types(), hidden=arguments.include_hidden_topics))
         if name not in topics:
-            raise unknown("CLI411", f"Unknown topic '{name}'", name, topics, "`linkwright topic list` lists them")
+            raise unknown(
+                "CLI411",
+                phrase("Unknown topic '{name}'", name=name),
+                name,
+                topics,
+                phrase("`linkwright topic list` lists them"),
+            )
         for each in topics[name]:
             print(each)
         return 0

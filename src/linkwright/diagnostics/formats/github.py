@@ -27,7 +27,7 @@ def _command(diagnostic: Diagnostic) -> str:
             properties["endColumn"] = str(max(span.column, span.end_column - 1))
     properties["title"] = diagnostic.code
     written = ",".join(f"{name}={_property(value)}" for name, value in properties.items())
-    text = diagnostic.message
+    text: str = diagnostic.message
     for note in diagnostic.notes:
         place = f" ({display_path(note.span.file)}:{note.span.line}:{note.span.column})" if note.span else ""
         text += f"\nnote: {note.message}{place}"

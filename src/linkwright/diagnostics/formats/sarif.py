@@ -6,10 +6,12 @@ import json
 import os
 from collections.abc import Iterable
 from pathlib import Path
+from string import Formatter
 from typing import Any
 
 from linkwright._version import __version__
 from linkwright.diagnostics.diagnostic import Diagnostic, Severity
+from linkwright.diagnostics.phrase import Phrase, as_phrase
 from linkwright.diagnostics.source import Span
 
 _SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
@@ -30,7 +32,7 @@ def to_text(diagnostics: Iterable[Diagnostic]) -> str:
                     "driver": {
                         "name": "linkwright",
                         "version": __version__,
-                        "rules": [{"id": code} for code in codes],
+                        "rules": [_rule(code, found) for code in codes],
                     }
                 },
                 "originalUriBaseIds": {_ROOT: {"uri": Path.cwd().as_uri() + "/"}},
@@ -42,13 +44,47 @@ def to_text(diagnostics: Iterable[Diagnostic]) -> str:
     return json.dumps(log, indent=2, ensure_ascii=False) + "\n"
 
 
+def _rule(code: str, found: Iterable[Diagnostic]) -> dict[str, Any]:
+    """A code with the messages it has here; a message's id is its template in English."""
+    messages = {each.message: as_phrase(each.message) for each in found if each.code == code}
+    templates = {message.chosen_template: {"text": _numbered(message)[0]} for message in messages.values()}
+    return {"id": code, "messageStrings": templates}
+
+
+def _message(diagnostic: Diagnostic) -> dict[str, Any]:
+    """The text for those who show it; template and arguments for those who group or translate (SARIF 2.1.0, 3.11)."""
+    message = as_phrase(diagnostic.message)
+    hint = f". Hint: {diagnostic.hint}" if diagnostic.hint else ""
+    said: dict[str, Any] = {"text": message + hint, "id": message.chosen_template}
+    arguments = _numbered(message)[1]
+    return {**said, "arguments": arguments} if arguments else said
+
+
+def _numbered(message: Phrase) -> tuple[str, list[str]]:
+    """The template of a message with numbered placeholders, as SARIF has it, and what fills them, in order."""
+    template = message.chosen_template
+    if not message.arguments:
+        return _without_placeholders(template), []
+    text = ""
+    arguments: list[str] = []
+    for literal, name, form, _ in Formatter().parse(template):
+        text += _without_placeholders(literal)
+        if name is not None:
+            text += f"{{{len(arguments)}}}"
+            arguments.append(format(message.arguments[name], form or ""))
+    return text, arguments
+
+
+def _without_placeholders(text: str) -> str:
+    return text.replace("{", "{{").replace("}", "}}")
+
+
 def _result(diagnostic: Diagnostic, rule_index: int) -> dict[str, Any]:
-    text = diagnostic.message + (f". Hint: {diagnostic.hint}" if diagnostic.hint else "")
     result: dict[str, Any] = {
         "ruleId": diagnostic.code,
         "ruleIndex": rule_index,
         "level": _LEVELS[diagnostic.severity],
-        "message": {"text": text},
+        "message": _message(diagnostic),
     }
     if diagnostic.span is not None:
         result["locations"] = [{"physicalLocation": _location(diagnostic.span)}]

@@ -4,23 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from linkwright.diagnostics.diagnostic import Diagnostic, Note
+from linkwright.diagnostics.phrase import Phrase, Wording, term
 from linkwright.diagnostics.translation.language import asked_language, language
+from linkwright.diagnostics.translation.wording import wording
 
-if TYPE_CHECKING:
-    from linkwright.diagnostics.translation.catalogue import Catalogue
-
-_LABELS = {
-    "en": {"error": "error", "warning": "warning", "info": "info", "note": "note", "hint": "hint", ":": ": "},
-    "zh": {"error": "错误", "warning": "警告", "info": "信息", "note": "注意", "hint": "提示", ":": "："},
-}
+_LABELS = ("error", "warning", "info", "note", "hint", ": ")
 
 
 def labels(lang: str | None = None) -> Mapping[str, str]:
     """What a severity, ``note``, ``hint`` and the colon after them are called; in the reader's language if not told."""
-    return _LABELS[language() if lang is None else lang]
+    lang = language() if lang is None else lang
+    return {each: each if lang == "en" else term(each).said_in(wording(lang)) for each in _LABELS}
 
 
 def translated(diagnostics: Iterable[Diagnostic], *, for_programs: bool = False) -> Iterable[Diagnostic]:
@@ -38,27 +34,20 @@ def translate(diagnostic: Diagnostic, lang: str) -> Diagnostic:
     """The diagnostic with its message, notes and hint in a language of `LANGUAGES`; texts not known stay English."""
     if lang == "en":
         return diagnostic
-    from linkwright.diagnostics.translation.catalogue import catalogue  # here: most runs are in English
-
-    return translate_with(catalogue(lang), diagnostic)
-
-
-def localized(line: str) -> str:
-    """A line about what a command does or has done, in the reader's language; one that is not known stays English."""
-    lang = language()
-    if lang == "en":
-        return line
-    from linkwright.diagnostics.translation.catalogue import catalogue
-
-    return catalogue(lang).text(line, "status_lines")
-
-
-def translate_with(texts: Catalogue, diagnostic: Diagnostic) -> Diagnostic:
-    """The diagnostic in the language of a catalogue."""
-    code, hint = diagnostic.code, diagnostic.hint
+    words = wording(lang)
     return replace(
         diagnostic,
-        message=texts.text(diagnostic.message, code, "messages"),
-        notes=tuple(Note(texts.text(note.message, code, "notes"), note.span) for note in diagnostic.notes),
-        hint=texts.text(hint, code, "hints") if hint else hint,
+        message=_said(diagnostic.message, words),
+        notes=tuple(Note(_said(note.message, words), note.span) for note in diagnostic.notes),
+        hint=_said(diagnostic.hint, words) if diagnostic.hint else diagnostic.hint,
     )
+
+
+def localized(text: str) -> str:
+    """A text in the reader's language; what is no phrase stays as it is."""
+    lang = language()
+    return text.said_in(wording(lang)) if lang != "en" and isinstance(text, Phrase) else text
+
+
+def _said(text: Phrase, words: Wording) -> Phrase:
+    return text.translated(words) if isinstance(text, Phrase) else text

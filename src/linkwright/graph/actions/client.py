@@ -1,4 +1,4 @@
-"""Sends goals to an action, and hears what becomes of them."""
+"""Action clients: send goals, cancel them, and receive feedback and results."""
 
 from __future__ import annotations
 
@@ -8,17 +8,15 @@ from collections.abc import Callable
 from functools import partial
 from inspect import iscoroutinefunction
 from types import GenericAlias
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from linkwright.graph.actions.endpoint import ActionEndpoint
+from linkwright.graph.actions.base import ActionEndpoint
 from linkwright.graph.actions.goal import ACTIVE, GoalStatus
-from linkwright.graph.dispatch import CallbackGroup
-from linkwright.graph.future import Future
-from linkwright.graph.qos import ACTION_STATUS_QOS, DEFAULT_QOS, SERVICES_QOS, QoSProfile
-
-if TYPE_CHECKING:
-    from linkwright.graph.client import Client
-    from linkwright.graph.node import Node
+from linkwright.graph.endpoints.client import Client
+from linkwright.graph.loop.callback_groups import CallbackGroup
+from linkwright.graph.loop.future import Future
+from linkwright.graph.node import Node
+from linkwright.graph.qos.profile import ACTION_STATUS_QOS, DEFAULT_QOS, SERVICES_QOS, QoSProfile
 
 
 class ClientGoalHandle:
@@ -126,7 +124,7 @@ class ActionClient(ActionEndpoint):
         )
         self._goal_handles: dict[bytes, weakref.ref[ClientGoalHandle]] = {}
         self._feedback_callbacks: dict[bytes, Callable[[Any], Any]] = {}
-        node.add_cleanup(self.destroy)
+        self._handle.add_cleanup(self.destroy)
 
     def server_is_ready(self) -> bool:
         """Whether a server of the action is there, with all its services and topics."""
@@ -142,7 +140,7 @@ class ActionClient(ActionEndpoint):
 
     def wait_for_server(self, timeout_sec: float | None = None) -> bool:
         """Block the calling thread until a server is there; see `Client.wait_for_service`."""
-        return self._node.graph.wait_until(self.server_is_ready, timeout_sec)
+        return self._handle.graph.wait_until(self.server_is_ready, timeout_sec)
 
     def send_goal(self, goal: Any, timeout_sec: float | None = None, **options: Any) -> Any:
         """Send a goal, and block the calling thread until its result is there. Another thread must run callbacks.
@@ -221,12 +219,10 @@ class ActionClient(ActionEndpoint):
         if self._destroyed:
             return
         self._destroyed = True
-        node = self._node
-        for client in (self._goal_client, self._cancel_client, self._result_client):
-            node.destroy_client(client)
-        for subscription in (self._feedback, self._status):
-            node.destroy_subscription(subscription)
-        node.remove_cleanup(self.destroy)
+        clients = (self._goal_client, self._cancel_client, self._result_client)
+        for part in (*clients, self._feedback, self._status):
+            part.destroy()
+        self._handle.remove_cleanup(self.destroy)
 
     def _goal_answered(self, answer: Future[Any], goal_id: Any, handed: Future[ClientGoalHandle]) -> None:
         if answer.cancelled():
@@ -238,7 +234,7 @@ class ActionClient(ActionEndpoint):
             self._goal_handles[key] = weakref.ref(handle)
         else:
             self._feedback_callbacks.pop(key, None)
-        handed.hand_over(handle, self._node.dispatcher)
+        handed.hand_over(handle, self._handle.dispatcher)
 
     def _result_came(self, answer: Future[Any], key: bytes, handed: Future[Any]) -> None:
         if answer.cancelled():
@@ -246,11 +242,11 @@ class ActionClient(ActionEndpoint):
             return
         callback = self._feedback_callbacks.get(key)
         if callback is not None and not iscoroutinefunction(callback):
-            # What was published before the end is told before the end.
+            # Feedback published before the goal ended is delivered before its result.
             while (call := self._feedback.take()) is not None:
                 call()
         self._feedback_callbacks.pop(key, None)
-        handed.hand_over(answer.result(), self._node.dispatcher)
+        handed.hand_over(answer.result(), self._handle.dispatcher)
 
     def _on_feedback(self, message: Any) -> Any:
         callback = self._feedback_callbacks.get(bytes(message.goal_id.uuid))

@@ -1,4 +1,4 @@
-"""The states of an action's goals, and the handle by which a server works with one (rclpy ``rclpy.action.server``)."""
+"""The states of a goal, and the handle through which a server works on it (``rclpy.action.server``)."""
 
 from __future__ import annotations
 
@@ -6,12 +6,9 @@ import threading
 from collections.abc import Callable
 from enum import Enum, IntEnum
 from types import GenericAlias
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
-from linkwright.graph.future import Future
-
-if TYPE_CHECKING:
-    from linkwright.graph.actions.server import ActionServer
+from linkwright.graph.loop.future import Future
 
 
 class GoalStatus(IntEnum):
@@ -51,7 +48,7 @@ class CancelResponse(Enum):
 
 
 ACTIVE = frozenset({GoalStatus.ACCEPTED, GoalStatus.EXECUTING, GoalStatus.CANCELING})
-"""The states in which something is still to come of a goal."""
+"""The states of a goal that has not ended."""
 
 CANCELABLE = frozenset({GoalStatus.ACCEPTED, GoalStatus.EXECUTING})
 """The states in which a goal can be asked to be canceled."""
@@ -68,6 +65,26 @@ _NEXT = {
 }
 
 
+class GoalKeeper(Protocol):
+    """The server of an action, as its goals know it."""
+
+    @property
+    def action_type(self) -> Any:
+        """The class of the action."""
+
+    def start_execution(self, goal: ServerGoalHandle, callback: Callable[[ServerGoalHandle], Any] | None) -> None:
+        """Have a goal worked on soon."""
+
+    def publish_feedback(self, goal_id: Any, feedback: Any) -> None:
+        """Publish the feedback of a goal."""
+
+    def state_changed(self, goal: ServerGoalHandle) -> None:
+        """Publish the states of all goals."""
+
+    def forget(self, goal: ServerGoalHandle) -> None:
+        """Drop a goal."""
+
+
 class ServerGoalHandle:
     """An accepted goal, as its server works with it. It may be used from any thread.
 
@@ -79,7 +96,7 @@ class ServerGoalHandle:
 
     __class_getitem__: Any = classmethod(GenericAlias)  # annotations name the type of the action, as in rclpy
 
-    def __init__(self, action_server: ActionServer, goal_info: Any, goal_request: Any) -> None:
+    def __init__(self, action_server: GoalKeeper, goal_info: Any, goal_request: Any) -> None:
         self._server = action_server
         self._status = GoalStatus.ACCEPTED
         self._destroyed = False
@@ -108,7 +125,7 @@ class ServerGoalHandle:
 
     @property
     def is_active(self) -> bool:
-        """Whether something is still to come of it."""
+        """Whether it has not ended."""
         return not self._destroyed and self._status in ACTIVE
 
     @property
@@ -117,9 +134,9 @@ class ServerGoalHandle:
         return not self._destroyed and self._status is GoalStatus.CANCELING
 
     def execute(self, execute_callback: Callable[[ServerGoalHandle], Any] | None = None) -> None:
-        """Begin the work, soon: have a callback called, the server's when it is left out.
+        """Start the work: schedule a callback, the server's when it is left out.
 
-        A goal that was canceled before is given to the callback as well, to end as it likes.
+        A goal that was canceled in the meantime is passed to the callback as well, which decides how it ends.
         """
         with self._lock:
             if not self.is_cancel_requested:
@@ -127,7 +144,7 @@ class ServerGoalHandle:
         self._server.start_execution(self, execute_callback)
 
     def publish_feedback(self, feedback: Any) -> None:
-        """Tell how far the work has come.
+        """Publish feedback.
 
         Raises:
             TypeError: it is not a feedback message of the action.

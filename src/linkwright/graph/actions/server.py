@@ -1,4 +1,4 @@
-"""Serves an action: takes goals, works on them, tells how far it has come and what came of it."""
+"""Action servers: accept goals, execute them, and publish feedback, status and results."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from collections import deque
 from collections.abc import Callable
 from functools import partial
 from inspect import isawaitable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from linkwright.graph.actions.endpoint import ActionEndpoint
+from linkwright.graph.actions.base import ActionEndpoint
 from linkwright.graph.actions.goal import (
     ACTIVE,
     CANCELABLE,
@@ -19,14 +19,13 @@ from linkwright.graph.actions.goal import (
     GoalStatus,
     ServerGoalHandle,
 )
-from linkwright.graph.dispatch import FREE_GROUP, CallbackGroup
-from linkwright.graph.entity import Entity
-from linkwright.graph.qos import ACTION_STATUS_QOS, DEFAULT_QOS, SERVICES_QOS, QoSProfile
-from linkwright.graph.time import NANOSECONDS_PER_SECOND, Time
-
-if TYPE_CHECKING:
-    from linkwright.graph.node import Node
-    from linkwright.graph.timer import Timer
+from linkwright.graph.loop.callback_groups import FREE_GROUP, CallbackGroup
+from linkwright.graph.loop.entity import Entity
+from linkwright.graph.loop.node_handle import NodeHandle
+from linkwright.graph.loop.timer import Timer
+from linkwright.graph.node import Node
+from linkwright.graph.qos.profile import ACTION_STATUS_QOS, DEFAULT_QOS, SERVICES_QOS, QoSProfile
+from linkwright.graph.time.values import NANOSECONDS_PER_SECOND, Time
 
 ERROR_NONE, ERROR_REJECTED, ERROR_UNKNOWN_GOAL_ID, ERROR_GOAL_TERMINATED = range(4)
 """What a request to cancel is answered with (action_msgs/srv/CancelGoal)."""
@@ -56,7 +55,7 @@ class ActionServer(ActionEndpoint):
     """Serves an action (rclpy ``ActionServer``).
 
     It is made of three services and two topics below ``NAME/_action/``. Callbacks may be coroutine functions; an
-    execute callback that is none runs in the dispatcher's thread and holds up whatever else that runs.
+    execute callback that is not runs in the dispatcher's thread and blocks its other callbacks.
 
     Args:
         node: whose it is.
@@ -110,7 +109,7 @@ class ActionServer(ActionEndpoint):
         self._goal_info = get_message("action_msgs/msg/GoalInfo")
         self._goal_status = get_message("action_msgs/msg/GoalStatus")
         self._expiry: Timer | None = None
-        self._executions = node.add_entity(_Executions(node))
+        self._executions = self._handle.add(_Executions(self._handle))
         impl = self._action_type.Impl
         self._services = [
             node.create_service(kind, self._below(name), answer, qos_profile=qos, callback_group=group, replying=True)
@@ -122,7 +121,7 @@ class ActionServer(ActionEndpoint):
         ]
         self._feedback = node.create_publisher(impl.FeedbackMessage, self._below("feedback"), feedback_pub_qos_profile)
         self._status = node.create_publisher(impl.GoalStatusMessage, self._below("status"), status_pub_qos_profile)
-        node.add_cleanup(self.destroy)
+        self._handle.add_cleanup(self.destroy)
 
     def register_execute_callback(self, execute_callback: Callable[[ServerGoalHandle], Any]) -> None:
         """Have goals worked on by another callback.
@@ -149,7 +148,7 @@ class ActionServer(ActionEndpoint):
         self._cancel_callback = cancel_callback or default_cancel_callback
 
     def destroy(self) -> None:
-        """Leave the graph; goals on their way come to nothing. A second call does nothing."""
+        """Leave the graph; unfinished goals are dropped. A second call does nothing."""
         with self._lock:
             if self._destroyed:
                 return
@@ -158,15 +157,11 @@ class ActionServer(ActionEndpoint):
             self._goal_handles.clear()
         for goal in goals:
             goal.retire()
-        node = self._node
-        for service in self._services:
-            node.destroy_service(service)
-        node.destroy_publisher(self._feedback)
-        node.destroy_publisher(self._status)
-        node.remove_entity(self._executions)
+        for part in (*self._services, self._feedback, self._status, self._executions):
+            part.destroy()
         if self._expiry is not None:
-            node.destroy_timer(self._expiry)
-        node.remove_cleanup(self.destroy)
+            self._expiry.destroy()
+        self._handle.remove_cleanup(self.destroy)
 
     # --- for goal handles --------------------------------------------------------------------------------------------
 
@@ -184,21 +179,21 @@ class ActionServer(ActionEndpoint):
             self._feedback.publish(message)
 
     def state_changed(self, goal: ServerGoalHandle) -> None:
-        """Tell the states of all goals; the result of one that ended is kept for a while."""
+        """Publish the states of all goals; the result of one that ended is kept for a while."""
         if GoalStatus(goal.status) not in ACTIVE:
             goal.ended_ns = self._node.get_clock().now_ns()
             self._watch_expiry()
         self._publish_status()
 
     def forget(self, goal: ServerGoalHandle) -> None:
-        """Know nothing of a goal any more."""
+        """Drop a goal."""
         with self._lock:
             self._goal_handles.pop(bytes(goal.goal_id.uuid), None)
 
     # --- the services ------------------------------------------------------------------------------------------------
 
     async def _on_goal(self, request: Any, reply: Callable[[Any], None]) -> None:
-        logger = self._node.get_logger()
+        logger = self._handle.logger
         uuid = bytes(request.goal_id.uuid)
         logger.debug(f"New goal request with ID: {request.goal_id.uuid}")
         response = self._action_type.Impl.SendGoalService.Response()
@@ -269,7 +264,7 @@ class ActionServer(ActionEndpoint):
     def _on_result(self, request: Any, reply: Callable[[Any], None]) -> None:
         goal = self._goal_handles.get(bytes(request.goal_id.uuid))
         if goal is None:
-            self._node.get_logger().debug(f"Sending result response for unknown goal ID: {request.goal_id.uuid}")
+            self._handle.logger.debug(f"Sending result response for unknown goal ID: {request.goal_id.uuid}")
             response = self._action_type.Impl.GetResultService.Response()
             response.status = int(GoalStatus.UNKNOWN)
             reply(response)
@@ -288,16 +283,16 @@ class ActionServer(ActionEndpoint):
         if self._destroyed:
             return
         if goal.is_active:
-            self._node.get_logger().warning(f"Goal state not set, assuming aborted. Goal ID: {goal.goal_id.uuid}")
+            self._handle.logger.warning(f"Goal state not set, assuming aborted. Goal ID: {goal.goal_id.uuid}")
             if GoalStatus(goal.status) is GoalStatus.ACCEPTED:
                 goal.update(GoalEvent.EXECUTE)
             goal.abort()
         elif result is None and not goal.result.ended():
-            self._node.get_logger().warning(
+            self._handle.logger.warning(
                 f"the execute callback of action '{self._action_name}' gave no result: an empty one is sent"
             )
         if result is not None and not isinstance(result, kind):
-            self._node.get_logger().error(
+            self._handle.logger.error(
                 f"the execute callback of action '{self._action_name}' gave {type(result)}, not {kind}: "
                 "an empty result is sent"
             )
@@ -351,19 +346,19 @@ class ActionServer(ActionEndpoint):
 
 
 class _Executions(Entity):
-    """The work on goals that waits to begin."""
+    """Accepted goals whose execution has not started."""
 
-    def __init__(self, node: Node) -> None:
+    def __init__(self, node: NodeHandle) -> None:
         super().__init__(node, FREE_GROUP)
         self._waiting: deque[Callable[[], object]] = deque()
 
     @property
     def what(self) -> str:
-        """What it is, for messages."""
+        """What it is called in messages."""
         return "execute callback of an action"
 
     def add(self, call: Callable[[], object]) -> None:
-        """Have something done."""
+        """Queue a call."""
         self._waiting.append(call)
         self.announce()
 
@@ -372,5 +367,5 @@ class _Executions(Entity):
         return bool(self._waiting)
 
     def take(self) -> Callable[[], object] | None:
-        """What waits longest."""
+        """The call that has waited longest."""
         return self._next_of(self._waiting)

@@ -1,20 +1,20 @@
 """Executors: which thread runs which callback, as in rclpy."""
 
-from linkwright.graph.executors.callback_groups import (
-    CallbackGroup,
-    MutuallyExclusiveCallbackGroup,
-    ReentrantCallbackGroup,
-)
-from linkwright.graph.executors.errors import (
+from linkwright.graph.executors.base import Context, Executor
+from linkwright.graph.executors.multi_threaded import MultiThreadedExecutor
+from linkwright.graph.executors.single_threaded import SingleThreadedExecutor
+from linkwright.graph.executors.task import Task
+from linkwright.graph.faults import (
     ConditionReachedException,
     ExternalShutdownException,
     ShutdownException,
     TimeoutException,
 )
-from linkwright.graph.executors.executor import Context, Executor
-from linkwright.graph.executors.multi_threaded import MultiThreadedExecutor
-from linkwright.graph.executors.single_threaded import SingleThreadedExecutor
-from linkwright.graph.executors.task import Task
+from linkwright.graph.loop.callback_groups import (
+    CallbackGroup,
+    MutuallyExclusiveCallbackGroup,
+    ReentrantCallbackGroup,
+)
 
 __all__ = [
     "CallbackGroup",

@@ -11,15 +11,15 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from linkwright.graph.executors.errors import (
+from linkwright.graph.executors.base import Context, deadline_after
+from linkwright.graph.executors.spinning import SpinningExecutor
+from linkwright.graph.executors.workers import Workers
+from linkwright.graph.faults import (
     ConditionReachedException,
     ExternalShutdownException,
     ShutdownException,
     TimeoutException,
 )
-from linkwright.graph.executors.executor import Context, deadline_after
-from linkwright.graph.executors.spinning import SpinningExecutor
-from linkwright.graph.executors.workers import Workers
 
 _NANOSECONDS_PER_SECOND = 1_000_000_000
 

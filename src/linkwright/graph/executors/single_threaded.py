@@ -5,8 +5,8 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 
-from linkwright.graph.executors.errors import ConditionReachedException, ShutdownException, TimeoutException
 from linkwright.graph.executors.spinning import SpinningExecutor
+from linkwright.graph.faults import ConditionReachedException, ShutdownException, TimeoutException
 
 
 class SingleThreadedExecutor(SpinningExecutor):

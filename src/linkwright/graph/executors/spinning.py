@@ -1,4 +1,4 @@
-"""How the executors of this room spin; what a turn is, each says itself."""
+"""Spinning, for the executors of this room; each says what one turn is."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from abc import abstractmethod
 from collections.abc import Callable
 from typing import Any
 
-from linkwright.graph.executors.executor import Executor, deadline_after
-from linkwright.graph.future import Future
+from linkwright.graph.executors.base import Executor, deadline_after
+from linkwright.graph.loop.future import Future
 
 
 class SpinningExecutor(Executor):

@@ -5,14 +5,21 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable, Coroutine, Generator, Mapping, Sequence
 from types import CoroutineType
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, Protocol, TypeVar
 
-from linkwright.graph.future import Future, StepsByExecutor, is_stepped_by_executor
-
-if TYPE_CHECKING:
-    from linkwright.graph.executors.executor import Executor
+from linkwright.graph.loop.future import Future, StepsByExecutor, is_stepped_by_executor
 
 T = TypeVar("T")
+
+
+class TaskRunner(Protocol):
+    """An executor, as its tasks know it."""
+
+    def create_task(self, callback: Callable[..., Any], *args: Any) -> Any:
+        """Run a callable after what is ready by now."""
+
+    def run_again(self, task: Task[Any]) -> None:
+        """Give a task its next turn."""
 
 
 class Task(Future[T]):
@@ -34,7 +41,7 @@ class Task(Future[T]):
         handler: Callable[..., Any] | Coroutine[Any, Any, T],
         args: Sequence[Any] | None = None,
         kwargs: Mapping[str, Any] | None = None,
-        executor: Executor | None = None,
+        executor: TaskRunner | None = None,
         *,
         ended: Callable[[], None] | None = None,
     ) -> None:

@@ -1,4 +1,4 @@
-"""What an executor has to do: things that are ready, alarms that make others ready, and the wait for either."""
+"""The work of an executor: a queue of what is ready, alarms, and the wait for either."""
 
 from __future__ import annotations
 

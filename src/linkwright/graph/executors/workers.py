@@ -1,4 +1,4 @@
-"""Threads that run what they are given."""
+"""A pool of daemon threads."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Things of a managed node that take part in its transitions: publishers that are silent unless it is active."""
+"""Managed entities: parts of a managed node that follow its state, such as publishers."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ from collections.abc import Callable
 from functools import wraps
 from typing import Any
 
+from linkwright.graph.endpoints.publisher import Publisher
 from linkwright.graph.lifecycle.states import LifecycleState, TransitionCallbackReturn
-from linkwright.graph.publisher import Publisher
 
 
 class ManagedEntity:
-    """Something that hears of the transitions of its node; what it answers decides how they go on."""
+    """Is notified of the transitions of its node; what it returns decides how they continue."""
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:  # noqa: ARG002  # for who overrides it
         """The node is configured, coming from a state."""

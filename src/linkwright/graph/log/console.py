@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import os
 import sys
-from typing import TYPE_CHECKING, TextIO
+from typing import TextIO
 
 from linkwright.graph.log.format import console_line
 from linkwright.graph.log.levels import LogLevel
-
-if TYPE_CHECKING:
-    from linkwright.graph.log.logger import LogRecord
+from linkwright.graph.log.record import LogRecord
 
 _NORMAL = "\x1b[0m"
 _COLOURS = {
@@ -36,8 +34,8 @@ def print_to_console(record: LogRecord) -> None:
     try:
         stream.write(f"{line}\n")
         stream.flush()
-    except (BrokenPipeError, ValueError):
-        # The reader has gone, or the stream is closed: a log line is no reason to end.
+    except (OSError, ValueError):
+        # The reader has gone, the disk is full or the stream closed: a log line is no reason to end.
         return
 
 

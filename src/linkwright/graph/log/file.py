@@ -5,12 +5,13 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import TextIO
 
 from linkwright.graph.log.format import console_line
 from linkwright.graph.log.levels import LogLevel
-from linkwright.graph.log.logger import LogRecord
+from linkwright.graph.log.record import LogRecord
 
 
 def log_folder(environment: Mapping[str, str] | None = None) -> Path:
@@ -26,7 +27,7 @@ def log_folder(environment: Mapping[str, str] | None = None) -> Path:
 class LogFile:
     """The log file of this process: ``EXECUTABLE_PID_MILLISECONDS.log``, made with the first record.
 
-    A folder that cannot be written costs the file, not the process.
+    Where the folder cannot be written there is no file, and the process goes on.
 
     Args:
         executable: name of the program.
@@ -44,14 +45,18 @@ class LogFile:
         file = self._file or self._open()
         if file is None:
             return
-        file.write(f"{console_line(record)}\n")
-        if record.level >= LogLevel.ERROR:
-            file.flush()
+        try:
+            file.write(f"{console_line(record)}\n")
+            if record.level >= LogLevel.ERROR:
+                file.flush()
+        except OSError:  # the disk is full
+            self.close()
 
     def close(self) -> None:
         """Write out what is buffered, and end."""
         if self._file is not None:
-            self._file.close()
+            with suppress(OSError):
+                self._file.close()
             self._file = None
         self._failed = True
 

@@ -9,10 +9,8 @@ from collections.abc import Callable
 from datetime import datetime
 from functools import lru_cache
 from pathlib import PurePath
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from linkwright.graph.log.logger import LogRecord
+from linkwright.graph.log.record import LogRecord
 
 DEFAULT_FORMAT = "[{severity}] [{time}] [{name}]: {message}"
 

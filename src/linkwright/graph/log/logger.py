@@ -1,46 +1,18 @@
-"""Loggers and what they write."""
+"""Loggers, with the methods of rclpy's."""
 
 from __future__ import annotations
 
 import sys
 import time
+import traceback
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from types import CodeType, FrameType
 from typing import Any
 
-from linkwright.graph.log.console import print_to_console
+from linkwright.diagnostics import LinkwrightError
 from linkwright.graph.log.filters import CallFilter
-from linkwright.graph.log.format import console_line
 from linkwright.graph.log.levels import LogLevel, LogLevels
-
-__all__ = ["LogLevel", "LogRecord", "LogSink", "Logger", "console_line", "print_to_console"]
-
-
-@dataclass(frozen=True, slots=True)
-class LogRecord:
-    """One message of a logger.
-
-    Attributes:
-        node: the logger's name: the node's name with its namespace before it, joined by dots.
-        level: how bad it is.
-        stamp_ns: when, nanoseconds since the epoch by the graph's clock.
-        text: what was said; it may have several lines.
-        file: path of the source file that said it; empty where that is not known.
-        function: the function in it.
-        line: the line in it.
-    """
-
-    node: str
-    level: LogLevel
-    stamp_ns: int
-    text: str
-    file: str = field(default="", compare=False)
-    function: str = field(default="", compare=False)
-    line: int = field(default=0, compare=False)
-
-
-LogSink = Callable[[LogRecord], None]
+from linkwright.graph.log.record import LogRecord, LogSink
 
 
 class Logger:
@@ -179,3 +151,20 @@ def _caller() -> FrameType:
     while frame.f_code.co_filename == __file__ and frame.f_back is not None:
         frame = frame.f_back
     return frame
+
+
+def log_failure(logger: Logger, what: str, error: BaseException) -> None:
+    """Log that something failed: a mistake in the user's input by its own words, anything else with its traceback."""
+    if isinstance(error, LinkwrightError):
+        problem = f" {error}"
+    else:
+        problem = "\n" + "".join(traceback.format_exception(error)).rstrip()
+    logger.error(f"{what} failed:{problem}")
+
+
+def run_logged(logger: Logger, what: str, callback: Callable[[], object]) -> None:
+    """Call something; if it fails, log that and go on."""
+    try:
+        callback()
+    except Exception as error:  # noqa: BLE001  # one callback must not take the other nodes of the process with it
+        log_failure(logger, what, error)

@@ -1,30 +1,40 @@
-"""What nodes log, on the topic ``/rosout``."""
+"""Publishes log records on ``/rosout``."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
-from linkwright.graph.log.logger import Logger, LogRecord
-from linkwright.graph.qos import ROSOUT_QOS, QoSProfile
-
-if TYPE_CHECKING:
-    from linkwright.graph.node import Node
-    from linkwright.graph.publisher import Publisher
+from linkwright.graph.log.logger import Logger
+from linkwright.graph.log.record import LogRecord
 
 _NANOSECONDS_PER_SECOND = 1_000_000_000
 
 
+LOG_TYPE = "rcl_interfaces/msg/Log"
+ROSOUT_TOPIC = "/rosout"
+
+
+class LogPublisher(Protocol):
+    """A publisher of `LOG_TYPE`."""
+
+    @property
+    def msg_type(self) -> type[Any]:
+        """The message class."""
+
+    def publish(self, msg: Any) -> None:
+        """Send a message."""
+
+
 class Rosout:
-    """Publishes the records of a node's logger and its children as rcl_interfaces/msg/Log.
+    """Publishes the records of a node's logger and its children.
 
     Args:
-        node: the node.
-        logger: its logger.
-        qos: what is offered.
+        publisher: the node's publisher of ``/rosout``.
+        logger: the node's logger.
     """
 
-    def __init__(self, node: Node, logger: Logger, qos: QoSProfile = ROSOUT_QOS) -> None:
-        self._publisher: Publisher[Any] = node.create_publisher("rcl_interfaces/msg/Log", "/rosout", qos)
+    def __init__(self, publisher: LogPublisher, logger: Logger) -> None:
+        self._publisher = publisher
         self._logger = logger
         self._publishing = False
         logger.rosout = self.publish

@@ -1,10 +1,11 @@
-"""Whether a value may be set: what a descriptor says of it. The rules and reasons are those of rclpy's ``Node``."""
+"""Whether a descriptor allows a value; rules and reasons are those of rclpy's ``Node``."""
 
 from __future__ import annotations
 
 from math import isclose
 from typing import Any
 
+from linkwright.diagnostics import phrase
 from linkwright.graph.parameters.parameter import Parameter, ParameterType
 
 _RELATIVE_TOLERANCE = 1e-6
@@ -25,14 +26,18 @@ def objection(parameter: Parameter, descriptor: Any, *, declared: bool, check_re
     """
     descriptor.name = parameter.name
     if check_read_only and descriptor.read_only:
-        return f"Trying to set a read-only parameter: {parameter.name}."
+        return phrase("Trying to set a read-only parameter: {name}.", name=parameter.name)
     is_set = parameter.type_ is not ParameterType.NOT_SET
     if descriptor.dynamic_typing:
         descriptor.type = parameter.type_.value
     elif declared and not is_set:
-        return "Static parameter cannot be undeclared"
+        return phrase("Static parameter cannot be undeclared")
     elif is_set and parameter.type_.value != descriptor.type:
-        return f"{WRONG_TYPE}, expected '{ParameterType(descriptor.type)}' got '{parameter.type_}'"
+        return phrase(
+            "Wrong parameter type, expected '{expected}' got '{given}'",
+            expected=str(ParameterType(descriptor.type)),
+            given=str(parameter.type_),
+        )
     if parameter.type_ is ParameterType.INTEGER and descriptor.integer_range:
         return _integer_objection(parameter, descriptor.integer_range[0])
     if parameter.type_ is ParameterType.DOUBLE and descriptor.floating_point_range:
@@ -46,11 +51,21 @@ def _integer_objection(parameter: Parameter, allowed: Any) -> str | None:
     if value in (low, high):
         return None
     if not low < value < high:
-        return f"Parameter {parameter.name} out of range. Min: {low}, Max: {high}, value: {value}"
+        return phrase(
+            "Parameter {name} out of range. Min: {low}, Max: {high}, value: {value}",
+            name=parameter.name,
+            low=low,
+            high=high,
+            value=value,
+        )
     if allowed.step != 0 and (value - low) % allowed.step != 0:
-        return (
-            f"The parameter value for {parameter.name} is not a valid step. "
-            f"Min: {low}, max: {high}, value: {value}, step: {allowed.step}"
+        return phrase(
+            "The parameter value for {name} is not a valid step. Min: {low}, max: {high}, value: {value}, step: {step}",
+            name=parameter.name,
+            low=low,
+            high=high,
+            value=value,
+            step=allowed.step,
         )
     return None
 
@@ -61,12 +76,23 @@ def _floating_point_objection(parameter: Parameter, allowed: Any) -> str | None:
     if isclose(value, low, rel_tol=_RELATIVE_TOLERANCE) or isclose(value, high, rel_tol=_RELATIVE_TOLERANCE):
         return None
     if not low < value < high:
-        return f"Parameter {parameter.name} out of range Min: {low}, Max: {high}, value: {value}"
+        return phrase(
+            "Parameter {name} out of range Min: {low}, Max: {high}, value: {value}",
+            name=parameter.name,
+            low=low,
+            high=high,
+            value=value,
+        )
     if allowed.step != 0.0:
         nearest = low + round((value - low) / allowed.step) * allowed.step
         if not isclose(nearest, value, rel_tol=_RELATIVE_TOLERANCE):
-            return (
-                f"The parameter value for {parameter.name} is not close enough to a valid step. "
-                f"Min: {low}, max: {high}, value: {value}, step: {allowed.step}"
+            return phrase(
+                "The parameter value for {name} is not close enough to a valid step."
+                " Min: {low}, max: {high}, value: {value}, step: {step}",
+                name=parameter.name,
+                low=low,
+                high=high,
+                value=value,
+                step=allowed.step,
             )
     return None

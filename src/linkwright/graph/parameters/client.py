@@ -7,22 +7,23 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from linkwright.graph.parameters.files import read_parameter_file
+from linkwright.graph.parameters.messages import service_type
 from linkwright.graph.parameters.parameter import Parameter
 from linkwright.graph.parameters.rules import ANY_NODE
-from linkwright.graph.qos import PARAMETER_EVENTS_QOS, SERVICES_QOS, QoSProfile
+from linkwright.graph.qos.profile import PARAMETER_EVENTS_QOS, SERVICES_QOS, QoSProfile
 
 if TYPE_CHECKING:
-    from linkwright.graph.dispatch import CallbackGroup
-    from linkwright.graph.future import Future
+    from linkwright.graph.loop.callback_groups import CallbackGroup
+    from linkwright.graph.loop.future import Future
 
-_SERVICES = {
-    "describe_parameters": "DescribeParameters",
-    "get_parameters": "GetParameters",
-    "get_parameter_types": "GetParameterTypes",
-    "list_parameters": "ListParameters",
-    "set_parameters": "SetParameters",
-    "set_parameters_atomically": "SetParametersAtomically",
-}
+_SERVICES = (
+    "describe_parameters",
+    "get_parameters",
+    "get_parameter_types",
+    "list_parameters",
+    "set_parameters",
+    "set_parameters_atomically",
+)
 _LOOK_EVERY_SECONDS = 0.05
 
 Done = Callable[..., Any]
@@ -51,12 +52,12 @@ class AsyncParameterClient:
         self.node = node
         self._clients: dict[str, Any] = {
             service: node.create_client(
-                _service_type(type_name),
+                service_type(service),
                 f"{remote_node_name}/{service}",
                 qos_profile=qos_profile,
                 callback_group=callback_group,
             )
-            for service, type_name in _SERVICES.items()
+            for service in _SERVICES
         }
 
     def services_are_ready(self) -> bool:
@@ -183,12 +184,6 @@ def parameter_dict_from_yaml_file(
 
 def _messages(parameters: Sequence[Any]) -> list[Any]:
     return [each.to_parameter_msg() if isinstance(each, Parameter) else each for each in parameters]
-
-
-def _service_type(name: str) -> Any:
-    from linkwright.messages import get_service
-
-    return get_service(f"rcl_interfaces/srv/{name}")
 
 
 def _message_type(name: str) -> Any:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, foreign, phrase
 
 if TYPE_CHECKING:
     from linkwright.graph.parameters.parameter import Parameter
@@ -22,9 +22,11 @@ class ParameterException(LinkwrightError):  # noqa: N818  # rclpy's name, which 
     """
 
     def __init__(
-        self, error_msg: str, parameters: str | list[str], *, code: str = "GRAPH201", hint: str | None = None
+        self, error_msg: Phrase, parameters: str | list[str], *, code: str = "GRAPH201", hint: Phrase | None = None
     ) -> None:
-        super().__init__(Diagnostic(code, f"{error_msg}: {parameters}", hint=hint))
+        super().__init__(
+            Diagnostic(code, phrase("{error_msg}: {parameters}", error_msg=error_msg, parameters=parameters), hint=hint)
+        )
 
 
 class ParameterNotDeclaredException(ParameterException):
@@ -38,21 +40,21 @@ class ParameterNotDeclaredException(ParameterException):
     def __init__(self, parameters: str | list[str], declared: Iterable[str] = ()) -> None:
         first = parameters if isinstance(parameters, str) else next(iter(parameters), "")
         hint = did_you_mean(first, declared)
-        super().__init__("Invalid access to undeclared parameter(s)", parameters, code="GRAPH202", hint=hint)
+        super().__init__(phrase("Invalid access to undeclared parameter(s)"), parameters, code="GRAPH202", hint=hint)
 
 
 class ParameterAlreadyDeclaredException(ParameterException):
     """A parameter is declared twice."""
 
     def __init__(self, parameters: str | list[str]) -> None:
-        super().__init__("Parameter(s) already declared", parameters, code="GRAPH203")
+        super().__init__(phrase("Parameter(s) already declared"), parameters, code="GRAPH203")
 
 
 class InvalidParameterException(ParameterException):
     """A parameter is declared with a name that is none."""
 
     def __init__(self, parameter_name: str) -> None:
-        super().__init__("Invalid parameter name", parameter_name, code="GRAPH205")
+        super().__init__(phrase("Invalid parameter name"), parameter_name, code="GRAPH205")
 
 
 class InvalidParameterTypeException(ParameterException):
@@ -66,10 +68,15 @@ class InvalidParameterTypeException(ParameterException):
     def __init__(self, desired_parameter: Parameter, expected_type: object) -> None:
         name, value = desired_parameter.name, desired_parameter.value
         expected = getattr(expected_type, "name", expected_type)
-        hint = f"write {value}.0" if expected == "DOUBLE" and type(value) is int else None
+        hint = phrase("write {value}.0", value=value) if expected == "DOUBLE" and type(value) is int else None
         super().__init__(
-            f"Trying to set parameter '{name}' to '{value}' of type '{desired_parameter.type_.name}', "
-            f"expecting type '{expected}'",
+            phrase(
+                "Trying to set parameter '{name}' to '{value}' of type '{type_name}', expecting type '{expected}'",
+                name=name,
+                value=value,
+                type_name=desired_parameter.type_.name,
+                expected=expected,
+            ),
             name,
             code="GRAPH201",
             hint=hint,
@@ -87,7 +94,11 @@ class InvalidParameterValueException(ParameterException):
 
     def __init__(self, parameter: str, value: Any, reason: str) -> None:
         super().__init__(
-            f"Invalid parameter value ({value}) for parameter. Reason: {reason}", parameter, code="GRAPH204"
+            phrase(
+                "Invalid parameter value ({value}) for parameter. Reason: {reason}", value=value, reason=foreign(reason)
+            ),
+            parameter,
+            code="GRAPH204",
         )
         self.reason = reason
 
@@ -96,7 +107,7 @@ class ParameterImmutableException(ParameterException):
     """A read-only parameter is to be changed."""
 
     def __init__(self, parameter_name: str) -> None:
-        super().__init__("Attempted to modify read-only parameter", parameter_name, code="GRAPH206")
+        super().__init__(phrase("Attempted to modify read-only parameter"), parameter_name, code="GRAPH206")
 
 
 class ParameterUninitializedException(ParameterException):
@@ -104,8 +115,12 @@ class ParameterUninitializedException(ParameterException):
 
     def __init__(self, parameter_name: str) -> None:
         super().__init__(
-            f"The parameter '{parameter_name}' is not initialized",
+            phrase("The parameter '{name}' is not initialized", name=parameter_name),
             parameter_name,
             code="GRAPH207",
-            hint="give it a default when it is declared, or a value in a parameter file or with -p",
+            hint=phrase("give it a default when it is declared, or a value in a parameter file or with -p"),
         )
+
+
+class ParameterFileNotFoundError(LinkwrightError, FileNotFoundError):
+    """There is no parameter file at a path."""

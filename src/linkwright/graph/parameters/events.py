@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from itertools import chain
 from typing import Any, TypeVar
 
-from linkwright.graph.qos import PARAMETER_EVENTS_QOS, QoSProfile
+from linkwright.graph.qos.profile import PARAMETER_EVENTS_QOS, QoSProfile
 
 H = TypeVar("H")
 

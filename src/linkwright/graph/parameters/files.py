@@ -13,19 +13,30 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText, did_you_mean, display_path
+from linkwright.diagnostics import (
+    Diagnostic,
+    LinkwrightError,
+    Phrase,
+    SourceText,
+    did_you_mean,
+    display_path,
+    foreign,
+    phrase,
+)
+from linkwright.graph.parameters.errors import ParameterFileNotFoundError
 from linkwright.graph.parameters.rules import ParameterRules
 from linkwright.graph.parameters.scalars import scalar_value
 
 PARAMETERS_KEY = "ros__parameters"
 _KINDS = {bool: "bool", int: "integer", float: "double", str: "string"}
-_FORM = f"it maps node names to '{PARAMETERS_KEY}', which maps names to values"
+_FORM = phrase("it maps node names to '{parameters_key}', which maps names to values", parameters_key=PARAMETERS_KEY)
 
 
 def read_parameter_file(path: str | Path) -> ParameterRules:
     """Read a parameter file.
 
     Raises:
+        ParameterFileNotFoundError: GRAPH211, there is no such file.
         LinkwrightError: GRAPH211 if it cannot be read, GRAPH212 if what is in it is none.
     """
     path = Path(path)
@@ -35,10 +46,17 @@ def read_parameter_file(path: str | Path) -> ParameterRules:
     except FileNotFoundError:
         near = [str(each) for each in path.parent.glob("*.y*ml")] if path.parent.is_dir() else []
         hint = did_you_mean(str(path), near)
-        raise LinkwrightError(Diagnostic("GRAPH211", f"parameter file '{shown}' does not exist", hint=hint)) from None
+        raise ParameterFileNotFoundError(
+            Diagnostic("GRAPH211", phrase("parameter file '{shown}' does not exist", shown=shown), hint=hint)
+        ) from None
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or error
-        raise LinkwrightError(Diagnostic("GRAPH211", f"parameter file '{shown}' cannot be read: {reason}")) from error
+        raise LinkwrightError(
+            Diagnostic(
+                "GRAPH211",
+                phrase("parameter file '{shown}' cannot be read: {reason}", shown=shown, reason=foreign(reason)),
+            )
+        ) from error
     return parse_parameters(SourceText(str(path), text))
 
 
@@ -79,7 +97,7 @@ class _Reader:
         if self._is("Scalar") and not self._event.value:
             return self._rules
         if not self._is("MappingStart"):
-            raise self._error("a parameter file must be a mapping", _FORM)
+            raise self._error(phrase("a parameter file must be a mapping"), _FORM)
         self._read_names(())
         return self._rules
 
@@ -88,7 +106,9 @@ class _Reader:
         if self._is("StreamEnd"):
             return ""
         if self._is("MappingStart"):
-            raise self._error(f"the value of parameter '{name}' is a mapping", "give its entries one by one")
+            raise self._error(
+                phrase("the value of parameter '{name}' is a mapping", name=name), phrase("give its entries one by one")
+            )
         return self._read_value(name)
 
     def _parsed(self) -> Iterator[Any]:
@@ -104,7 +124,7 @@ class _Reader:
     def _advance(self) -> None:
         self._event = next(self._events)
         if type(self._event).__name__ == "AliasEvent":
-            raise self._error("aliases are not supported in parameter files", "write the value out")
+            raise self._error(phrase("aliases are not supported in parameter files"), phrase("write the value out"))
 
     def _is(self, kind: str) -> bool:
         return type(self._event).__name__ == f"{kind}Event"
@@ -116,20 +136,26 @@ class _Reader:
             key = self._read_key()
             if key == PARAMETERS_KEY:
                 if not above:
-                    raise self._error(f"there are no node names before '{PARAMETERS_KEY}'", _FORM)
+                    raise self._error(
+                        phrase("there are no node names before '{parameters_key}'", parameters_key=PARAMETERS_KEY),
+                        _FORM,
+                    )
                 section = self._rules.section("/" + "/".join(above))
                 self._advance()
                 if self._is("MappingStart"):
                     self._read_parameters("", section)
                 elif not (self._is("Scalar") and not self._event.value):
-                    raise self._error(f"'{PARAMETERS_KEY}' must be a mapping of names to values")
+                    raise self._error(
+                        phrase("'{parameters_key}' must be a mapping of names to values", parameters_key=PARAMETERS_KEY)
+                    )
             else:
                 parts = tuple(part for part in key.split("/") if part)
                 self._check_names(key, parts)
                 self._advance()
                 if not self._is("MappingStart"):
                     raise self._error(
-                        f"'{key}' has a value before '{PARAMETERS_KEY}'", did_you_mean(key, [PARAMETERS_KEY]) or _FORM
+                        phrase("'{key}' has a value before '{parameters_key}'", key=key, parameters_key=PARAMETERS_KEY),
+                        did_you_mean(key, [PARAMETERS_KEY]) or _FORM,
                     )
                 self._read_names((*above, *parts))
             self._advance()
@@ -148,10 +174,10 @@ class _Reader:
 
     def _read_key(self) -> str:
         if not self._is("Scalar"):
-            raise self._error("a name must be a word, not a list or a mapping")
+            raise self._error(phrase("a name must be a word, not a list or a mapping"))
         key = str(self._event.value)
         if not key:
-            raise self._error("a name must not be empty")
+            raise self._error(phrase("a name must not be empty"))
         return key
 
     def _read_value(self, name: str) -> Any:
@@ -163,7 +189,7 @@ class _Reader:
         event = self._event
         plain = event.style not in ("'", '"') and event.tag != "tag:yaml.org,2002:str"
         if plain and not event.value:
-            raise self._error(f"parameter '{name}' has no value", 'an empty text is ""')
+            raise self._error(phrase("parameter '{name}' has no value", name=name), phrase('an empty text is ""'))
         return scalar_value(event.value, plain=plain)
 
     def _read_list(self, name: str) -> list[Any]:
@@ -171,13 +197,23 @@ class _Reader:
         self._advance()
         while not self._is("SequenceEnd"):
             if not self._is("Scalar"):
-                kind = "list" if self._is("SequenceStart") else "mapping"
-                raise self._error(f"the list of parameter '{name}' has a {kind} in it", "lists hold plain values only")
+                raise self._error(
+                    phrase("the list of parameter '{name}' has a list in it", name=name)
+                    if self._is("SequenceStart")
+                    else phrase("the list of parameter '{name}' has a mapping in it", name=name),
+                    phrase("lists hold plain values only"),
+                )
             value = self._read_scalar(name)
             if values and type(value) is not type(values[0]):
                 first, other = _KINDS[type(values[0])], _KINDS[type(value)]
                 raise self._error(
-                    f"the list of parameter '{name}' begins with a value of type {first} and has one of type {other}",
+                    phrase(
+                        "the list of parameter '{name}' begins with a value of type {first} and has one of type"
+                        " {other}",
+                        name=name,
+                        first=first,
+                        other=other,
+                    ),
                     _uniform_hint(values[0], value, self._event.value),
                 )
             values.append(value)
@@ -188,17 +224,17 @@ class _Reader:
         for part in parts:
             if part not in ("*", "**") and not re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]*", part):
                 raise self._error(
-                    f"'{key}' is not a node name",
-                    "names have letters, digits and '_', and do not begin with a digit; * and ** stand for any",
+                    phrase("'{key}' is not a node name", key=key),
+                    phrase("names have letters, digits and '_', and do not begin with a digit; * and ** stand for any"),
                 )
         if not parts:
-            raise self._error(f"'{key}' is not a node name", "any node is /**")
+            raise self._error(phrase("'{key}' is not a node name", key=key), phrase("any node is /**"))
 
-    def _error(self, message: str, hint: str | None = None) -> LinkwrightError:
+    def _error(self, message: Phrase, hint: Phrase | None = None) -> LinkwrightError:
         mark = self._event.start_mark
         return self._error_at(mark.line, mark.column, message, hint)
 
-    def _error_at(self, line: int, column: int, message: str, hint: str | None) -> LinkwrightError:
+    def _error_at(self, line: int, column: int, message: Phrase, hint: Phrase | None) -> LinkwrightError:
         source = self._source
         span = source.span(source.offset(line + 1, column + 1))
         return LinkwrightError(Diagnostic("GRAPH212", message, span, hint=hint, source=source))
@@ -207,11 +243,15 @@ class _Reader:
         mark = getattr(error, "problem_mark", None)
         problem = getattr(error, "problem", None) or str(error)
         if mark is None:
-            return LinkwrightError(Diagnostic("GRAPH212", f"parameter file is not YAML: {problem}"))
+            return LinkwrightError(
+                Diagnostic("GRAPH212", phrase("parameter file is not YAML: {problem}", problem=foreign(problem)))
+            )
         hint = None
         if "\t" in self._source.line(mark.line + 1)[: mark.column + 1] or "'\\t'" in problem:
-            hint = "indent with blanks, not with tabs"
-        return self._error_at(mark.line, mark.column, f"parameter file is not YAML: {problem}", hint)
+            hint = phrase("indent with blanks, not with tabs")
+        return self._error_at(
+            mark.line, mark.column, phrase("parameter file is not YAML: {problem}", problem=foreign(problem)), hint
+        )
 
 
 @lru_cache(maxsize=1)
@@ -221,11 +261,11 @@ def _loader() -> Any:
     return getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 
-def _uniform_hint(first: Any, value: Any, text: str) -> str:
+def _uniform_hint(first: Any, value: Any, text: str) -> Phrase:
     if type(first) is float and type(value) is int:
-        return f"write {text}.0"
+        return phrase("write {text}.0", text=text)
     if type(first) is int and type(value) is float:
-        return f"write {first}.0 in front, or whole numbers only"
+        return phrase("write {first}.0 in front, or whole numbers only", first=first)
     if type(first) is str:
-        return f'write "{text}"'
-    return "all values of a list must be of one type"
+        return phrase('write "{text}"', text=text)
+    return phrase("all values of a list must be of one type")

@@ -1,10 +1,17 @@
-"""Descriptors and results as messages of rcl_interfaces; the classes are built when they are first wanted."""
+"""The interfaces of rcl_interfaces: services, descriptors and results; classes are built when they are first used."""
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
 from linkwright.graph.parameters.parameter import Range
+
+
+@cache
+def service_type(service: str) -> str:
+    """The type of one of a node's parameter services: ``rcl_interfaces/srv/GetParameters`` of ``get_parameters``."""
+    return "rcl_interfaces/srv/" + "".join(word.capitalize() for word in service.split("_"))
 
 
 def interface(name: str) -> Any:

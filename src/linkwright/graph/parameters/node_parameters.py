@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, cast
+from collections.abc import Sequence
+from typing import Any
 
+from linkwright.graph.parameters.errors import ParameterAlreadyDeclaredException
 from linkwright.graph.parameters.parameter import (
     PARAMETER_SEPARATOR_STRING,
     Parameter,
@@ -17,11 +18,6 @@ from linkwright.graph.parameters.store import (
     PostSetParameters,
     PreSetParameters,
 )
-from linkwright.graph.qos import ROSOUT_QOS, QoSProfile
-
-if TYPE_CHECKING:
-    from linkwright.graph.log.rosout import Rosout
-    from linkwright.graph.node import Node
 
 
 class NodeParameters:
@@ -31,8 +27,9 @@ class NodeParameters:
     what is given back are messages, as in rclpy.
     """
 
-    _parameters: ParameterStore
-    _rosout: Rosout | None = None
+    def __init__(self, parameters: ParameterStore) -> None:
+        # The name is mangled, for users' nodes to have an attribute of this name.
+        self.__parameters = parameters
 
     def declare_parameter(
         self, name: str, value: Any = None, descriptor: Any = None, ignore_override: bool = False
@@ -55,7 +52,7 @@ class NodeParameters:
         """
         declaration = (name,) if value is None and descriptor is None else (name, value, descriptor)
         name, value, descriptor, only_name = _checked(0, declaration)
-        return self._parameters.declare(
+        return self.__parameters.declare(
             name, _plain(value), descriptor, only_name=only_name, ignore_override=ignore_override
         )
 
@@ -71,40 +68,49 @@ class NodeParameters:
 
         Raises:
             TypeError: a tuple has another form.
+            ParameterAlreadyDeclaredException: with all names that are declared already; none is declared then.
             ParameterException: as `declare_parameter`; those declared up to then stay declared.
+
+        Returns:
+            A parameter for each tuple. Of two tuples with one name the last one counts.
         """
-        declarations = [_checked(index, declaration) for index, declaration in enumerate(parameters)]
-        return [
-            self._parameters.declare(
-                f"{namespace}.{name}" if namespace else name,
-                _plain(value),
-                descriptor,
-                only_name=only_name,
-                ignore_override=ignore_override,
+        checked = [_checked(index, declaration) for index, declaration in enumerate(parameters)]
+        names = [f"{namespace}.{name}" if namespace else name for name, *_ in checked]
+        known = [name for name in names if name in self.__parameters]
+        if known:
+            raise ParameterAlreadyDeclaredException(known)
+        made = {
+            name: self.__parameters.declare(
+                name, _plain(value), descriptor, only_name=only_name, ignore_override=ignore_override
             )
-            for name, value, descriptor, only_name in declarations
-        ]
+            for name, (_, value, descriptor, only_name) in dict(zip(names, checked, strict=True)).items()
+        }
+        return [made[name] for name in names]
 
     def declare_parameters_from_overrides(self) -> None:
         """Declare every parameter that was given to the node from outside and is not declared yet, with its type."""
-        for name, value in self._parameters.overrides.items():
-            if name not in self._parameters:
-                self._parameters.declare(name, value, ParameterDescriptor(), ignore_override=True)
+        for name, value in self.__parameters.overrides.items():
+            if name not in self.__parameters:
+                self.__parameters.declare(name, value, ParameterDescriptor(), ignore_override=True)
+
+    # rclpy's names; programs read them, though they begin with an underscore.
 
     @property
-    def pre_set_parameters_callbacks(self) -> list[PreSetParameters]:
+    def _pre_set_parameters_callbacks(self) -> list[PreSetParameters]:
         """What `add_pre_set_parameters_callback` added and may still be taken away, the last first."""
-        return self._parameters.pre_set
+        return self.__parameters.pre_set
 
     @property
-    def on_set_parameters_callbacks(self) -> list[OnSetParameters]:
+    def _on_set_parameters_callbacks(self) -> list[OnSetParameters]:
         """What `add_on_set_parameters_callback` added, the last first."""
-        return self._parameters.on_set
+        return self.__parameters.on_set
+
+    _parameters_callbacks = _on_set_parameters_callbacks
 
     @property
-    def post_set_parameters_callbacks(self) -> list[PostSetParameters]:
+    def _post_set_parameters_callbacks(self) -> list[PostSetParameters]:
         """What `add_post_set_parameters_callback` added, the last first."""
-        return self._parameters.post_set
+        return self.__parameters.post_set
 
     def undeclare_parameter(self, name: str) -> None:
         """Forget a parameter. No callback is asked, and no event published.
@@ -113,15 +119,15 @@ class NodeParameters:
             ParameterNotDeclaredException: it is not declared.
             ParameterImmutableException: it is read-only.
         """
-        self._parameters.undeclare(name)
+        self.__parameters.undeclare(name)
 
     def has_parameter(self, name: str) -> bool:
         """Whether a parameter is declared."""
-        return name in self._parameters
+        return name in self.__parameters
 
     def parameter_names(self) -> list[str]:
         """Names of the declared parameters, in order of declaration."""
-        return self._parameters.names()
+        return self.__parameters.names()
 
     def get_parameter(self, name: str) -> Parameter:
         """A declared parameter; where undeclared ones are allowed, one without a value for any other.
@@ -130,23 +136,23 @@ class NodeParameters:
             ParameterNotDeclaredException: it is not declared.
             ParameterUninitializedException: it was declared with a type only, and has no value yet.
         """
-        return self._parameters.get(name)
+        return self.__parameters.get(name)
 
     def get_parameters(self, names: Sequence[str]) -> list[Parameter]:
         """Several declared parameters; see `get_parameter`."""
         _check_names(names)
-        return [self._parameters.get(name) for name in names]
+        return [self.__parameters.get(name) for name in names]
 
     def get_parameter_or(self, name: str, alternative_value: Parameter | None = None) -> Parameter:
         """A parameter that has a value, else the alternative, else one without a value."""
-        found = self._parameters.value_or_none(name)
+        found = self.__parameters.value_or_none(name)
         if found is not None:
             return found
         return Parameter(name) if alternative_value is None else alternative_value
 
     def get_parameters_by_prefix(self, prefix: str) -> dict[str, Parameter]:
         """The parameters ``prefix.rest``, by ``rest``; all of them for an empty prefix."""
-        return self._parameters.with_prefix(prefix)
+        return self.__parameters.with_prefix(prefix)
 
     def get_parameter_type(self, name: str) -> int:
         """The number of the type of a parameter's value.
@@ -154,7 +160,7 @@ class NodeParameters:
         Raises:
             ParameterNotDeclaredException: it is not declared.
         """
-        return self._parameters.type_of(name).value
+        return self.__parameters.type_of(name).value
 
     def get_parameter_types(self, names: Sequence[str]) -> list[int]:
         """The types of several parameters; see `get_parameter_type`."""
@@ -179,7 +185,7 @@ class NodeParameters:
         """
         from linkwright.graph.parameters.messages import result_message
 
-        return result_message(self._parameters.set_together(parameter_list))
+        return result_message(self.__parameters.set_together(parameter_list))
 
     def list_parameters(self, prefixes: list[str], depth: int) -> Any:
         """The names of parameters and their prefixes: rcl_interfaces/msg/ListParametersResult.
@@ -202,7 +208,7 @@ class NodeParameters:
             raise ValueError("The depth must be greater than or equal to zero")
         from linkwright.graph.parameters.messages import interface
 
-        names = [name for name in self._parameters.names() if _is_listed(name, prefixes, depth)]
+        names = [name for name in self.__parameters.names() if _is_listed(name, prefixes, depth)]
         found = [name.rpartition(PARAMETER_SEPARATOR_STRING)[0] for name in names]
         result = interface("ListParametersResult")()
         result.names = names
@@ -217,10 +223,10 @@ class NodeParameters:
         """
         from linkwright.graph.parameters.messages import descriptor_message
 
-        descriptor = self._parameters.descriptor(name)
+        descriptor = self.__parameters.descriptor(name)
         message = descriptor_message(descriptor)
-        if message is not descriptor and name in self._parameters:
-            self._parameters.keep_descriptor(name, message)
+        if message is not descriptor and name in self.__parameters:
+            self.__parameters.keep_descriptor(name, message)
         return message
 
     def describe_parameters(self, names: Sequence[str]) -> list[Any]:
@@ -243,20 +249,20 @@ class NodeParameters:
             ParameterImmutableException: it is read-only.
             InvalidParameterValueException: neither value goes with the descriptor.
         """
-        parameter = self._parameters.set_descriptor(name, descriptor, _plain(alternative_value))
+        parameter = self.__parameters.set_descriptor(name, descriptor, _plain(alternative_value))
         return (Parameter(name) if parameter is None else parameter).get_parameter_value()
 
     def add_pre_set_parameters_callback(self, callback: PreSetParameters) -> None:
         """Have a callback change the list of parameters that are to be set; the one added last comes first."""
-        self._parameters.pre_set.insert(0, callback)
+        self.__parameters.pre_set.insert(0, callback)
 
     def add_on_set_parameters_callback(self, callback: OnSetParameters) -> None:
         """Have a callback asked before parameters are declared or set; it may refuse with a reason."""
-        self._parameters.on_set.insert(0, callback)
+        self.__parameters.on_set.insert(0, callback)
 
     def add_post_set_parameters_callback(self, callback: PostSetParameters) -> None:
         """Have a callback told after parameters were declared or set."""
-        self._parameters.post_set.insert(0, callback)
+        self.__parameters.post_set.insert(0, callback)
 
     def remove_pre_set_parameters_callback(self, callback: PreSetParameters) -> None:
         """Take a callback away.
@@ -264,7 +270,7 @@ class NodeParameters:
         Raises:
             ValueError: it was not added.
         """
-        self._parameters.pre_set.remove(callback)
+        self.__parameters.pre_set.remove(callback)
 
     def remove_on_set_parameters_callback(self, callback: OnSetParameters) -> None:
         """Take a callback away.
@@ -272,7 +278,7 @@ class NodeParameters:
         Raises:
             ValueError: it was not added.
         """
-        self._parameters.on_set.remove(callback)
+        self.__parameters.on_set.remove(callback)
 
     def remove_post_set_parameters_callback(self, callback: PostSetParameters) -> None:
         """Take a callback away.
@@ -280,47 +286,7 @@ class NodeParameters:
         Raises:
             ValueError: it was not added.
         """
-        self._parameters.post_set.remove(callback)
-
-    def _start_parameters(
-        self,
-        overrides: Mapping[str, Any] | Sequence[Parameter],
-        *,
-        allow_undeclared: bool = False,
-        declare_overrides: bool = False,
-        services: bool = True,
-        rosout: QoSProfile | None = ROSOUT_QOS,
-    ) -> None:
-        """Begin: the node's publishers and services can be made.
-
-        Args:
-            overrides: values by name, or parameters, that take the place of defaults.
-            allow_undeclared: rclpy's ``allow_undeclared_parameters``.
-            declare_overrides: rclpy's ``automatically_declare_parameters_from_overrides``.
-            services: rclpy's ``start_parameter_services``.
-            rosout: the quality of service of ``/rosout``; None to log nothing there.
-        """
-        from linkwright.graph.log.rosout import Rosout
-        from linkwright.graph.parameters.services import ParameterEvents, ParameterServices
-
-        node = cast("Node", self)
-        if not isinstance(overrides, Mapping):
-            overrides = {parameter.name: parameter.value for parameter in overrides}
-        if rosout is not None:
-            self._rosout = Rosout(node, node.get_logger(), rosout)
-        self._parameters = ParameterStore(
-            overrides, allow_undeclared=allow_undeclared, on_change=ParameterEvents(node).publish
-        )
-        if declare_overrides:
-            self.declare_parameters_from_overrides()
-        if services:
-            ParameterServices(node)
-
-    def _close_parameters(self) -> None:
-        """End: log no more to ``/rosout``. The node takes the publishers and services away itself."""
-        if self._rosout is not None:
-            self._rosout.close()
-            self._rosout = None
+        self.__parameters.post_set.remove(callback)
 
 
 def _plain(value: Any) -> Any:

@@ -8,6 +8,8 @@ from enum import Enum
 from types import GenericAlias
 from typing import Any
 
+from linkwright.diagnostics import phrase
+
 PARAMETER_SEPARATOR_STRING = "."
 
 
@@ -38,11 +40,21 @@ class ParameterType(Enum):
             if isinstance(parameter_value, classes):
                 return kind
         if not isinstance(parameter_value, (list, tuple, array.array)):
-            raise TypeError(f"The given value is not one of the allowed types '{parameter_value}'.")
+            raise TypeError(
+                phrase(
+                    "The given value is not one of the allowed types '{parameter_value}'.",
+                    parameter_value=parameter_value,
+                )
+            )
         for kind, element in _ARRAYS:
             if all(isinstance(each, element) for each in parameter_value):
                 return kind
-        raise TypeError(f"The given value is not a list of one of the allowed types '{parameter_value}'.")
+        raise TypeError(
+            phrase(
+                "The given value is not a list of one of the allowed types '{parameter_value}'.",
+                parameter_value=parameter_value,
+            )
+        )
 
     def check(self, parameter_value: Any) -> bool:
         """Whether a parameter of this type can have a value. Every array type takes an empty list."""

@@ -6,9 +6,10 @@ from collections.abc import Callable, Iterable
 from copy import copy
 from typing import Any, Literal
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, foreign, joined, phrase
+from linkwright.graph.parameters.node_parameters import NodeParameters
 from linkwright.graph.parameters.parameter import ParameterDescriptor
-from linkwright.graph.qos import (
+from linkwright.graph.qos.profile import (
     DurabilityPolicy,
     HistoryPolicy,
     LivelinessPolicy,
@@ -16,7 +17,7 @@ from linkwright.graph.qos import (
     QoSProfile,
     ReliabilityPolicy,
 )
-from linkwright.graph.time import Duration
+from linkwright.graph.time.values import Duration
 
 _POLICIES: dict[QoSPolicyKind, Any] = {
     QoSPolicyKind.HISTORY: HistoryPolicy,
@@ -30,7 +31,7 @@ _DURATIONS = (QoSPolicyKind.DEADLINE, QoSPolicyKind.LIFESPAN, QoSPolicyKind.LIVE
 class InvalidQosOverridesError(LinkwrightError):
     """What parameters say of a quality of service cannot be, or is refused by the node."""
 
-    def __init__(self, message: str, hint: str | None = None) -> None:
+    def __init__(self, message: Phrase, hint: Phrase | None = None) -> None:
         super().__init__(Diagnostic("GRAPH208", message, hint=hint))
 
 
@@ -64,11 +65,11 @@ class QoSOverridingOptions:
 
 
 def override_qos(
-    node: Any,
+    node: NodeParameters,
     entity: Literal["publisher", "subscription"],
     topic: str,
     qos: QoSProfile,
-    options: QoSOverridingOptions,
+    options: QoSOverridingOptions | None,
 ) -> QoSProfile:
     """Declare the parameters of a publisher or subscription that is to be made, and give the profile they make.
 
@@ -77,11 +78,13 @@ def override_qos(
         entity: which of the two.
         topic: the absolute name of its topic.
         qos: the profile that its code gives it.
-        options: what may be overridden.
+        options: what may be overridden; None for nothing.
 
     Raises:
         InvalidQosOverridesError: GRAPH208, the profile is refused, or a value is none that its policy has.
     """
+    if options is None:
+        return qos
     suffix = "" if options.entity_id is None else f"_{options.entity_id}"
     profile = copy(qos)
     for kind in options.policy_kinds:
@@ -99,10 +102,13 @@ def override_qos(
     verdict = True if options.callback is None else options.callback(profile)
     if not getattr(verdict, "successful", verdict):
         reason = getattr(verdict, "reason", "")
-        raise InvalidQosOverridesError(
-            f"Provided QoS overrides for {entity} `{topic}` with id `{options.entity_id}`, are not valid"
-            + (f": {reason}" if reason else "")
+        message = phrase(
+            "Provided QoS overrides for {entity} `{topic}` with id `{entity_id}`, are not valid",
+            entity=entity,
+            topic=topic,
+            entity_id=options.entity_id,
         )
+        raise InvalidQosOverridesError(joined([message, foreign(reason)], ": ") if reason else message)
     return profile
 
 
@@ -124,6 +130,11 @@ def _from_parameter(kind: QoSPolicyKind, value: Any, name: str) -> Any:
     except KeyError:
         known = [each.name.lower() for each in policy]
         raise InvalidQosOverridesError(
-            f"Unexpected QoS override for policy `{kind.name.lower()}`: `{value}` (parameter '{name}')",
-            did_you_mean(str(value).lower(), known) or f"there is {', '.join(known)}",
+            phrase(
+                "Unexpected QoS override for policy `{name}`: `{value}` (parameter '{other_name}')",
+                name=kind.name.lower(),
+                value=value,
+                other_name=name,
+            ),
+            did_you_mean(str(value).lower(), known) or phrase("there is {known}", known=joined(known)),
         ) from None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import lru_cache
 from typing import Any
 
@@ -39,6 +39,20 @@ class ParameterRules:
         """Add rules that come after these."""
         for pattern, values in other:
             self.section(pattern).update(values)
+
+    @property
+    def patterns(self) -> list[str]:
+        """The patterns, in their order."""
+        return list(self._values)
+
+    def fit(self, full_name: str) -> bool:
+        """Whether any pattern is for a node."""
+        return any(_expression(pattern).fullmatch(full_name) for pattern in self._values)
+
+    def without_node(self, full_names: Iterable[str]) -> list[str]:
+        """The patterns that fit none of some nodes."""
+        names = list(full_names)
+        return [each for each in self._values if not any(map(_expression(each).fullmatch, names))]
 
     def for_node(self, full_name: str) -> dict[str, Any]:
         """The values for a node, by parameter name.

@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable
+from typing import Any
 
+from linkwright.graph.endpoints.publisher import Publisher
 from linkwright.graph.parameters.errors import (
     ParameterException,
     ParameterNotDeclaredException,
     ParameterUninitializedException,
 )
+from linkwright.graph.parameters.messages import interface, service_type
+from linkwright.graph.parameters.node_parameters import NodeParameters
 from linkwright.graph.parameters.parameter import Parameter
-from linkwright.graph.qos import PARAMETER_EVENTS_QOS, PARAMETERS_QOS
+from linkwright.graph.parameters.store import ParameterChange
+from linkwright.graph.qos.profile import PARAMETERS_QOS
+from linkwright.graph.time.clock import Clock
 
-if TYPE_CHECKING:
-    from linkwright.graph.node import Node
-    from linkwright.graph.parameters.store import ParameterChange
-    from linkwright.graph.publisher import Publisher
+EVENTS_TYPE = "rcl_interfaces/msg/ParameterEvent"
+EVENTS_TOPIC = "/parameter_events"
 
 
 class ParameterServices:
@@ -25,23 +29,22 @@ class ParameterServices:
     for is not declared, the answer is empty.
 
     Args:
-        node: the node.
+        node: whose parameters they are.
+        node_name: its name.
+        create_service: its `Node.create_service`.
     """
 
-    def __init__(self, node: Node) -> None:
+    def __init__(self, node: NodeParameters, node_name: str, create_service: Callable[..., object]) -> None:
         self._node = node
-        name = node.get_name()
-        for service, type_name, callback in (
-            ("describe_parameters", "DescribeParameters", self._describe),
-            ("get_parameters", "GetParameters", self._get),
-            ("get_parameter_types", "GetParameterTypes", self._get_types),
-            ("list_parameters", "ListParameters", self._list),
-            ("set_parameters", "SetParameters", self._set),
-            ("set_parameters_atomically", "SetParametersAtomically", self._set_atomically),
+        for service, callback in (
+            ("describe_parameters", self._describe),
+            ("get_parameters", self._get),
+            ("get_parameter_types", self._get_types),
+            ("list_parameters", self._list),
+            ("set_parameters", self._set),
+            ("set_parameters_atomically", self._set_atomically),
         ):
-            node.create_service(
-                f"rcl_interfaces/srv/{type_name}", f"{name}/{service}", callback, qos_profile=PARAMETERS_QOS
-            )
+            create_service(service_type(service), f"{node_name}/{service}", callback, qos_profile=PARAMETERS_QOS)
 
     def _describe(self, request: Any, response: Any) -> Any:
         try:
@@ -77,8 +80,6 @@ class ParameterServices:
         return response
 
     def _set_together(self, messages: Any) -> Any:
-        from linkwright.graph.parameters.messages import interface
-
         try:
             return self._node.set_parameters_atomically([Parameter.from_parameter_msg(each) for each in messages])
         except (ParameterException, ValueError) as error:
@@ -86,25 +87,26 @@ class ParameterServices:
 
 
 class ParameterEvents:
-    """Publishes what changes among a node's parameters on ``/parameter_events``.
+    """Publishes what changes among a node's parameters.
 
     Args:
-        node: the node.
+        publisher: of ``/parameter_events``.
+        clock: what the events are stamped with.
+        node_name: the full name of the node.
     """
 
-    def __init__(self, node: Node) -> None:
-        self._node = node
-        self._publisher: Publisher[Any] = node.create_publisher(
-            "rcl_interfaces/msg/ParameterEvent", "/parameter_events", PARAMETER_EVENTS_QOS
-        )
+    def __init__(self, publisher: Publisher[Any], clock: Clock, node_name: str) -> None:
+        self._publisher = publisher
+        self._clock = clock
+        self._node_name = node_name
 
     def publish(self, change: ParameterChange) -> None:
-        """Publish a change, if somebody listens: the topic keeps nothing for late comers."""
+        """Publish a change, if somebody listens: the topic keeps nothing for late joiners."""
         if not self._publisher.get_subscription_count():
             return
         event: Any = self._publisher.msg_type()
-        event.stamp = self._node.get_clock().now().to_msg()
-        event.node = self._node.get_fully_qualified_name()
+        event.stamp = self._clock.now().to_msg()
+        event.node = self._node_name
         event.new_parameters = [each.to_parameter_msg() for each in change.new]
         event.changed_parameters = [each.to_parameter_msg() for each in change.changed]
         event.deleted_parameters = [each.to_parameter_msg() for each in change.deleted]

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from linkwright.diagnostics import phrase
 from linkwright.graph.parameters.checks import WRONG_TYPE, objection
 from linkwright.graph.parameters.errors import (
     InvalidParameterException,
@@ -179,7 +180,7 @@ class ParameterStore:
             if not chosen:
                 return SetParametersResult(successful=False, reason=_EMPTIED)
         if not all(isinstance(each, Parameter) for each in chosen):
-            raise TypeError(f"parameter must be instance of type '{Parameter!r}'")
+            raise TypeError(phrase("parameter must be instance of type '{parameter}'", parameter=repr(Parameter)))
         undeclared = [each.name for each in chosen if each.name not in self._parameters]
         if undeclared and not self.allow_undeclared:
             raise ParameterNotDeclaredException(undeclared, self._parameters)

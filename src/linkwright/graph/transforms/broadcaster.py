@@ -1,11 +1,11 @@
-"""Sends transforms to ``/tf`` and ``/tf_static``, as ``tf2_ros`` does."""
+"""Transform broadcasters: publish to ``/tf`` and ``/tf_static``, as those of ``tf2_ros``."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import Any
 
-from linkwright.graph.qos import STATIC_TF_PUBLISHER_QOS, TF_QOS, QoSProfile
+from linkwright.graph.qos.profile import STATIC_TF_PUBLISHER_QOS, TF_QOS, QoSProfile
 from linkwright.messages import TFMessage, TransformStamped
 
 

@@ -1,4 +1,4 @@
-"""What the tf buffer remembers of one frame: its transforms over the last seconds, or the one that always holds."""
+"""The history of one frame in the tf buffer: its transforms of the last seconds, or a static one."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ from abc import ABC, abstractmethod
 from bisect import bisect_right
 from typing import TYPE_CHECKING, NamedTuple, cast
 
-from linkwright.graph.transforms.pose import Pose, interpolate
+from linkwright.diagnostics import phrase
+from linkwright.geometry.single import Transform, interpolate
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -22,14 +23,14 @@ class Sample(NamedTuple):
     """A transform of a frame: its number of the parent, and the row of an array of poses, or a pose itself."""
 
     parent: int
-    poses: NDArray | Pose  # type: ignore[type-arg]  # rows of floats
+    poses: NDArray | Transform  # type: ignore[type-arg]  # rows of floats
     row: int = -1
 
-    def pose(self) -> Pose:
+    def pose(self) -> Transform:
         """The pose in the parent."""
         if self.row < 0:
-            return cast("Pose", self.poses)
-        return cast("Pose", tuple(cast("NDArray", self.poses)[self.row].tolist()))  # type: ignore[type-arg]
+            return cast("Transform", self.poses)
+        return cast("Transform", tuple(cast("NDArray", self.poses)[self.row].tolist()))  # type: ignore[type-arg]  # rows of floats
 
 
 class NoDataError(Exception):
@@ -49,7 +50,7 @@ class FrameCache(ABC):
         """Take in a transform; False when it is too old."""
 
     @abstractmethod
-    def at(self, time_ns: int) -> tuple[int, Pose]:
+    def at(self, time_ns: int) -> tuple[int, Transform]:
         """Number of the parent and pose at a time; 0 for the latest.
 
         Raises:
@@ -93,7 +94,7 @@ class StaticCache(FrameCache):
         self._sample = sample
         return True
 
-    def at(self, time_ns: int) -> tuple[int, Pose]:
+    def at(self, time_ns: int) -> tuple[int, Transform]:
         """Number of the parent and pose, the same at all times."""
         return self.parent_at(time_ns), cast("Sample", self._sample).pose()
 
@@ -159,7 +160,7 @@ class MovingCache(FrameCache):
         self._samples.insert(place, sample)
         return True
 
-    def at(self, time_ns: int) -> tuple[int, Pose]:
+    def at(self, time_ns: int) -> tuple[int, Transform]:
         """Number of the parent and pose at a time, between two transforms in proportion."""
         place = self._place(time_ns)
         sample = self._samples[place]
@@ -202,18 +203,30 @@ class MovingCache(FrameCache):
             return len(stamps) - 1
         if len(self) == 1:
             raise NoDataError(
-                f"Lookup would require extrapolation at time {shown_time(time_ns)}, but only time "
-                f"{shown_time(latest)} is in the buffer"
+                phrase(
+                    "Lookup would require extrapolation at time {shown_time}, but only time"
+                    " {other_shown_time} is in the buffer",
+                    shown_time=shown_time(time_ns),
+                    other_shown_time=shown_time(latest),
+                )
             )
         if time_ns > latest:
             raise NoDataError(
-                f"Lookup would require extrapolation into the future.  Requested time {shown_time(time_ns)} but the "
-                f"latest data is at time {shown_time(latest)}"
+                phrase(
+                    "Lookup would require extrapolation into the future.  Requested time {shown_time} but"
+                    " the latest data is at time {other_shown_time}",
+                    shown_time=shown_time(time_ns),
+                    other_shown_time=shown_time(latest),
+                )
             )
         if time_ns < oldest:
             raise NoDataError(
-                f"Lookup would require extrapolation into the past.  Requested time {shown_time(time_ns)} but the "
-                f"earliest data is at time {shown_time(oldest)}"
+                phrase(
+                    "Lookup would require extrapolation into the past.  Requested time {shown_time} but the"
+                    " earliest data is at time {other_shown_time}",
+                    shown_time=shown_time(time_ns),
+                    other_shown_time=shown_time(oldest),
+                )
             )
         return bisect_right(stamps, time_ns, self._first) - 1
 

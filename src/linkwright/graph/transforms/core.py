@@ -14,8 +14,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.graph.log.logger import Logger, print_to_console
-from linkwright.graph.time import Duration, Time
+from linkwright.geometry.single import IDENTITY, Transform, compose
+from linkwright.geometry.vectors import Vector3
+from linkwright.graph.log.console import print_to_console
+from linkwright.graph.log.logger import Logger
+from linkwright.graph.time.values import Duration, Time
 from linkwright.graph.transforms.cache import FrameCache, MovingCache, Sample, StaticCache, shown_time
 from linkwright.graph.transforms.errors import (
     ConnectivityException,
@@ -25,7 +28,6 @@ from linkwright.graph.transforms.errors import (
     bad_frame_reason,
     unknown_frame,
 )
-from linkwright.graph.transforms.pose import IDENTITY, Pose, Vector, compose
 from linkwright.graph.transforms.report import FrameFacts, frames_as_dot, frames_as_text, frames_as_yaml
 from linkwright.graph.transforms.velocity import velocity
 from linkwright.graph.transforms.walk import Walker
@@ -136,7 +138,7 @@ class BufferCore:
             fixed_in_target, time_ns = self.lookup(target_frame, fixed_frame, nanoseconds_of(target_time))
         return _message(target_frame, source_frame, time_ns, compose(fixed_in_target, source_in_fixed))
 
-    def lookup(self, target: str, source: str, time_ns: int) -> tuple[Pose, int]:
+    def lookup(self, target: str, source: str, time_ns: int) -> tuple[Transform, int]:
         """The pose of the source frame in the target frame, and the time that it holds at, in nanoseconds.
 
         Raises:
@@ -199,11 +201,11 @@ class BufferCore:
         tracking_frame: str,
         observation_frame: str,
         reference_frame: str,
-        reference_point: Vector,
+        reference_point: Vector3,
         reference_point_frame: str,
         time: Any,
         averaging_interval: Any,
-    ) -> tuple[Vector, Vector]:
+    ) -> tuple[Vector3, Vector3]:
         """Linear and angular velocity of a frame; see `velocity`.
 
         Raises:
@@ -275,7 +277,7 @@ class BufferCore:
 
     def lookupVelocityCore(  # noqa: N802
         self, tracking_frame: str, observation_frame: str, time: Any, averaging_interval: Any
-    ) -> tuple[Vector, Vector]:
+    ) -> tuple[Vector3, Vector3]:
         """Velocity of the origin of a frame, given in the frame in which it is seen."""
         reference = (observation_frame, (0.0, 0.0, 0.0), tracking_frame)
         return self.lookup_velocity(tracking_frame, observation_frame, *reference, time, averaging_interval)
@@ -291,7 +293,7 @@ class BufferCore:
         )  # fmt: skip
         self._set(header.frame_id, message.child_frame_id, nanoseconds_of(header.stamp), pose, authority, static=static)
 
-    def _set(self, parent: str, child: str, stamp_ns: int, pose: Pose, authority: str, *, static: bool) -> None:
+    def _set(self, parent: str, child: str, stamp_ns: int, pose: Transform, authority: str, *, static: bool) -> None:
         parent, child = parent.removeprefix("/"), child.removeprefix("/")
         problem = _problem(parent, child, pose, authority)
         if problem is not None:
@@ -356,7 +358,7 @@ class BufferCore:
         return number
 
     def _objection(self, argument: str, frame: str) -> str | None:
-        reason = bad_frame_reason(frame)
+        reason: str | None = bad_frame_reason(frame)
         if reason is None and frame not in self._numbers:
             reason = "frame does not exist"
         return None if reason is None else f'Invalid frame ID "{frame}" passed to {argument} - {reason}'
@@ -423,7 +425,7 @@ def nanoseconds_of(time: Any) -> int:
     return int(time.nanoseconds)
 
 
-def _problem(parent: str, child: str, pose: Pose, authority: str) -> str | None:
+def _problem(parent: str, child: str, pose: Transform, authority: str) -> str | None:
     """Why a transform is not taken, in tf2's words."""
     x, y, z, w = pose[3:]
     # A NaN fails the comparison, and infinite numbers do; so one test tells the usual case.
@@ -455,7 +457,7 @@ def _problem(parent: str, child: str, pose: Pose, authority: str) -> str | None:
     )
 
 
-def _message(target: str, source: str, time_ns: int, pose: Pose) -> Any:
+def _message(target: str, source: str, time_ns: int, pose: Transform) -> Any:
     from linkwright.messages import TransformStamped
 
     message = TransformStamped()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, foreign, phrase
 
 
 class TransformException(LinkwrightError):  # noqa: N818  # tf2's name, which users' code catches
@@ -16,14 +16,14 @@ class TransformException(LinkwrightError):  # noqa: N818  # tf2's name, which us
         code: the diagnostic's code.
     """
 
-    def __init__(self, text: str = "", *, hint: str | None = None, code: str = "GRAPH307") -> None:
-        super().__init__(Diagnostic(code, text, hint=hint))
+    def __init__(self, text: str = "", *, hint: Phrase | None = None, code: str = "GRAPH307") -> None:
+        super().__init__(Diagnostic(code, foreign(text), hint=hint))
 
 
 class LookupException(TransformException):
     """A frame is not known, or the tree has a loop."""
 
-    def __init__(self, text: str = "", *, hint: str | None = None, code: str = "GRAPH301") -> None:
+    def __init__(self, text: str = "", *, hint: Phrase | None = None, code: str = "GRAPH301") -> None:
         super().__init__(text, hint=hint, code=code)
 
 
@@ -55,17 +55,16 @@ class TimeoutException(TransformException):
         super().__init__(text, code="GRAPH306")
 
 
-LOOP = "The tf tree is invalid because it contains a loop."
-
-
 def loop(which: str) -> LookupException:
-    """The error for parents that go round in a loop; `which` tells of the frames."""
-    return LookupException(f"{LOOP}{which}", code="GRAPH303")
+    """The error for parents that form a loop; `which` says where."""
+    return LookupException(
+        phrase("The tf tree is invalid because it contains a loop.{which}", which=which), code="GRAPH303"
+    )
 
 
 def unknown_frame(argument: str, frame: str, known: Iterable[str]) -> LookupException:
     """The error for a frame that does not exist."""
-    text = f'"{frame}" passed to {argument} does not exist. '
+    text = phrase('"{frame}" passed to {argument} does not exist. ', frame=frame, argument=argument)
     return LookupException(text, hint=did_you_mean(frame, known))
 
 
@@ -74,21 +73,29 @@ def bad_frame_name(argument: str, frame: str) -> InvalidArgumentException | None
     reason = bad_frame_reason(frame)
     if reason is None:
         return None
-    return InvalidArgumentException(f'Invalid argument "{frame}" passed to {argument} - {reason}')
+    return InvalidArgumentException(
+        phrase(
+            'Invalid argument "{frame}" passed to {argument} - {reason}', frame=frame, argument=argument, reason=reason
+        )
+    )
 
 
-def bad_frame_reason(frame: str) -> str | None:
+def bad_frame_reason(frame: str) -> Phrase | None:
     """Why no frame can have a name; None when one can."""
     if not frame:
-        return "in tf2 frame_ids cannot be empty"
+        return phrase("in tf2 frame_ids cannot be empty")
     if frame.startswith("/"):
-        return "in tf2 frame_ids cannot start with a '/'"
+        return phrase("in tf2 frame_ids cannot start with a '/'")
     return None
 
 
 def not_connected(target: str, source: str) -> ConnectivityException:
     """The error for frames of different trees."""
     return ConnectivityException(
-        f"Could not find a connection between '{target}' and '{source}' because they are not part of the same "
-        "tree.Tf has two or more unconnected trees."
+        phrase(
+            "Could not find a connection between '{target}' and '{source}' because they are not part"
+            " of the same tree.Tf has two or more unconnected trees.",
+            target=target,
+            source=source,
+        )
     )

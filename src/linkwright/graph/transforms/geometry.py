@@ -11,14 +11,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.graph.transforms.pose import Pose, Quaternion, Vector, compose, rotate
-from linkwright.kinematics import rotation_matrix
+from linkwright.geometry.arrays import rotation_matrix
+from linkwright.geometry.single import Transform, compose, normalized, rotate
+from linkwright.geometry.vectors import Vector3
+
+_NO_ROTATION = float(np.finfo(np.float64).eps)
+"""A quaternion with a squared length below this stands for no rotation, as in tf2_geometry_msgs."""
 
 
-def transform_pose_of(transform: Any) -> Pose:
+def transform_pose_of(transform: Any) -> Transform:
     """The pose in a geometry_msgs/msg/TransformStamped."""
-    t, r = transform.transform.translation, transform.transform.rotation
-    return (t.x, t.y, t.z, *_unit((r.x, r.y, r.z, r.w)))
+    return _transform(transform.transform.translation, transform.transform.rotation)
 
 
 def do_transform_point(point: Any, transform: Any) -> Any:
@@ -42,10 +45,7 @@ def do_transform_pose(pose: Any, transform: Any) -> Any:
     from linkwright.messages import get_message
 
     result = get_message("geometry_msgs/msg/Pose")()
-    position, orientation = pose.position, pose.orientation
-    own: Pose = (
-        position.x, position.y, position.z, *_unit((orientation.x, orientation.y, orientation.z, orientation.w)),
-    )  # fmt: skip
+    own = _transform(pose.position, pose.orientation)
     x, y, z, qx, qy, qz, qw = compose(transform_pose_of(transform), own)
     _set_vector(result.position, (x, y, z))
     turned = result.orientation
@@ -117,25 +117,20 @@ def _new(name: str, transform: Any) -> Any:
     return result
 
 
-def _applied(transform: Any, vector: Vector) -> Vector:
+def _applied(transform: Any, vector: Vector3) -> Vector3:
     pose = transform_pose_of(transform)
     x, y, z = rotate(pose[3:], vector)
     return pose[0] + x, pose[1] + y, pose[2] + z
 
 
-def _turned(transform: Any, vector: Any) -> Vector:
+def _turned(transform: Any, vector: Any) -> Vector3:
     return rotate(transform_pose_of(transform)[3:], (vector.x, vector.y, vector.z))
 
 
-def _set_vector(target: Any, vector: Vector) -> None:
+def _transform(position: Any, rotation: Any) -> Transform:
+    turn = normalized(rotation.x, rotation.y, rotation.z, rotation.w, least=_NO_ROTATION)
+    return (position.x, position.y, position.z, *turn)
+
+
+def _set_vector(target: Any, vector: Vector3) -> None:
     target.x, target.y, target.z = vector
-
-
-def _unit(quaternion: Quaternion) -> Quaternion:
-    """The quaternion with length 1; one without length stands for no turn, as in tf2_geometry_msgs."""
-    squared = sum(each * each for each in quaternion)
-    if squared < np.finfo(np.float64).eps:
-        return 0.0, 0.0, 0.0, 1.0
-    length = squared**0.5
-    x, y, z, w = (each / length for each in quaternion)
-    return x, y, z, w

@@ -1,10 +1,10 @@
-"""Fills a tf buffer from the topics."""
+"""Transform listeners: fill a tf buffer from ``/tf`` and ``/tf_static``."""
 
 from __future__ import annotations
 
 from typing import Any, Protocol
 
-from linkwright.graph.qos import STATIC_TF_SUBSCRIPTION_QOS, TF_QOS, QoSProfile
+from linkwright.graph.qos.profile import STATIC_TF_SUBSCRIPTION_QOS, TF_QOS, QoSProfile
 from linkwright.messages import TFMessage
 
 DEFAULT_TF_TOPIC = "/tf"

@@ -1,4 +1,4 @@
-"""What the tf buffer says of its frames: as lines, as YAML and as a drawing for Graphviz, in tf2's formats."""
+"""Reports of the tf buffer's frames: as text, as YAML and as a Graphviz graph, in the formats of tf2."""
 
 from __future__ import annotations
 

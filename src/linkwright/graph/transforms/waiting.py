@@ -7,9 +7,9 @@ import time as steady
 from collections.abc import Callable
 from typing import Any
 
-from linkwright.graph.clock import JumpThreshold
-from linkwright.graph.future import Future
-from linkwright.graph.time import Duration
+from linkwright.graph.loop.future import Future
+from linkwright.graph.time.clock import JumpThreshold
+from linkwright.graph.time.values import Duration
 from linkwright.graph.transforms.core import BufferCore
 
 _LOOK_EVERY_SECONDS = 0.1

@@ -6,9 +6,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
+from linkwright.diagnostics import phrase
+from linkwright.geometry.single import IDENTITY, Transform, compose, invert
 from linkwright.graph.transforms.cache import FrameCache, NoDataError
 from linkwright.graph.transforms.errors import ExtrapolationException, LookupException, loop, not_connected
-from linkwright.graph.transforms.pose import IDENTITY, Pose, compose, invert
 
 MAX_DEPTH = 1000
 """How many frames a way may have before it counts as a loop (tf2 ``MAX_GRAPH_DEPTH``)."""
@@ -31,10 +32,10 @@ class Way:
     top: int = 0
     up: list[int] = field(default_factory=list)
     down: list[int] = field(default_factory=list)
-    source_pose: Pose = IDENTITY
-    target_pose: Pose = IDENTITY
+    source_pose: Transform = IDENTITY
+    target_pose: Transform = IDENTITY
 
-    def pose(self) -> Pose:
+    def pose(self) -> Transform:
         """The pose of the source in the target."""
         if not self.down:
             return self.source_pose
@@ -179,7 +180,12 @@ class Walker:
 
     def _extrapolation(self, trouble: str, source: int, target: int) -> ExtrapolationException:
         return ExtrapolationException(
-            f"{trouble}, when looking up transform from frame [{self._names[source]}] to frame [{self._names[target]}]"
+            phrase(
+                "{trouble}, when looking up transform from frame [{names}] to frame [{other_names}]",
+                trouble=trouble,
+                names=self._names[source],
+                other_names=self._names[target],
+            )
         )
 
     def _loop(self) -> LookupException:

@@ -1,1 +1,1 @@
-"""What runs a launch description: the session, processes, nodes of this process, the log, live reload."""
+"""Running a launch description: the session, its processes, the nodes of this process, signals, live reload."""

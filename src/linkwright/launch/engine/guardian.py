@@ -1,4 +1,4 @@
-"""Seeing to it that no process outlives the launcher, however that ends.
+"""Ending the processes of a launcher that was killed.
 
 A launcher that is killed with SIGKILL cannot end its processes. So a small program of its own is started with the first
 of them: it holds the other end of a pipe, knows the process groups, and ends them when the pipe ends unannounced.

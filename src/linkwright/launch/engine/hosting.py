@@ -4,22 +4,23 @@ from __future__ import annotations
 
 import asyncio
 import os
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError
-from linkwright.launch import events
-from linkwright.launch.engine.hosted_plan import HostedPlan
-from linkwright.launch.engine.log import output_destinations
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.launch.engine.network import Network
+from linkwright.launch.engine.shared_names import SharedNames
 from linkwright.launch.engine.viewer_host import ViewerHost
+from linkwright.launch.log.launch_log import output_destinations
+from linkwright.launch.model import events
+from linkwright.launch.model.events import ProcessMatcher
+from linkwright.launch.model.plans import HostedPlan
 
 if TYPE_CHECKING:
     from linkwright.graph import Graph, LogRecord, Node
-    from linkwright.launch.actions.execute import ExecuteLocal
-    from linkwright.launch.engine.descriptions import XacroCall
-    from linkwright.launch.engine.session import LaunchSession
+    from linkwright.launch.engine.supervisor import Supervisor
+    from linkwright.launch.model.descriptions import XacroCall
     from linkwright.nodes import RunningNode
     from linkwright.viewer import Viewer
 
@@ -34,12 +35,14 @@ class NodeHost:
     early as can be.
     """
 
-    def __init__(self, session: LaunchSession) -> None:
+    def __init__(self, session: Supervisor) -> None:
         self._session = session
         self._planned: list[HostedPlan] = []
         self._running: dict[str, tuple[HostedPlan, RunningNode]] = {}
         self._viewers = ViewerHost(session)
         self._graph: Graph | None = None
+        self._shared_names: SharedNames | None = None
+        self._model_findings: list[Diagnostic] = []
         self._launcher: Node | None = None
         self._simulated_time = False
         self._process_of_logger: dict[str, str] = {}
@@ -66,7 +69,8 @@ class NodeHost:
         if self._graph is None:
             from linkwright.graph import Graph
 
-            self._graph = Graph(on_log=self._on_log)
+            self._shared_names = SharedNames(self.network, self._session.log, self._show_findings)
+            self._graph = Graph(on_log=self._on_log, on_namesakes=self._shared_names.notice)
             self.network.offer(self._graph)
         return self._graph
 
@@ -81,7 +85,7 @@ class NodeHost:
         return self._launcher
 
     def use_simulated_time(self, value: bool) -> None:
-        """Have the launcher's own node go by ``/clock``, or not."""
+        """Switch the launcher's own node between ``/clock`` and wall time."""
         from linkwright.graph import Parameter
 
         self._simulated_time = value
@@ -116,9 +120,10 @@ class NodeHost:
 
     def show_findings(self, findings: list[Diagnostic]) -> None:
         """Show in the viewers what is wrong with the model files now."""
-        self._viewers.show_findings(findings)
+        self._model_findings = findings
+        self._show_findings()
 
-    def stop_matching(self, matcher: Callable[[ExecuteLocal], bool]) -> None:
+    def stop_matching(self, matcher: ProcessMatcher) -> None:
         """End the nodes whose actions a matcher accepts, as a signal would end their processes."""
         for plan, running in tuple(self._running.values()):
             if matcher(plan.action):
@@ -140,6 +145,8 @@ class NodeHost:
         for plan in self._viewers.plans():
             await self._stop_viewer(plan, self._viewers.take(plan))
         self.network.close()
+        if self._shared_names is not None:
+            self._shared_names.close()
         if self._graph is not None:
             await self._graph.close()
 
@@ -148,6 +155,7 @@ class NodeHost:
     def _start_node(self, plan: HostedPlan) -> None:
         from linkwright.nodes import EXECUTABLES
         from linkwright.nodes.component_container import ComponentContainer
+        from linkwright.nodes.options import FinishingNode
 
         session = self._session
         session.log.say(plan.process_name, "started in the launcher's process")
@@ -164,9 +172,8 @@ class NodeHost:
             running.loading = lambda: self._speak_as(plan.process_name)
             running.on_loaded.append(lambda each, given: self._take_in(plan.process_name, each, given.parameters))
         self._started(plan)
-        finished: asyncio.Future[int] | None = getattr(running, "finished", None)
-        if finished is not None:
-            finished.add_done_callback(lambda done: self._finished(plan, running, done))
+        if isinstance(running, FinishingNode):
+            running.finished.add_done_callback(lambda done: self._finished(plan, running, done))
 
     def _take_in(self, process_name: str, running: RunningNode, parameters: Mapping[str, Any]) -> None:
         self._process_of_logger[running.node.get_logger().name] = process_name
@@ -212,12 +219,21 @@ class NodeHost:
     def _set(self, process_name: str, running: RunningNode, name: str, text: str) -> None:
         from linkwright.graph import Parameter
 
-        if running.node.is_destroyed:
+        if running.node.handle.is_destroyed:
             return
         with self._speak_as(process_name):
             result = running.node.set_parameters([Parameter(name, value=text)])[0]
         if not result.successful:
-            raise LinkwrightError(Diagnostic("LAUNCH143", f"'{process_name}' refuses the model: {result.reason}"))
+            raise LinkwrightError(
+                Diagnostic(
+                    "LAUNCH143",
+                    phrase(
+                        "'{process_name}' refuses the model: {reason}",
+                        process_name=process_name,
+                        reason=foreign(result.reason),
+                    ),
+                )
+            )
 
     def _description_of(self, plan: HostedPlan) -> tuple[str, XacroCall] | None:
         for name, value in plan.parameters.items():
@@ -245,6 +261,10 @@ class NodeHost:
             await asyncio.wait_for(self._closed.wait(), plan.respawn_delay)
         self.plan(plan)
         await self.start_planned()
+
+    def _show_findings(self) -> None:
+        shared = [] if self._shared_names is None else self._shared_names.findings
+        self._viewers.show_findings([*shared, *self._model_findings])
 
     # --- viewers --------------------------------------------------------------------------------------------
 
@@ -286,7 +306,7 @@ class NodeHost:
 
     @contextmanager
     def _speak_as(self, process_name: str) -> Iterator[None]:
-        """What loggers that nobody knows yet say meanwhile comes from a process."""
+        """Attribute the records of unknown loggers to a process meanwhile."""
         before, self._speaking = self._speaking, process_name
         try:
             yield

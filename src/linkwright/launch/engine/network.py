@@ -1,4 +1,4 @@
-"""Making the launcher's graph known to other processes, without anybody having to wait for it."""
+"""Connecting the launcher's graph to other processes, in the background."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from linkwright.graph import Graph
-    from linkwright.launch.engine.session import LaunchSession
+    from linkwright.launch.engine.supervisor import Supervisor
 
 _SWITCH = "LINKWRIGHT_DDS"
 _DELAY_SECONDS = 0.8
@@ -20,12 +20,16 @@ class Network:
 
     Args:
         session: the launch.
+
+    Attributes:
+        domain_id: the ROS_DOMAIN_ID that was joined; None before, or where none can be.
     """
 
-    def __init__(self, session: LaunchSession) -> None:
+    def __init__(self, session: Supervisor) -> None:
         self._session = session
         self._graph: Graph | None = None
         self._handle: asyncio.TimerHandle | None = None
+        self.domain_id: int | None = None
 
     def offer(self, graph: Graph) -> None:
         """Take note of the graph."""
@@ -39,7 +43,7 @@ class Network:
         self._handle = loop.call_later(_DELAY_SECONDS if with_viewer else 0.0, self._join)
 
     def close(self) -> None:
-        """Join no more."""
+        """Stop joining."""
         if self._handle is not None:
             self._handle.cancel()
         self._graph = None
@@ -51,11 +55,12 @@ class Network:
         graph = self._graph
         if graph is None or graph.closed:
             return
-        from linkwright.graph.dds import available, join, why_not
+        from linkwright.wire.dds import available, join, why_not
 
         if available():
-            join(graph)
-        elif self._session.processes.is_busy:
+            transport = join(graph)
+            self.domain_id = None if transport is None else transport.domain_id
+        elif self._session.has_processes:
             self._session.log.caution(
                 "launch", f"the nodes in this process and those in others cannot see each other: {why_not()}"
             )

@@ -4,29 +4,24 @@ from __future__ import annotations
 
 import asyncio
 import signal
-from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from linkwright.diagnostics import LinkwrightError
 from linkwright.launch.engine.guardian import Guardian
-from linkwright.launch.engine.processes import ProcessPlan, RunningProcess
+from linkwright.launch.engine.processes import RunningProcess
+from linkwright.launch.model.events import ProcessMatcher
+from linkwright.launch.model.plans import ProcessPlan
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from linkwright.launch.actions.execute import ExecuteLocal
-    from linkwright.launch.context import LaunchContext
-    from linkwright.launch.engine.session import LaunchSession
-
-
-_DEFAULT_SECONDS = 5.0
-_SHORT_GRACE = (1.0, 0.5)
-"""Seconds to SIGTERM and from there to SIGKILL on the user's interrupt: a launch ends within two seconds."""
+    from linkwright.launch.engine.supervisor import Supervisor
 
 
 class ProcessTable:
     """Starts, finds and ends the processes of a launch."""
 
-    def __init__(self, session: LaunchSession) -> None:
+    def __init__(self, session: Supervisor) -> None:
         self._session = session
         self._running: set[RunningProcess] = set()
         self._left_behind: list[RunningProcess] = []
@@ -39,40 +34,47 @@ class ProcessTable:
         """Whether any process runs."""
         return bool(self._running)
 
-    def start(self, plan: ProcessPlan, name: str, context: LaunchContext) -> None:
-        """Start a process and follow it to its end, and begin anew where it respawns."""
-        self._session.spawn(self._follow(plan, name, context))
+    def start(self, plan: ProcessPlan, name: str) -> None:
+        """Start a process and follow it to its end, and start it again where it respawns."""
+        self._session.spawn(self._follow(plan, name))
 
-    def stop_matching(self, matcher: Callable[[ExecuteLocal], bool]) -> None:
+    def stop_matching(self, matcher: ProcessMatcher) -> None:
         """Ask the processes to end whose actions a matcher accepts, in the time that they are given."""
         for process in tuple(self._running):
-            plan = process.plan
-            if matcher(plan.action):
-                self._session.spawn(process.stop(plan.seconds_to_sigterm, plan.seconds_to_sigkill))
+            if matcher(process.plan.action):
+                self._session.spawn(process.stop())
 
-    def signal_matching(self, matcher: Callable[[ExecuteLocal], bool], number: signal.Signals) -> None:
+    def signal_matching(self, matcher: ProcessMatcher, number: signal.Signals) -> None:
         """Send a signal to the processes whose actions a matcher accepts."""
         for process in tuple(self._running):
             if matcher(process.plan.action):
                 process.signal(number)
 
-    def stop_all(self, *, at_once: bool) -> None:
+    def stop_all(self, *, interrupted: bool) -> None:
         """Ask all processes to end, and start none any more.
 
         Args:
-            at_once: whether somebody waits for the end, so that processes get the time ROS gives them by default only
-                if the launch file says so.
+            interrupted: whether the user waits for the end, so that what has not been started yet is not.
         """
         self._ending.set()
-        self._interrupted = at_once
+        self._interrupted = interrupted
         for process in tuple(self._running):
-            plan = process.plan
-            grace = _short_grace(plan) if at_once else (plan.seconds_to_sigterm, plan.seconds_to_sigkill)
-            self._session.spawn(process.stop(*grace))
+            self._session.spawn(process.stop())
+
+    def hurry(self) -> None:
+        """Send those that were asked to end SIGTERM now, and SIGKILL soon after."""
+        for process in tuple(self._running):
+            process.hurry()
+
+    @property
+    def names(self) -> list[str]:
+        """Those of the processes that run, as the log has them."""
+        return sorted(process.name for process in self._running)
 
     def seconds_to_end(self) -> float:
-        """How long `stop_all` at once takes at most."""
-        return max((sum(_short_grace(process.plan)) for process in tuple(self._running)), default=0.0)
+        """How long `stop_all` takes at most."""
+        plans = [process.plan for process in tuple(self._running)]
+        return max((plan.seconds_to_sigterm + plan.seconds_to_sigkill for plan in plans), default=0.0)
 
     def kill_all(self) -> None:
         """End all processes at once, and what ended ones left behind; safe to call from a signal handler."""
@@ -87,26 +89,26 @@ class ProcessTable:
         """Take note that all processes are gone."""
         self._guardian.close()
 
-    async def _follow(self, plan: ProcessPlan, name: str, context: LaunchContext) -> None:
+    async def _follow(self, plan: ProcessPlan, name: str) -> None:
         starts = 0
         # A process whose action was executed before a later one failed is started all the same and then asked to end,
         # as in ROS: handlers wait for its exit. Not so when the user waits for the end.
         while not self._ending.is_set() or (starts == 0 and not self._interrupted):
             process = RunningProcess(
-                plan, name, self._session.log, self._session.emit, context.would_handle_event, self._guardian
+                plan, name, self._session.log, self._session.emit, self._session.would_handle, self._guardian
             )
             self._running.add(process)
             if self._ending.is_set():
-                self._session.spawn(process.stop(*_short_grace(plan)))
+                self._session.spawn(process.stop())
             try:
-                returncode = await process.run()
+                await process.run()
+            except LinkwrightError as error:
+                self._session.could_not_start(process, error)
+                return
             finally:
                 self._running.discard(process)
                 if process.group_lives():
                     self._left_behind.append(process)
-            if returncode is None:
-                self._session.fail(process)
-                return
             starts += 1
             if not plan.respawn or 0 <= plan.respawn_limit < starts:
                 return
@@ -114,11 +116,3 @@ class ProcessTable:
                 await asyncio.wait_for(self._ending.wait(), plan.respawn_delay)
             except asyncio.TimeoutError:
                 continue
-
-
-def _short_grace(plan: ProcessPlan) -> tuple[float, float]:
-    given = plan.seconds_to_sigterm, plan.seconds_to_sigkill
-    to_sigterm, to_sigkill = (
-        short if seconds == _DEFAULT_SECONDS else seconds for seconds, short in zip(given, _SHORT_GRACE, strict=True)
-    )
-    return to_sigterm, to_sigkill

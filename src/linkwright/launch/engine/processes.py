@@ -6,42 +6,25 @@ import asyncio
 import contextlib
 import os
 import signal
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+import time
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from linkwright.launch import events
-from linkwright.launch.engine.surroundings import process_environment
+from linkwright.diagnostics import foreign, phrase
+from linkwright.launch.model import events
+from linkwright.launch.model.plans import ProcessPlan
+from linkwright.packages.programs.child_python import process_environment
 
 if TYPE_CHECKING:
-    from linkwright.launch.actions.execute import ExecuteLocal
+    from linkwright.diagnostics import LinkwrightError
     from linkwright.launch.engine.guardian import Guardian
-    from linkwright.launch.engine.log import LaunchLog
+    from linkwright.launch.log.launch_log import LaunchLog
 
 _HAS_GROUPS = hasattr(os, "killpg")
 _LAST_WORDS_SECONDS = 0.2
 """How long to read on after a process has ended: another that it left behind may hold its streams open for ever."""
-
-
-@dataclass(frozen=True)
-class ProcessPlan:
-    """A process to be started; see `ExecuteLocal` for what the parts mean."""
-
-    action: ExecuteLocal
-    name: str
-    command: Sequence[str]
-    folder: str | None
-    environment: Mapping[str, str]
-    shell: bool
-    emulate_tty: bool
-    destinations: Mapping[int, frozenset[str]]
-    output_format: str
-    log_command: bool
-    respawn: bool
-    respawn_delay: float
-    respawn_limit: int
-    seconds_to_sigterm: float
-    seconds_to_sigkill: float
+_HURRIED_SECONDS = {"SIGTERM": 0.0, "SIGKILL": 0.5}
+"""How long to wait for the end before these when the user does not want to wait."""
 
 
 class RunningProcess:
@@ -77,18 +60,23 @@ class RunningProcess:
         self._streams_closed = asyncio.Event()
         self._ended = asyncio.Event()
         self._stopping = False
+        self._hurried = False
+        self._news = asyncio.Event()
 
-    async def run(self) -> int | None:
-        """Follow the process from start to end; returns its exit status, None if it could not be started."""
+    async def run(self) -> int:
+        """Follow the process from start to end; returns its exit status.
+
+        Raises:
+            LinkwrightError: LAUNCH142, it cannot be started.
+        """
         plan = self.plan
         if plan.log_command:
             self._log.say(self.name, f"process details: cmd='{' '.join(plan.command)}', cwd='{plan.folder}'")
         try:
             await self._start()
         except (OSError, ValueError) as error:
-            self._report_start_failure(error)
-            self._ended.set()
-            return None
+            self.ended()
+            raise self._start_failure(error) from error
         transport = self._transport
         assert transport is not None
         try:
@@ -96,7 +84,7 @@ class RunningProcess:
             with contextlib.suppress(asyncio.TimeoutError):
                 await asyncio.wait_for(self._streams_closed.wait(), _LAST_WORDS_SECONDS)
         finally:
-            # Whatever happens to us, nothing of the process's group may outlive us.
+            # Whatever happens here, nothing of the process's group may outlive the launcher.
             if not self._ended.is_set():
                 self.signal_group(signal.SIGKILL)
             transport.close()
@@ -109,27 +97,40 @@ class RunningProcess:
         self._emit(events.ProcessExited(action=plan.action, returncode=returncode, **self._details(transport)))
         return returncode
 
-    async def stop(self, seconds_to_sigterm: float, seconds_to_sigkill: float) -> None:
-        """Ask the process to end, with SIGINT, then SIGTERM, then SIGKILL."""
+    async def stop(self) -> None:
+        """Ask the process to end, with SIGINT, then SIGTERM, then SIGKILL, each after the time that its plan gives."""
         if self._stopping or self._ended.is_set():
             return
         self._stopping = True
         self._log.say(self.name, f"sending signal 'SIGINT' to process[{self.name}]")
         self.signal_group(signal.SIGINT)
         for seconds, sent, following in (
-            (seconds_to_sigterm, "SIGINT", "SIGTERM"),
-            (seconds_to_sigkill, "SIGTERM", "SIGKILL"),
+            (self.plan.seconds_to_sigterm, "SIGINT", "SIGTERM"),
+            (self.plan.seconds_to_sigkill, "SIGTERM", "SIGKILL"),
         ):
-            with contextlib.suppress(asyncio.TimeoutError):
-                await asyncio.wait_for(self._ended.wait(), seconds)
-            if self._ended.is_set():
+            began = time.monotonic()
+            if await self._ends_within(seconds, _HURRIED_SECONDS[following]):
                 return
+            waited = round(time.monotonic() - began, 1) if self._hurried else seconds
             self._log.complain(
                 self.name,
-                f"process[{self.name}] failed to terminate '{seconds:g}' seconds after receiving '{sent}', "
+                f"process[{self.name}] failed to terminate '{waited:g}' seconds after receiving '{sent}', "
                 f"escalating to '{following}'",
             )
             self.signal_group(getattr(signal, following, signal.SIGTERM))
+
+    def hurry(self) -> None:
+        """Escalate now: whoever waits for the process to end as it was asked does not want to wait any longer."""
+        self._hurried = True
+        self._news.set()
+
+    async def _ends_within(self, seconds: float, hurried_seconds: float) -> bool:
+        with contextlib.suppress(asyncio.TimeoutError):
+            await asyncio.wait_for(self._news.wait(), seconds)
+        if self._hurried and not self._ended.is_set():
+            with contextlib.suppress(asyncio.TimeoutError):
+                await asyncio.wait_for(self._ended.wait(), min(seconds, hurried_seconds))
+        return self._ended.is_set()
 
     def signal(self, number: signal.Signals) -> None:
         """Send a signal, as a launch file asked."""
@@ -192,7 +193,7 @@ class RunningProcess:
         self.plan.action.process_details = details
         self._log.say(self.name, f"process started with pid [{transport.get_pid()}]")
         self._emit(events.ProcessStarted(action=self.plan.action, **details))
-        if self._stopping:  # asked to end before there was anybody to ask
+        if self._stopping:  # asked to end before the process existed
             self.signal_group(signal.SIGINT)
 
     def _details(self, transport: asyncio.SubprocessTransport) -> dict[str, Any]:
@@ -204,21 +205,34 @@ class RunningProcess:
             "pid": transport.get_pid(),
         }
 
-    def _report_start_failure(self, error: Exception) -> None:
-        from linkwright.launch.places import error_at
+    def _start_failure(self, error: Exception) -> LinkwrightError:
+        from linkwright.launch.errors.places import error_at
 
         program = self.plan.command[0]
         hint = None
         if isinstance(error, FileNotFoundError) and self.plan.folder and not os.path.isdir(self.plan.folder):  # noqa: PTH112
-            message = f"process '{self.name}' cannot be started: folder '{self.plan.folder}' does not exist"
+            message = phrase(
+                "process '{name}' cannot be started: folder '{folder}' does not exist",
+                name=self.name,
+                folder=self.plan.folder,
+            )
         elif isinstance(error, FileNotFoundError):
-            message = f"process '{self.name}' cannot be started: program '{program}' does not exist"
+            message = phrase(
+                "process '{name}' cannot be started: program '{program}' does not exist",
+                name=self.name,
+                program=program,
+            )
             if " " in program:
-                hint = "give program and arguments as separate items of cmd, or set shell=True"
+                hint = phrase("give program and arguments as separate items of cmd, or set shell=True")
         else:
             reason = error.strerror if isinstance(error, OSError) else str(error)
-            message = f"process '{self.name}' cannot be started: {reason}: '{program}'"
-        self._log.diagnostics(error_at(self.plan.action.place, "LAUNCH142", message, hint).diagnostics)
+            message = phrase(
+                "process '{name}' cannot be started: {reason}: '{program}'",
+                name=self.name,
+                reason=foreign(reason),
+                program=program,
+            )
+        return error_at(self.plan.action.place, "LAUNCH142", message, hint)
 
     # --- output ---------------------------------------------------------------------------------------------
 
@@ -244,6 +258,7 @@ class RunningProcess:
     def ended(self) -> None:
         """Take note that the process has ended."""
         self._ended.set()
+        self._news.set()
 
     def _flush(self) -> None:
         for number, rest in self._rests.items():
@@ -264,7 +279,7 @@ class RunningProcess:
 
 
 class _Streams(asyncio.SubprocessProtocol):
-    """Hands on what asyncio tells of a process."""
+    """Passes asyncio's callbacks for a process on."""
 
     def __init__(self, process: RunningProcess) -> None:
         self._process = process
@@ -284,7 +299,7 @@ class _Streams(asyncio.SubprocessProtocol):
 
 
 class _Terminal(asyncio.Protocol):
-    """Hands on what a process writes to a pseudo terminal."""
+    """Passes on what a process writes to a pseudo terminal."""
 
     def __init__(self, process: RunningProcess, number: int) -> None:
         self._process = process

@@ -1,4 +1,4 @@
-"""Live reload: a saved model file is expanded anew and given to the nodes that show it.
+"""Live reload: a saved model file is expanded again and given to the nodes that show it.
 
 The nodes stay, and with them joint positions and the camera. A model that cannot be read leaves the last good
 one standing and shows what is wrong until it is repaired.
@@ -11,14 +11,14 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, display_path, has_errors
-from linkwright.launch.engine.descriptions import Descriptions, XacroCall
 from linkwright.launch.engine.file_watch import FileWatch, real
-from linkwright.launch.engine.log import LaunchLog
+from linkwright.launch.log.launch_log import LaunchLog
+from linkwright.launch.model.descriptions import Descriptions, XacroCall
 
 _SETTLE_SECONDS = 0.06
-"""Wait before a failure is believed: an editor may be in the middle of writing."""
+"""Wait before a failure is reported: an editor may be in the middle of writing."""
 _MISSING_ATTEMPTS = 8
-"""How many such waits a missing file is given: some editors delete it before they write it."""
+"""How many such waits for a missing file: some editors delete it before they write it."""
 _CATCH_UP_SECONDS = 0.4
 """When the files are looked at once for changes between their first reading and the beginning of the watch."""
 
@@ -89,7 +89,7 @@ class LiveReload:
     # --- which files ----------------------------------------------------------------------------------------
 
     def _files_of_interest(self, call: XacroCall) -> set[Path]:
-        """The files that a description was read from, and those that its errors speak of."""
+        """The files that a description was read from, and those named in its errors."""
         files = {call.path, *self._descriptions.files_of(call)}
         for finding in self._findings.get(call, ()):
             spans = (finding.span, *(note.span for note in finding.notes))
@@ -165,13 +165,11 @@ class LiveReload:
         """The text and what is remarkable about it; no text where the model has no robot."""
         loop = asyncio.get_running_loop()
         try:
-            expansion = await loop.run_in_executor(None, self._descriptions.expansion, call)
+            description = await loop.run_in_executor(None, self._descriptions.read, call)
         except LinkwrightError as error:
             return None, error.diagnostics
-        text = self._descriptions.remember(call, expansion)
-        reading = self._descriptions.library.read(text)
-        findings = (*expansion.diagnostics, *reading.diagnostics)
-        return (None if reading.robot is None else text), findings
+        text = self._descriptions.remember(call, description)
+        return (None if description.robot is None else text), description.diagnostics
 
     def _apply(self, call: XacroCall, text: str, findings: tuple[Diagnostic, ...]) -> None:
         was_broken = self._is_broken(call)

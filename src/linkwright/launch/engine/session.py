@@ -5,61 +5,35 @@ from __future__ import annotations
 import asyncio
 from collections import deque
 from collections.abc import Callable, Coroutine, Sequence
-from dataclasses import dataclass
 from itertools import count
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
-from linkwright.diagnostics import LinkwrightError
-from linkwright.launch import events
-from linkwright.launch.context import LaunchContext
-from linkwright.launch.engine.descriptions import DescriptionError, Descriptions, XacroCall, current_descriptions
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.launch.engine.hosting import NodeHost
-from linkwright.launch.engine.log import LaunchLog
+from linkwright.launch.engine.omissions import Omissions
 from linkwright.launch.engine.process_table import ProcessTable
 from linkwright.launch.engine.reload import LiveReload
-from linkwright.launch.engine.user_logging import launch_config
-from linkwright.launch.entity import LaunchDescriptionEntity, as_entities
-from linkwright.launch.places import located
-from linkwright.launch.user_errors import explain
-from linkwright.workspace import PackageFinder
+from linkwright.launch.engine.supervisor import SessionOptions
+from linkwright.launch.errors.places import located
+from linkwright.launch.errors.user_code import explain
+from linkwright.launch.log.launch_log import LaunchLog
+from linkwright.launch.log.loggers import launch_config
+from linkwright.launch.model import events
+from linkwright.launch.model.context import LaunchContext
+from linkwright.launch.model.descriptions import DescriptionError, Descriptions, XacroCall, current_descriptions
+from linkwright.launch.model.entity import LaunchDescriptionEntity, as_entities
+from linkwright.packages import PackageFinder
 
 if TYPE_CHECKING:
     from tempfile import TemporaryDirectory
 
-
-class Scheduled(Protocol):
-    """A call that is to come."""
-
-    def cancel(self) -> None:
-        """Do not call."""
+    from linkwright.launch.model.plans import ProcessPlan
+    from linkwright.launch.model.running_launch import Schedule
 
 
-Schedule = Callable[[float, Callable[[], None]], Scheduled]
-"""Has a function called once after some seconds."""
-
-
-@dataclass(frozen=True)
-class SessionOptions:
-    """How a launch is run.
-
-    Attributes:
-        host: the address that the viewer's server binds to.
-        port: its port; None for the default one, or the next that is free.
-        open_browser: whether the page is opened in the user's browser.
-        title: what the page is called.
-        isolate: whether our own nodes run as processes, each by itself.
-        network: whether the nodes of this process are to be seen by others.
-        shutdown_when_idle: whether the launch ends when nothing runs any more.
-    """
-
-    host: str = "127.0.0.1"
-    port: int | None = None
-    open_browser: bool = True
-    title: str = ""
-    isolate: bool = False
-    network: bool = True
-    shutdown_when_idle: bool = True
+_SILENT_SECONDS = 1.0
+"""After Ctrl-C: then it is told what the end waits for."""
 
 
 class LaunchSession:
@@ -94,6 +68,7 @@ class LaunchSession:
         self._crash: BaseException | None = None
         self._scratch: TemporaryDirectory[str] | None = None
         self._included: deque[LaunchDescriptionEntity] = deque()
+        self._omissions = Omissions(log, options.command_to_skip_missing, wanted=options.skip_missing)
         self.processes = ProcessTable(self)
         self.host = NodeHost(self)
         self.reload = LiveReload(self.descriptions, self.host.show_findings, log)
@@ -155,7 +130,7 @@ class LaunchSession:
         try:
             self._visit(entity, context)
         except LinkwrightError as error:
-            self.log.diagnostics(error.diagnostics)
+            self.log.diagnostics(self._omissions.offered(error))
             self.fail(entity)
             self.host.forget_planned()
             self.emit(events.Shutdown(reason="a launch action failed"))
@@ -163,14 +138,45 @@ class LaunchSession:
             self.interrupt("user interrupted with ctrl-c (SIGINT)")
         finally:
             self._visiting = False
+            self._omissions.tell()
+
+    def could_not_start(self, what: object, error: LinkwrightError) -> None:
+        """Tell why something does not run, which others do without."""
+        if self._omissions.take(error):
+            self._omissions.tell()
+            return
+        self.log.diagnostics(error.diagnostics)
+        self.fail(what)
 
     def fail(self, what: object) -> None:
-        """Take note that something failed: the launch is no success unless it is mended."""
+        """Record a failure: the launch exits with 1 unless it is mended."""
         self._failures.add(what)
 
     def mend(self, what: object) -> None:
-        """Take note that what had failed works now."""
+        """Clear a failure: what had failed works now."""
         self._failures.discard(what)
+
+    @property
+    def isolates_nodes(self) -> bool:
+        """Whether our own nodes run as processes, each by itself."""
+        return self.options.isolate
+
+    @property
+    def has_processes(self) -> bool:
+        """Whether any process runs."""
+        return self.processes.is_busy
+
+    def start_process(self, plan: ProcessPlan, name: str) -> None:
+        """Start a process and follow it to its end, and start it again where it respawns."""
+        self.processes.start(plan, name)
+
+    def would_handle(self, event: events.Event) -> bool:
+        """Whether any handler is for an event."""
+        return self.context.would_handle_event(event)
+
+    def report(self, about: object, findings: Sequence[Diagnostic]) -> None:
+        """Report findings about a robot description, here and in the viewer."""
+        self.reload.report(about, findings)
 
     def number_process(self, base_name: str) -> str:
         """The name of a process in the log: that of its program with the next number."""
@@ -180,7 +186,7 @@ class LaunchSession:
         self,
         seconds: float,
         event: events.Event,
-        entities: Sequence[LaunchDescriptionEntity],
+        entities: Sequence[object],
         *,
         cancel_on_shutdown: bool = True,
         schedule: Schedule | None = None,
@@ -191,6 +197,7 @@ class LaunchSession:
         """
         assert self.loop is not None
         token = object()
+        following = as_entities(entities)
         values = self.context.get_locals_as_dict()
 
         def due() -> None:
@@ -199,7 +206,7 @@ class LaunchSession:
             self.context.push_locals()
             self.context.extend_locals(values)
             try:
-                for entity in entities:
+                for entity in following:
                     self.visit(entity, self.context)
             finally:
                 self.context.pop_locals()
@@ -217,12 +224,19 @@ class LaunchSession:
     # --- the end --------------------------------------------------------------------------------------------
 
     def interrupt(self, reason: str) -> None:
-        """End the launch because the user said so; one that is ending already gets no more time."""
+        """End the launch because the user said so; what is to end already is given no more than half a second."""
         self.log.caution("launch", reason)
         if self.ending:
-            self.processes.kill_all()
-        else:
-            self.emit(events.Shutdown(reason=reason, due_to_sigint=True))
+            self.processes.hurry()
+            return
+        self.emit(events.Shutdown(reason=reason, due_to_sigint=True))
+        if self.loop is not None:
+            self.loop.call_later(_SILENT_SECONDS, self._tell_what_is_awaited)
+
+    def _tell_what_is_awaited(self) -> None:
+        names = self.processes.names
+        if names:
+            self.log.say("launch", f"waiting for {', '.join(names)} to end; Ctrl-C again does not wait")
 
     # --- visits ---------------------------------------------------------------------------------------------
 
@@ -230,13 +244,17 @@ class LaunchSession:
         try:
             following = entity.visit(context)
         except DescriptionError as error:
-            if error.missing or self.ending:
-                raise located(error, entity.place) from error
-            self._await_repair(entity, context.snapshot(), error)
+            if not (error.missing or self.ending):
+                self._await_repair(entity, context.snapshot(), error)
+            elif not self._omissions.take(located(error, entity.place)):
+                raise
             return
         except Exception as error:
             name = type(entity).__name__
-            raise explain(error, f"launch action {name}", entity.place) from error
+            explained = explain(error, phrase("launch action {name}", name=name), entity.place)
+            if self._omissions.take(explained):
+                return
+            raise explained from error
         future = entity.get_asyncio_future()
         if future is not None:
             self.hold(future)
@@ -294,7 +312,7 @@ class LaunchSession:
             for entity in entities:
                 self.visit(entity, context)
         except Exception as error:  # noqa: BLE001 - handlers are the launch file's code
-            self.log.diagnostics(explain(error, "an event handler").diagnostics)
+            self.log.diagnostics(explain(error, phrase("an event handler")).diagnostics)
             self.fail(event)
             if not self.ending and not isinstance(event, events.Shutdown):
                 self.emit(events.Shutdown(reason="an event handler failed"))
@@ -321,7 +339,7 @@ class LaunchSession:
                 cancel()
         self.reload.close()
         self.host.close_nodes()
-        self.processes.stop_all(at_once=event.due_to_sigint)
+        self.processes.stop_all(interrupted=event.due_to_sigint)
 
     def _visit_included(self) -> None:
         while self._included:
@@ -347,7 +365,7 @@ class LaunchSession:
         future.add_done_callback(done)
 
     def spawn(self, work: Coroutine[Any, Any, None]) -> None:
-        """Have something done beside; the launch does not end before it is."""
+        """Run something in the background; the launch does not end before it has."""
         assert self.loop is not None
         task = self.loop.create_task(work)
         self._tasks.add(task)

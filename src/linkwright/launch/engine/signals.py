@@ -1,4 +1,4 @@
-"""What Ctrl-C and its kin do to a launch: an orderly end at the first, an end at once at the second."""
+"""Ctrl-C and other signals: the first ends a launch in order, the second hurries, the third ends it at once."""
 
 from __future__ import annotations
 
@@ -18,11 +18,10 @@ from linkwright.launch.engine.session import LaunchSession
 T = TypeVar("T")
 
 _DEADLINE_SECONDS = 1.9
-"""However badly something hangs: this long after the first signal the program is over, unless a launch file gives its
-processes longer."""
-_MARGIN_SECONDS = 0.4
+"""However badly something hangs: this long after a signal the program is over, or, after the first one, its event loop
+gives the processes the time that they have."""
 _SAME_KEYPRESS_SECONDS = 0.3
-"""Signals this close are one wish: a wrapper may pass a terminal's Ctrl-C on."""
+"""Signals this close count as one: a wrapper may pass a terminal's Ctrl-C on."""
 
 _SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
 
@@ -39,6 +38,7 @@ class SignalWatch:
         self.session: LaunchSession | None = None
         self.received: int | None = None
         self._received_at = 0.0
+        self._hurried = False
         self._is_making_loop = False
         self._before: dict[int, Any] = {}
         self._unraisable: Callable[[Any], Any] | None = None
@@ -85,24 +85,38 @@ class SignalWatch:
 
     def _handle(self, number: int, _: FrameType | None) -> None:
         now = time.monotonic()
+        session = self.session
         if self.received is not None:
-            if now - self._received_at > _SAME_KEYPRESS_SECONDS:
+            if now - self._received_at <= _SAME_KEYPRESS_SECONDS:
+                return
+            if self._hurried or session is None or session.loop is None:
                 self._end_at_once()
-            return
-        self.received, self._received_at = number, now
-        needed = 0.0 if self.session is None else self.session.processes.seconds_to_end() + _MARGIN_SECONDS
-        self._deadline = threading.Timer(max(_DEADLINE_SECONDS, needed), self._end_at_once)
-        self._deadline.daemon = True
-        self._deadline.start()
+            self._hurried = True
+        self.received, self._received_at = self.received or number, now
+        self._end_after(_DEADLINE_SECONDS)
         if self._is_making_loop:
             return
-        session = self.session
-        if session is None or session.loop is None or session.visiting:
+        if session is None or session.loop is None:
+            raise KeyboardInterrupt
+        session.loop.call_soon_threadsafe(self._loop_runs, session)
+        if session.visiting:
             raise KeyboardInterrupt
         session.loop.call_soon_threadsafe(session.interrupt, interruption_text(number))
 
+    def _loop_runs(self, session: LaunchSession) -> None:
+        """The event loop does not hang: it may take as long as the processes may."""
+        if not self._hurried:
+            self._end_after(_DEADLINE_SECONDS + session.processes.seconds_to_end())
+
+    def _end_after(self, seconds: float) -> None:
+        if self._deadline is not None:
+            self._deadline.cancel()
+        self._deadline = threading.Timer(seconds, self._end_at_once)
+        self._deadline.daemon = True
+        self._deadline.start()
+
     def _handle_again(self) -> None:
-        """The KeyboardInterrupt that was raised for a signal reached nobody: be as before it, and send it once more."""
+        """The KeyboardInterrupt raised for a signal was lost: restore the earlier state and send the signal again."""
         number, self.received = self.received, None
         if self._deadline is not None:
             self._deadline.cancel()

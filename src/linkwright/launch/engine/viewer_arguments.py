@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, did_you_mean
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, Severity, did_you_mean, phrase
 
 if TYPE_CHECKING:
     from linkwright.viewer import RvizConfig
@@ -79,7 +79,7 @@ def _read(arguments: Sequence[str]) -> tuple[str | None, str | None, list[Diagno
         elif argument in _CONFIG or argument in _FIXED_FRAME:
             value = next(waiting, None)
             if value is None:
-                findings.append(_remark(f"argument '{argument}' of rviz2 needs a value"))
+                findings.append(_remark(phrase("argument '{argument}' of rviz2 needs a value", argument=argument)))
             elif argument in _CONFIG:
                 path = value
             else:
@@ -89,9 +89,14 @@ def _read(arguments: Sequence[str]) -> tuple[str | None, str | None, list[Diagno
                 next(waiting, None)
         elif argument:
             known = (*_CONFIG, *_FIXED_FRAME, *_WITHOUT_MEANING_HERE)
-            findings.append(_remark(f"argument '{argument}' of rviz2 is unknown", did_you_mean(argument, known)))
+            findings.append(
+                _remark(
+                    phrase("argument '{argument}' of rviz2 is unknown", argument=argument),
+                    did_you_mean(argument, known),
+                )
+            )
     return path, fixed_frame, findings
 
 
-def _remark(message: str, hint: str | None = None) -> Diagnostic:
+def _remark(message: Phrase, hint: Phrase | None = None) -> Diagnostic:
     return replace(Diagnostic("LAUNCH144", message, hint=hint), severity=Severity.WARNING)

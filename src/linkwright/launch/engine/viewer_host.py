@@ -10,12 +10,12 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic
-from linkwright.launch.engine.hosted_plan import HostedPlan
 from linkwright.launch.engine.viewer_arguments import read_viewer_config
+from linkwright.launch.model.plans import HostedPlan
 
 if TYPE_CHECKING:
     from linkwright.graph import Graph
-    from linkwright.launch.engine.session import LaunchSession
+    from linkwright.launch.engine.supervisor import Supervisor
     from linkwright.nodes import RunningNode
     from linkwright.viewer import Viewer
 
@@ -25,7 +25,7 @@ _CLOSE_SECONDS = 0.8
 class ViewerHost:
     """Starts, holds and ends viewers."""
 
-    def __init__(self, session: LaunchSession) -> None:
+    def __init__(self, session: Supervisor) -> None:
         self._session = session
         self._viewers: dict[str, tuple[HostedPlan, Viewer]] = {}
         self._findings: list[Diagnostic] = []
@@ -103,9 +103,10 @@ class ViewerHost:
 
 
 def _attach_panel(viewer: Viewer, running: RunningNode) -> None:
-    panel = getattr(running, "panel", None)
-    if panel is not None:
-        viewer.attach_joint_panel(panel)
+    from linkwright.nodes import NodeWithSliders
+
+    if isinstance(running, NodeWithSliders):
+        viewer.attach_joint_panel(running.panel)
 
 
 def _open_in_browser(url: str) -> None:

@@ -1,1 +1,1 @@
-"""Launch files in XML and YAML, and what lets packages add tags and substitutions to them (``launch.frontend``)."""
+"""Reading launch files: Python, XML, YAML, and the substitutions in their texts."""

@@ -10,11 +10,12 @@ from __future__ import annotations
 import re
 from typing import Any, NoReturn
 
-from linkwright.diagnostics import did_you_mean
-from linkwright.launch.frontend.entity import place_of
-from linkwright.launch.frontend.expose import instantiate_substitution, substitution_parse_methods
-from linkwright.launch.places import MarkupPlace, Place, error_at, reading
-from linkwright.launch.substitution import Substitution, TextSubstitution
+from linkwright.diagnostics import Phrase, did_you_mean, phrase
+from linkwright.launch.errors.places import MarkupPlace, Place, error_at, reading
+from linkwright.launch.frontend.instantiate import instantiate_substitution
+from linkwright.launch.model.markup.entity import place_of
+from linkwright.launch.model.markup.expose import substitution_parse_methods
+from linkwright.launch.model.substitution import Substitution, TextSubstitution
 
 _NAME = re.compile(r"[A-Za-z][\w-]*")
 _ESCAPED = re.compile(r"\\(.)", re.DOTALL)
@@ -61,7 +62,7 @@ def _parse_if(value: Any) -> Any:
 
 
 class _Reader:
-    """Reads one text from its begin to its end."""
+    """Parses one text."""
 
     def __init__(self, text: str, place: Place | None) -> None:
         self._text = text
@@ -75,7 +76,7 @@ class _Reader:
         return parts
 
     def _parts(self, until: str, argument: bool) -> list[Substitution]:
-        """Text and substitutions up to an end.
+        """Text and substitutions up to a closing character.
 
         Args:
             until: the quote that ends them, left unread; empty outside of quotes.
@@ -92,7 +93,9 @@ class _Reader:
                 parts.append(self._substitution(until))
                 start = self._at
             elif argument and not until and character in "'\"":
-                self._fail(f"a quote inside the argument {self._text[start : self._at]!r}", "quote the whole argument")
+                before = repr(self._text[start : self._at])
+                message = phrase("a quote inside the argument {before}", before=before)
+                self._fail(message, phrase("quote the whole argument"))
             else:
                 self._at += 2 if character == "\\" and self._at + 1 < len(self._text) else 1
         self._add_text(parts, start)
@@ -108,14 +111,15 @@ class _Reader:
         self._at += 2
         name = _NAME.match(self._text, self._at)
         if name is None:
-            self._fail("no name after '$('", r"write \$( for the characters themselves")
+            self._fail(phrase("no name after '$('"), phrase(r"write \$( for the characters themselves"))
         self._at = name.end()
         arguments = []
         while True:
             blank = self._skip_blanks()
             if self._at >= len(self._text) or self._text[self._at] == quote:
                 end, self._at = self._at, start
-                self._fail(f"'{self._text[start:end]}' has no closing parenthesis", "end it with ')'")
+                message = phrase("'{text}' has no closing parenthesis", text=self._text[start:end])
+                self._fail(message, phrase("end it with ')'"))
             if self._text[self._at] == ")":
                 break
             if not blank:
@@ -130,14 +134,19 @@ class _Reader:
             start = self._at
             parts = self._parts(until=quote, argument=True)
             if self._at == start:
-                self._fail("an opening parenthesis in an argument", r"put quotes around it, or write \(")
+                self._fail(
+                    phrase("an opening parenthesis in an argument"), phrase(r"put quotes around it, or write \(")
+                )
             return parts
         start = self._at
         self._at += 1
         parts = self._parts(until=opening, argument=False)
         if self._at >= len(self._text):
             self._at = start
-            self._fail(f"the quote {opening} is never closed", f"close it, or write \\{opening} for the character")
+            self._fail(
+                phrase("the quote {opening} is never closed", opening=opening),
+                phrase("close it, or write \\{opening} for the character", opening=opening),
+            )
         self._at += 1
         return parts
 
@@ -151,13 +160,16 @@ class _Reader:
         character = self._text[self._at]
         hint = None if name in substitution_parse_methods else did_you_mean(name, substitution_parse_methods)
         if character == "(":
-            hint = hint or r"put quotes around it, or write \("
-        self._fail(f"{character!r} after '{self._text[: self._at][-20:]}'", hint or "divide arguments by blanks")
+            hint = hint or phrase(r"put quotes around it, or write \(")
+        self._fail(
+            phrase("{character} after '{text}'", character=repr(character), text=self._text[: self._at][-20:]),
+            hint or phrase("divide arguments by blanks"),
+        )
 
     def _part(self, start: int, end: int) -> Place | None:
         return self._place.part(start, end) if isinstance(self._place, MarkupPlace) else self._place
 
-    def _fail(self, message: str, hint: str) -> NoReturn:
+    def _fail(self, message: Phrase, hint: Phrase) -> NoReturn:
         place = self._part(self._at, self._at + 1)
-        text = f"substitution in '{self._text}' cannot be read: {message}"
-        raise error_at(place, "LAUNCH119", text, hint, promises=ValueError(text))
+        text = phrase("substitution in '{text}' cannot be read: {message}", text=self._text, message=message)
+        raise error_at(place, "LAUNCH119", text, hint, ros_error=ValueError(text))

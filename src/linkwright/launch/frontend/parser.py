@@ -4,26 +4,23 @@ from __future__ import annotations
 
 import io
 import os
-import traceback
 import warnings
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path
-from linkwright.launch.frontend import grammar
-from linkwright.launch.frontend.expose import instantiate_action
-from linkwright.launch.invalid_file import InvalidFrontendLaunchFileError
-from linkwright.launch.places import error_at
-from linkwright.launch.promises import keeping
+from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, phrase
+from linkwright.launch.errors.exceptions import InvalidFrontendLaunchFileError
+from linkwright.launch.errors.places import error_at
+from linkwright.launch.errors.ros_exceptions import as_ros_error
+from linkwright.launch.frontend import extensions, grammar
+from linkwright.launch.frontend.instantiate import instantiate_action
 
 if TYPE_CHECKING:
-    from linkwright.launch.description import LaunchDescription
-    from linkwright.launch.entity import Action
-    from linkwright.launch.frontend.entity import Entity
-    from linkwright.launch.substitution import Substitution
-
-_OUR_EXTENSIONS = ("linkwright.launch.actions", "linkwright.launch.substitutions", "linkwright.launch.ros")
+    from linkwright.launch.model.action import Action
+    from linkwright.launch.model.description import LaunchDescription
+    from linkwright.launch.model.markup.entity import Entity
+    from linkwright.launch.model.substitution import Substitution
 
 
 class Parser:
@@ -37,12 +34,8 @@ class Parser:
         """Import what exposes actions and substitutions: ours, and that of packages with such an entry point."""
         if Parser.extensions_loaded:
             return
-        import importlib
-
-        for module in _OUR_EXTENSIONS:
-            importlib.import_module(module)
-        for entry_point in _entry_points("launch.frontend.launch_extension"):
-            _load(entry_point, "launch extension")
+        for _ in extensions.load(extensions.ACTIONS):
+            pass
         Parser.extensions_loaded = True
 
     @classmethod
@@ -50,13 +43,9 @@ class Parser:
         """Find the parsers: ours for XML and YAML, and those of packages with such an entry point."""
         if Parser.frontend_parsers is not None:
             return
-        from linkwright.launch.frontend import xml, yaml
-
-        parsers: dict[str, type[Parser]] = {"xml": xml.Parser, "yaml": yaml.Parser}
-        for entry_point in _entry_points("launch.frontend.parser"):
-            loaded = _load(entry_point, "parser extension")
-            if loaded is not None:
-                parsers.setdefault(entry_point.name, loaded)
+        parsers: dict[str, type[Parser]] = {}
+        for name, loaded in extensions.load(extensions.PARSERS):
+            parsers.setdefault(name, loaded)
         Parser.frontend_parsers = dict(sorted(parsers.items()))
 
     # --- what functions that read tags ask for ---------------------------------------------------------------
@@ -86,12 +75,14 @@ class Parser:
         Raises:
             RuntimeError: LAUNCH109, the root is not called ``launch``.
         """
-        from linkwright.launch.description import LaunchDescription
+        from linkwright.launch.model.description import LaunchDescription
 
         if entity.type_name != "launch":
-            promised = RuntimeError("Expected 'launch' as root tag")
-            message = f"the root of a launch file is 'launch', and this is '{entity.type_name}'"
-            raise error_at(entity.place, "LAUNCH109", message, promises=promised)
+            ros_error = RuntimeError("Expected 'launch' as root tag")
+            message = phrase(
+                "the root of a launch file is 'launch', and this is '{type_name}'", type_name=entity.type_name
+            )
+            raise error_at(entity.place, "LAUNCH109", message, ros_error=ros_error)
         deprecated = entity.get_attr("deprecated", optional=True)
         entity.get_attr("version", optional=True)  # of the format, which the design of ROS 2 launch has there
         actions = []
@@ -113,7 +104,7 @@ class Parser:
 
     @classmethod
     def get_file_extensions(cls) -> set[str]:
-        """How the names of files end that this parser reads, without the first dot."""
+        """The file name extensions that this parser reads, without the first dot."""
         return set()
 
     @classmethod
@@ -156,7 +147,7 @@ class Parser:
 
     @classmethod
     def get_file_extensions_from_parsers(cls) -> set[str]:
-        """How the names of files end that any parser reads."""
+        """The file name extensions that any parser reads."""
         return {extension for parser in cls._parsers().values() for extension in parser.get_file_extensions()}
 
     @classmethod
@@ -179,8 +170,8 @@ class Parser:
             except Exception as error:  # noqa: BLE001 - parsers of packages may raise anything
                 errors.append(error)
         extension = os.path.splitext(name)[1][1:] if cls.is_filename_valid(name) else ""  # noqa: PTH122
-        promised = InvalidFrontendLaunchFileError(extension, likely_errors=errors)
-        raise keeping(promised, *_likely_diagnostics(name, text, errors)) from (errors[0] if errors else None)
+        ros_error = InvalidFrontendLaunchFileError(extension, likely_errors=errors)
+        raise as_ros_error(ros_error, *_likely_diagnostics(name, text, errors)) from (errors[0] if errors else None)
 
     @classmethod
     def _parsers(cls) -> dict[str, type[Parser]]:
@@ -196,7 +187,7 @@ def read_file(file: Any) -> tuple[str, str]:
         LinkwrightError: LAUNCH101 no such file, LAUNCH102 unreadable.
     """
     if isinstance(file, (str, bytes, os.PathLike)):
-        from linkwright.launch.python_file import read_launch_file
+        from linkwright.launch.frontend.python_file import read_launch_file
 
         source = read_launch_file(Path(os.fsdecode(file)))
         return source.name, source.text
@@ -211,27 +202,12 @@ def _likely_diagnostics(name: str, text: str, errors: Sequence[Exception]) -> tu
     for diagnostics in told:
         if len(told) == 1 or diagnostics[0].code.startswith("XML") is looks_like_xml:
             return diagnostics
-    message = f"launch file '{display_path(name)}' is neither XML nor YAML that a launch file could be"
+    message = phrase(
+        "launch file '{name}' is neither XML nor YAML that a launch file could be", name=display_path(name)
+    )
     return (Diagnostic("LAUNCH107", message),)
 
 
 def _by_suffix(name: str, parsers: dict[str, type[Parser]]) -> list[type[Parser]]:
     suffix = {".xml": "xml", ".launch": "xml", ".yaml": "yaml", ".yml": "yaml"}.get(os.path.splitext(name)[1])  # noqa: PTH122
     return [parsers[suffix]] if suffix in parsers else []
-
-
-def _entry_points(group: str) -> Iterable[Any]:
-    import importlib.metadata
-
-    found: Any = importlib.metadata.entry_points()
-    chosen: Iterable[Any] = found.select(group=group) if hasattr(found, "select") else found.get(group, ())
-    return chosen
-
-
-def _load(entry_point: Any, what: str) -> Any:
-    try:
-        return entry_point.load()
-    except Exception:  # noqa: BLE001 - a broken package must not stop the others
-        problem = f"Failed to load the {what}: {entry_point.name}\n{traceback.format_exc()}"
-        warnings.warn(problem, stacklevel=3)
-        return None

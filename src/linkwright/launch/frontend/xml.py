@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
-from linkwright.launch.frontend.entity import Entity as AnyEntity
-from linkwright.launch.frontend.entity import PlacedText, is_list_of_entities
-from linkwright.launch.frontend.markup import MarkupEntity
+from linkwright.launch.errors.places import MarkupPlace, Place
+from linkwright.launch.frontend.markup_entity import MarkupEntity
 from linkwright.launch.frontend.parser import Parser as AnyParser
 from linkwright.launch.frontend.parser import read_file
-from linkwright.launch.frontend.values import get_typed_value
-from linkwright.launch.places import MarkupPlace, Place
+from linkwright.launch.model.markup.entity import Entity as AnyEntity
+from linkwright.launch.model.markup.entity import PlacedText, is_list_of_entities
+from linkwright.launch.model.markup.values import get_typed_value
 from linkwright.xmltree import Element, parse
 from linkwright.xmltree.positions import attribute_name_range, attribute_value_range
 
@@ -46,22 +46,22 @@ class Entity(MarkupEntity):
         self._check_all_asked(self._element.attributes, "attribute", "Unexpected attribute(s) found in")
 
     def get_attr(self, name: str, *, data_type: Any = str, optional: bool = False, can_be_str: bool = True) -> Any:
-        """An attribute, or the elements inside of one tag; see `linkwright.launch.frontend.entity.Entity`.
+        """An attribute, or the elements inside of one tag; see `linkwright.launch.model.markup.entity.Entity`.
 
         The value is turned into the type. With an attribute ``NAME-sep`` it is divided into a list.
         """
         self._asked[name] = None
         attributes = self._element.attributes
-        promised = f"Attribute '{name}' of type '{data_type}' not found in Entity '{self.type_name}'"
+        ros_error = f"Attribute '{name}' of type '{data_type}' not found in Entity '{self.type_name}'"
         if is_list_of_entities(data_type):
             inside = [Entity(element, parent=self) for element in self._element.elements(name)]
             if not inside and not optional:
-                self._missing(name, {element.tag for element in self._element.elements()}, promised)
+                self._missing(name, {element.tag for element in self._element.elements()}, ros_error)
             return inside or None
         if name not in attributes:
             if optional:
                 return None
-            self._missing(name, attributes, promised)
+            self._missing(name, attributes, ros_error)
         value: Any = PlacedText(attributes[name], _attribute_place(self._element, name))
         if name + _SEPARATOR in attributes:
             self._asked[name + _SEPARATOR] = None
@@ -69,11 +69,11 @@ class Entity(MarkupEntity):
         try:
             return get_typed_value(value, data_type, can_be_str=can_be_str)
         except (TypeError, ValueError):
-            promised = (
+            ros_error = (
                 f"Attribute '{name}' of Entity '{self.type_name}' expected to be of type '{data_type}'."
                 f"'{value}' can not be converted to one of those types"
             )
-            self._wrong_type(name, str(value), data_type, promised)
+            self._wrong_type(name, str(value), data_type, ros_error)
 
     def _place_of_part(self, name: str) -> Place | None:
         element, source = self._element, self._element.source
@@ -103,7 +103,7 @@ class Parser(AnyParser):
 
     @classmethod
     def get_file_extensions(cls) -> set[str]:
-        """How the names of such files end."""
+        """The file name extensions, without the first dot."""
         return {"launch.xml"}
 
 

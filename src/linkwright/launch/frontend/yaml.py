@@ -6,15 +6,15 @@ from typing import Any
 
 import yaml
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText
-from linkwright.launch.frontend.entity import Entity as AnyEntity
-from linkwright.launch.frontend.entity import PlacedText, is_list_of_entities, place_of
-from linkwright.launch.frontend.markup import MarkupEntity
+from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText, foreign, phrase
+from linkwright.launch.errors.places import MarkupPlace, Place, error_at
+from linkwright.launch.errors.ros_exceptions import as_ros_error
+from linkwright.launch.frontend.markup_entity import MarkupEntity
 from linkwright.launch.frontend.parser import Parser as AnyParser
 from linkwright.launch.frontend.parser import read_file
-from linkwright.launch.frontend.values import is_instance_of
-from linkwright.launch.places import MarkupPlace, Place, error_at
-from linkwright.launch.promises import keeping
+from linkwright.launch.model.markup.entity import Entity as AnyEntity
+from linkwright.launch.model.markup.entity import PlacedText, is_list_of_entities, place_of
+from linkwright.launch.model.markup.values import is_instance_of
 
 _CHILDREN = "children"
 
@@ -54,22 +54,26 @@ class Entity(MarkupEntity):
                     f"Expected entity `{self.type_name}` to have children entities."
                     f"That can be a list of subentities or a dictionary with a `children` list element"
                 )
-                message = f"'{self.type_name}' needs actions: a list, or a key 'children' with one"
-                raise error_at(self.place, "LAUNCH117", message, promises=ValueError(text))
+                message = phrase(
+                    "'{type_name}' needs actions: a list, or a key 'children' with one", type_name=self.type_name
+                )
+                raise error_at(self.place, "LAUNCH117", message, ros_error=ValueError(text))
             listed = listed[_CHILDREN]
         if not isinstance(listed, list):
             text = f"Expected a dict or list, got {type(listed)}:\n---\n{listed}\n---"
-            message = f"'{self.type_name}' needs a list of actions"
-            raise error_at(self.place, "LAUNCH118", message, promises=TypeError(text))
+            message = phrase("'{type_name}' needs a list of actions", type_name=self.type_name)
+            raise error_at(self.place, "LAUNCH118", message, ros_error=TypeError(text))
         return [self._child(item) for item in listed]
 
     def _child(self, item: Any) -> AnyEntity:
         if not isinstance(item, dict) or len(item) != 1:
             text = "Subentities must be a dictionary with only one key, which is the entity type"
-            message = f"an action in '{self.type_name}' must be a mapping with one key, its tag"
-            hint = "indent its attributes further than the tag" if isinstance(item, dict) and item else None
+            message = phrase(
+                "an action in '{type_name}' must be a mapping with one key, its tag", type_name=self.type_name
+            )
+            hint = phrase("indent its attributes further than the tag") if isinstance(item, dict) and item else None
             place = getattr(item, "place", None) or place_of(item) or self.place
-            raise error_at(place, "LAUNCH118", message, hint, promises=RuntimeError(text))
+            raise error_at(place, "LAUNCH118", message, hint, ros_error=RuntimeError(text))
         [(name, element)] = item.items()
         if isinstance(element, str) and name in _BARE:
             whole = PlacedMapping({_BARE[name]: element})
@@ -87,18 +91,18 @@ class Entity(MarkupEntity):
             self._check_all_asked(self._element, "key", "Unexpected key(s) found in")
         elif isinstance(self._element, list) and not self._children_asked:
             text = f"Unexpected nested entity(ies) found in `{self.type_name}`: {self._element}"
-            message = f"'{self.type_name}' takes no list of actions"
-            raise error_at(self.place, "LAUNCH116", message, promises=ValueError(text))
+            message = phrase("'{type_name}' takes no list of actions", type_name=self.type_name)
+            raise error_at(self.place, "LAUNCH116", message, ros_error=ValueError(text))
 
     def get_attr(self, name: str, *, data_type: Any = str, optional: bool = False, can_be_str: bool = True) -> Any:
-        """An attribute, or the entities inside of one name; see `linkwright.launch.frontend.entity.Entity`.
+        """An attribute, or the entities inside of one name; see `linkwright.launch.model.markup.entity.Entity`.
 
         The value must be of the type as YAML reads it; but a number or truth value will do for a text, as in newer ROS.
         """
         self._asked[name] = None
         if not isinstance(self._element, (dict, list)):
-            message = f"'{self.type_name}' needs attributes"
-            raise error_at(self.place, "LAUNCH118", message, promises=TypeError(message))
+            message = phrase("'{type_name}' needs attributes", type_name=self.type_name)
+            raise error_at(self.place, "LAUNCH118", message, ros_error=TypeError(message))
         if name not in self._element:
             if optional:
                 return None
@@ -109,8 +113,10 @@ class Entity(MarkupEntity):
             if isinstance(value, list) and value and all(isinstance(item, dict) for item in value):
                 return [Entity(item, PlacedText(name, getattr(item, "place", None)), parent=self) for item in value]
             text = f"Attribute '{name}' of Entity '{self.type_name}' expected to be a list of dictionaries."
-            message = f"key '{name}' of '{self.type_name}' must be a list of mappings"
-            raise error_at(self._place_of_part(name), "LAUNCH118", message, promises=TypeError(text))
+            message = phrase(
+                "key '{name}' of '{type_name}' must be a list of mappings", name=name, type_name=self.type_name
+            )
+            raise error_at(self._place_of_part(name), "LAUNCH118", message, ros_error=TypeError(text))
         if data_type is str and isinstance(value, (bool, int, float)):
             return PlacedText(_spelled(value), self._place_of_part(name))
         if not is_instance_of(value, data_type, can_be_str=can_be_str):
@@ -147,15 +153,15 @@ class Parser(AnyParser):
         tree = load(text, name)
         if not isinstance(tree, dict) or len(tree) != 1:
             source = SourceText(name, text)
-            message = "a YAML launch file is a mapping with the one key 'launch'"
+            message = phrase("a YAML launch file is a mapping with the one key 'launch'")
             place = getattr(tree, "place", None) or MarkupPlace(source, 0, 0)
-            raise error_at(place, "LAUNCH109", message, promises=RuntimeError("Expected only one root"))
+            raise error_at(place, "LAUNCH109", message, ros_error=RuntimeError("Expected only one root"))
         [(root, element)] = tree.items()
         return Entity(element, root), cls()
 
     @classmethod
     def get_file_extensions(cls) -> set[str]:
-        """How the names of such files end."""
+        """The file name extensions, without the first dot."""
         return {"launch.yaml", "launch.yml"}
 
 
@@ -210,10 +216,14 @@ def load(text: str, name: str) -> Any:
         mark = error.problem_mark or error.context_mark
         span = source.span(mark.index) if mark else None
         problem = ", ".join(part for part in (error.problem, error.context) if part)
-        hint = "indent with blanks" if mark and source.text[mark.index : mark.index + 1] == "\t" else None
-        diagnostic = Diagnostic("LAUNCH108", f"YAML syntax: {problem}", span, hint=hint, source=source)
-        raise keeping(error, diagnostic) from error
+        hint = phrase("indent with blanks") if mark and source.text[mark.index : mark.index + 1] == "\t" else None
+        diagnostic = Diagnostic(
+            "LAUNCH108", phrase("YAML syntax: {problem}", problem=foreign(problem)), span, hint=hint, source=source
+        )
+        raise as_ros_error(error, diagnostic) from error
     except yaml.YAMLError as error:
-        raise LinkwrightError(Diagnostic("LAUNCH108", f"YAML syntax in '{name}': {error}")) from error
+        raise LinkwrightError(
+            Diagnostic("LAUNCH108", phrase("YAML syntax in '{name}': {error}", name=name, error=foreign(error)))
+        ) from error
     finally:
         loader.dispose()

@@ -6,13 +6,13 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from linkwright.diagnostics import display_path
+from linkwright.diagnostics import display_path, joined, phrase
+from linkwright.launch.errors.places import Place, error_at
 from linkwright.launch.moveit.configs import MoveItConfigs, Parameters
 from linkwright.launch.moveit.files import load_xacro, load_yaml
 from linkwright.launch.moveit.parameters import ParameterBuilder
 from linkwright.launch.moveit.xacro import Xacro
-from linkwright.launch.places import Place, error_at
-from linkwright.workspace import current_finder
+from linkwright.packages import current_finder
 
 _FOLDER = Path("config")
 _CONTROLLERS = "_controllers.yaml"
@@ -42,12 +42,13 @@ class MoveItConfigsBuilder(ParameterBuilder):
         self.__name = robot_name
         self.__parameter = robot_description
         self.__moveit_configs = MoveItConfigs(package_path=self._package_path)
+        self.__urdf_arguments: dict[str, str] = {}
         self.__urdf, self.__srdf = self.__models()
 
     def robot_description(self, file_path: _Path = None, mappings: _Mappings = None) -> MoveItConfigsBuilder:
         """Read the URDF."""
         path = self.__urdf if file_path is None else self._package_path / file_path
-        self.__moveit_configs.robot_description = {self.__parameter: _model(path, mappings)}
+        self.__moveit_configs.robot_description = {self.__parameter: _model(path, mappings or self.__urdf_arguments)}
         return self
 
     def robot_description_semantic(self, file_path: _Path = None, mappings: _Mappings = None) -> MoveItConfigsBuilder:
@@ -146,8 +147,12 @@ class MoveItConfigsBuilder(ParameterBuilder):
         if default not in names:
             listed = ",".join(names)
             text = f"default_planning_pipeline: `{default}` doesn't name any of the input pipelines `{listed}`"
-            message = f"the default planning pipeline '{default}' is none of the pipelines: {', '.join(names)}"
-            raise error_at(Place.of_caller(), "LAUNCH154", message, promises=RuntimeError(text))
+            message = phrase(
+                "the default planning pipeline '{default}' is none of the pipelines: {names}",
+                default=default,
+                names=joined(names),
+            )
+            raise error_at(Place.of_caller(), "LAUNCH154", message, ros_error=RuntimeError(text))
         made: Parameters = {"planning_pipelines": names, "default_planning_pipeline": default}
         for name in names:
             file = next((path for folder in folders if (path := folder / f"{name}{_PLANNING}").exists()), None)
@@ -206,6 +211,9 @@ class MoveItConfigsBuilder(ParameterBuilder):
             urdf = self._package_path / _FOLDER / f"{self.__name}.urdf"
             if urdf_noted.get("package") and urdf_noted.get("relative_path"):
                 urdf = current_finder().share(urdf_noted["package"]) / urdf_noted["relative_path"]
+                words = str(urdf_noted.get("xacro_args") or "").split()
+                parts = (word.partition(":=") for word in words)
+                self.__urdf_arguments = {name: value for name, is_pair, value in parts if is_pair}
         srdf = self._package_path / srdf_noted.get("relative_path", _FOLDER / f"{self.__name}.srdf")
         return urdf, srdf
 
@@ -217,9 +225,13 @@ class MoveItConfigsBuilder(ParameterBuilder):
             if names[0] not in ("moveit", "moveit2", self.__name):
                 listed = "\n - ".join(name + _CONTROLLERS for name in names)
                 text = f"trajectory_execution: Unable to guess which parameter file to load. Options:\n - {listed}"
-                message = f"several files of controllers are in '{display_path(folder)}': {', '.join(names)}"
-                hint = "say which: .trajectory_execution(file_path='config/NAME_controllers.yaml')"
-                raise error_at(Place.of_caller(), "LAUNCH154", message, hint, promises=RuntimeError(text))
+                message = phrase(
+                    "several files of controllers are in '{folder}': {names}",
+                    folder=display_path(folder),
+                    names=joined(names),
+                )
+                hint = phrase("say which: .trajectory_execution(file_path='config/NAME_controllers.yaml')")
+                raise error_at(Place.of_caller(), "LAUNCH154", message, hint, ros_error=RuntimeError(text))
         return folder / (names[0] + _CONTROLLERS) if names else None
 
 

@@ -7,10 +7,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from linkwright.diagnostics import display_path, missing_file_hint
-from linkwright.launch.engine.descriptions import Descriptions, XacroCall, current_descriptions
-from linkwright.launch.places import Place, error_at
-from linkwright.workspace import current_finder
+from linkwright.diagnostics import display_path, foreign, missing_file_hint, phrase
+from linkwright.launch.errors.places import Place, error_at
+from linkwright.launch.model.descriptions import Descriptions, XacroCall, current_descriptions
+from linkwright.packages import current_finder
 
 ParameterValueType = str | int | float | bool | list[str] | list[int] | list[float] | list[bool] | bytes
 
@@ -48,8 +48,8 @@ def load_yaml(file_path: str | Path, mappings: Mapping[str, Any] | None = None) 
     try:
         return yaml.safe_load(text)
     except yaml.YAMLError as error:
-        message = f"parameter file '{display_path(path)}' is no YAML: {error}"
-        raise error_at(Place.of_caller(), "LAUNCH153", message, promises=error) from error
+        message = phrase("parameter file '{path}' is no YAML: {error}", path=display_path(path), error=foreign(error))
+        raise error_at(Place.of_caller(), "LAUNCH153", message, ros_error=error) from error
 
 
 def load_xacro(file_path: str | Path, mappings: Mapping[str, Any] | None = None) -> str:
@@ -81,27 +81,33 @@ def _text(path: Path) -> str:
         return path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         reason = error.strerror if isinstance(error, OSError) else error.reason
-        message = f"parameter file '{display_path(path)}' cannot be read: {reason}"
-        raise error_at(Place.of_caller(), "LAUNCH153", message, promises=error) from error
+        message = phrase(
+            "parameter file '{path}' cannot be read: {reason}", path=display_path(path), reason=foreign(reason)
+        )
+        raise error_at(Place.of_caller(), "LAUNCH153", message, ros_error=error) from error
 
 
 def _check_exists(path: Path) -> None:
     if not path.exists():
-        message = f"parameter file '{display_path(path)}' does not exist"
-        promised = ParameterBuilderFileNotFoundError(f"File {path} doesn't exist")
-        raise error_at(Place.of_caller(), "LAUNCH153", message, missing_file_hint(path), promises=promised)
+        message = phrase("parameter file '{path}' does not exist", path=display_path(path))
+        ros_error = ParameterBuilderFileNotFoundError(f"File {path} doesn't exist")
+        raise error_at(Place.of_caller(), "LAUNCH153", message, missing_file_hint(path), ros_error=ros_error)
 
 
 def _rendered(text: str, path: Path, mappings: Mapping[str, Any]) -> str:
     try:
         import jinja2
     except ImportError as error:
-        message = f"parameter file '{display_path(path)}' is a template, and there is no jinja2 to fill it in"
-        raise error_at(Place.of_caller(), "LAUNCH153", message, "install it: pip install jinja2") from error
+        message = phrase(
+            "parameter file '{path}' is a template, and there is no jinja2 to fill it in", path=display_path(path)
+        )
+        raise error_at(Place.of_caller(), "LAUNCH153", message, phrase("install it: pip install jinja2")) from error
     try:
         template = jinja2.Template(text)
         template.globals.update(radians=math.radians, degrees=math.degrees)
         return str(template.render(mappings))
     except jinja2.TemplateError as error:
-        message = f"template '{display_path(path)}' cannot be filled in: {error}"
-        raise error_at(Place.of_caller(), "LAUNCH153", message, promises=error) from error
+        message = phrase(
+            "template '{path}' cannot be filled in: {error}", path=display_path(path), error=foreign(error)
+        )
+        raise error_at(Place.of_caller(), "LAUNCH153", message, ros_error=error) from error

@@ -10,14 +10,15 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree as ET
 
-from linkwright.launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
-from linkwright.launch.conditions import IfCondition
-from linkwright.launch.description import LaunchDescription
+from linkwright.launch.frontend.include import IncludeLaunchDescription
+from linkwright.launch.frontend.sources import PythonLaunchDescriptionSource
+from linkwright.launch.model.actions import DeclareLaunchArgument
+from linkwright.launch.model.conditions import IfCondition
+from linkwright.launch.model.description import LaunchDescription
+from linkwright.launch.model.substitutions import LaunchConfiguration
 from linkwright.launch.moveit.configs import MoveItConfigs
 from linkwright.launch.moveit.nodes import DeclareBooleanLaunchArg, add_debuggable_node
 from linkwright.launch.ros import Node, ParameterValue
-from linkwright.launch.sources import PythonLaunchDescriptionSource
-from linkwright.launch.substitutions import LaunchConfiguration
 
 
 def generate_rsp_launch(moveit_config: MoveItConfigs) -> LaunchDescription:

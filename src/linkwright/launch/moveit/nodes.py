@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from linkwright.launch.actions import DeclareLaunchArgument
-from linkwright.launch.conditions import IfCondition, UnlessCondition
-from linkwright.launch.description import LaunchDescription
+from linkwright.launch.model.actions import DeclareLaunchArgument
+from linkwright.launch.model.conditions import IfCondition, UnlessCondition
+from linkwright.launch.model.description import LaunchDescription
+from linkwright.launch.model.substitutions import LaunchConfiguration
 from linkwright.launch.ros import Node
-from linkwright.launch.substitutions import LaunchConfiguration
 
 
 class DeclareBooleanLaunchArg(DeclareLaunchArgument):

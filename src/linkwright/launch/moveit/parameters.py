@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from linkwright.launch.moveit.files import ParameterValueType, load_file, load_xacro, load_yaml
-from linkwright.workspace import current_finder
+from linkwright.packages import current_finder
 
 if TYPE_CHECKING:
     from typing_extensions import Self

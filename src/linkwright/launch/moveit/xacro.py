@@ -7,17 +7,17 @@ from pathlib import Path
 from typing import Any
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.launch.context import LaunchContext
-from linkwright.launch.frontend.expose import expose_substitution
-from linkwright.launch.moveit.files import load_xacro
-from linkwright.launch.places import located
-from linkwright.launch.substitution import (
+from linkwright.launch.errors.places import located
+from linkwright.launch.model.context import LaunchContext
+from linkwright.launch.model.markup.expose import expose_substitution
+from linkwright.launch.model.substitution import (
     SomeSubstitutionsType,
     Substitution,
     describe,
     normalize_to_list_of_substitutions,
     perform_substitutions,
 )
+from linkwright.launch.moveit.files import load_xacro
 
 
 @expose_substitution("xacro")

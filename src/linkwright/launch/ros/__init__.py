@@ -25,6 +25,7 @@ from linkwright.launch.ros.names import (
     prefix_namespace,
 )
 from linkwright.launch.ros.node import Node
+from linkwright.launch.ros.node_extensions import NodeActionExtension
 from linkwright.launch.ros.parameter_files import ParameterFile
 from linkwright.launch.ros.parameter_lists import (
     evaluate_parameter_dict,
@@ -66,6 +67,7 @@ __all__ = [
     "LifecycleTransition",
     "LoadComposableNodes",
     "Node",
+    "NodeActionExtension",
     "OnStateTransition",
     "Parameter",
     "ParameterFile",

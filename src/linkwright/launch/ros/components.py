@@ -7,30 +7,32 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.launch.context import LaunchContext
-from linkwright.launch.places import Place, error_at, located
-from linkwright.launch.ros.former_names import with_former_names
-from linkwright.launch.ros.names import make_namespace_absolute, prefix_namespace
-from linkwright.launch.ros.parameter_lists import normalize_parameters
-from linkwright.launch.ros.parameters import FileSource, own_parameters, scope_parameters
-from linkwright.launch.ros.parsing import Entities, parse_remappings
-from linkwright.launch.ros.remappings import RemapRule, evaluated_rules, normalize_remap_rules
-from linkwright.launch.ros.scoping import NAMESPACE, PARAMETERS, REMAPPINGS
-from linkwright.launch.substitution import (
+from linkwright.launch.errors.places import Placed, located
+from linkwright.launch.model.action import parse_condition
+from linkwright.launch.model.context import LaunchContext
+from linkwright.launch.model.markup.parser import parse_texts
+from linkwright.launch.model.substitution import (
     SomeSubstitutionsType,
     Substitution,
     normalize_to_list_of_substitutions,
     perform_substitutions,
 )
+from linkwright.launch.ros.deprecated_arguments import with_deprecated_arguments
+from linkwright.launch.ros.names import make_namespace_absolute, prefix_namespace
+from linkwright.launch.ros.parameter_lists import normalize_parameters
+from linkwright.launch.ros.parameters import FileSource, own_parameters, scope_parameters
+from linkwright.launch.ros.parsing import Entities, parse_parameters, parse_remappings
+from linkwright.launch.ros.remappings import RemapRule, evaluated_rules, normalize_remap_rules
+from linkwright.launch.ros.scoping import NAMESPACE, PARAMETERS, REMAPPINGS
 
 if TYPE_CHECKING:
-    from linkwright.launch.conditions import Condition
-    from linkwright.launch.frontend.entity import Entity
-    from linkwright.launch.frontend.parser import Parser
+    from linkwright.launch.model.conditions import Condition
+    from linkwright.launch.model.markup.entity import Entity
+    from linkwright.launch.model.markup.parser import Parser
 
 
-@with_former_names(node_plugin="plugin", node_name="name", node_namespace="namespace")
-class ComposableNode:
+@with_deprecated_arguments(node_plugin="plugin", node_name="name", node_namespace="namespace")
+class ComposableNode(Placed):
     """A node that can be loaded into a container.
 
     Args:
@@ -56,7 +58,6 @@ class ComposableNode:
         extra_arguments: Sequence[Any] | None = None,
         condition: Condition | None = None,
     ) -> None:
-        self.place = Place.of_caller()
         self.__package = normalize_to_list_of_substitutions(package)
         self.__node_plugin = normalize_to_list_of_substitutions(plugin)
         self.__node_name = None if name is None else normalize_to_list_of_substitutions(name)
@@ -73,29 +74,16 @@ class ComposableNode:
         Raises:
             RuntimeError: LAUNCH118, it has both ``if`` and ``unless``.
         """
-        from linkwright.launch.conditions import IfCondition, UnlessCondition
-        from linkwright.launch.ros.node import Node
-
         kwargs: dict[str, Any] = {
             "package": parser.parse_substitution(entity.get_attr("pkg")),
             "plugin": parser.parse_substitution(entity.get_attr("plugin")),
+            **parse_condition(entity, parser),
+            **parse_texts(entity, parser, name="name", namespace="namespace"),
+            **parse_remappings(entity, parser),
         }
-        wanted, unwanted = entity.get_attr("if", optional=True), entity.get_attr("unless", optional=True)
-        if wanted is not None and unwanted is not None:
-            text = "if and unless conditions can't be used simultaneously"
-            raise error_at(entity.place, "LAUNCH118", text, promises=RuntimeError(text))
-        if wanted is not None:
-            kwargs["condition"] = IfCondition(predicate_expression=parser.parse_substitution(wanted))
-        if unwanted is not None:
-            kwargs["condition"] = UnlessCondition(predicate_expression=parser.parse_substitution(unwanted))
-        for attribute in ("name", "namespace"):
-            text = entity.get_attr(attribute, optional=True)
-            if text is not None:
-                kwargs[attribute] = parser.parse_substitution(text)
         parameters = entity.get_attr("param", data_type=Entities, optional=True)
         if parameters is not None:
-            kwargs["parameters"] = Node.parse_nested_parameters(parameters, parser)
-        kwargs.update(parse_remappings(entity, parser))
+            kwargs["parameters"] = parse_parameters(parameters, parser)
         extra = entity.get_attr("extra_arg", data_type=Entities, optional=True)
         if extra is not None:
             kwargs["extra_arguments"] = [_extra_argument(tag, parser) for tag in extra]
@@ -251,15 +239,15 @@ def _of_file(source: FileSource, context: LaunchContext, full_name: str) -> dict
     try:
         rules = source.file.rules(context)
     except LinkwrightError as error:
-        raise _promised(error, source.path) from error
+        raise _as_runtime_error(error, source.path) from error
     exact = {name: value for pattern, values in rules if pattern == full_name for name, value in values.items()}
     return {**rules.for_node(full_name), **exact}
 
 
-def _promised(error: LinkwrightError, path: Path) -> LinkwrightError:
-    from linkwright.launch.promises import keeping
+def _as_runtime_error(error: LinkwrightError, path: Path) -> LinkwrightError:
+    from linkwright.launch.errors.ros_exceptions import as_ros_error
 
-    return keeping(RuntimeError(f"{path}: {error.diagnostics[0].message}"), *error.diagnostics)
+    return as_ros_error(RuntimeError(f"{path}: {error.diagnostics[0].message}"), *error.diagnostics)
 
 
 def _extra_argument(tag: Entity, parser: Parser) -> dict[Any, Any]:

@@ -5,30 +5,30 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError
-from linkwright.launch import events
-from linkwright.launch.entity import Action
-from linkwright.launch.frontend.expose import expose_action
-from linkwright.launch.places import error_at, located
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
+from linkwright.launch.errors.places import error_at, located
+from linkwright.launch.model import events
+from linkwright.launch.model.action import Action
+from linkwright.launch.model.markup.expose import expose_action
+from linkwright.launch.model.substitution import normalize_to_list_of_substitutions, perform_substitutions
 from linkwright.launch.ros.components import (
     ComposableLifecycleNode,
     ComposableNode,
     get_composable_node_load_request,
 )
+from linkwright.launch.ros.deprecated_arguments import with_deprecated_arguments
 from linkwright.launch.ros.executables import Executable, installed_executable
-from linkwright.launch.ros.former_names import with_former_names
 from linkwright.launch.ros.lifecycle import LifecycleEventManager, answered, autostarts
 from linkwright.launch.ros.lifecycle_events import ChangeState
 from linkwright.launch.ros.names import make_namespace_absolute, repeated_name
 from linkwright.launch.ros.node import Node
 from linkwright.launch.ros.parsing import Entities
-from linkwright.launch.substitution import normalize_to_list_of_substitutions, perform_substitutions
 
 if TYPE_CHECKING:
-    from linkwright.launch.context import LaunchContext
-    from linkwright.launch.frontend.entity import Entity
-    from linkwright.launch.frontend.parser import Parser
-    from linkwright.workspace import PackageFinder
+    from linkwright.launch.model.context import LaunchContext
+    from linkwright.launch.model.markup.entity import Entity
+    from linkwright.launch.model.markup.parser import Parser
+    from linkwright.packages import PackageFinder
 
 _LOGGER = "launch_ros.actions.load_composable_nodes"
 _CONFIGURE, _ACTIVATE = 1, 3
@@ -56,8 +56,11 @@ class LoadComposableNodes(Action):
             try:
                 target_container = normalize_to_list_of_substitutions(target_container)
             except TypeError as error:
-                message = f"'target_container' must be a container or its name, not {target_container!r}"
-                raise error_at(self.place, "LAUNCH139", message, promises=error) from error
+                message = phrase(
+                    "'target_container' must be a container or its name, not {target_container}",
+                    target_container=repr(target_container),
+                )
+                raise error_at(self.place, "LAUNCH139", message, ros_error=error) from error
         self.__target_container = target_container
 
     @classmethod
@@ -113,8 +116,13 @@ class LoadComposableNodes(Action):
         log = context.session.log
         name = response.full_node_name or request.node_name
         if not response.success:
-            text = f"Failed to load node '{name}' of type '{request.plugin_name}' in container '{container}'"
-            problem = f"{text}: {response.error_message}"
+            problem = phrase(
+                "Failed to load node '{name}' of type '{plugin}' in container '{container}': {reason}",
+                name=name,
+                plugin=request.plugin_name,
+                container=container,
+                reason=foreign(response.error_message),
+            )
             context.session.fail(description)
             log.diagnostics(located(LinkwrightError(Diagnostic("LAUNCH139", problem)), description.place).diagnostics)
             return
@@ -127,7 +135,7 @@ class LoadComposableNodes(Action):
 
 
 @expose_action("node_container")
-@with_former_names(node_executable="executable", node_name="name", node_namespace="namespace")
+@with_deprecated_arguments(node_executable="executable", node_name="name", node_namespace="namespace")
 class ComposableNodeContainer(Node):
     """Starts a container, and loads nodes into it.
 
@@ -187,7 +195,7 @@ class ComposableNodeContainer(Node):
         return self.__real or super()._executable(finder, package, executable)
 
     def _real_container(self, context: LaunchContext) -> Executable | None:
-        from linkwright.nodes.components import COMPONENTS
+        from linkwright.nodes.registry import COMPONENTS
 
         self.__real = None
         wanted = [
@@ -213,12 +221,12 @@ def _described(entity: Entity, parser: Parser, optional: bool = False) -> list[C
 
 
 def _manage(context: LaunchContext, description: ComposableLifecycleNode, full_name: str) -> None:
-    """Follow a lifecycle node that was loaded, and bring it to its active state if that is asked for."""
+    """Follow a loaded lifecycle node, and activate it if that is asked for."""
     description.loaded(full_name)
     LifecycleEventManager(description).setup_lifecycle_manager(context)
     if not autostarts(context, description.node_autostart):
         return
-    from linkwright.launch.actions import EmitEvent
+    from linkwright.launch.model.actions import EmitEvent
     from linkwright.launch.ros.lifecycle_events import OnStateTransition
 
     def change(number: int) -> ChangeState:

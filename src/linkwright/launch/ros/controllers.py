@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from linkwright.launch.actions import DeclareLaunchArgument
-from linkwright.launch.description import LaunchDescription
+from linkwright.launch.model.actions import DeclareLaunchArgument
+from linkwright.launch.model.description import LaunchDescription
+from linkwright.launch.model.substitutions import LaunchConfiguration, PythonExpression
 from linkwright.launch.ros.node import Node
-from linkwright.launch.substitutions import LaunchConfiguration, PythonExpression
 
 _MANAGER = "controller_manager"
 _UNLOAD = "unload_on_kill"
@@ -64,8 +64,18 @@ def generate_controllers_spawner_launch_description_from_dict(
 
 
 def generate_load_controller_launch_description(
-    controller_name: Any, controller_params_file: Any = None, extra_spawner_args: Sequence[Any] = ()
+    controller_name: Any,
+    controller_type: Any = None,
+    controller_params_file: Any = None,
+    extra_spawner_args: Sequence[Any] = (),
 ) -> LaunchDescription:
-    """The same for one controller."""
-    files = [controller_params_file] if controller_params_file else None
-    return generate_controllers_spawner_launch_description([controller_name], files, extra_spawner_args)
+    """The same for one controller, with the order of arguments that Humble has.
+
+    Args:
+        controller_name: the controller.
+        controller_type: its plugin, where its parameters do not say.
+        controller_params_file: its parameter file.
+        extra_spawner_args: further arguments of the spawner.
+    """
+    words = [controller_name, *(("--controller-type", controller_type) if controller_type else ())]
+    return generate_controllers_spawner_launch_description(words, [controller_params_file], extra_spawner_args)

@@ -9,14 +9,24 @@ from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, did_you_mean, display_path
-from linkwright.launch.engine.hosted_plan import hosted_executables
-from linkwright.launch.engine.surroundings import python_command
-from linkwright.launch.promises import keeping
-from linkwright.workspace import PackageFinder, PackageNotFoundError, install_prefix, is_installed
+from linkwright.diagnostics import (
+    Diagnostic,
+    LinkwrightError,
+    Note,
+    Phrase,
+    did_you_mean,
+    display_path,
+    foreign,
+    joined,
+    phrase,
+)
+from linkwright.launch.errors.ros_exceptions import as_ros_error
+from linkwright.launch.model.plans import VIEWER, is_viewer
+from linkwright.packages import PackageFinder, PackageNotFoundError, install_prefix, is_installed
+from linkwright.packages.programs.child_python import python_command
 
 if TYPE_CHECKING:
-    from linkwright.launch.ros.source_programs import EntryPoint
+    from linkwright.packages.readers.entry_points import EntryPoint
 
 # What reads sources and scripts is imported where that is done: a launch of our own nodes does without.
 
@@ -52,7 +62,7 @@ class Executable:
     @property
     def command(self) -> list[str]:
         """The words that run it."""
-        from linkwright.launch.ros.interpreters import interpreter_words, needs_our_interpreter
+        from linkwright.packages.programs.interpreters import interpreter_words, needs_our_interpreter
 
         if self.path is None:
             return python_command(["-m", "linkwright.node_program", self.package, self.name])
@@ -65,6 +75,22 @@ class Executable:
 
     def __str__(self) -> str:
         return BUILT_IN if self.origin is Origin.OURS else str(self.path or self.entry_point)
+
+
+def is_hosted(package: str | None, executable: str) -> bool:
+    """Whether a node is one of ours, which runs in this process."""
+    if is_viewer(package, executable):
+        return True
+    from linkwright.nodes import EXECUTABLES
+
+    return (package, executable) in EXECUTABLES
+
+
+def hosted_executables() -> list[tuple[str, str]]:
+    """Package and executable of all nodes that run in this process."""
+    from linkwright.nodes import EXECUTABLES
+
+    return [*EXECUTABLES, VIEWER]
 
 
 def builtin_packages() -> set[str]:
@@ -84,7 +110,7 @@ def executables_of(finder: PackageFinder, package: str) -> dict[str, Executable]
         return ours
     found: dict[str, Executable] = {}
     if not is_installed(share):
-        from linkwright.launch.ros.source_programs import source_programs
+        from linkwright.packages.programs.source_programs import source_programs
 
         programs = source_programs(share)
         found = {
@@ -133,8 +159,8 @@ def _installed(package: str, share: Path) -> Iterable[Executable]:
 
 
 def _script(finder: PackageFinder, executable: Executable) -> Path:
-    from linkwright.launch.ros.entry_scripts import script_for
-    from linkwright.launch.ros.source_programs import python_root
+    from linkwright.packages.programs.entry_scripts import script_for
+    from linkwright.packages.programs.source_programs import python_root
 
     entry = executable.entry_point
     share = finder.share(executable.package)
@@ -146,14 +172,18 @@ def _script(finder: PackageFinder, executable: Executable) -> Path:
     try:
         return script_for(executable.package, executable.name, entry, list(roots))
     except OSError as error:
-        message = f"no file can be made for executable '{executable.name}': {error.strerror or error}"
-        hint = "set XDG_CACHE_HOME to a folder that you may write to"
+        message = phrase(
+            "no file can be made for executable '{name}': {strerror}",
+            name=executable.name,
+            strerror=foreign(error.strerror or error),
+        )
+        hint = phrase("set XDG_CACHE_HOME to a folder that you may write to")
         raise LinkwrightError(Diagnostic("LAUNCH131", message, hint=hint)) from error
 
 
 def _check_module(executable: Executable, entry: EntryPoint, root: Path) -> None:
     """Find out before a process is started that the module of an entry point is not there."""
-    from linkwright.launch.ros.source_programs import module_file
+    from linkwright.packages.programs.source_programs import module_file
 
     top = entry.module.partition(".")[0]
     if module_file(root, entry.module) is not None or not (root / top).is_dir():
@@ -161,15 +191,20 @@ def _check_module(executable: Executable, entry: EntryPoint, root: Path) -> None
     folder = root.joinpath(*entry.module.split(".")[:-1])
     modules = [path.stem for path in folder.glob("*.py")] if folder.is_dir() else []
     near = did_you_mean(entry.module.rpartition(".")[2], modules)
-    message = (
-        f"executable '{executable.name}' of package '{executable.package}' is the entry point '{entry}', "
-        f"and there is no module '{entry.module}'"
+    message = phrase(
+        "executable '{name}' of package '{package}' is the entry point '{entry}', and there is no module '{module}'",
+        name=executable.name,
+        package=executable.package,
+        entry=entry,
+        module=entry.module,
     )
-    notes = (Note(f"looked for {display_path(root.joinpath(*entry.module.split('.')))}.py"),)
-    raise LinkwrightError(Diagnostic("LAUNCH131", message, notes=notes, hint=near or "check entry_points in setup.py"))
+    notes = (Note(phrase("looked for {joinpath}.py", joinpath=display_path(root.joinpath(*entry.module.split("."))))),)
+    raise LinkwrightError(
+        Diagnostic("LAUNCH131", message, notes=notes, hint=near or phrase("check entry_points in setup.py"))
+    )
 
 
-_NO_EXECUTABLES = (
+_NO_EXECUTABLES = phrase(
     "it installs no executables: check entry_points in its setup.py, or install(TARGETS ...) in CMakeLists.txt"
 )
 
@@ -178,43 +213,62 @@ _NO_EXECUTABLES = (
 
 def _no_package(finder: PackageFinder, package: str, name: str, error: PackageNotFoundError) -> LinkwrightError:
     hint = did_you_mean(package, (*builtin_packages(), *finder.packages())) or error.diagnostics[0].hint
-    message = f"package '{package}' of node executable '{name}' not found"
+    message = phrase("package '{package}' of node executable '{name}' not found", package=package, name=name)
     diagnostic = Diagnostic("LAUNCH131", message, notes=error.diagnostics[0].notes, hint=hint)
-    return keeping(KeyError(message), diagnostic)
+    return as_ros_error(KeyError(message), diagnostic)
 
 
 def _no_executable(finder: PackageFinder, package: str, name: str, present: dict[str, Executable]) -> LinkwrightError:
     share = finder.find(package)
-    message = f"package '{package}' has no executable '{name}'"
+    message = phrase("package '{package}' has no executable '{name}'", package=package, name=name)
     notes: tuple[Note, ...] = ()
     hint = did_you_mean(name, present)
     if share is None:
-        message += " that runs without ROS"
+        message = phrase(
+            "package '{package}' has no executable '{name}' that runs without ROS", package=package, name=name
+        )
     else:
         if not is_installed(share):
             return _not_in_sources(package, name, share)
-        notes = (Note(f"looked for {display_path(install_prefix(share) / 'lib' / package / name)}"),)
+        notes = (
+            Note(
+                phrase(
+                    "looked for {install_prefix}",
+                    install_prefix=display_path(install_prefix(share) / "lib" / package / name),
+                )
+            ),
+        )
     if hint is None:
-        hint = f"it has: {', '.join(present)}" if present else _NO_EXECUTABLES
+        hint = phrase("it has: {present}", present=joined(present)) if present else _NO_EXECUTABLES
     return _lookup_error(message, notes, hint)
 
 
 def _not_in_sources(package: str, name: str, share: Path) -> LinkwrightError:
-    from linkwright.launch.ros.source_programs import source_programs
+    from linkwright.packages.programs.source_programs import source_programs
 
     programs = source_programs(share)
-    build = f"build it with 'colcon build --packages-select {package}' and source install/setup.bash"
     if name in programs.compiled:
-        message = f"executable '{name}' of package '{package}' is a compiled program that was not built"
-        return _lookup_error(message, (), f"{build}; that needs a C++ compiler and the ROS 2 libraries it uses")
-    notes = (Note(f"read the entry points and installed programs of {display_path(share)}"),)
+        message = phrase(
+            "executable '{name}' of package '{package}' is a compiled program that was not built",
+            name=name,
+            package=package,
+        )
+        advice = phrase(
+            "build it with 'colcon build --packages-select {package}' and source install/setup.bash;"
+            " that needs a C++ compiler and the ROS 2 libraries it uses",
+            package=package,
+        )
+        return _lookup_error(message, (), advice)
+    notes = (Note(phrase("read the entry points and installed programs of {share}", share=display_path(share))),)
     hint = did_you_mean(name, programs.names())
     if hint is None and programs.names():
-        hint = "it has: " + ", ".join(programs.names())
+        hint = phrase("it has: {names}", names=joined(programs.names()))
     if hint is None:
-        hint = "name it in entry_points of setup.py, or in install(PROGRAMS ...) of CMakeLists.txt"
-    return _lookup_error(f"package '{package}' has no executable '{name}'", notes, hint)
+        hint = phrase("name it in entry_points of setup.py, or in install(PROGRAMS ...) of CMakeLists.txt")
+    return _lookup_error(
+        phrase("package '{package}' has no executable '{name}'", package=package, name=name), notes, hint
+    )
 
 
-def _lookup_error(message: str, notes: tuple[Note, ...], hint: str) -> LinkwrightError:
-    return keeping(LookupError(message), Diagnostic("LAUNCH131", message, notes=notes, hint=hint))
+def _lookup_error(message: Phrase, notes: tuple[Note, ...], hint: Phrase) -> LinkwrightError:
+    return as_ros_error(LookupError(message), Diagnostic("LAUNCH131", message, notes=notes, hint=hint))

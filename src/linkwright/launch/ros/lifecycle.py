@@ -5,12 +5,14 @@ from __future__ import annotations
 import asyncio
 from typing import TYPE_CHECKING, Any
 
-from linkwright.launch import events
-from linkwright.launch.actions import EmitEvent, OpaqueFunction, RegisterEventHandler
-from linkwright.launch.event_handlers import EventHandler, OnProcessStart
-from linkwright.launch.frontend.expose import expose_action
-from linkwright.launch.places import error_at
-from linkwright.launch.ros.former_names import with_former_names
+from linkwright.diagnostics import phrase
+from linkwright.launch.errors.places import error_at
+from linkwright.launch.model import events
+from linkwright.launch.model.actions import EmitEvent, OpaqueFunction, RegisterEventHandler
+from linkwright.launch.model.event_handlers import EventHandler
+from linkwright.launch.model.markup.expose import expose_action
+from linkwright.launch.model.process_event_handlers import OnProcessStart
+from linkwright.launch.ros.deprecated_arguments import with_deprecated_arguments
 from linkwright.launch.ros.lifecycle_events import (
     STATES,
     TRANSITIONS,
@@ -23,10 +25,10 @@ from linkwright.launch.ros.node import Node
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from linkwright.launch.context import LaunchContext
-    from linkwright.launch.entity import Action
-    from linkwright.launch.frontend.entity import Entity
-    from linkwright.launch.frontend.parser import Parser
+    from linkwright.launch.model.action import Action
+    from linkwright.launch.model.context import LaunchContext
+    from linkwright.launch.model.markup.entity import Entity
+    from linkwright.launch.model.markup.parser import Parser
 
 _CONFIGURE, _ACTIVATE = 1, 3
 _LOOK_SECONDS = 0.2
@@ -87,7 +89,7 @@ class LifecycleEventManager:
 
 
 async def answered(context: LaunchContext, client: Any, request: Any) -> Any:
-    """What a service answers, whenever it is there; None when the launch ends before that."""
+    """A service's response, once the service is there; None when the launch ends before that."""
     future = client.call_async(request)
     while not future.done():
         if context.is_shutdown:
@@ -118,7 +120,7 @@ async def _done_or_time(future: Any) -> None:
 
 
 @expose_action("lifecycle_node")
-@with_former_names(node_executable="executable", node_name="name", node_namespace="namespace")
+@with_deprecated_arguments(node_executable="executable", node_name="name", node_namespace="namespace")
 class LifecycleNode(Node):
     """Starts a lifecycle node, and follows its state.
 
@@ -175,7 +177,7 @@ class LifecycleNode(Node):
 
 def autostarts(context: LaunchContext, value: Any) -> bool:
     """Whether ``autostart`` of a lifecycle node is true."""
-    from linkwright.launch.frontend.values import normalize_typed_substitution, perform_typed_substitution
+    from linkwright.launch.model.markup.values import normalize_typed_substitution, perform_typed_substitution
 
     return bool(perform_typed_substitution(context, normalize_typed_substitution(value, bool), bool))
 
@@ -197,5 +199,5 @@ def autostart_actions(action: Any) -> list[Any]:
 
 def unknown_transition(place: Any, text: str) -> Exception:
     """The error about a transition that is no number."""
-    message = f"expected integer for lifecycle transition, got {text}"
-    return error_at(place, "LAUNCH138", message, promises=ValueError(message))
+    message = phrase("expected integer for lifecycle transition, got {text}", text=text)
+    return error_at(place, "LAUNCH138", message, ros_error=ValueError(message))

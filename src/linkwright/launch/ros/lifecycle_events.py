@@ -6,9 +6,10 @@ from collections import OrderedDict
 from collections.abc import Callable
 from typing import Any
 
-from linkwright.launch.event_handlers import EventHandler
-from linkwright.launch.events import Event
-from linkwright.launch.places import Place, error_at
+from linkwright.diagnostics import phrase
+from linkwright.launch.errors.places import Place, error_at
+from linkwright.launch.model.event_handlers import EventHandler
+from linkwright.launch.model.events import Event
 
 TRANSITIONS = OrderedDict(
     (
@@ -61,9 +62,15 @@ class ChangeState(Event):
         super().__init__()
         if transition_id not in TRANSITIONS:
             listed = ", ".join(f"{name}: {number}" for number, name in TRANSITIONS.items())
-            promised = ValueError(f"given transition_id of '{transition_id}', expected one of {{{listed}}}")
-            message = f"there is no lifecycle transition {transition_id!r}"
-            raise error_at(Place.of_caller(), "LAUNCH138", message, f"choose of {listed}", promises=promised)
+            ros_error = ValueError(f"given transition_id of '{transition_id}', expected one of {{{listed}}}")
+            message = phrase("there is no lifecycle transition {transition_id}", transition_id=repr(transition_id))
+            raise error_at(
+                Place.of_caller(),
+                "LAUNCH138",
+                message,
+                phrase("choose of {listed}", listed=listed),
+                ros_error=ros_error,
+            )
         self.lifecycle_node_matcher = lifecycle_node_matcher
         self.transition_id = transition_id
 
@@ -129,8 +136,11 @@ class OnStateTransition(EventHandler):
     ) -> None:
         if target_lifecycle_node is not None and not getattr(target_lifecycle_node, "is_lifecycle_node", False):
             text = "OnStateTransition requires a 'LifecycleNode' action as the target"
-            message = f"{text}, not a {type(target_lifecycle_node).__name__}"
-            raise error_at(Place.of_caller(), "LAUNCH138", message, promises=RuntimeError(text))
+            message = phrase(
+                "OnStateTransition requires a 'LifecycleNode' action as the target, not a {type}",
+                type=type(target_lifecycle_node).__name__,
+            )
+            raise error_at(Place.of_caller(), "LAUNCH138", message, ros_error=RuntimeError(text))
         self._target = target_lifecycle_node
         wanted = {"transition": transition, "start_state": start_state, "goal_state": goal_state}
 

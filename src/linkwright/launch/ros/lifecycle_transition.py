@@ -6,10 +6,12 @@ from collections.abc import Sequence
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from linkwright.launch.actions import EmitEvent, OpaqueFunction, RegisterEventHandler
-from linkwright.launch.entity import Action
-from linkwright.launch.event_handlers import BaseEventHandler, EventHandler
-from linkwright.launch.places import error_at
+from linkwright.diagnostics import phrase
+from linkwright.launch.errors.places import error_at
+from linkwright.launch.model.action import Action
+from linkwright.launch.model.actions import EmitEvent, OpaqueFunction, RegisterEventHandler
+from linkwright.launch.model.event_handlers import BaseEventHandler, EventHandler
+from linkwright.launch.model.substitution import normalize_to_list_of_substitutions, perform_substitutions
 from linkwright.launch.ros.lifecycle import unknown_transition
 from linkwright.launch.ros.lifecycle_events import (
     ChangeState,
@@ -17,11 +19,10 @@ from linkwright.launch.ros.lifecycle_events import (
     StateTransition,
     matches_node_name,
 )
-from linkwright.launch.substitution import normalize_to_list_of_substitutions, perform_substitutions
 
 if TYPE_CHECKING:
-    from linkwright.launch.context import LaunchContext
-    from linkwright.launch.events import Event
+    from linkwright.launch.model.context import LaunchContext
+    from linkwright.launch.model.events import Event
 
 _GOALS = {
     1: ("configuring", "inactive"),
@@ -52,7 +53,9 @@ class LifecycleTransition(Action):
         for what, given in (("transition_ids", transition_ids), ("lifecycle_node_names", lifecycle_node_names)):
             if len(given) == 0:
                 text = f"No {what} provided."
-                raise error_at(self.place, "LAUNCH138", text.rstrip("."), promises=ValueError(text))
+                raise error_at(
+                    self.place, "LAUNCH138", phrase("No {what} provided", what=what), ros_error=ValueError(text)
+                )
         self._names = [normalize_to_list_of_substitutions(name) for name in lifecycle_node_names]
         self._ids = [
             normalize_to_list_of_substitutions(str(each) if isinstance(each, int) else each) for each in transition_ids
@@ -92,8 +95,8 @@ class LifecycleTransition(Action):
         except ValueError:
             raise unknown_transition(self.place, text) from None
         if number not in _GOALS:
-            message = f"transition {number} leads to no state that could be waited for"
-            raise error_at(self.place, "LAUNCH138", message, promises=KeyError(number))
+            message = phrase("transition {number} leads to no state that could be waited for", number=number)
+            raise error_at(self.place, "LAUNCH138", message, ros_error=KeyError(number))
         return number
 
     def _ending(self, name: str, reason: str | None = None) -> OpaqueFunction:

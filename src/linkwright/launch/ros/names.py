@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import Any
 
+from linkwright.diagnostics import LinkwrightError, foreign, phrase
+from linkwright.launch.errors.places import error_at
+
 _COUNTS = "unique_ros_node_names"
 
 
@@ -70,3 +73,46 @@ def _counts(context: Any) -> defaultdict[str, int]:
         counts = defaultdict(int)
         context.extend_globals({_COUNTS: counts})
     return counts
+
+
+def check_name(name: str) -> str:
+    """The name of a node, if it is one.
+
+    Raises:
+        LinkwrightError: LAUNCH134, it is not valid.
+    """
+    from linkwright.graph.names.rules import check_node_name
+
+    try:
+        check_node_name(name)
+    except LinkwrightError as error:
+        reason = error.diagnostics[0].message
+        raise error_at(
+            None,
+            "LAUNCH134",
+            phrase("the name '{name}' of a node is malformed: {reason}", name=name, reason=foreign(reason)),
+            ros_error=error,
+        ) from error
+    return name
+
+
+def check_namespace(namespace: str) -> str:
+    """An absolute namespace, if it is one.
+
+    Raises:
+        LinkwrightError: LAUNCH134, it is not valid.
+    """
+    from linkwright.graph.names.rules import absolute_namespace
+
+    try:
+        absolute_namespace(namespace)
+    except LinkwrightError as error:
+        reason = _reason(error)
+        message = phrase("namespace '{namespace}' is malformed: {reason}", namespace=namespace, reason=foreign(reason))
+        raise error_at(None, "LAUNCH134", message, ros_error=ValueError(message)) from error
+    return namespace
+
+
+def _reason(error: LinkwrightError) -> str:
+    """What is wrong with a name, without the name."""
+    return error.diagnostics[0].message.rpartition(": ")[2]

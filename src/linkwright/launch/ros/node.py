@@ -9,42 +9,51 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.launch.actions.execute import ExecuteProcess
-from linkwright.launch.context import LaunchContext
-from linkwright.launch.engine.hosted_plan import HostedPlan, is_hosted, is_viewer
-from linkwright.launch.engine.processes import ProcessPlan
-from linkwright.launch.entity import Action
-from linkwright.launch.frontend.expose import expose_action
-from linkwright.launch.places import located
-from linkwright.launch.ros.executables import Executable, find_executable
-from linkwright.launch.ros.former_names import with_former_names
-from linkwright.launch.ros.names import make_namespace_absolute, prefix_namespace, repeated_name
-from linkwright.launch.ros.node_words import Assigned, check_name, check_namespace, listed
+from linkwright.launch.errors.places import located
+from linkwright.launch.model.action import Action
+from linkwright.launch.model.actions.execute import ExecuteProcess
+from linkwright.launch.model.context import LaunchContext
+from linkwright.launch.model.markup.expose import expose_action
+from linkwright.launch.model.plans import HostedPlan, ProcessPlan, is_viewer
+from linkwright.launch.model.substitution import (
+    SomeSubstitutionsType,
+    Substitution,
+    normalize_to_list_of_substitutions,
+    perform_substitutions,
+)
+from linkwright.launch.ros.deprecated_arguments import with_deprecated_arguments
+from linkwright.launch.ros.executables import Executable, find_executable, is_hosted
+from linkwright.launch.ros.names import (
+    check_name,
+    check_namespace,
+    make_namespace_absolute,
+    prefix_namespace,
+    repeated_name,
+)
+from linkwright.launch.ros.node_extensions import node_extensions
 from linkwright.launch.ros.parameter_lists import normalize_parameters
 from linkwright.launch.ros.parameters import NodeParameters, own_parameters, scope_parameters
 from linkwright.launch.ros.parsing import parse_node
 from linkwright.launch.ros.remappings import evaluated_rules, normalize_remap_rules
 from linkwright.launch.ros.scoping import NAMESPACE, PARAMETERS, REMAPPINGS
 from linkwright.launch.ros.substitutions import ExecutableInPackage
-from linkwright.launch.ros.workspace_environment import workspace_environment
-from linkwright.launch.substitution import (
-    SomeSubstitutionsType,
-    normalize_to_list_of_substitutions,
-    perform_substitutions,
-)
+from linkwright.packages.programs.workspace_environment import workspace_environment
 
 if TYPE_CHECKING:
-    from linkwright.launch.frontend.entity import Entity
-    from linkwright.launch.frontend.parser import Parser
+    from linkwright.launch.model.markup.entity import Entity
+    from linkwright.launch.model.markup.parser import Parser
+    from linkwright.packages import PackageFinder
     from linkwright.viewer import RvizConfig
-    from linkwright.workspace import PackageFinder
+
+_CONTAINERS = "rclcpp_components"
+"""The package whose executables run other nodes besides, which files given to them may be for."""
 
 _OF_A_PROCESS = re.compile(r"(ROS|RCUTILS|RMW|CYCLONEDDS|LINKWRIGHT)_")
 """Environment variables that change what a node does, so that one that has its own cannot run in the launcher."""
 
 
 @expose_action("node")
-@with_former_names(node_executable="executable", node_name="name", node_namespace="namespace")
+@with_deprecated_arguments(node_executable="executable", node_name="name", node_namespace="namespace")
 class Node(ExecuteProcess):
     """Starts a node: one of ours in the launcher's process, any other as a process of its own.
 
@@ -90,12 +99,12 @@ class Node(ExecuteProcess):
         **kwargs: Any,
     ) -> None:
         program = executable if package is None else ExecutableInPackage(package=package, executable=executable)
-        command: list[Any] = [program, *listed(arguments)]
+        command: list[Any] = [program, *_listed(arguments)]
         if ros_arguments is not None:
-            command += ["--ros-args", *listed(ros_arguments)]
+            command += ["--ros-args", *_listed(ros_arguments)]
         command.append("--ros-args")
         if name is not None:
-            command += ["-r", Assigned("name", lambda: f"__node:={self.__expanded_node_name}")]
+            command += ["-r", _Assigned("name", lambda: f"__node:={self.__expanded_node_name}")]
         super().__init__(cmd=command, name=exec_name, **kwargs)
         self.__package = package
         self.__node_executable = executable
@@ -179,16 +188,33 @@ class Node(ExecuteProcess):
         self.hosted = is_hosted(package, executable) and self._may_be_hosted(context, package, executable)
         self.__forget()
         self._perform_substitutions(context)
+        added = self.__extended(context)
         if self.hosted:
             assert package is not None
-            process_name = self._host(context, package, executable)
+            process_name = self._host(context, package, executable, added)
         else:
+            self.cmd.extend(normalize_to_list_of_substitutions(each) for each in added)
             process_name = self._run(context, package, executable)
         if self.is_node_name_fully_specified():
             remark = repeated_name(context, self.node_name)
             if remark is not None:
                 context.session.log.caution(process_name, remark)
         return None
+
+    def __extended(self, context: LaunchContext) -> list[Any]:
+        """Have the extensions change name and namespace; returns what they add to the command line."""
+        added: list[Any] = []
+        given: dict[str, Any] = {}
+        if self.__node_name is not None:
+            given["name"] = f"__node:={self.__expanded_node_name}"
+        if self.__expanded_node_namespace != self.UNSPECIFIED_NODE_NAMESPACE:
+            given["ns"] = f"__ns:={self.__expanded_node_namespace}"
+        for extension in node_extensions():
+            words, given = extension.prepare_for_execute(context, given, self)
+            added += words
+        self.__expanded_node_name = given.get("name", self.__expanded_node_name).removeprefix("__node:=")
+        self.__expanded_node_namespace = given.get("ns", self.__expanded_node_namespace).removeprefix("__ns:=")
+        return added
 
     def viewer_config(self, context: LaunchContext) -> Callable[[], RvizConfig] | None:  # noqa: ARG002
         """What makes the configuration of a viewer; None has its command line say which."""
@@ -203,8 +229,12 @@ class Node(ExecuteProcess):
         except LinkwrightError as error:
             raise located(error, self.place) from error
         scope = scope_parameters(context.launch_configurations.get(PARAMETERS) or (), context)
-        own = own_parameters(self.__parameters, context)
+        own = own_parameters(self.__parameters, context).without_missing_files(context, self.place)
         self.__node_parameters = NodeParameters([*scope.sources, *own.sources])
+        try:
+            self.__node_parameters.check(context, self.__name_in_files(context), self.place)
+        except LinkwrightError as error:
+            raise located(error, self.place) from error
         self.__scope_count = len(scope.sources)
         self.__scratch_folder = _scratch_folder(context)
         rules = [
@@ -239,6 +269,18 @@ class Node(ExecuteProcess):
             self.__expanded_node_namespace = check_namespace(namespace)
         self.__final_node_name = f"{self.__expanded_node_namespace.rstrip('/')}/{self.__expanded_node_name}"
 
+    def __name_in_files(self, context: LaunchContext) -> str | None:
+        """The full name by which parameter files know the node; None where only the program knows it.
+
+        The process of a container has other nodes too, for which the files that it is given may be.
+        """
+        package = None if self.__package is None else _text(context, self.__package)
+        if self.__node_name is None or package == _CONTAINERS:
+            return None
+        namespace = self.__expanded_node_namespace
+        above = "" if namespace == self.UNSPECIFIED_NODE_NAMESPACE else namespace.rstrip("/")
+        return f"{above}/{self.__expanded_node_name}"
+
     @property
     def __expanded_parameter_arguments(self) -> list[tuple[str, bool]]:
         """What a process is told of the parameters; files for it are made when somebody asks.
@@ -255,7 +297,7 @@ class Node(ExecuteProcess):
     def __extend_command(self) -> None:
         words: list[Any] = []
         if self.__expanded_node_namespace != self.UNSPECIFIED_NODE_NAMESPACE:
-            words += ["-r", Assigned("ns", lambda: f"__ns:={self.__expanded_node_namespace}")]
+            words += ["-r", _Assigned("ns", lambda: f"__ns:={self.__expanded_node_namespace}")]
         _ = self.__expanded_parameter_arguments
         for argument, is_file in self.__parameter_words or ():
             words += ["--params-file" if is_file else "-p", argument]
@@ -269,21 +311,22 @@ class Node(ExecuteProcess):
         """Whether nothing is asked for that only a process of its own can have."""
         if is_viewer(package, executable):
             return True
-        if context.session.options.isolate or self.__own_environment[0] is not None:
+        if context.session.isolates_nodes or self.__own_environment[0] is not None:
             return False
         names = (_text(context, name) for name in self.__own_environment[1] or ())
         if any(_OF_A_PROCESS.match(name) for name in names):
             return False
         return not self.process_description.prefix_words(context, [executable])
 
-    def _host(self, context: LaunchContext, package: str, executable: str) -> str:
+    def _host(self, context: LaunchContext, package: str, executable: str, added: Sequence[Any]) -> str:
         session = context.session
         namespace = self.__expanded_node_namespace
         namespace = "/" if namespace == self.UNSPECIFIED_NODE_NAMESPACE else namespace
         name = None if self.__node_name is None else self.__expanded_node_name
-        arguments = [_text(context, each) for each in listed(self.__arguments)]
+        arguments = [_text(context, each) for each in _listed(self.__arguments)]
         if self.__ros_arguments is not None:
-            arguments += ["--ros-args", *(_text(context, each) for each in listed(self.__ros_arguments))]
+            arguments += ["--ros-args", *(_text(context, each) for each in _listed(self.__ros_arguments))]
+        arguments += [_text(context, each) for each in added]
         base_name = self.process_description.base_name(context, [executable])
         full_name = f"{namespace.rstrip('/')}/{name or executable}"
         plan = HostedPlan(
@@ -332,6 +375,34 @@ class Node(ExecuteProcess):
 
     def _environment(self, context: LaunchContext) -> dict[str, str]:
         return workspace_environment(context.session.finder, super()._environment(context))
+
+
+class _Assigned(Substitution):
+    """A word of the command line that the action fills in when it starts the node.
+
+    Args:
+        what: which one, for listings.
+        word: gives it.
+    """
+
+    def __init__(self, what: str, word: Callable[[], str]) -> None:
+        self._what = what
+        self._word = word
+
+    def describe(self) -> str:
+        """Which word it is."""
+        return f"LocalVar('ros_specific_arguments['{self._what}']')"
+
+    def perform(self, context: LaunchContext) -> str:  # noqa: ARG002 - the interface of substitutions
+        """The word."""
+        return self._word()
+
+
+def _listed(values: Any) -> list[Any]:
+    """Words, or a single one, as a list."""
+    if values is None:
+        return []
+    return [values] if isinstance(values, (str, Substitution)) or not isinstance(values, Iterable) else list(values)
 
 
 def _text(context: LaunchContext, value: Any) -> str:

@@ -7,14 +7,22 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText, display_path, missing_file_hint
-from linkwright.launch.context import LaunchContext
-from linkwright.launch.frontend.values import normalize_typed_substitution, perform_typed_substitution
-from linkwright.launch.places import Place, error_at, located
-from linkwright.launch.substitution import (
+from linkwright.diagnostics import (
+    Diagnostic,
+    LinkwrightError,
+    SourceText,
+    display_path,
+    foreign,
+    missing_file_hint,
+    phrase,
+)
+from linkwright.launch.errors.exceptions import SubstitutionFailure
+from linkwright.launch.errors.places import Place, Placed, error_at, located
+from linkwright.launch.model.context import LaunchContext
+from linkwright.launch.model.markup.values import normalize_typed_substitution, perform_typed_substitution
+from linkwright.launch.model.substitution import (
     SomeSubstitutionsType,
     Substitution,
-    SubstitutionFailure,
     normalize_to_list_of_substitutions,
     perform_substitutions,
 )
@@ -23,7 +31,7 @@ if TYPE_CHECKING:
     from linkwright.graph.parameters.rules import ParameterRules
 
 
-class ParameterFile:
+class ParameterFile(Placed):
     """A parameter file.
 
     Args:
@@ -37,17 +45,19 @@ class ParameterFile:
         *,
         allow_substs: bool | SomeSubstitutionsType = False,
     ) -> None:
-        self.place = Place.of_caller()
         self._evaluated: Path | None = None
         self._allowed: bool | None = None
         self._source: SourceText | None = None
         self._is_temporary = False
+        self._rules: ParameterRules | None = None
         given = os.fspath(param_file) if isinstance(param_file, os.PathLike) else param_file
         try:
             self._param_file = normalize_to_list_of_substitutions(given)
             self._allow_substs = normalize_typed_substitution(allow_substs, bool)
         except (TypeError, ValueError) as error:
-            raise error_at(self.place, "LAUNCH133", f"a parameter file: {error}", promises=error) from error
+            raise error_at(
+                self.place, "LAUNCH133", phrase("a parameter file: {error}", error=foreign(error)), ros_error=error
+            ) from error
 
     @property
     def param_file(self) -> list[Substitution] | Path:
@@ -80,19 +90,21 @@ class ParameterFile:
         """
         from linkwright.graph.parameters.files import parse_parameters
 
-        path = self.evaluate(context)
-        source = self._source or _read(path, self.place)
-        try:
-            return parse_parameters(source)
-        except LinkwrightError as error:
-            raise located(error, self.place) from error
+        if self._rules is None:
+            path = self.evaluate(context)
+            source = self._source or _read(path, self.place)
+            try:
+                self._rules = parse_parameters(source)
+            except LinkwrightError as error:
+                raise located(error, self.place) from error
+        return self._rules
 
     def cleanup(self) -> None:
         """Delete the temporary file, if one was made."""
         if self._is_temporary and self._evaluated is not None:
             with suppress(OSError):
                 self._evaluated.unlink()
-            self._evaluated, self._is_temporary = None, False
+            self._evaluated, self._rules, self._is_temporary = None, None, False
 
     def __del__(self) -> None:
         if getattr(self, "_is_temporary", False):
@@ -126,9 +138,11 @@ class ParameterFile:
             mark = getattr(error, "problem_mark", None)
             problem = getattr(error, "problem", None) or str(error)
             span = source.span(source.offset(mark.line + 1, mark.column + 1)) if mark else None
-            message = f"parameter file is not YAML once substitutions are made in it: {problem}"
+            message = phrase(
+                "parameter file is not YAML once substitutions are made in it: {problem}", problem=foreign(problem)
+            )
             failure = SubstitutionFailure("The substituted parameter file is not a valid yaml file")
-            found = error_at(None, "LAUNCH133", message, promises=failure)
+            found = error_at(None, "LAUNCH133", message, ros_error=failure)
             found.diagnostics = (Diagnostic("LAUNCH133", message, span, source=source),)
             raise located(found, self.place) from error
 
@@ -138,8 +152,12 @@ def _read(path: Path, place: Place | None) -> SourceText:
     try:
         return SourceText(str(path), path.read_text(encoding="utf-8"))
     except FileNotFoundError as error:
-        message, hint = f"parameter file '{shown}' does not exist", missing_file_hint(path)
-        raise error_at(place, "LAUNCH133", message, hint, promises=error) from error
+        message, hint = phrase("parameter file '{shown}' does not exist", shown=shown), missing_file_hint(path)
+        raise error_at(place, "LAUNCH133", message, hint, ros_error=error) from error
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or error
-        raise error_at(place, "LAUNCH133", f"parameter file '{shown}' cannot be read: {reason}") from error
+        raise error_at(
+            place,
+            "LAUNCH133",
+            phrase("parameter file '{shown}' cannot be read: {reason}", shown=shown, reason=foreign(reason)),
+        ) from error

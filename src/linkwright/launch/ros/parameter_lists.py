@@ -11,16 +11,17 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from linkwright.launch.context import LaunchContext
-from linkwright.launch.places import Place, error_at
-from linkwright.launch.ros.parameter_files import ParameterFile
-from linkwright.launch.ros.parameter_values import Parameter, ParameterValue, uniform, yaml_value
-from linkwright.launch.substitution import (
+from linkwright.diagnostics import phrase
+from linkwright.launch.errors.places import Place, error_at
+from linkwright.launch.model.context import LaunchContext
+from linkwright.launch.model.substitution import (
     Substitution,
     TextSubstitution,
     normalize_to_list_of_substitutions,
     perform_substitutions,
 )
+from linkwright.launch.ros.parameter_files import ParameterFile
+from linkwright.launch.ros.parameter_values import Parameter, ParameterValue, uniform, yaml_value
 
 Name = tuple[Substitution, ...]
 NormalizedDict = dict[Name, Any]
@@ -46,9 +47,9 @@ def normalize_parameters(parameters: Any) -> tuple[Any, ...]:
     """
     place = Place.of_caller()
     if isinstance(parameters, (str, Mapping)) or not isinstance(parameters, Sequence):
-        promised = TypeError(f"Expecting list of parameters, got {parameters}")
-        hint = "put it into a list: parameters=[...]"
-        raise error_at(place, "LAUNCH132", "'parameters' of a node must be a list", hint, promises=promised)
+        ros_error = TypeError(f"Expecting list of parameters, got {parameters}")
+        hint = phrase("put it into a list: parameters=[...]")
+        raise error_at(place, "LAUNCH132", phrase("'parameters' of a node must be a list"), hint, ros_error=ros_error)
     return tuple(_normalized_item(item, place) for item in parameters)
 
 
@@ -110,17 +111,17 @@ def _normalized_item(item: Any, place: Place | None) -> Any:
         return item
     if isinstance(item, (str, Path, Substitution, list, tuple)):
         return ParameterFile(item)
-    message = f"'parameters' of a node has an item of type {type(item).__name__}"
-    hint = "items are dictionaries and paths of YAML files"
-    raise error_at(place, "LAUNCH132", message, hint, promises=TypeError(message))
+    message = phrase("'parameters' of a node has an item of type {name}", name=type(item).__name__)
+    hint = phrase("items are dictionaries and paths of YAML files")
+    raise error_at(place, "LAUNCH132", message, hint, ros_error=TypeError(message))
 
 
 def _normalized_name(key: Any) -> Name:
     try:
         return tuple(normalize_to_list_of_substitutions(key))
     except TypeError as error:
-        message = f"the name of a parameter must be text, not {key!r}"
-        raise error_at(Place.of_caller(), "LAUNCH132", message, promises=error) from error
+        message = phrase("the name of a parameter must be text, not {key}", key=repr(key))
+        raise error_at(Place.of_caller(), "LAUNCH132", message, ros_error=error) from error
 
 
 def _normalized_value(value: Any, key: Any) -> Any:
@@ -134,13 +135,15 @@ def _normalized_value(value: Any, key: Any) -> Any:
         return _normalized_sequence(value, key)
     shown = key if isinstance(key, str) else "..."
     if isinstance(value, Path):
-        message = f"parameter '{shown}' is a Path"
+        message = phrase("parameter '{shown}' is a Path", shown=shown)
         raise error_at(
-            Place.of_caller(), "LAUNCH132", message, "give it as text: str(PATH)", promises=TypeError(message)
+            Place.of_caller(), "LAUNCH132", message, phrase("give it as text: str(PATH)"), ros_error=TypeError(message)
         )
-    message = f"parameter '{shown}' is of type {type(value).__name__}, which no parameter can be"
-    promised = TypeError(f"Unexpected type for parameter value {value!r}")
-    raise error_at(Place.of_caller(), "LAUNCH132", message, promises=promised)
+    message = phrase(
+        "parameter '{shown}' is of type {name}, which no parameter can be", shown=shown, name=type(value).__name__
+    )
+    ros_error = TypeError(f"Unexpected type for parameter value {value!r}")
+    raise error_at(Place.of_caller(), "LAUNCH132", message, ros_error=ros_error)
 
 
 def _normalized_sequence(items: Sequence[Any], key: Any) -> tuple[Any, ...]:
@@ -169,9 +172,11 @@ def _item_kind(item: Any, key: Any) -> type:
     if isinstance(item, (list, tuple)) and all(isinstance(each, (str, Substitution)) for each in item):
         return tuple
     shown = key if isinstance(key, str) else "..."
-    message = f"the list of parameter '{shown}' has an item of type {type(item).__name__}"
-    hint = "items are of one of the types bool, int, float and str"
-    raise error_at(Place.of_caller(), "LAUNCH132", message, hint, promises=TypeError(message))
+    message = phrase(
+        "the list of parameter '{shown}' has an item of type {name}", shown=shown, name=type(item).__name__
+    )
+    hint = phrase("items are of one of the types bool, int, float and str")
+    raise error_at(Place.of_caller(), "LAUNCH132", message, hint, ros_error=TypeError(message))
 
 
 # --- evaluating -------------------------------------------------------------------------------------------------

@@ -9,11 +9,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from linkwright.diagnostics import LinkwrightError
-from linkwright.launch.context import LaunchContext
-from linkwright.launch.frontend.values import normalize_typed_substitution, perform_typed_substitution
-from linkwright.launch.places import Place, error_at, located
-from linkwright.launch.substitution import (
+from linkwright.diagnostics import LinkwrightError, Phrase, foreign, joined, phrase
+from linkwright.launch.errors.places import Place, Placed, error_at, located
+from linkwright.launch.model.context import LaunchContext
+from linkwright.launch.model.markup.values import normalize_typed_substitution, perform_typed_substitution
+from linkwright.launch.model.substitution import (
     SomeSubstitutionsType,
     Substitution,
     normalize_to_list_of_substitutions,
@@ -21,7 +21,7 @@ from linkwright.launch.substitution import (
 )
 
 SCALARS = (bool, int, float, str)
-AS_TEXT = "say that it is text: ParameterValue(VALUE, value_type=str), from launch_ros.parameter_descriptions"
+AS_TEXT = phrase("say that it is text: ParameterValue(VALUE, value_type=str), from launch_ros.parameter_descriptions")
 
 _UNIFORM = (
     "Expected a non-empty sequence, with items of uniform type. Allowed sequence item types are bool, int, float, str."
@@ -32,7 +32,7 @@ _ALLOWED = (
 )
 
 
-class ParameterValue:
+class ParameterValue(Placed):
     """A value with the type that it is to have.
 
     Args:
@@ -44,11 +44,15 @@ class ParameterValue:
     """
 
     def __init__(self, value: Any, *, value_type: Any = None) -> None:
-        self.place = Place.of_caller()
         try:
             self._value = normalize_typed_substitution(value, value_type)
         except (TypeError, ValueError) as error:
-            raise error_at(self.place, "LAUNCH132", f"the value of a parameter: {error}", promises=error) from error
+            raise error_at(
+                self.place,
+                "LAUNCH132",
+                phrase("the value of a parameter: {error}", error=foreign(error)),
+                ros_error=error,
+            ) from error
         self._value_type = value_type
         self._evaluated: Any = None
 
@@ -72,7 +76,7 @@ class ParameterValue:
         Raises:
             LinkwrightError: LAUNCH132, if the text is no such value; ValueError or TypeError too, as launch_ros has it.
         """
-        called = f"parameter '{name}'" if name else "the value of a parameter"
+        called = phrase("parameter '{name}'", name=name) if name else phrase("the value of a parameter")
         try:
             self._evaluated = perform_typed_substitution(context, self._value, self._value_type)
         except LinkwrightError as error:
@@ -80,10 +84,19 @@ class ParameterValue:
         except (TypeError, ValueError) as error:
             expected = getattr(self._value_type, "__name__", None) or str(self._value_type)
             if self._value_type is None:
-                message = f"{called} is read as YAML, because its type is not said: {error}"
-                raise error_at(self.place, "LAUNCH132", message, AS_TEXT, promises=error) from error
-            message = f"{called} is not the {expected} that is asked for: {error}"
-            raise error_at(self.place, "LAUNCH132", message, promises=error) from error
+                message = phrase(
+                    "{called} is read as YAML, because its type is not said: {error}",
+                    called=called,
+                    error=foreign(error),
+                )
+                raise error_at(self.place, "LAUNCH132", message, AS_TEXT, ros_error=error) from error
+            message = phrase(
+                "{called} is not the {expected} that is asked for: {error}",
+                called=called,
+                expected=expected,
+                error=foreign(error),
+            )
+            raise error_at(self.place, "LAUNCH132", message, ros_error=error) from error
         return self._evaluated
 
 
@@ -150,10 +163,14 @@ def yaml_value(text: str, name: str, place: Place | None) -> Any:
         return value
     if isinstance(value, list):
         return uniform(value, name, place)
-    kind = _kind(value)
-    message = f"parameter '{name}' is read as YAML, because its type is not said, and becomes {kind}"
-    promised = TypeError(_ALLOWED.format(type(value)))
-    raise error_at(place, "LAUNCH132", f"{message}, which no parameter can be", AS_TEXT, promises=promised)
+    message = phrase(
+        "parameter '{name}' is read as YAML, because its type is not said, and becomes {kind},"
+        " which no parameter can be",
+        name=name,
+        kind=_kind(value),
+    )
+    ros_error = TypeError(_ALLOWED.format(type(value)))
+    raise error_at(place, "LAUNCH132", message, AS_TEXT, ros_error=ros_error)
 
 
 def uniform(items: Sequence[Any], name: str, place: Place | None) -> tuple[Any, ...]:
@@ -166,15 +183,18 @@ def uniform(items: Sequence[Any], name: str, place: Place | None) -> tuple[Any, 
     if len(kinds) == 1 and kinds <= set(SCALARS):
         return tuple(items)
     if not items:
-        found = "an empty list, whose type nobody can tell"
+        found = phrase("an empty list, whose type nobody can tell")
+    elif len(kinds) > 1:
+        found = phrase("a list of mixed items ({kinds})", kinds=joined(sorted(kind.__name__ for kind in kinds)))
     else:
-        listed = sorted(kind.__name__ for kind in kinds)
-        found = (
-            f"a list of mixed items ({', '.join(listed)})" if len(kinds) > 1 else f"a list of items of type {listed[0]}"
-        )
-    message = f"parameter '{name}' becomes {found}, which no parameter can be"
+        found = phrase("a list of items of type {kind}", kind=next(iter(kinds)).__name__)
+    message = phrase("parameter '{name}' becomes {found}, which no parameter can be", name=name, found=found)
     raise error_at(
-        place, "LAUNCH132", message, "give all items one type: bool, int, float or str", promises=TypeError(_UNIFORM)
+        place,
+        "LAUNCH132",
+        message,
+        phrase("give all items one type: bool, int, float or str"),
+        ros_error=TypeError(_UNIFORM),
     )
 
 
@@ -186,15 +206,26 @@ def _loaded(text: str, name: str, place: Place | None) -> Any:
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         problem = getattr(error, "problem", None) or str(error).splitlines()[0]
-        at = f" in its line {mark.line + 1}, column {mark.column + 1}" if mark else ""
-        message = f"parameter '{name}' is read as YAML, because its type is not said, and is none: {problem}{at}"
-        promised = TypeError(
+        problem = foreign(problem)
+        if mark is not None:
+            problem = phrase(
+                "{problem} in its line {line}, column {column}",
+                problem=problem,
+                line=mark.line + 1,
+                column=mark.column + 1,
+            )
+        message = phrase(
+            "parameter '{name}' is read as YAML, because its type is not said, and is none: {problem}",
+            name=name,
+            problem=problem,
+        )
+        ros_error = TypeError(
             f"Unable to parse the value of parameter {name} as yaml. If the parameter is meant to be a string, try "
             "wrapping it in launch_ros.parameter_descriptions.ParameterValue(value, value_type=str)"
         )
-        raise error_at(place, "LAUNCH132", message, AS_TEXT, promises=promised) from error
+        raise error_at(place, "LAUNCH132", message, AS_TEXT, ros_error=ros_error) from error
 
 
-def _kind(value: Any) -> str:
-    names = {dict: "a mapping", list: "a list of mixed items", type(None): "nothing"}
-    return names.get(type(value), f"of type {type(value).__name__}")
+def _kind(value: Any) -> Phrase:
+    names = {dict: phrase("a mapping"), list: phrase("a list of mixed items"), type(None): phrase("nothing")}
+    return names.get(type(value)) or phrase("of type {type_name}", type_name=type(value).__name__)

@@ -8,7 +8,18 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from linkwright.launch.context import LaunchContext
+from linkwright.diagnostics import (
+    Diagnostic,
+    Phrase,
+    Severity,
+    did_you_mean,
+    display_path,
+    joined,
+    missing_file_hint,
+    phrase,
+)
+from linkwright.launch.errors.places import Place
+from linkwright.launch.model.context import LaunchContext
 from linkwright.launch.ros.parameter_files import ParameterFile
 from linkwright.launch.ros.parameter_lists import evaluate_parameters
 from linkwright.launch.ros.parameter_values import Parameter
@@ -33,6 +44,44 @@ class NodeParameters:
     """
 
     sources: list[FileSource | dict[str, Any] | tuple[str, Any]] = field(default_factory=list)
+
+    def without_missing_files(self, context: LaunchContext, place: Place | None) -> NodeParameters:
+        """These without the files that are not there, which launch_ros passes over too; each is told of.
+
+        Args:
+            context: of the launch, for the warnings (LAUNCH133).
+            place: where the node was written.
+        """
+        found = NodeParameters()
+        for source in self.sources:
+            if isinstance(source, FileSource) and not source.path.is_file():
+                message = phrase("parameter file '{path}' does not exist", path=display_path(source.path))
+                _warn(context, "LAUNCH133", message, missing_file_hint(source.path), place)
+            else:
+                found.sources.append(source)
+        return found
+
+    def check(self, context: LaunchContext, node: str | None, place: Place | None) -> None:
+        """Read the files before the node does.
+
+        Args:
+            context: of the launch; it is told (LAUNCH149) of files that have nothing for the node.
+            node: the node's full name; None where that is not known.
+            place: where the node was written.
+
+        Raises:
+            LinkwrightError: LAUNCH133 and GRAPH212, what is wrong with a file.
+        """
+        for source in self.sources:
+            if not isinstance(source, FileSource):
+                continue
+            rules = source.file.rules(context)
+            if node is None or not rules or rules.fit(node):
+                continue
+            names = rules.patterns
+            message = phrase("no section of '{path}' is for node '{node}'", path=display_path(source.path), node=node)
+            hint = did_you_mean(node, names) or phrase("it has sections for {names}", names=joined(names))
+            _warn(context, "LAUNCH149", message, hint, place)
 
     def values(self, context: LaunchContext, node: str) -> dict[str, Any]:
         """Values by name, as a node of this process takes them.
@@ -70,6 +119,12 @@ class NodeParameters:
             else:
                 told.append((written(source, node, folder), True))
         return told
+
+
+def _warn(context: LaunchContext, code: str, message: Phrase, hint: Phrase | None, place: Place | None) -> None:
+    source = place.source() if place else None
+    span = place.span(source) if place else None
+    context.warn(Diagnostic(code, message, span, severity=Severity.WARNING, hint=hint, source=source))
 
 
 def scope_parameters(given: Iterable[Any], context: LaunchContext) -> NodeParameters:

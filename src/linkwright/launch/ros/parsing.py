@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from linkwright.launch.frontend.entity import Entity
-from linkwright.launch.places import error_at
+from linkwright.diagnostics import Phrase, phrase
+from linkwright.launch.errors.places import error_at
+from linkwright.launch.model.markup.entity import Entity
+from linkwright.launch.model.markup.parser import parse_texts
 from linkwright.launch.ros.parameter_files import ParameterFile
 from linkwright.launch.ros.parameter_values import ParameterValue
 
 if TYPE_CHECKING:
-    from linkwright.launch.frontend.parser import Parser
+    from linkwright.launch.model.markup.parser import Parser
 
 Entities = list[Entity]
 
@@ -28,16 +30,9 @@ def parse_node(entity: Entity, parser: Parser, kwargs: dict[str, Any], cls: Any)
         words = entity.get_attr(attribute, optional=True)
         if words is not None:
             kwargs[keyword] = cls._parse_cmdline(words, parser)
-    for attribute, keyword in (("name", "name"), ("exec_name", "exec_name"), ("pkg", "package")):
-        text = entity.get_attr(attribute, optional=True)
-        if text is not None:
-            kwargs[keyword] = parser.parse_substitution(text)
-        elif attribute == "name":
-            kwargs.pop("name", None)
+    kwargs.pop("name", None)  # that of the process, read from the same attribute
+    kwargs.update(parse_texts(entity, parser, name="name", exec_name="exec_name", package="pkg", namespace="namespace"))
     kwargs["executable"] = parser.parse_substitution(entity.get_attr("exec"))
-    namespace = entity.get_attr("namespace", optional=True)
-    if namespace is not None:
-        kwargs["namespace"] = parser.parse_substitution(namespace)
     kwargs.update(parse_remappings(entity, parser))
     parameters = entity.get_attr("param", data_type=Entities, optional=True)
     if parameters is not None:
@@ -70,22 +65,22 @@ def parse_parameters(tags: list[Entity], parser: Parser) -> list[Any]:
         allow = tag.get_attr("allow_substs", data_type=bool, optional=True)
         name = tag.get_attr("name", optional=True)
         if path is not None and name is not None:
-            raise _wrong(tag, "name and from attributes are mutually exclusive")
+            raise _wrong(tag, phrase("name and from attributes are mutually exclusive"))
         if path is not None:
             allow = parser.parse_substitution(allow) if isinstance(allow, str) else bool(allow)
             tag.assert_entity_completely_parsed()
             parameters.append(ParameterFile(parser.parse_substitution(path), allow_substs=allow))
         elif name is not None:
             if allow is not None:
-                raise _wrong(tag, "'allow_substs' can only be used together with 'from' attribute")
+                raise _wrong(tag, phrase("'allow_substs' can only be used together with 'from' attribute"))
             parameters.append(_nested([tag], parser))
         else:
-            raise _wrong(tag, "param Entity should have name or from attribute", ValueError)
+            raise _wrong(tag, phrase("param Entity should have name or from attribute"), ValueError)
     return parameters
 
 
 def _nested(tags: list[Entity], parser: Parser) -> dict[Any, Any]:
-    from linkwright.launch.frontend.values import get_data_type_from_identifier
+    from linkwright.launch.model.markup.values import get_data_type_from_identifier
 
     found: dict[Any, Any] = {}
     for tag in tags:
@@ -96,17 +91,22 @@ def _nested(tags: list[Entity], parser: Parser) -> dict[Any, Any]:
         inside = tag.get_attr("param", data_type=Entities, optional=True)
         tag.assert_entity_completely_parsed()
         if value is not None and inside:
-            raise _wrong(tag, "nested parameters and value attributes are mutually exclusive")
+            raise _wrong(tag, phrase("nested parameters and value attributes are mutually exclusive"))
         if data_type is not None and inside:
-            raise _wrong(tag, "nested parameters and type attributes are mutually exclusive")
+            raise _wrong(tag, phrase("nested parameters and type attributes are mutually exclusive"))
         if value is not None:
             found[name] = ParameterValue(parser.parse_if_substitutions(value), value_type=data_type)
         elif inside:
             found[name] = _nested(inside, parser)
         else:
-            raise _wrong(tag, "either a value attribute or nested params are needed")
+            raise _wrong(tag, phrase("either a value attribute or nested params are needed"))
     return found
 
 
-def _wrong(tag: Entity, text: str, kind: type[Exception] = RuntimeError) -> Exception:
-    return error_at(tag.place, "LAUNCH118", f"'{tag.type_name}': {text}", promises=kind(text))
+def _wrong(tag: Entity, text: Phrase, kind: type[Exception] = RuntimeError) -> Exception:
+    return error_at(
+        tag.place,
+        "LAUNCH118",
+        phrase("'{type_name}': {text}", type_name=tag.type_name, text=text),
+        ros_error=kind(str(text)),
+    )

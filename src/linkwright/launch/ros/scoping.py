@@ -9,24 +9,24 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from linkwright.launch.context import LaunchContext
-from linkwright.launch.engine.log_folder import log_base
-from linkwright.launch.entity import Action
-from linkwright.launch.frontend.expose import expose_action
-from linkwright.launch.places import error_at
-from linkwright.launch.ros.names import make_namespace_absolute, prefix_namespace
-from linkwright.launch.ros.node_words import check_namespace
-from linkwright.launch.ros.parameter_lists import evaluate_parameter_dict, normalize_parameter_dict
-from linkwright.launch.substitution import (
+from linkwright.diagnostics import phrase
+from linkwright.launch.errors.places import error_at
+from linkwright.launch.log.folder import log_base
+from linkwright.launch.model.action import Action
+from linkwright.launch.model.context import LaunchContext
+from linkwright.launch.model.markup.expose import expose_action
+from linkwright.launch.model.substitution import (
     SomeSubstitutionsType,
     Substitution,
     normalize_to_list_of_substitutions,
     perform_substitutions,
 )
+from linkwright.launch.ros.names import check_namespace, make_namespace_absolute, prefix_namespace
+from linkwright.launch.ros.parameter_lists import evaluate_parameter_dict, normalize_parameter_dict
 
 if TYPE_CHECKING:
-    from linkwright.launch.frontend.entity import Entity
-    from linkwright.launch.frontend.parser import Parser
+    from linkwright.launch.model.markup.entity import Entity
+    from linkwright.launch.model.markup.parser import Parser
 
 NAMESPACE = "ros_namespace"
 PARAMETERS = "global_params"
@@ -189,8 +189,8 @@ class SetUseSimTime(SetParameter):
         super().execute(context)
         value = context.launch_configurations[PARAMETERS][-1][1]
         if not isinstance(value, bool):
-            message = f"'use_sim_time' must be true or false, not {value!r}"
-            raise error_at(self.place, "LAUNCH132", message, promises=ValueError(message))
+            message = phrase("'use_sim_time' must be true or false, not {value}", value=repr(value))
+            raise error_at(self.place, "LAUNCH132", message, ros_error=ValueError(message))
         if context.is_running:
             context.session.host.use_simulated_time(value)
 
@@ -227,9 +227,9 @@ class SetROSLogDir(Action):
         """
         folder = Path(log_base(context.environment), perform_substitutions(context, self._log_dir))
         if not folder.is_absolute():
-            message = f"the log folder '{folder}' is no absolute path"
+            message = phrase("the log folder '{folder}' is no absolute path", folder=folder)
             raise error_at(
-                self.place, "LAUNCH136", message, "make ROS_LOG_DIR absolute", promises=AssertionError(message)
+                self.place, "LAUNCH136", message, phrase("make ROS_LOG_DIR absolute"), ros_error=AssertionError(message)
             )
         context.environment["ROS_LOG_DIR"] = os.fspath(folder)
 

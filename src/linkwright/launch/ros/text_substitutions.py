@@ -6,12 +6,12 @@ import re
 from collections.abc import Iterator
 
 from linkwright.diagnostics import LinkwrightError, SourceText
-from linkwright.launch.context import LaunchContext
-from linkwright.launch.frontend.entity import PlacedText
+from linkwright.launch.errors.places import MarkupPlace, located
 from linkwright.launch.frontend.grammar import parse_substitution
 from linkwright.launch.frontend.parser import Parser
-from linkwright.launch.places import MarkupPlace, located
-from linkwright.launch.substitution import perform_substitutions
+from linkwright.launch.model.context import LaunchContext
+from linkwright.launch.model.markup.entity import PlacedText
+from linkwright.launch.model.substitution import perform_substitutions
 
 _OPENING = re.compile(r"(?<!\\)\$\(")
 _COMMENT = re.compile(r"(?:^|(?<=\s))#[^\n]*", re.MULTILINE)

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from linkwright.launch.actions.timer import TimerAction
-from linkwright.launch.context import LaunchContext
-from linkwright.launch.frontend.expose import expose_action
+from linkwright.launch.model.actions.timer import TimerAction
+from linkwright.launch.model.context import LaunchContext
+from linkwright.launch.model.markup.expose import expose_action
 
 if TYPE_CHECKING:
     from linkwright.graph import Node, Timer
-    from linkwright.launch.engine.session import Schedule, Scheduled
+    from linkwright.launch.model.running_launch import Schedule, Scheduled
 
 
 @expose_action("ros_timer")

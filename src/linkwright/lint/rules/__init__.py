@@ -1,1 +1,1 @@
-"""The rules, a module for each group or topic; the registry finds them by looking at every module here."""
+"""The rules, a module for each group or topic; the entry point ``linkwright.lint_rules`` names this package."""

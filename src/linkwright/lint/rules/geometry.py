@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from linkwright.diagnostics import Diagnostic, Note
+from linkwright.diagnostics import Diagnostic, Note, phrase, term
 from linkwright.lint.meshes import shape_element
-from linkwright.lint.rule import Option, Rule
+from linkwright.lint.option import Option
+from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
 from linkwright.urdf import Box, Collision, Geometry, Inertial, Link, Mesh, Sphere, Visual
 from linkwright.urdf.schema import GEOMETRY
@@ -58,20 +59,26 @@ class NonPositiveSize(Rule):
 
     code = "LW401"
     name = "size-not-positive"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
         for link, shape in shapes_of(subject):
             bad = next(((name, size) for name, size in sizes_of(shape.geometry) if size <= 0), None)
             if bad is not None:
                 name, size = bad
                 what = type(shape.geometry).__name__.lower()
                 yield self.report(
-                    f"'{name}' of the {kind_of(shape)} {what} of link '{link.name}' is "
-                    f"{'zero' if size == 0 else 'negative'}",
+                    phrase(
+                        "'{name}' of the {shape} {what} of link '{link_name}' is {value}",
+                        name=name,
+                        shape=term(kind_of(shape)),
+                        what=what,
+                        link_name=link.name,
+                        value=phrase("zero") if size == 0 else phrase("negative"),
+                    ),
                     shape_element(shape),
                     name,
-                    hint="sizes are in metres and above zero",
+                    hint=phrase("sizes are in metres and above zero"),
                 )
 
 
@@ -97,20 +104,26 @@ class HugeSize(Rule):
 
     code = "LW402"
     name = "size-huge"
+    holds_for_parts = True
     options = (Option("largest", 100.0, "largest size of a shape, in m"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
-        largest = subject.option(self, "largest", float)
+        largest = self.option(subject, "largest", float)
         for link, shape in shapes_of(subject):
             name, size = max(sizes_of(shape.geometry), key=lambda each: each[1], default=("", 0.0))
             if size > largest:
                 what = type(shape.geometry).__name__.lower()
                 yield self.report(
-                    f"the {kind_of(shape)} {what} of link '{link.name}' is {size:g} m large",
+                    phrase(
+                        "the {shape} {what} of link '{name}' is {size:g} m large",
+                        shape=term(kind_of(shape)),
+                        what=what,
+                        name=link.name,
+                        size=size,
+                    ),
                     shape_element(shape),
                     name,
-                    hint=f"lengths are in metres; if this is in millimetres, write {size / 1000:g}",
+                    hint=phrase("lengths are in metres; if this is in millimetres, write {size:g}", size=size / 1000),
                 )
 
 
@@ -137,20 +150,26 @@ class TinySize(Rule):
 
     code = "LW403"
     name = "size-tiny"
+    holds_for_parts = True
     options = (Option("smallest", 1e-4, "smallest size of a shape, in m"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
-        smallest = subject.option(self, "smallest", float)
+        smallest = self.option(subject, "smallest", float)
         for link, shape in shapes_of(subject):
             sizes = sizes_of(shape.geometry)
             if sizes and all(0 < size < smallest for _, size in sizes):
                 what = type(shape.geometry).__name__.lower()
                 yield self.report(
-                    f"the {kind_of(shape)} {what} of link '{link.name}' is smaller than {smallest * 1000:g} mm",
+                    phrase(
+                        "the {shape} {what} of link '{name}' is smaller than {smallest:g} mm",
+                        shape=term(kind_of(shape)),
+                        what=what,
+                        name=link.name,
+                        smallest=smallest * 1000,
+                    ),
                     shape_element(shape),
                     sizes[0][0],
-                    hint="lengths are in metres; leave the shape out where none is meant",
+                    hint=phrase("lengths are in metres; leave the shape out where none is meant"),
                 )
 
 
@@ -177,9 +196,9 @@ class SeveralShapes(Rule):
 
     code = "LW404"
     name = "geometry-several-shapes"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
         for link in subject.elements("link"):
             for shape in link.elements():
                 geometry = shape.first("geometry") if shape.tag in ("visual", "collision") else None
@@ -187,11 +206,14 @@ class SeveralShapes(Rule):
                 found = [element for element in inside if GEOMETRY.child(element.tag)]
                 for extra in found[1:]:
                     yield self.report(
-                        f"<{extra.tag}> is the second shape in a <geometry> of link "
-                        f"'{link.attributes.get('name', '')}' and is ignored",
+                        phrase(
+                            "<{tag}> is the second shape in a <geometry> of link '{attributes}' and is ignored",
+                            tag=extra.tag,
+                            attributes=link.attributes.get("name", ""),
+                        ),
                         extra,
-                        notes=[Note(f"only this <{found[0].tag}> is read", found[0].span())],
-                        hint=f"give it a <{shape.tag}> of its own",
+                        notes=[Note(phrase("only this <{tag}> is read", tag=found[0].tag), found[0].span())],
+                        hint=phrase("give it a <{tag}> of its own", tag=shape.tag),
                     )
 
 
@@ -219,11 +241,11 @@ class ShapeFar(Rule):
 
     code = "LW405"
     name = "shape-far"
+    holds_for_parts = True
     options = (Option("largest", 20.0, "largest distance along an axis, in m"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
-        largest = subject.option(self, "largest", float)
+        largest = self.option(subject, "largest", float)
         for link in subject.links:
             parts: list[Visual | Collision | Inertial] = [*link.visuals, *link.collisions]
             parts += [link.inertial] if link.inertial is not None else []
@@ -232,8 +254,13 @@ class ShapeFar(Rule):
                 if reach > largest and part.element is not None:
                     small = " ".join(f"{number / 1000:g}" for number in part.origin.xyz)
                     yield self.report(
-                        f"<{part.element.tag}> of link '{link.name}' is {reach:g} m away from the link",
+                        phrase(
+                            "<{tag}> of link '{name}' is {reach:g} m away from the link",
+                            tag=part.element.tag,
+                            name=link.name,
+                            reach=reach,
+                        ),
                         part.element.first("origin") or part.element,
                         "xyz",
-                        hint=f"lengths are in metres; if this is in millimetres, write '{small}'",
+                        hint=phrase("lengths are in metres; if this is in millimetres, write '{small}'", small=small),
                     )

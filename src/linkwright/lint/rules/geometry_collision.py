@@ -5,14 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
-from linkwright.diagnostics import Diagnostic, Note, Severity, Span
-from linkwright.lint.rule import Option, Rule
+from linkwright.diagnostics import Diagnostic, Note, Severity, Span, phrase
+from linkwright.lint.option import Option
+from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
 from linkwright.urdf import Collision, Link, Visual
 from linkwright.xmltree import Element
 
 if TYPE_CHECKING:
-    from linkwright.lint.extents import Bounds
+    from linkwright.geometry.bounds import Bounds
 
 
 _WORLD = frozenset(("world", "map", "odom"))
@@ -56,7 +57,6 @@ class MissingCollision(Rule):
     severity = Severity.INFO
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
         bodies = subject.bodies
         movable = [body for body in bodies.all if _WORLD.isdisjoint(body.links)]
         seen = [body for body in movable if any(link.visuals for link in bodies.members(body))]
@@ -66,10 +66,10 @@ class MissingCollision(Rule):
         for body in lacking:
             link = next(link for link in bodies.members(body) if link.visuals)
             yield self.report(
-                f"link '{link.name}' is seen but has no collision shape, while other links have",
+                phrase("link '{name}' is seen but has no collision shape, while other links have", name=link.name),
                 link.element,
                 "name",
-                hint="add a <collision>, best with a simple shape around it",
+                hint=phrase("add a <collision>, best with a simple shape around it"),
             )
 
 
@@ -99,14 +99,13 @@ class MissingVisual(Rule):
     default = False
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
         for link in subject.links:
             if link.collisions and not link.visuals and link.element and link.element.first("visual") is None:
                 yield self.report(
-                    f"link '{link.name}' has a collision shape and no visual",
+                    phrase("link '{name}' has a collision shape and no visual", name=link.name),
                     link.element,
                     "name",
-                    hint="add a <visual> with the same geometry, if it is to be seen",
+                    hint=phrase("add a <visual> with the same geometry, if it is to be seen"),
                 )
 
 
@@ -139,7 +138,6 @@ class CollisionApart(Rule):
     name = "collision-apart"
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
         for link in _doubly_shaped(subject):
             seen, felt = _bounds(subject, link.visuals), _bounds(subject, link.collisions)
             if seen is None or felt is None or min(seen.diagonal, felt.diagonal) < _MARKER:
@@ -147,10 +145,14 @@ class CollisionApart(Rule):
             gap = seen.gap(felt)
             if gap > 0.25 * min(seen.diagonal, felt.diagonal) and gap > 1e-3:
                 yield self.report(
-                    f"the collision shapes of link '{link.name}' are {gap * 100:.3g} cm away from its visuals",
+                    phrase(
+                        "the collision shapes of link '{name}' are {gap:.3g} cm away from its visuals",
+                        name=link.name,
+                        gap=gap * 100,
+                    ),
                     link.collisions[0].element,
-                    notes=[Note("the first visual is here", _place(link.visuals[0]))],
-                    hint="give both the same <origin>",
+                    notes=[Note(phrase("the first visual is here"), _place(link.visuals[0]))],
+                    hint=phrase("give both the same <origin>"),
                 )
 
 
@@ -182,20 +184,28 @@ class CollisionSize(Rule):
     options = (Option("factor", 10.0, "how many times larger or smaller is reported"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
-        factor = subject.option(self, "factor", float)
+        factor = self.option(subject, "factor", float)
         for link in _doubly_shaped(subject):
             seen, felt = _bounds(subject, link.visuals), _bounds(subject, link.collisions)
             if seen is None or felt is None or min(seen.diagonal, felt.diagonal) < _MARKER:
                 continue
             ratio = felt.diagonal / seen.diagonal
             if not 1 / factor <= ratio <= factor:
-                times = f"{ratio:.3g} times larger" if ratio > 1 else f"{1 / ratio:.3g} times smaller"
                 yield self.report(
-                    f"the collision shapes of link '{link.name}' are {times} than its visuals",
+                    phrase(
+                        "the collision shapes of link '{name}' are {times:.3g} times larger than its visuals",
+                        name=link.name,
+                        times=ratio,
+                    )
+                    if ratio > 1
+                    else phrase(
+                        "the collision shapes of link '{name}' are {times:.3g} times smaller than its visuals",
+                        name=link.name,
+                        times=1 / ratio,
+                    ),
                     link.collisions[0].element,
-                    notes=[Note("the first visual is here", _place(link.visuals[0]))],
-                    hint="check the sizes, and the 'scale' of meshes",
+                    notes=[Note(phrase("the first visual is here"), _place(link.visuals[0]))],
+                    hint=phrase("check the sizes, and the 'scale' of meshes"),
                 )
 
 
@@ -206,7 +216,7 @@ def _doubly_shaped(subject: Subject) -> Iterator[Link]:
 
 def _bounds(subject: Subject, shapes: Iterable[Visual | Collision]) -> Bounds | None:
     """The box around shapes in the link frame; None without any, or when one cannot be measured."""
-    from linkwright.lint.extents import union
+    from linkwright.geometry.bounds import union
 
     found = [subject.extents.shape_bounds(shape) for shape in shapes]
     known = [bounds for bounds in found if bounds is not None]

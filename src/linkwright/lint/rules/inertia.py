@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from linkwright.diagnostics import Diagnostic, Note, Severity, Span
-from linkwright.lint.rule import Option, Rule
+from linkwright.diagnostics import Diagnostic, Note, Severity, Span, phrase, quoted_names
+from linkwright.lint.option import Option
+from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
+from linkwright.lint.walk import is_for_simulation
 from linkwright.urdf import Inertial, Link
 from linkwright.xmltree import Element
-
-_SIMULATION = ("gazebo", "ros2_control", "transmission")
-"""Elements in ``<robot>`` that say that the description is made for more than looking at it."""
 
 
 def part(inertial: Inertial, tag: str) -> Element | None:
@@ -67,14 +66,13 @@ class MissingInertial(Rule):
     name = "inertial-missing"
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
         robot = subject.robot
         if robot is None:
             return
         some = any(link.inertial for link in robot.links.values())
-        if not some and not any(element.tag in _SIMULATION for element in subject.elements()):
+        if not some and not is_for_simulation(subject):
             return
-        why = "others have one" if some else "the robot is made for simulation"
+        why = phrase("others have one") if some else phrase("the robot is made for simulation")
         for body in subject.bodies.all:
             links = subject.bodies.members(body)
             if body.joint is None or any(link.inertial for link in links):
@@ -82,15 +80,15 @@ class MissingInertial(Rule):
             if any(_is_broken(link) for link in links):
                 continue  # it is there and cannot be read, and that was said
             element = links[0].element
-            rest = [f"'{link.name}'" for link in links[1:4]]
-            notes = [Note(f"nor have the links fixed to it: {', '.join(rest)}")] if rest else []
-            notes.insert(0, Note(f"joint '{body.joint.name}' moves it", _span(body.joint.element)))
+            rest = [link.name for link in links[1:4]]
+            notes = [Note(phrase("nor have the links fixed to it: {rest}", rest=quoted_names(rest)))] if rest else []
+            notes.insert(0, Note(phrase("joint '{name}' moves it", name=body.joint.name), _span(body.joint.element)))
             yield self.report(
-                f"moving link '{links[0].name}' has no <inertial>, while {why}",
+                phrase("moving link '{name}' has no <inertial>, while {why}", name=links[0].name, why=why),
                 element,
                 "name",
                 notes=notes,
-                hint="`linkwright inertia` computes it from the link's shapes",
+                hint=phrase("`linkwright inertia` computes it from the link's shapes"),
             )
 
 
@@ -117,14 +115,13 @@ class ZeroMass(Rule):
     name = "mass-zero"
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
         for link, inertial in links_with_inertial(subject):
             if inertial.mass == 0 and not _is_frame(subject, link):
                 yield self.report(
-                    f"the mass of link '{link.name}' is zero",
+                    phrase("the mass of link '{name}' is zero", name=link.name),
                     part(inertial, "mass"),
                     "value",
-                    hint="give its mass in kg, or leave <inertial> out where the link is only a frame",
+                    hint=phrase("give its mass in kg, or leave <inertial> out where the link is only a frame"),
                 )
 
 
@@ -150,16 +147,16 @@ class NegativeMass(Rule):
 
     code = "LW303"
     name = "mass-negative"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
         for link, inertial in links_with_inertial(subject):
             if inertial.mass < 0:
                 yield self.report(
-                    f"the mass of link '{link.name}' is negative: {inertial.mass:g} kg",
+                    phrase("the mass of link '{name}' is negative: {mass:g} kg", name=link.name, mass=inertial.mass),
                     part(inertial, "mass"),
                     "value",
-                    hint="masses are in kg and positive",
+                    hint=phrase("masses are in kg and positive"),
                 )
 
 
@@ -187,8 +184,7 @@ class TinyMass(Rule):
     options = (Option("smallest", 1e-6, "smallest mass of a moving body, in kg"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
-        smallest = subject.option(self, "smallest", float)
+        smallest = self.option(subject, "smallest", float)
         for body in subject.bodies.all:
             masses = [(link, link.inertial) for link in subject.bodies.members(body) if link.inertial is not None]
             total = sum(inertial.mass for _, inertial in masses)
@@ -196,10 +192,10 @@ class TinyMass(Rule):
                 continue
             link, inertial = masses[0]
             yield self.report(
-                f"the mass of moving link '{link.name}' is tiny: {total:g} kg",
+                phrase("the mass of moving link '{name}' is tiny: {total:g} kg", name=link.name, total=total),
                 part(inertial, "mass"),
                 "value",
-                hint="masses are in kg; a moving link needs one that a solver can work with",
+                hint=phrase("masses are in kg; a moving link needs one that a solver can work with"),
             )
 
 
@@ -225,18 +221,18 @@ class HugeMass(Rule):
 
     code = "LW305"
     name = "mass-huge"
+    holds_for_parts = True
     options = (Option("largest", 1e5, "largest mass of a link, in kg"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
-        largest = subject.option(self, "largest", float)
+        largest = self.option(subject, "largest", float)
         for link, inertial in links_with_inertial(subject):
             if inertial.mass > largest:
                 yield self.report(
-                    f"the mass of link '{link.name}' is {inertial.mass:g} kg",
+                    phrase("the mass of link '{name}' is {mass:g} kg", name=link.name, mass=inertial.mass),
                     part(inertial, "mass"),
                     "value",
-                    hint=f"masses are in kg; if this is in grams, write {inertial.mass / 1000:g}",
+                    hint=phrase("masses are in kg; if this is in grams, write {mass:g}", mass=inertial.mass / 1000),
                 )
 
 
@@ -276,14 +272,13 @@ class RootInertia(Rule):
     severity = Severity.INFO
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
         robot = subject.robot
         inertial = robot.links[robot.root].inertial if robot is not None and robot.root in robot.links else None
         if robot is not None and inertial is not None and len(robot.links) > 1:
             yield self.report(
-                f"root link '{robot.root}' has an inertia, which KDL ignores with a warning",
+                phrase("root link '{root}' has an inertia, which KDL ignores with a warning", root=robot.root),
                 inertial.element,
-                hint="put an empty link above it with a fixed joint, such as 'base_footprint'",
+                hint=phrase("put an empty link above it with a fixed joint, such as 'base_footprint'"),
             )
 
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from linkwright.diagnostics import Diagnostic, Note
-from linkwright.lint.rule import Option, Rule
+from linkwright.diagnostics import Diagnostic, Note, phrase, quoted_names
+from linkwright.lint.option import Option
+from linkwright.lint.rule import Rule
 from linkwright.lint.rules.inertia import links_with_inertial, part
 from linkwright.lint.rules.inertia_tensor import DIAGONAL, PRODUCTS
 from linkwright.lint.subject import Subject
@@ -39,8 +40,7 @@ class PlaceholderInertia(Rule):
     options = (Option("links", 3, "how many links must share a tensor to be reported"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
-        least = subject.option(self, "links", int)
+        least = self.option(subject, "links", int)
         groups: dict[tuple[float, ...], list[tuple[Link, Inertial]]] = {}
         count = 0
         for link, inertial in links_with_inertial(subject):
@@ -55,13 +55,18 @@ class PlaceholderInertia(Rule):
             if not values[0] == values[1] == values[2]:
                 continue
             link, inertial = sharing[0]
-            others = ", ".join(f"'{other.name}'" for other, _ in sharing[1:5])
-            more = "" if len(sharing) <= 5 else ", ..."
+            others = phrase("the others are {names}", names=quoted_names(other.name for other, _ in sharing[1:5]))
+            if len(sharing) > 5:
+                others = phrase("{list}, ...", list=others)
             yield self.report(
-                f"link '{link.name}' has the same inertia as {len(sharing) - 1} links of other shapes",
+                phrase(
+                    "link '{name}' has the same inertia as {count} links of other shapes",
+                    name=link.name,
+                    count=len(sharing) - 1,
+                ),
                 part(inertial, "inertia"),
-                notes=[Note(f"the others are {others}{more}")],
-                hint="`linkwright inertia` computes one for each from its shapes",
+                notes=[Note(others)],
+                hint=phrase("`linkwright inertia` computes one for each from its shapes"),
             )
 
 
@@ -90,20 +95,23 @@ class TurnedSphere(Rule):
 
     code = "LW316"
     name = "inertia-turned-in-vain"
+    holds_for_parts = True
     default = False
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
         for link, inertial in links_with_inertial(subject):
             alike = inertial.ixx == inertial.iyy == inertial.izz
             products = inertial.ixy or inertial.ixz or inertial.iyz
             if alike and not products and any(inertial.origin.rpy) and inertial.ixx:
                 yield self.report(
-                    f"the rotation of <inertial> of link '{link.name}' changes nothing: its inertia is alike about "
-                    "every axis",
+                    phrase(
+                        "the rotation of <inertial> of link '{name}' changes nothing: its inertia is alike about"
+                        " every axis",
+                        name=link.name,
+                    ),
                     part(inertial, "origin"),
                     "rpy",
-                    hint="leave 'rpy' out, or give the moments of the shape",
+                    hint=phrase("leave 'rpy' out, or give the moments of the shape"),
                 )
 
 
@@ -131,8 +139,7 @@ class TinyInertia(Rule):
     options = (Option("smallest", 1e-9, "smallest principal moment of a moving body, in kg m2"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
-        smallest = subject.option(self, "smallest", float)
+        smallest = self.option(subject, "smallest", float)
         for body in subject.bodies.all:
             holders = [link for link in subject.bodies.members(body) if link.inertial is not None]
             if body.joint is None or not holders:
@@ -140,9 +147,13 @@ class TinyInertia(Rule):
             moment = float(subject.extents.mass_properties(body).principal().moments[0])
             if 0 < moment < smallest and holders[0].inertial is not None:
                 yield self.report(
-                    f"the smallest moment of inertia of moving link '{body.links[0]}' is {moment:.2g} kg m2",
+                    phrase(
+                        "the smallest moment of inertia of moving link '{links}' is {moment:.2g} kg m2",
+                        links=body.links[0],
+                        moment=moment,
+                    ),
                     part(holders[0].inertial, "inertia"),
-                    hint="simulate with more, or give the joint damping",
+                    hint=phrase("simulate with more, or give the joint damping"),
                 )
 
 

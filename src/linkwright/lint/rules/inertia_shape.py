@@ -8,15 +8,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
-from linkwright.diagnostics import Diagnostic, Note
-from linkwright.lint.rule import Option, Rule
+from linkwright.diagnostics import Diagnostic, Note, Phrase, phrase
+from linkwright.lint.option import Option
+from linkwright.lint.rule import Rule
 from linkwright.lint.rules.inertia import links_with_inertial, part
 from linkwright.lint.rules.inertia_tensor import flaw_of
 from linkwright.lint.subject import Subject
 from linkwright.urdf import Inertial, Link, Mesh
 
 if TYPE_CHECKING:
-    from linkwright.lint.extents import Bounds
+    from linkwright.geometry.bounds import Bounds
 
 _UNITS = ((1e3, "g m2"), (1e4, "kg cm2"), (1e6, "kg mm2"), (1e9, "g mm2"))
 """What a kg m2 is in other units, which may have been written instead."""
@@ -37,7 +38,7 @@ _ALMOST_NOTHING = 1e-3
 def measured(subject: Subject) -> Iterator[tuple[Link, Inertial, Bounds]]:
     """The links whose mass counts in a body that can be measured, with the box around the body in the link frame."""
     for link, inertial in links_with_inertial(subject):
-        from linkwright.inertia.properties import is_computable  # here: robots without masses need no numpy
+        from linkwright.inertia.inertial import is_computable  # here: robots without masses need no numpy
 
         body = subject.bodies.of(link.name)
         if body is None or not (link.visuals or link.collisions):
@@ -78,10 +79,9 @@ class DensityTooHigh(Rule):
     name = "density-too-high"
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
         if not any(links_with_inertial(subject)):
             return
-        from linkwright.inertia.validity import HEAVIEST_DENSITY
+        from linkwright.geometry.validity import HEAVIEST_DENSITY
 
         for link, inertial, bounds in measured(subject):
             volume = subject.extents.volume(link)
@@ -92,11 +92,23 @@ class DensityTooHigh(Rule):
                 volume = max(volume, float(bounds.size.prod()))
             if volume > 0 and inertial.mass / volume > HEAVIEST_DENSITY:
                 yield self.report(
-                    f"link '{link.name}' would have a density of {_thousands(inertial.mass / volume)} kg/m3",
+                    phrase(
+                        "link '{name}' would have a density of {thousands} kg/m3",
+                        name=link.name,
+                        thousands=_thousands(inertial.mass / volume),
+                    ),
                     part(inertial, "mass"),
                     "value",
-                    notes=[Note(f"{inertial.mass:g} kg in {_volume(volume)}; osmium has 22 600 kg/m3")],
-                    hint="masses are in kg and lengths in m",
+                    notes=[
+                        Note(
+                            phrase(
+                                "{mass:g} kg in {volume}; osmium has 22 600 kg/m3",
+                                mass=inertial.mass,
+                                volume=_volume(volume),
+                            )
+                        )
+                    ],
+                    hint=phrase("masses are in kg and lengths in m"),
                 )
 
 
@@ -127,10 +139,9 @@ class DensityTooLow(Rule):
     name = "density-too-low"
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
         if not any(links_with_inertial(subject)):
             return
-        from linkwright.inertia.validity import LIGHTEST_DENSITY
+        from linkwright.geometry.validity import LIGHTEST_DENSITY
 
         bodies = subject.bodies
         for body in bodies.all:
@@ -144,11 +155,15 @@ class DensityTooLow(Rule):
             if mass < LIGHTEST_DENSITY * volume:
                 link, inertial = max(heavy, key=lambda each: each[1].mass)
                 yield self.report(
-                    f"link '{link.name}' would have a density of {mass / volume:.2g} kg/m3, less than air",
+                    phrase(
+                        "link '{name}' would have a density of {mass:.2g} kg/m3, less than air",
+                        name=link.name,
+                        mass=mass / volume,
+                    ),
                     part(inertial, "mass"),
                     "value",
-                    notes=[Note(f"{mass:g} kg in {_volume(volume)}")],
-                    hint="masses are in kg and lengths in m",
+                    notes=[Note(phrase("{mass:g} kg in {volume}", mass=mass, volume=_volume(volume)))],
+                    hint=phrase("masses are in kg and lengths in m"),
                 )
 
 
@@ -182,14 +197,13 @@ class CenterOutside(Rule):
     options = (Option("margin", 0.25, "how far outside it may lie, as a part of the diagonal of the shapes' box"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
         if not any(links_with_inertial(subject)):
             return
         import numpy as np
 
-        from linkwright.inertia.validity import distance_outside
+        from linkwright.geometry.validity import distance_outside
 
-        margin = subject.option(self, "margin", float)
+        margin = self.option(subject, "margin", float)
         for link, inertial, bounds in measured(subject):
             center = np.asarray(inertial.origin.xyz, dtype=np.float64)
             if np.abs(center).max() > _BEYOND_BELIEF:
@@ -198,11 +212,17 @@ class CenterOutside(Rule):
             if distance > max(margin * bounds.diagonal, _ALMOST_NOTHING):
                 scaled = distance_outside(center / 1000, bounds.low, bounds.high) == 0
                 yield self.report(
-                    f"the centre of mass of link '{link.name}' lies {_length(distance)} outside its shapes",
+                    phrase(
+                        "the centre of mass of link '{name}' lies {length} outside its shapes",
+                        name=link.name,
+                        length=_length(distance),
+                    ),
                     part(inertial, "origin"),
                     "xyz",
                     notes=[_extent(bounds)],
-                    hint="lengths are in metres; this looks like millimetres" if scaled and distance > 1 else _COMPUTE,
+                    hint=phrase("lengths are in metres; this looks like millimetres")
+                    if scaled and distance > 1
+                    else _COMPUTE,
                 )
 
 
@@ -241,7 +261,6 @@ class CenterForgotten(Rule):
     name = "center-of-mass-forgotten"
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
         for link, inertial, bounds in measured(subject):
             element = inertial.element
             if element is None or element.first("origin") is not None:
@@ -254,10 +273,12 @@ class CenterForgotten(Rule):
             if offset.max() > _ALMOST_NOTHING:
                 x, y, z = (round(float(part), 4) + 0.0 for part in bounds.center)
                 yield self.report(
-                    f"<inertial> of link '{link.name}' has no <origin>, but its shapes lie to one side",
+                    phrase(
+                        "<inertial> of link '{name}' has no <origin>, but its shapes lie to one side", name=link.name
+                    ),
                     element,
                     notes=[_extent(bounds)],
-                    hint=f'add <origin xyz="{x:g} {y:g} {z:g}"/>, if that is where its mass is',
+                    hint=phrase('add <origin xyz="{x:g} {y:g} {z:g}"/>, if that is where its mass is', x=x, y=y, z=z),
                 )
 
 
@@ -289,14 +310,13 @@ class InertiaTooLarge(Rule):
     options = (Option("factor", 2.0, "how many times the largest possible moment is reported"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
         if not any(links_with_inertial(subject)):
             return
         import numpy as np
 
-        from linkwright.inertia.validity import largest_moment_within
+        from linkwright.geometry.validity import largest_moment_within
 
-        factor = subject.option(self, "factor", float)
+        factor = self.option(subject, "factor", float)
         for link, inertial, bounds in measured(subject):
             largest = max(inertial.ixx, inertial.iyy, inertial.izz)
             center = np.clip(np.asarray(inertial.origin.xyz, dtype=np.float64), bounds.low, bounds.high)
@@ -305,10 +325,22 @@ class InertiaTooLarge(Rule):
                 usual = _uniform(bounds, inertial.mass)
                 name = max(("ixx", "iyy", "izz"), key=lambda each: getattr(inertial, each))
                 yield self.report(
-                    f"the inertia of link '{link.name}' is too large for its shapes: {largest:g} kg m2",
+                    phrase(
+                        "the inertia of link '{name}' is too large for its shapes: {largest:g} kg m2",
+                        name=link.name,
+                        largest=largest,
+                    ),
                     part(inertial, "inertia"),
                     name,
-                    notes=[Note(f"{inertial.mass:g} kg within them have at most {limit:.2g} kg m2")],
+                    notes=[
+                        Note(
+                            phrase(
+                                "{mass:g} kg within them have at most {limit:.2g} kg m2",
+                                mass=inertial.mass,
+                                limit=limit,
+                            )
+                        )
+                    ],
                     hint=(_unit_hint(largest / usual) if usual > 0 else None) or _COMPUTE,
                 )
 
@@ -342,8 +374,7 @@ class InertiaTooSmall(Rule):
     options = (Option("factor", 200.0, "how many times smaller than that of a solid box is reported"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
-        factor = subject.option(self, "factor", float)
+        factor = self.option(subject, "factor", float)
         for link, inertial, _ in measured(subject):
             bounds = subject.extents.link_bounds(link)
             largest = max(inertial.ixx, inertial.iyy, inertial.izz)
@@ -353,15 +384,26 @@ class InertiaTooSmall(Rule):
             usual = _uniform(bounds, inertial.mass)
             if largest * factor < usual:
                 yield self.report(
-                    f"the inertia of link '{link.name}' is {_thousands(usual / largest)} times smaller than that of a "
-                    "solid of its size",
+                    phrase(
+                        "the inertia of link '{name}' is {thousands} times smaller than that of a solid of its size",
+                        name=link.name,
+                        thousands=_thousands(usual / largest),
+                    ),
                     part(inertial, "inertia"),
-                    notes=[Note(f"{inertial.mass:g} kg spread over its box have about {usual:.2g} kg m2")],
+                    notes=[
+                        Note(
+                            phrase(
+                                "{mass:g} kg spread over its box have about {usual:.2g} kg m2",
+                                mass=inertial.mass,
+                                usual=usual,
+                            )
+                        )
+                    ],
                     hint=_COMPUTE,
                 )
 
 
-_COMPUTE = "`linkwright inertia` computes it from the link's shapes"
+_COMPUTE = phrase("`linkwright inertia` computes it from the link's shapes")
 
 
 def _uniform(bounds: Bounds, mass: float) -> float:
@@ -370,25 +412,27 @@ def _uniform(bounds: Bounds, mass: float) -> float:
     return mass * (squares[1] + squares[2]) / 12
 
 
-def _unit_hint(ratio: float) -> str | None:
-    """A hint when a value is as many times too large as another unit would make it, within a factor of 8."""
+def _unit_hint(ratio: float) -> Phrase | None:
+    """A hint when a value is as many times too large as another unit would make it, within a factor of 3."""
     factor, unit = min(_UNITS, key=lambda each: max(each[0] / ratio, ratio / each[0]))
-    if max(factor / ratio, ratio / factor) > 8:
+    if max(factor / ratio, ratio / factor) > 3:
         return None
-    return f"it looks as if it were in {unit}: divide it by {factor:.0f}"
+    return phrase("if it is in {unit}, divide it by {factor:.0f}", unit=unit, factor=factor)
 
 
 def _extent(bounds: Bounds) -> Note:
     low, high = (" ".join(f"{part:.3g}" for part in corner) for corner in (bounds.low, bounds.high))
-    return Note(f"they reach from {low} to {high} in the link frame")
+    return Note(phrase("they reach from {low} to {high} in the link frame", low=low, high=high))
 
 
-def _length(metres: float) -> str:
-    return f"{metres:.3g} m" if metres >= 1 else f"{metres * 100:.3g} cm"
+def _length(metres: float) -> Phrase:
+    return phrase("{length:.3g} m", length=metres) if metres >= 1 else phrase("{length:.3g} cm", length=metres * 100)
 
 
-def _volume(cubic_metres: float) -> str:
-    return f"{cubic_metres:.3g} m3" if cubic_metres >= 0.1 else f"{cubic_metres * 1e6:.3g} cm3"
+def _volume(cubic_metres: float) -> Phrase:
+    if cubic_metres >= 0.1:
+        return phrase("{volume:.3g} m3", volume=cubic_metres)
+    return phrase("{volume:.3g} cm3", volume=cubic_metres * 1e6)
 
 
 def _thousands(number: float) -> str:

@@ -6,14 +6,14 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from linkwright.diagnostics import Diagnostic, Note
+from linkwright.diagnostics import Diagnostic, Note, phrase
 from linkwright.lint.rule import Rule
 from linkwright.lint.rules.inertia import links_with_inertial, part
 from linkwright.lint.subject import Subject
 from linkwright.urdf import Inertial, Link
 
 if TYPE_CHECKING:
-    from linkwright.inertia.properties import Array
+    from linkwright.geometry.arrays import Array
 
 DIAGONAL = ("ixx", "iyy", "izz")
 PRODUCTS = ("ixy", "ixz", "iyz")
@@ -44,7 +44,7 @@ def tensor(inertial: Inertial) -> Array:
 
 def flaw_of(inertial: Inertial) -> Flaw | None:
     """The first thing that is wrong with a tensor, or None."""
-    from linkwright.inertia import validity
+    from linkwright.geometry import validity
 
     moments = [getattr(inertial, name) for name in DIAGONAL]
     products = [getattr(inertial, name) for name in PRODUCTS]
@@ -57,7 +57,7 @@ def flaw_of(inertial: Inertial) -> Flaw | None:
     if any(products):
         for name, limit in validity.excessive_products(matrix):
             return Flaw("product", name, limit)
-        if not validity.is_positive_definite(matrix):
+        if validity.is_indefinite(matrix):
             return Flaw("indefinite")
     excess = validity.triangle_excess(matrix)
     if excess > validity.TOLERANCE:
@@ -103,9 +103,8 @@ class ZeroInertia(_TensorRule):
     kind = "zero"
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
         for link, inertial, _ in self.flawed(subject):
-            from linkwright.inertia.validity import is_positive_definite
+            from linkwright.geometry.validity import is_positive_definite
 
             body = subject.bodies.of(link.name)
             if inertial.mass <= 0 or body is None:
@@ -113,9 +112,9 @@ class ZeroInertia(_TensorRule):
             if is_positive_definite(subject.extents.mass_properties(body).inertia):
                 continue
             yield self.report(
-                f"link '{link.name}' has a mass of {inertial.mass:g} kg and no inertia",
+                phrase("link '{name}' has a mass of {mass:g} kg and no inertia", name=link.name, mass=inertial.mass),
                 part(inertial, "inertia"),
-                hint="`linkwright inertia` computes it from the link's shapes",
+                hint=phrase("`linkwright inertia` computes it from the link's shapes"),
             )
 
 
@@ -142,17 +141,17 @@ class NonPositiveMoment(_TensorRule):
 
     code = "LW311"
     name = "inertia-not-positive"
+    holds_for_parts = True
     kind = "diagonal"
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
         for link, inertial, flaw in self.flawed(subject):
-            what = "zero" if flaw.amount == 0 else f"negative: {flaw.amount:g}"
+            what = phrase("zero") if flaw.amount == 0 else phrase("negative: {amount:g}", amount=flaw.amount)
             yield self.report(
-                f"'{flaw.attribute}' of link '{link.name}' is {what}",
+                phrase("'{attribute}' of link '{name}' is {what}", attribute=flaw.attribute, name=link.name, what=what),
                 part(inertial, "inertia"),
                 flaw.attribute,
-                hint="ixx, iyy and izz are positive, in kg m2; `linkwright inertia` computes them",
+                hint=phrase("ixx, iyy and izz are positive, in kg m2; `linkwright inertia` computes them"),
             )
 
 
@@ -179,28 +178,33 @@ class ExcessiveProduct(_TensorRule):
 
     code = "LW312"
     name = "inertia-product-too-large"
+    holds_for_parts = True
     kind = "product"
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
         for link, inertial, flaw in self.flawed(subject):
             assert flaw.attribute is not None
             value = getattr(inertial, flaw.attribute)
             yield self.report(
-                f"'{flaw.attribute}' of link '{link.name}' is larger than its moments allow: {value:g}",
+                phrase(
+                    "'{attribute}' of link '{name}' is larger than its moments allow: {value:g}",
+                    attribute=flaw.attribute,
+                    name=link.name,
+                    value=value,
+                ),
                 part(inertial, "inertia"),
                 flaw.attribute,
-                notes=[Note(f"with these moments it is at most {flaw.amount:.3g} either way")],
-                hint="check the order ixx ixy ixz iyy iyz izz, and that all are in kg m2",
+                notes=[Note(phrase("with these moments it is at most {amount:.3g} either way", amount=flaw.amount))],
+                hint=phrase("check the order ixx ixy ixz iyy iyz izz, and that all are in kg m2"),
             )
 
 
 class IndefiniteInertia(_TensorRule):
-    """An inertia tensor that is not positive definite.
+    """An inertia tensor that has a negative principal moment.
 
     ## Why
 
-    About some axis the moment is zero or negative, which no body has. Gazebo and Drake refuse it, others go wrong at
+    About some axis the moment is negative, which no body has. Gazebo and Drake refuse it, others go wrong at
     the first contact. Mostly the products have a wrong sign, or were taken about another point than the moments.
 
     ## Example
@@ -216,16 +220,16 @@ class IndefiniteInertia(_TensorRule):
 
     code = "LW313"
     name = "inertia-not-positive-definite"
+    holds_for_parts = True
     kind = "indefinite"
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
         for link, inertial, _ in self.flawed(subject):
             yield self.report(
-                f"the inertia tensor of link '{link.name}' is not positive definite",
+                phrase("the inertia tensor of link '{name}' is not positive definite", name=link.name),
                 part(inertial, "inertia"),
                 notes=[_principal_moments(inertial)],
-                hint="check the signs of the products, and that all components are about the centre of mass",
+                hint=phrase("check the signs of the products, and that all components are about the centre of mass"),
             )
 
 
@@ -252,32 +256,38 @@ class TriangleInequality(_TensorRule):
 
     code = "LW314"
     name = "inertia-triangle-inequality"
+    holds_for_parts = True
     kind = "triangle"
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
         for link, inertial, flaw in self.flawed(subject):
             diagonal = not (inertial.ixy or inertial.ixz or inertial.iyz)
             first, second = (name for name in DIAGONAL if name != flaw.attribute)
-            message = f"one moment of inertia of link '{link.name}' is larger than the other two together"
+            message = phrase(
+                "one moment of inertia of link '{name}' is larger than the other two together", name=link.name
+            )
             notes = [_principal_moments(inertial)]
             if diagonal:
                 small = getattr(inertial, first) + getattr(inertial, second)
-                message = f"'{flaw.attribute}' of link '{link.name}' is larger than the other two moments together"
-                notes = [Note(f"{first} + {second} = {small:g}")]
+                message = phrase(
+                    "'{attribute}' of link '{name}' is larger than the other two moments together",
+                    attribute=flaw.attribute,
+                    name=link.name,
+                )
+                notes = [Note(phrase("{first} + {second} = {small:g}", first=first, second=second, small=small))]
             yield self.report(
                 message,
                 part(inertial, "inertia"),
                 flaw.attribute if diagonal else None,
                 notes=notes,
-                hint="no body has these moments; `linkwright inertia` computes those of the link's shapes",
+                hint=phrase("no body has these moments; `linkwright inertia` computes those of the link's shapes"),
             )
 
 
 def _principal_moments(inertial: Inertial) -> Note:
-    from linkwright.inertia.validity import relative_moments
+    from linkwright.geometry.validity import relative_moments
 
     matrix = tensor(inertial)
     largest = float(abs(matrix).max())
     moments = " ".join(f"{float(moment) * largest:.4g}" for moment in relative_moments(matrix))
-    return Note(f"its principal moments are {moments}")
+    return Note(phrase("its principal moments are {moments}", moments=moments))

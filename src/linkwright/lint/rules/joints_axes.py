@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 from math import radians, sqrt
 
-from linkwright.diagnostics import Diagnostic, Severity
+from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.lint.fix import add_attribute, remove_element, replace_value
-from linkwright.lint.rule import Option, Rule
+from linkwright.lint.option import Option
+from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
 from linkwright.lint.walk import joints, parts, shown, values
 from linkwright.urdf.values import plain
@@ -39,6 +40,7 @@ class AxisZero(Rule):
 
     code = "LW220"
     name = "axis-zero"
+    holds_for_parts = True
     severity = Severity.ERROR
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
@@ -48,17 +50,21 @@ class AxisZero(Rule):
                 continue
             if "xyz" not in axis.attributes:
                 yield self.report(
-                    f"<axis> of {joint.type} joint '{joint.name}' has no 'xyz', which makes it 0 0 0",
+                    phrase(
+                        "<axis> of {type} joint '{name}' has no 'xyz', which makes it 0 0 0",
+                        type=joint.type,
+                        name=joint.name,
+                    ),
                     axis,
-                    hint='add xyz="0 0 1", or remove <axis> for 1 0 0',
+                    hint=phrase('add xyz="0 0 1", or remove <axis> for 1 0 0'),
                     fix=add_attribute(axis, "xyz", "1 0 0", safe=False),
                 )
             elif values(axis, "xyz") == (0, 0, 0):
                 yield self.report(
-                    f"the axis of {joint.type} joint '{joint.name}' is 0 0 0",
+                    phrase("the axis of {type} joint '{name}' is 0 0 0", type=joint.type, name=joint.name),
                     axis,
                     "xyz",
-                    hint="give the direction it moves in, such as 0 0 1",
+                    hint=phrase("give the direction it moves in, such as 0 0 1"),
                 )
 
 
@@ -87,6 +93,7 @@ class AxisNotUnit(Rule):
 
     code = "LW221"
     name = "axis-not-unit"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Every moving joint whose axis is longer or shorter than 1 by more than rounding explains."""
@@ -99,11 +106,15 @@ class AxisNotUnit(Rule):
                 continue
             unit = " ".join(_component(part / length) for part in direction)
             yield self.report(
-                f"the axis of joint '{joint.name}' is not of length 1 but {shown(length)}: "
-                f"'{axis.attributes['xyz'].strip()}'",
+                phrase(
+                    "the axis of joint '{name}' is not of length 1 but {length}: '{xyz}'",
+                    name=joint.name,
+                    length=shown(length),
+                    xyz=axis.attributes["xyz"].strip(),
+                ),
                 axis,
                 "xyz",
-                hint=f"write {unit}",
+                hint=phrase("write {unit}", unit=unit),
                 fix=replace_value(axis, "xyz", unit),
             )
 
@@ -136,16 +147,22 @@ class AxisImplicit(Rule):
 
     code = "LW222"
     name = "axis-implicit"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Every joint that moves along one axis and does not name it."""
         for joint, element in joints(subject):
             if joint.type in ("revolute", "continuous", "prismatic") and element.first("axis") is None:
-                verb = "slides along" if joint.type == "prismatic" else "turns about"
+                verb = phrase("slides along") if joint.type == "prismatic" else phrase("turns about")
                 yield self.report(
-                    f"{joint.type} joint '{joint.name}' has no <axis>, so it {verb} x",
+                    phrase(
+                        "{type} joint '{name}' has no <axis>, so it {verb} x",
+                        type=joint.type,
+                        name=joint.name,
+                        verb=verb,
+                    ),
                     element,
-                    hint='add <axis xyz="0 0 1"/>, or <axis xyz="1 0 0"/> if x is meant',
+                    hint=phrase('add <axis xyz="0 0 1"/>, or <axis xyz="1 0 0"/> if x is meant'),
                 )
 
 
@@ -170,6 +187,7 @@ class AxisOnFixed(Rule):
 
     code = "LW223"
     name = "axis-on-fixed"
+    holds_for_parts = True
     default = False
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
@@ -177,9 +195,9 @@ class AxisOnFixed(Rule):
         for joint, _, axis in parts(subject, "axis"):
             if joint.type in ("fixed", "floating"):
                 yield self.report(
-                    f"{joint.type} joint '{joint.name}' has an <axis>, which is not read",
+                    phrase("{type} joint '{name}' has an <axis>, which is not read", type=joint.type, name=joint.name),
                     axis,
-                    hint="remove it, or give the joint the type it was written for",
+                    hint=phrase("remove it, or give the joint the type it was written for"),
                     fix=remove_element(axis),
                 )
 
@@ -207,12 +225,13 @@ class AxisTilted(Rule):
 
     code = "LW224"
     name = "axis-tilted"
+    holds_for_parts = True
     severity = Severity.INFO
     options = (Option("largest-tilt", 0.1, "the largest tilt, in degrees, that is taken for an accident"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Every axis within a small angle of a coordinate axis, without being one."""
-        largest = radians(subject.option(self, "largest-tilt", float))
+        largest = radians(self.option(subject, "largest-tilt", float))
         for joint, _, axis in parts(subject, "axis"):
             direction = values(axis, "xyz")
             if joint.type not in _MOVING or len(direction) != 3 or not any(direction):
@@ -224,10 +243,15 @@ class AxisTilted(Rule):
                 continue
             straight = " ".join(plain(float(round(part)) + 0.0) for part in _snapped(direction, main))
             yield self.report(
-                f"the axis of joint '{joint.name}' is almost {straight}: '{axis.attributes['xyz'].strip()}'",
+                phrase(
+                    "the axis of joint '{name}' is almost {straight}: '{xyz}'",
+                    name=joint.name,
+                    straight=straight,
+                    xyz=axis.attributes["xyz"].strip(),
+                ),
                 axis,
                 "xyz",
-                hint=f"write {straight}",
+                hint=phrase("write {straight}", straight=straight),
                 fix=replace_value(axis, "xyz", straight, safe=False),
             )
 
@@ -261,18 +285,23 @@ class JointNotPublished(Rule):
         for joint, element in joints(subject):
             if joint.type == "floating":
                 yield self.report(
-                    f"robot_state_publisher publishes nothing for floating joint '{joint.name}': no transform connects "
-                    f"'{joint.parent}' and '{joint.child}'",
+                    phrase(
+                        "robot_state_publisher publishes nothing for floating joint '{name}': no transform"
+                        " connects '{parent}' and '{child}'",
+                        name=joint.name,
+                        parent=joint.parent,
+                        child=joint.child,
+                    ),
                     element,
                     "type",
-                    hint="another node must broadcast this transform",
+                    hint=phrase("another node must broadcast this transform"),
                 )
             elif joint.type == "planar":
                 yield self.report(
-                    f"robot_state_publisher treats planar joint '{joint.name}' as fixed",
+                    phrase("robot_state_publisher treats planar joint '{name}' as fixed", name=joint.name),
                     element,
                     "type",
-                    hint="build the motion from two prismatic joints and a continuous one",
+                    hint=phrase("build the motion from two prismatic joints and a continuous one"),
                 )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from math import inf
 
-from linkwright.diagnostics import Diagnostic, Severity
+from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.lint.fix import Fix, remove_element, value_edit
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
@@ -40,6 +40,7 @@ class SoftLimitsOutside(Rule):
 
     code = "LW240"
     name = "soft-limits-outside"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Every soft limit that lies beyond the limit on its side."""
@@ -55,12 +56,24 @@ class SoftLimitsOutside(Rule):
                 yield self._outside(joint, safety, "soft_upper_limit", joint.safety.soft_upper_limit, "upper", upper)
 
     def _outside(self, joint: Joint, safety: Element, name: str, soft: float, end: str, limit: float) -> Diagnostic:
-        side = "below" if end == "lower" else "above"
+        below = end == "lower"
         return self.report(
-            f"'{name}' of joint '{joint.name}' is {side} its limit: {shown(soft)}, where '{end}' is {shown(limit)}",
+            phrase(
+                "'{name}' of joint '{joint_name}' is {side} its limit: {soft}, where '{end}' is {limit}",
+                name=name,
+                joint_name=joint.name,
+                side=phrase("below") if below else phrase("above"),
+                soft=shown(soft),
+                end=end,
+                limit=shown(limit),
+            ),
             safety,
             name,
-            hint=f"it acts before the limit: {'more' if end == 'lower' else 'less'} than {shown(limit)}",
+            hint=phrase(
+                "it acts before the limit: {side} than {limit}",
+                side=phrase("more") if below else phrase("less"),
+                limit=shown(limit),
+            ),
         )
 
 
@@ -86,6 +99,7 @@ class SoftLimitsInverted(Rule):
 
     code = "LW241"
     name = "soft-limits-inverted"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Every pair of soft limits without a range between them; none given is 0 and 0, which means no soft limits."""
@@ -100,11 +114,17 @@ class SoftLimitsInverted(Rule):
                 ]
                 whole = tuple(edit for edit in edits if edit is not None)
                 yield self.report(
-                    f"the soft limits of joint '{joint.name}' leave no range: {shown(soft.soft_lower_limit)} to "
-                    f"{shown(soft.soft_upper_limit)}",
+                    phrase(
+                        "the soft limits of joint '{name}' leave no range: {soft_lower_limit} to {soft_upper_limit}",
+                        name=joint.name,
+                        soft_lower_limit=shown(soft.soft_lower_limit),
+                        soft_upper_limit=shown(soft.soft_upper_limit),
+                    ),
                     safety,
                     "soft_lower_limit",
-                    hint="exchange them" if soft.soft_lower_limit > soft.soft_upper_limit else "give a range",
+                    hint=phrase("exchange them")
+                    if soft.soft_lower_limit > soft.soft_upper_limit
+                    else phrase("give a range"),
                     fix=Fix(whole, safe=False) if len(whole) == 2 else None,
                 )
 
@@ -131,6 +151,7 @@ class SafetyGainNegative(Rule):
 
     code = "LW242"
     name = "safety-gain-negative"
+    holds_for_parts = True
     severity = Severity.ERROR
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
@@ -140,10 +161,15 @@ class SafetyGainNegative(Rule):
                 gain = value(safety, name)
                 if gain is not None and gain < 0:
                     yield self.report(
-                        f"'{name}' of joint '{joint.name}' is negative: {shown(gain)}",
+                        phrase(
+                            "'{name}' of joint '{joint_name}' is negative: {gain}",
+                            name=name,
+                            joint_name=joint.name,
+                            gain=shown(gain),
+                        ),
                         safety,
                         name,
-                        hint=f"it drives the joint towards its limit: write {shown(-gain)}",
+                        hint=phrase("it drives the joint towards its limit: write {value}", value=shown(-gain)),
                     )
 
 
@@ -169,6 +195,7 @@ class DynamicsNegative(Rule):
 
     code = "LW243"
     name = "dynamics-negative"
+    holds_for_parts = True
     severity = Severity.ERROR
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
@@ -179,10 +206,15 @@ class DynamicsNegative(Rule):
                 if size is not None and size < 0:
                     edit = value_edit(dynamics, name, dynamics.attributes[name].strip().lstrip("-"))
                     yield self.report(
-                        f"'{name}' of joint '{joint.name}' is negative: {shown(size)}",
+                        phrase(
+                            "'{name}' of joint '{joint_name}' is negative: {size}",
+                            name=name,
+                            joint_name=joint.name,
+                            size=shown(size),
+                        ),
                         dynamics,
                         name,
-                        hint=f"it feeds energy into the joint: write {shown(-size)}",
+                        hint=phrase("it feeds energy into the joint: write {value}", value=shown(-size)),
                         fix=Fix((edit,), safe=False) if edit else None,
                     )
 
@@ -208,6 +240,7 @@ class DynamicsOnFixed(Rule):
 
     code = "LW244"
     name = "dynamics-on-fixed"
+    holds_for_parts = True
     default = False
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
@@ -215,9 +248,9 @@ class DynamicsOnFixed(Rule):
         for joint, _, dynamics in parts(subject, "dynamics"):
             if joint.type == "fixed":
                 yield self.report(
-                    f"fixed joint '{joint.name}' has <dynamics>",
+                    phrase("fixed joint '{name}' has <dynamics>", name=joint.name),
                     dynamics,
-                    hint="remove it",
+                    hint=phrase("remove it"),
                     fix=remove_element(dynamics),
                 )
 
@@ -243,6 +276,7 @@ class CalibrationOutside(Rule):
 
     code = "LW245"
     name = "calibration-outside"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Every reference position of a bounded joint that it cannot reach."""
@@ -254,9 +288,16 @@ class CalibrationOutside(Rule):
                 place = value(calibration, name)
                 if place is not None and not lower - _SLACK <= place <= upper + _SLACK:
                     yield self.report(
-                        f"'{name}' of joint '{joint.name}' is outside its limits: {shown(place)}, where it goes from "
-                        f"{shown(lower)} to {shown(upper)}",
+                        phrase(
+                            "'{name}' of joint '{joint_name}' is outside its limits: {place}, where it goes from"
+                            " {lower} to {upper}",
+                            name=name,
+                            joint_name=joint.name,
+                            place=shown(place),
+                            lower=shown(lower),
+                            upper=shown(upper),
+                        ),
                         calibration,
                         name,
-                        hint="give a position that the joint can reach",
+                        hint=phrase("give a position that the joint can reach"),
                     )

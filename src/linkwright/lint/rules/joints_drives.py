@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 from math import degrees, radians
 
-from linkwright.diagnostics import Diagnostic, Severity
+from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.lint.fix import Fix, value_edit
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
-from linkwright.lint.walk import BOUNDED, limits, parts, shown, value
+from linkwright.lint.walk import BOUNDED, is_for_simulation, limits, parts, shown, value
 
 
 class _Zero(Rule):
@@ -17,8 +17,11 @@ class _Zero(Rule):
 
     attribute: str
     consequence: str
+    only_in_simulation = False
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        if self.only_in_simulation and not is_for_simulation(subject):
+            return
         springs = {
             element.attributes.get("reference")
             for element in subject.elements("gazebo")
@@ -27,20 +30,26 @@ class _Zero(Rule):
         for joint, limit in limits(subject, *BOUNDED, "continuous"):
             if joint.mimic is None and joint.name not in springs and value(limit, self.attribute) == 0:
                 yield self.report(
-                    f"'{self.attribute}' in <limit> of joint '{joint.name}' is 0: {self.consequence}",
+                    phrase(
+                        "'{attribute}' in <limit> of joint '{name}' is 0: {consequence}",
+                        attribute=self.attribute,
+                        name=joint.name,
+                        consequence=self.consequence,
+                    ),
                     limit,
                     self.attribute,
-                    hint="give what the motor can do",
+                    hint=phrase("give what the motor can do"),
                 )
 
 
 class EffortZero(_Zero):
-    """A moving joint whose greatest effort is 0.
+    """A moving joint of a simulated robot whose greatest effort is 0.
 
     ## Why
 
-    Simulators and controllers take it at its word: the joint has no torque, so it hangs or does not move. A joint that
-    mimics another, or that Gazebo moves by a spring, is left alone.
+    Simulators take it at its word: the joint has no torque, so it hangs or does not move. A joint that mimics another,
+    or that Gazebo moves by a spring, is left alone, and so are descriptions that say nothing to a simulator: makers
+    write 0 for what they do not tell.
 
     ## Example
 
@@ -56,7 +65,8 @@ class EffortZero(_Zero):
     code = "LW205"
     name = "effort-zero"
     attribute = "effort"
-    consequence = "simulators give it no torque or force"
+    consequence = phrase("simulators give it no torque or force")
+    only_in_simulation = True
 
 
 class VelocityZero(_Zero):
@@ -81,7 +91,7 @@ class VelocityZero(_Zero):
     code = "LW206"
     name = "velocity-zero"
     attribute = "velocity"
-    consequence = "planners and controllers hold it still"
+    consequence = phrase("planners and controllers hold it still")
 
 
 class _Negative(Rule):
@@ -97,10 +107,15 @@ class _Negative(Rule):
             if size is not None and size < 0:
                 edit = value_edit(limit, self.attribute, limit.attributes[self.attribute].strip().lstrip("-"))
                 yield self.report(
-                    f"'{self.attribute}' in <limit> of joint '{joint.name}' is negative: {shown(size)}",
+                    phrase(
+                        "'{attribute}' in <limit> of joint '{name}' is negative: {size}",
+                        attribute=self.attribute,
+                        name=joint.name,
+                        size=shown(size),
+                    ),
                     limit,
                     self.attribute,
-                    hint=f"it holds in both directions: give its size, {shown(-size)}",
+                    hint=phrase("it holds in both directions: give its size, {value}", value=shown(-size)),
                     fix=Fix((edit,), safe=False) if edit else None,
                 )
 
@@ -128,6 +143,7 @@ class EffortNegative(_Negative):
 
     code = "LW207"
     name = "effort-negative"
+    holds_for_parts = True
     attribute = "effort"
     severity = Severity.ERROR
 
@@ -155,6 +171,7 @@ class VelocityNegative(_Negative):
 
     code = "LW208"
     name = "velocity-negative"
+    holds_for_parts = True
     attribute = "velocity"
     severity = Severity.ERROR
 
@@ -182,6 +199,7 @@ class VelocityInDegrees(Rule):
 
     code = "LW214"
     name = "velocity-in-degrees"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Every revolute joint whose velocity is a round number from 45 to 720; such motors drive no such joints."""
@@ -190,9 +208,17 @@ class VelocityInDegrees(Rule):
             if speed is None or not 45 <= speed <= 720 or speed % 15 != 0:
                 continue
             yield self.report(
-                f"'velocity' in <limit> of revolute joint '{joint.name}' looks like degrees per second: {shown(speed)}",
+                phrase(
+                    "'velocity' in <limit> of revolute joint '{name}' looks like degrees per second: {speed}",
+                    name=joint.name,
+                    speed=shown(speed),
+                ),
                 limit,
                 "velocity",
-                hint=f"speeds are in rad/s: {shown(radians(speed))}; "
-                f"{shown(speed)} rad/s are {shown(degrees(speed) / 6)} revolutions a minute",
+                hint=phrase(
+                    "speeds are in rad/s: {radians}; {speed} rad/s are {degrees} revolutions a minute",
+                    radians=shown(radians(speed)),
+                    speed=shown(speed),
+                    degrees=shown(degrees(speed) / 6),
+                ),
             )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from math import inf
 
-from linkwright.diagnostics import Diagnostic, Note, Severity
+from linkwright.diagnostics import Diagnostic, Note, Severity, phrase
 from linkwright.lint.fix import remove_element
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
@@ -57,15 +57,18 @@ class MimicOnFixed(Rule):
 
     code = "LW230"
     name = "mimic-on-fixed"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Every fixed joint that is to follow another."""
         for joint, mimic in _followers(subject):
             if joint.type == "fixed":
                 yield self.report(
-                    f"fixed joint '{joint.name}' cannot follow '{mimic.attributes['joint']}'",
+                    phrase(
+                        "fixed joint '{name}' cannot follow '{joint}'", name=joint.name, joint=mimic.attributes["joint"]
+                    ),
                     mimic,
-                    hint="remove <mimic>, or give the joint the type of the one it follows",
+                    hint=phrase("remove <mimic>, or give the joint the type of the one it follows"),
                     fix=remove_element(mimic, safe=False),
                 )
 
@@ -96,10 +99,14 @@ class MimicOfFixed(Rule):
         for joint, leader, mimic in _pairs(subject):
             if leader.type == "fixed" and joint.type != "fixed":
                 yield self.report(
-                    f"joint '{joint.name}' follows '{leader.name}', which is fixed",
+                    phrase(
+                        "joint '{name}' follows '{leader_name}', which is fixed",
+                        name=joint.name,
+                        leader_name=leader.name,
+                    ),
                     mimic,
                     "joint",
-                    hint="name a joint that moves",
+                    hint=phrase("name a joint that moves"),
                     notes=_here(leader),
                 )
 
@@ -124,16 +131,21 @@ class MimicStandsStill(Rule):
 
     code = "LW232"
     name = "mimic-stands-still"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Every follower with a factor of 0."""
         for joint, mimic in _followers(subject):
             if value(mimic, "multiplier") == 0:
                 yield self.report(
-                    f"joint '{joint.name}' follows '{mimic.attributes['joint']}' with multiplier 0 and never moves",
+                    phrase(
+                        "joint '{name}' follows '{joint}' with multiplier 0 and never moves",
+                        name=joint.name,
+                        joint=mimic.attributes["joint"],
+                    ),
                     mimic,
                     "multiplier",
-                    hint="give the factor, or make the joint fixed",
+                    hint=phrase("give the factor, or make the joint fixed"),
                 )
 
 
@@ -173,12 +185,23 @@ class MimicBeyondLimits(Rule):
             slack = _SLACK * max(own[1] - own[0], 1e-6)
             if ends[0] >= own[0] - slack and ends[1] <= own[1] + slack:
                 continue
-            reach = f"{shown(ends[0])} to {shown(ends[1])}"
             yield self.report(
-                f"following '{leader.name}', joint '{joint.name}' goes from {reach}, beyond its limits "
-                f"{shown(own[0])} to {shown(own[1])}",
+                phrase(
+                    "following '{name}', joint '{joint_name}' goes from {least} to {most}, beyond its limits"
+                    " {lower} to {upper}",
+                    name=leader.name,
+                    joint_name=joint.name,
+                    least=shown(ends[0]),
+                    most=shown(ends[1]),
+                    lower=shown(own[0]),
+                    upper=shown(own[1]),
+                ),
                 mimic,
-                hint=f'its limits would have to be lower="{shown(ends[0])}" upper="{shown(ends[1])}"',
+                hint=phrase(
+                    'its limits would have to be lower="{ends}" upper="{other_ends}"',
+                    ends=shown(ends[0]),
+                    other_ends=shown(ends[1]),
+                ),
                 notes=_here(leader),
             )
 
@@ -218,10 +241,20 @@ class MimicChain(Rule):
             factor = joint.mimic.multiplier * leader.mimic.multiplier
             offset = joint.mimic.multiplier * leader.mimic.offset + joint.mimic.offset
             yield self.report(
-                f"joint '{joint.name}' follows '{leader.name}', which itself follows '{first.name}'",
+                phrase(
+                    "joint '{name}' follows '{leader_name}', which itself follows '{first_name}'",
+                    name=joint.name,
+                    leader_name=leader.name,
+                    first_name=first.name,
+                ),
                 mimic,
                 "joint",
-                hint=f'write <mimic joint="{first.name}" multiplier="{shown(factor)}" offset="{shown(offset)}"/>',
+                hint=phrase(
+                    'write <mimic joint="{name}" multiplier="{factor}" offset="{offset}"/>',
+                    name=first.name,
+                    factor=shown(factor),
+                    offset=shown(offset),
+                ),
                 notes=_here(leader),
             )
 
@@ -256,12 +289,19 @@ class MimicOtherKind(Rule):
             turns = joint.type in _TURNING and leader.type in _SLIDING
             slides = joint.type in _SLIDING and leader.type in _TURNING
             if (turns or slides) and joint.mimic is not None and abs(joint.mimic.multiplier) == 1:
-                units = "radian for every metre" if turns else "metre for every radian"
+                units = phrase("radian for every metre") if turns else phrase("metre for every radian")
                 yield self.report(
-                    f"{joint.type} joint '{joint.name}' follows {leader.type} joint '{leader.name}' by one {units}",
+                    phrase(
+                        "{type} joint '{name}' follows {leader_type} joint '{leader_name}' by one {units}",
+                        type=joint.type,
+                        name=joint.name,
+                        leader_type=leader.type,
+                        leader_name=leader.name,
+                        units=units,
+                    ),
                     mimic,
                     "multiplier" if "multiplier" in mimic.attributes else "joint",
-                    hint='add multiplier="...", such as the radius of the wheel between them',
+                    hint=phrase('add multiplier="...", such as the radius of the wheel between them'),
                     notes=_here(leader),
                 )
 
@@ -304,9 +344,13 @@ class MimicDrivenByControl(Rule):
                 if entry.attributes.get("mimic") == "false":
                     continue
                 yield self.report(
-                    f"joint '{joint.name}' follows '{joint.mimic.joint}' and is commanded by <ros2_control> as well",
+                    phrase(
+                        "joint '{name}' follows '{joint}' and is commanded by <ros2_control> as well",
+                        name=joint.name,
+                        joint=joint.mimic.joint,
+                    ),
                     command,
-                    hint='remove <command_interface>, or write <joint name="..." mimic="false"> there',
+                    hint=phrase('remove <command_interface>, or write <joint name="..." mimic="false"> there'),
                     notes=_here(joint),
                 )
 
@@ -320,4 +364,8 @@ def _range(joint: Joint) -> tuple[float, float] | None:
 
 
 def _here(joint: Joint) -> tuple[Note, ...]:
-    return (Note(f"joint '{joint.name}' is defined here", joint.element.span()),) if joint.element else ()
+    return (
+        (Note(phrase("joint '{name}' is defined here", name=joint.name), joint.element.span()),)
+        if joint.element
+        else ()
+    )

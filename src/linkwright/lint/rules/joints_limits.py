@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from math import pi
 
-from linkwright.diagnostics import Diagnostic, Severity
+from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.lint.fix import Fix, remove_element, value_edit
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
@@ -35,6 +35,7 @@ class LimitInverted(Rule):
 
     code = "LW201"
     name = "limit-inverted"
+    holds_for_parts = True
     severity = Severity.ERROR
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
@@ -51,10 +52,17 @@ class LimitInverted(Rule):
             ]
             whole = [edit for edit in edits if edit is not None]
             yield self.report(
-                f"'lower' in <limit> of joint '{joint.name}' is above 'upper': {shown(ends[0])} > {shown(ends[1])}",
+                phrase(
+                    "'lower' in <limit> of joint '{name}' is above 'upper': {ends} > {other_ends}",
+                    name=joint.name,
+                    ends=shown(ends[0]),
+                    other_ends=shown(ends[1]),
+                ),
                 limit,
                 "lower" if "lower" in limit.attributes else "upper",
-                hint=f'write lower="{shown(ends[1])}" upper="{shown(ends[0])}"',
+                hint=phrase(
+                    'write lower="{ends}" upper="{other_ends}"', ends=shown(ends[1]), other_ends=shown(ends[0])
+                ),
                 fix=Fix(tuple(whole), safe=False) if len(whole) == 2 else None,
             )
 
@@ -81,6 +89,7 @@ class LimitEmpty(Rule):
 
     code = "LW202"
     name = "limit-empty"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Every bounded joint that says the same bound twice."""
@@ -89,10 +98,15 @@ class LimitEmpty(Rule):
             said = "lower" in limit.attributes or "upper" in limit.attributes
             if ends is not None and said and ends[0] == ends[1]:
                 yield self.report(
-                    f"{joint.type} joint '{joint.name}' cannot move: 'lower' and 'upper' are both {shown(ends[0])}",
+                    phrase(
+                        "{type} joint '{name}' cannot move: 'lower' and 'upper' are both {ends}",
+                        type=joint.type,
+                        name=joint.name,
+                        ends=shown(ends[0]),
+                    ),
                     limit,
                     "lower" if "lower" in limit.attributes else "upper",
-                    hint="give the range it has, or make the joint 'fixed'",
+                    hint=phrase("give the range it has, or make the joint 'fixed'"),
                 )
 
 
@@ -121,6 +135,7 @@ class LimitBoundsMissing(Rule):
 
     code = "LW203"
     name = "limit-bounds-missing"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Every bounded joint without bounds; in URDF 1.2 files the reader reports them."""
@@ -128,12 +143,18 @@ class LimitBoundsMissing(Rule):
             return
         for joint, limit in limits(subject, *BOUNDED):
             if "lower" not in limit.attributes and "upper" not in limit.attributes:
-                unit = "rad" if joint.type == "revolute" else "m"
-                hint = f'add lower="..." upper="..." ({unit})'
                 if joint.type == "revolute":
-                    hint += "; a joint that turns without bounds is 'continuous'"
+                    hint = phrase(
+                        'add lower="..." upper="..." (rad); a joint that turns without bounds is \'continuous\''
+                    )
+                else:
+                    hint = phrase('add lower="..." upper="..." (m)')
                 yield self.report(
-                    f"<limit> of {joint.type} joint '{joint.name}' has no 'lower' and 'upper', so it cannot leave 0",
+                    phrase(
+                        "<limit> of {type} joint '{name}' has no 'lower' and 'upper', so it cannot leave 0",
+                        type=joint.type,
+                        name=joint.name,
+                    ),
                     limit,
                     hint=hint,
                 )
@@ -161,6 +182,7 @@ class LimitOneBound(Rule):
 
     code = "LW204"
     name = "limit-one-bound"
+    holds_for_parts = True
     default = False
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
@@ -171,9 +193,14 @@ class LimitOneBound(Rule):
             missing = [name for name in ("lower", "upper") if name not in limit.attributes]
             if len(missing) == 1:
                 yield self.report(
-                    f"<limit> of {joint.type} joint '{joint.name}' has no '{missing[0]}', which then is 0",
+                    phrase(
+                        "<limit> of {type} joint '{name}' has no '{missing}', which then is 0",
+                        type=joint.type,
+                        name=joint.name,
+                        missing=missing[0],
+                    ),
                     limit,
-                    hint=f'add {missing[0]}="0" if that is meant',
+                    hint=phrase('add {missing}="0" if that is meant', missing=missing[0]),
                     fix=add_attribute(limit, missing[0], "0"),
                 )
 
@@ -201,6 +228,7 @@ class LimitOnContinuous(Rule):
 
     code = "LW209"
     name = "limit-on-continuous"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Every continuous joint with a range that somebody may rely on."""
@@ -211,11 +239,15 @@ class LimitOnContinuous(Rule):
             if ends[1] - ends[0] >= 2 * pi - 0.02:
                 continue  # a whole turn, which is every position there is
             yield self.report(
-                f"continuous joint '{joint.name}' has limits from {shown(ends[0])} to {shown(ends[1])}, which nothing "
-                "observes",
+                phrase(
+                    "continuous joint '{name}' has limits from {ends} to {other_ends}, which nothing observes",
+                    name=joint.name,
+                    ends=shown(ends[0]),
+                    other_ends=shown(ends[1]),
+                ),
                 limit,
                 "lower" if "lower" in limit.attributes else "upper",
-                hint="make it 'revolute' if it stops there, or remove 'lower' and 'upper'",
+                hint=phrase("make it 'revolute' if it stops there, or remove 'lower' and 'upper'"),
             )
 
 
@@ -241,15 +273,16 @@ class LimitOnFixed(Rule):
 
     code = "LW210"
     name = "limit-on-fixed"
+    holds_for_parts = True
     default = False
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Every fixed joint with a limit."""
         for joint, limit in limits(subject, "fixed"):
             yield self.report(
-                f"fixed joint '{joint.name}' has a <limit>",
+                phrase("fixed joint '{name}' has a <limit>", name=joint.name),
                 limit,
-                hint="remove it, or give the joint the type it was written for",
+                hint=phrase("remove it, or give the joint the type it was written for"),
                 fix=remove_element(limit),
             )
 
@@ -275,6 +308,7 @@ class ZeroOutsideLimits(Rule):
 
     code = "LW215"
     name = "zero-outside-limits"
+    holds_for_parts = True
     severity = Severity.INFO
     default = False
 
@@ -284,8 +318,13 @@ class ZeroOutsideLimits(Rule):
             ends = bounds(limit)
             if ends is not None and ends[0] < ends[1] and (ends[0] > 0 or ends[1] < 0):
                 yield self.report(
-                    f"joint '{joint.name}' cannot be at 0: it goes from {shown(ends[0])} to {shown(ends[1])}",
+                    phrase(
+                        "joint '{name}' cannot be at 0: it goes from {ends} to {other_ends}",
+                        name=joint.name,
+                        ends=shown(ends[0]),
+                        other_ends=shown(ends[1]),
+                    ),
                     limit,
                     "lower" if ends[0] > 0 else "upper",
-                    hint="move its <origin> so that 0 lies in the range",
+                    hint=phrase("move its <origin> so that 0 lies in the range"),
                 )

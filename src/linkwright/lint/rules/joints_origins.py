@@ -6,9 +6,10 @@ import re
 from collections.abc import Iterable, Iterator
 from math import pi, radians, sqrt
 
-from linkwright.diagnostics import Diagnostic, Severity
+from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.lint.fix import Fix, value_edit
-from linkwright.lint.rule import Option, Rule
+from linkwright.lint.option import Option
+from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
 from linkwright.lint.walk import joints, parts, shown, values
 from linkwright.urdf.values import looks_like_degrees
@@ -38,11 +39,12 @@ class OriginFar(Rule):
 
     code = "LW226"
     name = "origin-far"
+    holds_for_parts = True
     options = (Option("farthest", 20.0, "the farthest distance in m that is still believed"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Every joint whose frame is beyond belief in metres."""
-        farthest = subject.option(self, "farthest", float)
+        farthest = self.option(subject, "farthest", float)
         for joint, _, origin in parts(subject, "origin"):
             xyz = values(origin, "xyz")
             if len(xyz) != 3:
@@ -51,10 +53,15 @@ class OriginFar(Rule):
             if distance > farthest:
                 metres = " ".join(shown(part / 1000) for part in xyz)
                 yield self.report(
-                    f"joint '{joint.name}' is {shown(distance)} m from the frame of '{joint.parent}'",
+                    phrase(
+                        "joint '{name}' is {distance} m from the frame of '{parent}'",
+                        name=joint.name,
+                        distance=shown(distance),
+                        parent=joint.parent,
+                    ),
                     origin,
                     "xyz",
-                    hint=f"if it is in millimetres, write {metres}",
+                    hint=phrase("if it is in millimetres, write {metres}", metres=metres),
                 )
 
 
@@ -82,6 +89,7 @@ class AngleInDegrees(Rule):
 
     code = "LW227"
     name = "angle-in-degrees"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Every origin of joints, visuals, collisions and inertias that turns further than anybody means."""
@@ -89,10 +97,16 @@ class AngleInDegrees(Rule):
             rpy = values(origin, "rpy")
             if len(rpy) == 3 and not looks_like_degrees(*rpy) and 4 * pi < max(map(abs, rpy)) <= 360:
                 yield self.report(
-                    f"'rpy' in <origin> of {owner} turns by more than two turns: '{origin.attributes['rpy'].strip()}'",
+                    phrase(
+                        "'rpy' in <origin> of {owner} turns by more than two turns: '{rpy}'",
+                        owner=owner,
+                        rpy=origin.attributes["rpy"].strip(),
+                    ),
                     origin,
                     "rpy",
-                    hint=f"if it is in degrees, write {' '.join(shown(radians(angle)) for angle in rpy)}",
+                    hint=phrase(
+                        "if it is in degrees, write {rpy}", rpy=" ".join(shown(radians(angle)) for angle in rpy)
+                    ),
                 )
 
 
@@ -121,6 +135,7 @@ class AngleRounded(Rule):
 
     code = "LW228"
     name = "angle-rounded"
+    holds_for_parts = True
     severity = Severity.INFO
     default = False
 
@@ -135,10 +150,14 @@ class AngleRounded(Rule):
                 better = " ".join(new or old for new, old in zip(exact, written, strict=True))
                 edit = value_edit(origin, "rpy", better)
                 yield self.report(
-                    f"'rpy' in <origin> of {owner} rounds a part of pi: '{' '.join(written)}'",
+                    phrase(
+                        "'rpy' in <origin> of {owner} rounds a part of pi: '{written}'",
+                        owner=owner,
+                        written=" ".join(written),
+                    ),
                     origin,
                     "rpy",
-                    hint=f"write {better}",
+                    hint=phrase("write {better}", better=better),
                     fix=Fix((edit,), safe=False) if edit else None,
                 )
 
@@ -178,10 +197,14 @@ class OriginMissing(Rule):
         for joint, element in joints(subject):
             if element.first("origin") is None and {joint.parent, joint.child} <= solid:
                 yield self.report(
-                    f"joint '{joint.name}' has no <origin>: '{joint.child}' stands in the same place as "
-                    f"'{joint.parent}'",
+                    phrase(
+                        "joint '{name}' has no <origin>: '{child}' stands in the same place as '{parent}'",
+                        name=joint.name,
+                        child=joint.child,
+                        parent=joint.parent,
+                    ),
                     element,
-                    hint='add <origin xyz="..." rpy="..."/>, with zeros if that is meant',
+                    hint=phrase('add <origin xyz="..." rpy="..."/>, with zeros if that is meant'),
                 )
 
 
@@ -205,7 +228,7 @@ def _exact(word: str) -> str | None:
 
 def _origins(subject: Subject) -> Iterator[tuple[str, Element]]:
     for joint, _, origin in parts(subject, "origin"):
-        yield f"joint '{joint.name}'", origin
+        yield phrase("joint '{name}'", name=joint.name), origin
     for link in subject.links:
         if link.element is None:
             continue

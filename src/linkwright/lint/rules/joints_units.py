@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from math import pi, radians
 
-from linkwright.diagnostics import Diagnostic, Severity
-from linkwright.lint.rule import Option, Rule
+from linkwright.diagnostics import Diagnostic, Severity, phrase
+from linkwright.lint.option import Option
+from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
 from linkwright.lint.walk import UNBOUNDED, bounds, limits, shown, value
 from linkwright.urdf.values import looks_like_degrees
@@ -37,11 +38,12 @@ class LimitInDegrees(Rule):
 
     code = "LW211"
     name = "limit-in-degrees"
+    holds_for_parts = True
     options = (Option("most-turns", 3.0, "how many turns to either side are still believed"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Every limit of a revolute joint that is beyond belief in radians and plausible in degrees."""
-        most = subject.option(self, "most-turns", float) * 2 * pi
+        most = self.option(subject, "most-turns", float) * 2 * pi
         for joint, limit in limits(subject, "revolute"):
             ends = bounds(limit)
             if ends is None or max(map(abs, ends)) > 360 or looks_like_degrees(*ends):
@@ -49,11 +51,16 @@ class LimitInDegrees(Rule):
             for name, angle in zip(("lower", "upper"), ends, strict=True):
                 if abs(angle) > most:
                     yield self.report(
-                        f"'{name}' in <limit> of joint '{joint.name}' is {shown(abs(angle) / (2 * pi))} turns: "
-                        f"{shown(angle)} rad",
+                        phrase(
+                            "'{name}' in <limit> of joint '{joint_name}' is {angle} turns: {other_angle} rad",
+                            name=name,
+                            joint_name=joint.name,
+                            angle=shown(abs(angle) / (2 * pi)),
+                            other_angle=shown(angle),
+                        ),
                         limit,
                         name,
-                        hint=f"if it is in degrees, write {shown(radians(angle))}",
+                        hint=phrase("if it is in degrees, write {radians}", radians=shown(radians(angle))),
                     )
 
 
@@ -82,6 +89,7 @@ class LimitEndless(Rule):
 
     code = "LW212"
     name = "limit-endless"
+    holds_for_parts = True
     severity = Severity.INFO
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
@@ -90,10 +98,15 @@ class LimitEndless(Rule):
             ends = bounds(limit)
             if ends is not None and ends[0] <= -UNBOUNDED and ends[1] >= UNBOUNDED:
                 yield self.report(
-                    f"revolute joint '{joint.name}' turns from {shown(ends[0])} to {shown(ends[1])} rad",
+                    phrase(
+                        "revolute joint '{name}' turns from {ends} to {other_ends} rad",
+                        name=joint.name,
+                        ends=shown(ends[0]),
+                        other_ends=shown(ends[1]),
+                    ),
                     limit,
                     "lower",
-                    hint="make it 'continuous', without 'lower' and 'upper'",
+                    hint=phrase("make it 'continuous', without 'lower' and 'upper'"),
                 )
 
 
@@ -120,18 +133,24 @@ class LimitInMillimetres(Rule):
 
     code = "LW213"
     name = "limit-in-millimetres"
+    holds_for_parts = True
     options = (Option("longest", 20.0, "the longest way in m to either side that is still believed"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Every limit of a prismatic joint that is beyond belief in metres."""
-        longest = subject.option(self, "longest", float)
+        longest = self.option(subject, "longest", float)
         for joint, limit in limits(subject, "prismatic"):
             for name in ("lower", "upper"):
                 way = value(limit, name)
                 if way is not None and longest < abs(way) <= 10 * UNBOUNDED:
                     yield self.report(
-                        f"'{name}' in <limit> of prismatic joint '{joint.name}' is {shown(way)} m",
+                        phrase(
+                            "'{name}' in <limit> of prismatic joint '{joint_name}' is {way} m",
+                            name=name,
+                            joint_name=joint.name,
+                            way=shown(way),
+                        ),
                         limit,
                         name,
-                        hint=f"if it is in millimetres, write {shown(way / 1000)}",
+                        hint=phrase("if it is in millimetres, write {way}", way=shown(way / 1000)),
                     )

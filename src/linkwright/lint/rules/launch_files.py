@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
-from linkwright.diagnostics import Diagnostic, Severity, nearest
-from linkwright.lint.launch_reader import FUNCTION, LaunchFile, SharedFile
-from linkwright.lint.package import PackageContext
+from linkwright.diagnostics import Diagnostic, Phrase, Severity, foreign, nearest, phrase, quoted
 from linkwright.lint.rule import Rule, Scope
-from linkwright.lint.rules.package_install import matching
 from linkwright.lint.rules.package_manifest import PackageRule
 from linkwright.lint.subject import Subject
+
+if TYPE_CHECKING:
+    from linkwright.lint.package import PackageContext
+    from linkwright.packages.readers.launch_files import LaunchFile, SharedFile
 
 _FILE = re.compile(r"[^/]*\.[A-Za-z0-9]{1,8}$")
 
@@ -62,7 +64,9 @@ class LaunchSyntaxError(LaunchRule):
     def check_launch(self, file: LaunchFile) -> Iterator[Diagnostic]:
         """What the rule finds in a launch file."""
         if file.error is not None:
-            message = f"the launch file '{file.path}' is not Python: {file.error.message}"
+            message = phrase(
+                "the launch file '{path}' is not Python: {message}", path=file.path, message=foreign(file.error.message)
+            )
             yield self.report(message, span=file.error.span, source=file.source)
 
 
@@ -71,7 +75,8 @@ class LaunchFunctionMissing(LaunchRule):
 
     ## Why
 
-    `ros2 launch` calls this function and nothing else.
+    `ros2 launch` calls this function and nothing else. Tests of launch_testing and launch_pytest have others and are
+    left alone.
 
     ## Example
 
@@ -94,17 +99,25 @@ class LaunchFunctionMissing(LaunchRule):
 
     def check_launch(self, file: LaunchFile) -> Iterator[Diagnostic]:
         """What the rule finds in a launch file."""
-        if file.python is None or file.has_function:
+        if file.python is None or file.has_function or file.is_test:
             return
+        from linkwright.packages.readers.launch_files import FUNCTION
+
         functions = re.findall(r"^def\s+(\w+)", file.source.text, re.MULTILINE)
         like = next(iter(nearest(FUNCTION, functions, 1)), None)
-        hint = f"'{like}' is misspelt" if like else f"define {FUNCTION}(), which returns a LaunchDescription"
+        hint = (
+            phrase("'{like}' is misspelt", like=like)
+            if like
+            else phrase("define {function}(), which returns a LaunchDescription", function=FUNCTION)
+        )
         span = file.source.span(0)
         if like:
             at = file.source.text.index(like)
             span = file.source.span(at, at + len(like))
-        message = f"the launch file '{file.path}' does not define {FUNCTION}()"
-        yield self.report(message, span=span, source=file.source, hint=hint)
+        message = phrase("the launch file '{path}' does not define {function}()", path=file.path, function=FUNCTION)
+        # A file without such a function at all may be one that others import.
+        severity = Severity.ERROR if like else Severity.WARNING
+        yield self.report(message, span=span, source=file.source, hint=hint, severity=severity)
 
 
 class LaunchedFileMissing(Rule):
@@ -134,7 +147,6 @@ class LaunchedFileMissing(Rule):
     scope = Scope.PACKAGE
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
         package = subject.package
         if package is None:
             return
@@ -156,7 +168,7 @@ class LaunchedFileMissing(Rule):
             return  # the sources of another package, which may install its files elsewhere
         if own and any(other.rpartition("/")[2] == name for other in package.files) and _may_move(package):
             return
-        message = f"the package '{shared.package}' has no file '{shared.path}'"
+        message = phrase("the package '{package}' has no file '{path}'", package=shared.package, path=shared.path)
         yield self.report(message, span=shared.span, source=file.source, hint=_like(package, shared) if own else None)
 
 
@@ -170,7 +182,7 @@ def _is_installed_as(package: PackageContext, shared: SharedFile) -> bool:
     return any(
         item.destination is not None
         and item.destination.rstrip("/") == destination
-        and any(file.rpartition("/")[2] == name for file in matching(package, item))
+        and any(file.rpartition("/")[2] == name for file in item.files(package.folder))
         for item in setup.installed
     )
 
@@ -183,10 +195,10 @@ def _may_move(package: PackageContext) -> bool:
     return True
 
 
-def _like(package: PackageContext, shared: SharedFile) -> str | None:
+def _like(package: PackageContext, shared: SharedFile) -> Phrase | None:
     name = shared.path.rpartition("/")[2]
     same = [file for file in package.files if file.rpartition("/")[2] == name]
     if same:
-        return f"there is '{same[0]}'"
+        return phrase("there is '{same}'", same=same[0])
     like = nearest(shared.path, package.files, 1)
-    return f"did you mean '{like[0]}'?" if like else None
+    return phrase("did you mean {names}?", names=quoted(like[0])) if like else None

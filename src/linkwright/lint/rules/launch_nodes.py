@@ -4,31 +4,35 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
-from linkwright.diagnostics import Diagnostic, Note, nearest
+from linkwright.diagnostics import Diagnostic, Note, counted, joined, nearest, phrase, quoted, quoted_names
+from linkwright.extensions import extensions
 from linkwright.lint.fix import Edit, Fix, element_range
-from linkwright.lint.launch_reader import LaunchFile
-from linkwright.lint.manifest_reader import Manifest
-from linkwright.lint.package import PackageContext
 from linkwright.lint.rule import Rule, Scope
 from linkwright.lint.rules.package_manifest import PackageRule
 from linkwright.lint.rules.package_python import is_ament_python
 from linkwright.lint.subject import Subject
 
-EXECUTABLES: dict[str, frozenset[str]] = {
-    "joint_state_publisher": frozenset({"joint_state_publisher"}),
-    "joint_state_publisher_gui": frozenset({"joint_state_publisher_gui"}),
-    "robot_state_publisher": frozenset({"robot_state_publisher"}),
+if TYPE_CHECKING:
+    from linkwright.lint.package import PackageContext
+    from linkwright.packages.readers.launch_files import LaunchFile
+    from linkwright.packages.readers.package_xml import Manifest
+
+OTHERS = {
     "rviz2": frozenset({"rviz2"}),
     "xacro": frozenset({"xacro"}),
-    "tf2_ros": frozenset({"static_transform_publisher", "tf2_echo", "tf2_monitor", "buffer_server"}),
     "controller_manager": frozenset({"ros2_control_node", "spawner", "unspawner", "hardware_spawner"}),
 }
 """The executables of well-known packages; packages whose executables change between releases are left out."""
 
+OURS = frozenset({"joint_state_publisher", "joint_state_publisher_gui", "robot_state_publisher", "tf2_ros"})
+"""Packages of which each executable comes with us (of those of the demos only some do)."""
+
 WELL_KNOWN = frozenset(
     {
-        *EXECUTABLES,
+        *OTHERS,
+        *OURS,
         *(
             "slam_toolbox",
             "twist_mux",
@@ -73,7 +77,6 @@ class LaunchedPackageUnknown(Rule):
     scope = Scope.PACKAGE
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
         package = subject.package
         if package is None:
             return
@@ -81,8 +84,13 @@ class LaunchedPackageUnknown(Rule):
             for place in [*(node.package for node in file.nodes), *file.shares]:
                 like = None if place is None else _meant(place.text, package, subject)
                 if place is not None and like is not None:
-                    message = f"there is no package '{place.text}'"
-                    yield self.report(message, span=place.span, source=file.source, hint=f"did you mean '{like}'?")
+                    message = phrase("there is no package '{text}'", text=place.text)
+                    yield self.report(
+                        message,
+                        span=place.span,
+                        source=file.source,
+                        hint=phrase("did you mean {names}?", names=quoted(like)),
+                    )
 
 
 class LaunchedExecutableUnknown(PackageRule):
@@ -118,15 +126,15 @@ class LaunchedExecutableUnknown(PackageRule):
             if node.package is None or node.executable is None:
                 continue
             name, executable = node.package.text, node.executable.text.removesuffix(".py")
-            known = EXECUTABLES.get(name) if name != package.name else _own_executables(package)
+            known = _executables_of(name) if name != package.name else _own_executables(package)
             if known is None or executable in known or node.executable.text in known:
                 continue
             like = next(iter(nearest(executable, known, 1)), None)
             if like:
-                hint = f"did you mean '{like}'?"
+                hint = phrase("did you mean {names}?", names=quoted(like))
             else:
-                hint = f"it has {', '.join(sorted(known))}" if known else "it has none"
-            message = f"the package '{name}' has no executable '{node.executable.text}'"
+                hint = phrase("it has {known}", known=joined(sorted(known))) if known else phrase("it has none")
+            message = phrase("the package '{name}' has no executable '{text}'", name=name, text=node.executable.text)
             yield self.report(message, span=node.executable.span, source=file.source, hint=hint)
 
 
@@ -157,7 +165,6 @@ class UndeclaredLaunchDependency(Rule):
     scope = Scope.PACKAGE
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
         package = subject.package
         manifest = None if package is None else package.manifest
         if package is None or manifest is None or manifest.root.tag != "package":
@@ -175,11 +182,15 @@ class UndeclaredLaunchDependency(Rule):
         if not missing:
             return
         names = sorted(missing)
-        listed = ", ".join(f"'{name}'" for name in names)
-        verb = "this package" if len(names) == 1 else "these packages"
-        message = f"launch files use {verb} that package.xml does not depend on: {listed}"
-        what = f"<exec_depend>{names[0]}</exec_depend>" if len(names) == 1 else "an <exec_depend> for each"
-        hint = f"add {what}"
+        message = counted(
+            "launch files use this package that package.xml does not depend on: {names}",
+            "launch files use these packages that package.xml does not depend on: {names}",
+            len(names),
+            names=quoted_names(names),
+        )
+        hint = counted(
+            "add <exec_depend>{name}</exec_depend>", "add an <exec_depend> for each", len(names), name=names[0]
+        )
         fix = _declare(manifest, names)
         yield self.report(message, manifest.root, notes=[missing[name] for name in names], hint=hint, fix=fix)
 
@@ -190,15 +201,18 @@ def _used_packages(package: PackageContext) -> dict[str, Note]:
     for file in package.launch_files.values():
         for name, span in file.imports:
             if name in _PYTHON_PACKAGES:
-                found.setdefault(name, Note(f"'{name}' is imported here", span))
+                found.setdefault(name, Note(phrase("'{name}' is imported here", name=name), span))
         for node in file.nodes:
             if node.package is not None:
-                found.setdefault(node.package.text, Note(f"'{node.package.text}' is started here", node.package.span))
+                found.setdefault(
+                    node.package.text,
+                    Note(phrase("'{text}' is started here", text=node.package.text), node.package.span),
+                )
         for share in file.shares:
-            found.setdefault(share.text, Note(f"'{share.text}' is looked for here", share.span))
+            found.setdefault(share.text, Note(phrase("'{text}' is looked for here", text=share.text), share.span))
         for match in re.finditer(r"""Command\(\s*\[?\s*["']xacro\b""", file.source.text):
             span = file.source.span(match.end() - len("xacro"), match.end())
-            found.setdefault("xacro", Note("'xacro' is run here", span))
+            found.setdefault("xacro", Note(phrase("'xacro' is run here"), span))
     found.pop(package.name, None)
     return {name: note for name, note in found.items() if re.fullmatch(r"[a-zA-Z]\w*", name)}
 
@@ -219,6 +233,14 @@ def _declare(manifest: Manifest, names: list[str]) -> Fix | None:
         return None
     text = "".join(f"\n{indent}<exec_depend>{name}</exec_depend>" for name in names)
     return Fix((Edit(source.name, found[1], found[1], text),))
+
+
+def _executables_of(name: str) -> frozenset[str] | None:
+    """The executables of a well-known package, or None where they cannot all be told."""
+    if name not in OURS:
+        return OTHERS.get(name)
+    nodes = (node.partition("/") for node in extensions("linkwright.nodes"))
+    return frozenset(executable for package, _, executable in nodes if package == name)
 
 
 def _own_executables(package: PackageContext) -> frozenset[str] | None:

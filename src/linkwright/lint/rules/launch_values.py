@@ -5,14 +5,31 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterator
+from typing import TYPE_CHECKING, NamedTuple
 
-from linkwright.diagnostics import Diagnostic, Severity, SourceText, nearest
+from linkwright.descriptions import examine
+from linkwright.diagnostics import (
+    Diagnostic,
+    LinkwrightError,
+    Phrase,
+    Severity,
+    SourceText,
+    Span,
+    foreign,
+    nearest,
+    phrase,
+    quoted,
+)
 from linkwright.lint.fix import Edit, Fix
-from linkwright.lint.launch_reader import LaunchFile
-from linkwright.lint.package import PackageContext
-from linkwright.lint.python_values import PythonFile, argument_of, called_name
+from linkwright.lint.rule import Rule, Scope
 from linkwright.lint.rules.launch_files import LaunchRule
 from linkwright.lint.rules.package_manifest import PackageRule
+from linkwright.lint.subject import Subject
+from linkwright.packages.readers.python_values import PythonFile, argument_of, called_name
+
+if TYPE_CHECKING:
+    from linkwright.lint.package import PackageContext
+    from linkwright.packages.readers.launch_files import LaunchFile
 
 _FIXED_FRAME = re.compile(r"^( *)Fixed Frame:[ \t]*(?P<name>\S[^\n#]*?)[ \t]*$", re.MULTILINE)
 _USUAL_FRAMES = frozenset({"map", "odom", "world", "earth", "base_link", "base_footprint"})
@@ -55,26 +72,29 @@ class CommandWithoutBlank(LaunchRule):
             program, following = parts.elts[0], parts.elts[1]
             if not _is_program(program, python) or _begins_with_blank(following, python):
                 continue
-            message = "there is no blank between the program and its argument"
-            hint = "Command joins its parts as they are: write 'xacro ' with a blank at its end"
+            message = phrase("there is no blank between the program and its argument")
+            hint = phrase("Command joins its parts as they are: write 'xacro ' with a blank at its end")
             yield self.report(
                 message, span=python.span(program), source=file.source, hint=hint, fix=_blank(program, python)
             )
 
 
-class DescriptionNotTyped(LaunchRule):
-    """``robot_description`` is made by a command and not said to be text.
+class DescriptionNotTyped(Rule):
+    """``robot_description`` is made by a command, not said to be text, and cannot be read as YAML.
 
     ## Why
 
-    launch reads the output of a command as YAML. A colon or a percent sign somewhere in the description makes that
-    fail: "Unable to parse the value of parameter robot_description as yaml".
+    launch reads the output of a command as YAML. Most descriptions are plain text to it. A colon with a blank behind
+    it, mostly in a comment, makes that fail: "Unable to parse the value of parameter robot_description as yaml". The
+    descriptions that the launch file names are expanded to find out.
 
     ## Example
 
     ```python
     parameters=[{'robot_description': Command(['xacro ', model])}]
     ```
+
+    for a model with `<!-- wheels: left and right -->` in its first element.
 
     ## Use instead
 
@@ -85,34 +105,26 @@ class DescriptionNotTyped(LaunchRule):
 
     code = "LW846"
     name = "description-not-typed"
+    scope = Scope.PACKAGE
 
-    def check_launch(self, file: LaunchFile) -> Iterator[Diagnostic]:
-        """What the rule finds in a launch file."""
-        python = file.python
-        if python is None:
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        """Every value of ``robot_description`` without a type, in launch files that name a description it breaks."""
+        package = subject.package
+        if package is None:
             return
-        for node in ast.walk(python.tree):
-            if not isinstance(node, ast.Dict):
+        for file in package.launch_files.values():
+            found = [] if file.python is None else list(_untyped(file.python))
+            refused = _refused_as_yaml(file, package, subject) if found else None
+            if refused is None:
                 continue
-            for key, value in zip(node.keys, node.values, strict=True):
-                if isinstance(key, ast.Constant) and key.value == "robot_description":
-                    yield from self._of_value(python.resolved(value), python, file)
-
-    def _of_value(self, value: ast.expr, python: PythonFile, file: LaunchFile) -> Iterator[Diagnostic]:
-        if not isinstance(value, ast.Call):
-            return
-        name = called_name(value).rpartition(".")[2]
-        span = python.span(value)
-        message = "launch reads this description as YAML, because nothing says that it is text"
-        if name == "Command":
-            hint = "write ParameterValue(Command(...), value_type=str), from launch_ros.parameter_descriptions"
-            yield self.report(message, span=span, source=file.source, hint=hint)
-        elif name == "ParameterValue" and len(value.args) == 1 and argument_of(value, "value_type") is None:
-            inner = python.resolved(value.args[0])
-            if isinstance(inner, ast.Call) and called_name(inner).rpartition(".")[2] == "Command":
-                at = python.range(value.args[0])[1]
-                fix = Fix((Edit(file.source.name, at, at, ", value_type=str"),))
-                yield self.report(message, span=span, source=file.source, hint="add value_type=str", fix=fix)
+            path, reason = refused
+            message = phrase(
+                "launch reads this description as YAML, and '{path}' is none: {reason}",
+                path=path,
+                reason=foreign(reason),
+            )
+            for each in found:
+                yield self.report(message, span=each.span, source=file.source, hint=each.hint, fix=each.fix)
 
 
 class LaunchArgumentUndeclared(LaunchRule):
@@ -159,9 +171,11 @@ class LaunchArgumentUndeclared(LaunchRule):
                 continue
             like = next(iter(nearest(name, declared, 1)), None)
             if like is not None and _is_slip(name, like):
-                message = f"nothing declares the launch argument '{name}'"
+                message = phrase("nothing declares the launch argument '{name}'", name=name)
                 span = python.span(call.args[0])
-                yield self.report(message, span=span, source=file.source, hint=f"did you mean '{like}'?")
+                yield self.report(
+                    message, span=span, source=file.source, hint=phrase("did you mean {names}?", names=quoted(like))
+                )
 
 
 class FixedFrameUnknown(PackageRule):
@@ -207,9 +221,13 @@ class FixedFrameUnknown(PackageRule):
                 continue
             like = next(iter(nearest(frame, names, 1)), None)
             if like is not None:
-                message = f"no robot in this package has a link '{frame}', the fixed frame of '{file}'"
+                message = phrase(
+                    "no robot in this package has a link '{frame}', the fixed frame of '{file}'", frame=frame, file=file
+                )
                 span = source.span(*match.span("name"))
-                yield self.report(message, span=span, source=source, hint=f"did you mean '{like}'?")
+                yield self.report(
+                    message, span=span, source=source, hint=phrase("did you mean {names}?", names=quoted(like))
+                )
 
 
 def _link_names(package: PackageContext) -> tuple[set[str], list[list[str]]]:
@@ -245,6 +263,66 @@ def _fits(name: str, parts: list[str]) -> bool:
             return False
         at = found + len(part)
     return True
+
+
+class _Untyped(NamedTuple):
+    """A value of ``robot_description`` that launch reads as YAML, and how to give it a type."""
+
+    span: Span
+    hint: Phrase
+    fix: Fix | None
+
+
+def _untyped(python: PythonFile) -> Iterator[_Untyped]:
+    for node in ast.walk(python.tree):
+        if not isinstance(node, ast.Dict):
+            continue
+        for key, written in zip(node.keys, node.values, strict=True):
+            value = python.resolved(written)
+            if not (isinstance(key, ast.Constant) and key.value == "robot_description" and isinstance(value, ast.Call)):
+                continue
+            if _is_command(value):
+                hint = phrase(
+                    "write ParameterValue(Command(...), value_type=str), from launch_ros.parameter_descriptions"
+                )
+                yield _Untyped(python.span(value), hint, None)
+            elif called_name(value).rpartition(".")[2] == "ParameterValue" and len(value.args) == 1:
+                inner = python.resolved(value.args[0])
+                if argument_of(value, "value_type") is None and isinstance(inner, ast.Call) and _is_command(inner):
+                    at = python.range(value.args[0])[1]
+                    fix = Fix((Edit(python.source.name, at, at, ", value_type=str"),))
+                    yield _Untyped(python.span(value), phrase("add value_type=str"), fix)
+
+
+def _is_command(call: ast.Call) -> bool:
+    return called_name(call).rpartition(".")[2] == "Command"
+
+
+def _refused_as_yaml(file: LaunchFile, package: PackageContext, subject: Subject) -> tuple[str, str] | None:
+    """The first description that a launch file names and YAML cannot read, with the reason; or None."""
+    for shared in file.paths:
+        share = package.folder if shared.package == package.name else subject.finder.find(shared.package)
+        if share is None or not shared.path.endswith((".urdf", ".xacro")) or not (share / shared.path).is_file():
+            continue
+        try:
+            text = examine(share / shared.path, packages=subject.finder).text
+        except LinkwrightError:
+            continue  # the check of that file tells
+        reason = _trouble_as_yaml(text)
+        if reason is not None:
+            return shared.path, reason
+    return None
+
+
+def _trouble_as_yaml(text: str) -> str | None:
+    """Why a text is no string when it is read as YAML, as launch does; None where it is one."""
+    import yaml
+
+    try:
+        loaded = yaml.safe_load(text)  # as launch does
+    except yaml.YAMLError as error:
+        return str(getattr(error, "problem", None) or error)
+    return None if isinstance(loaded, str) else phrase("it is read as {type}", type=type(loaded).__name__)
 
 
 def _is_program(node: ast.expr, python: PythonFile) -> bool:

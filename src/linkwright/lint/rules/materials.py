@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
 
-from linkwright.diagnostics import Diagnostic, Note, Severity, Span
+from linkwright.diagnostics import Diagnostic, Note, Phrase, Severity, Span, phrase
 from linkwright.lint.fix import remove_element
 from linkwright.lint.meshes import material_element
 from linkwright.lint.rule import Rule
 from linkwright.lint.rules.geometry import shapes_of
 from linkwright.lint.subject import Subject
 from linkwright.urdf import Link, Material, Mesh, Visual
-from linkwright.urdf.findings import Findings
+from linkwright.urdf.explain import UrdfReport
 from linkwright.urdf.materials import read_material
 from linkwright.xmltree import Element
+
+_UNSEEN = re.compile(r"invisib|transparen|hidden|unseen|clear|none|null|empty|dummy", re.IGNORECASE)
 
 
 def definitions(subject: Subject) -> Iterator[Material]:
@@ -24,7 +27,7 @@ def definitions(subject: Subject) -> Iterator[Material]:
             own = visual.first("material")
             elements += [own] if own is not None else []
     for element in elements:
-        material = read_material(element, "", Findings())
+        material = read_material(element, element, UrdfReport())
         if material is not None and (material.rgba is not None or material.texture is not None):
             yield material
 
@@ -63,7 +66,6 @@ class RedefinedMaterial(Rule):
     name = "material-redefined"
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
         first: dict[str, Material] = {}
         global_names = {element.attributes.get("name") for element in subject.elements("material")}
         told: set[tuple[object, ...]] = set()
@@ -82,12 +84,15 @@ class RedefinedMaterial(Rule):
                 continue
             told.add(key)
             yield self.report(
-                f"material '{material.name}' is defined again with another {_difference(known, material)}, "
-                "which is never seen",
+                phrase(
+                    "material '{name}' is defined again with another {difference}, which is never seen",
+                    name=material.name,
+                    difference=_difference(known, material),
+                ),
                 element,
                 "name",
-                notes=[Note(f"the first definition, {_look(known)}, holds", known.element.span())],
-                hint="give this one a name of its own, or leave its colour out",
+                notes=[Note(phrase("the first definition, '{look}', holds", look=_look(known)), known.element.span())],
+                hint=phrase("give this one a name of its own, or leave its colour out"),
             )
 
 
@@ -97,7 +102,8 @@ class InvisibleMaterial(Rule):
     ## Why
 
     The fourth number is the opacity. With 0 the part is there and cannot be seen; in exports from CAD it often comes
-    from a transparency of 0.
+    from a transparency of 0. Of a material that is defined twice the first definition counts, and one that says in its
+    name that it cannot be seen is left alone.
 
     ## Example
 
@@ -114,20 +120,30 @@ class InvisibleMaterial(Rule):
 
     code = "LW502"
     name = "material-invisible"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
+        known: set[str] = set()
         for material in definitions(subject):
             element = material.element
+            if material.name:
+                if material.name in known or _UNSEEN.search(material.name):
+                    continue
+                known.add(material.name)
             if material.rgba is not None and material.rgba[3] == 0 and element is not None:
                 red, green, blue, _ = material.rgba
                 yield self.report(
-                    f"material '{material.name}' is fully transparent"
+                    phrase("material '{name}' is fully transparent", name=material.name)
                     if material.name
-                    else "this material is fully transparent",
+                    else phrase("this material is fully transparent"),
                     element.first("color") or element,
                     "rgba",
-                    hint=f"the last number is the opacity: write '{red:g} {green:g} {blue:g} 1' to see it",
+                    hint=phrase(
+                        "the last number is the opacity: write '{red:g} {green:g} {blue:g} 1' to see it",
+                        red=red,
+                        green=green,
+                        blue=blue,
+                    ),
                 )
 
 
@@ -151,9 +167,9 @@ class EmptyReference(Rule):
 
     code = "LW506"
     name = "material-name-empty"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
         for link in subject.elements("link"):
             for visual in link.elements("visual"):
                 element = visual.first("material")
@@ -161,10 +177,13 @@ class EmptyReference(Rule):
                     continue
                 if element.first("color") is None and element.first("texture") is None:
                     yield self.report(
-                        f"a material of link '{link.attributes.get('name', '')}' has neither a name nor a colour",
+                        phrase(
+                            "a material of link '{attributes}' has neither a name nor a colour",
+                            attributes=link.attributes.get("name", ""),
+                        ),
                         element,
                         "name",
-                        hint="name a material, or leave it out",
+                        hint=phrase("name a material, or leave it out"),
                         fix=remove_element(element),
                     )
 
@@ -195,7 +214,6 @@ class UnusedMaterial(Rule):
     default = False
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
         used = {
             material.attributes.get("name")
             for link in subject.elements("link")
@@ -206,10 +224,10 @@ class UnusedMaterial(Rule):
             name = element.attributes.get("name")
             if name and name not in used:
                 yield self.report(
-                    f"material '{name}' is not used",
+                    phrase("material '{name}' is not used", name=name),
                     element,
                     "name",
-                    hint="use it, or take it out",
+                    hint=phrase("use it, or take it out"),
                     fix=None if element.origin is not None else remove_element(element, safe=False),
                 )
 
@@ -245,15 +263,14 @@ class NoMaterial(Rule):
     default = False
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
         for link, visual in visuals(subject):
             geometry = visual.geometry
             plain = not isinstance(geometry, Mesh) or geometry.filename.lower().endswith(".stl")
             if plain and material_element(visual) is None:
                 yield self.report(
-                    f"a visual of link '{link.name}' has no material",
+                    phrase("a visual of link '{name}' has no material", name=link.name),
                     visual.element,
-                    hint='add <material name="..."/>',
+                    hint=phrase('add <material name="..."/>'),
                 )
 
 
@@ -281,7 +298,6 @@ class AlikeNames(Rule):
     default = False
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
         first: dict[str, Material] = {}
         told: set[str] = set()
         for material in definitions(subject):
@@ -289,22 +305,26 @@ class AlikeNames(Rule):
             if known.name != material.name and material.name not in told:
                 told.add(material.name)
                 yield self.report(
-                    f"material '{material.name}' differs from '{known.name}' in capitals only",
+                    phrase(
+                        "material '{name}' differs from '{known_name}' in capitals only",
+                        name=material.name,
+                        known_name=known.name,
+                    ),
                     material.element,
                     "name",
-                    notes=[Note(f"'{known.name}' is defined here", _place(known.element))],
-                    hint="use one name",
+                    notes=[Note(phrase("'{name}' is defined here", name=known.name), _place(known.element))],
+                    hint=phrase("use one name"),
                 )
 
 
-def _difference(first: Material, second: Material) -> str:
-    return "colour" if first.rgba != second.rgba else "texture"
+def _difference(first: Material, second: Material) -> Phrase:
+    return phrase("colour") if first.rgba != second.rgba else phrase("texture")
 
 
 def _look(material: Material) -> str:
     if material.rgba is not None:
-        return f"'{' '.join(f'{part:g}' for part in material.rgba)}'"
-    return f"'{material.texture}'"
+        return " ".join(f"{part:g}" for part in material.rgba)
+    return str(material.texture)
 
 
 def _place(element: Element | None) -> Span | None:

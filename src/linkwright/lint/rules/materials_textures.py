@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Note
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, phrase
 from linkwright.lint.meshes import material_element
 from linkwright.lint.rule import Rule
 from linkwright.lint.rules.materials import definitions, visuals
@@ -41,9 +41,9 @@ class MissingTexture(Rule):
 
     code = "LW503"
     name = "texture-missing"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
         for element, uri in _textures(subject):
             base = Path(element.source.name).parent if element.source is not None else subject.path.parent
             notes, hint = [], None
@@ -57,8 +57,8 @@ class MissingTexture(Rule):
                 hint = file_hint(path, _PICTURES)
                 twin = case_twin(path.absolute())
                 if twin is not None:
-                    notes.append(Note(f"the file is '{twin.name}', in other capitals"))
-            message = f"there is no image '{uri}' for this texture"
+                    notes.append(Note(phrase("the file is '{name}', in other capitals", name=twin.name)))
+            message = phrase("there is no image '{uri}' for this texture", uri=uri)
             yield self.report(message, element, "filename", notes=notes, hint=hint)
 
 
@@ -84,17 +84,20 @@ class TextureFormat(Rule):
 
     code = "LW504"
     name = "texture-format-unknown"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
         for element, uri in _textures(subject):
             ending = Path(uri).suffix
             if ending.lower() not in _PICTURES:
                 yield self.report(
-                    f"the texture '{uri.rpartition('/')[2]}' is no image of a format that is read",
+                    phrase(
+                        "the texture '{rpartition}' is no image of a format that is read",
+                        rpartition=uri.rpartition("/")[2],
+                    ),
                     element,
                     "filename",
-                    hint="use PNG or JPEG",
+                    hint=phrase("use PNG or JPEG"),
                 )
 
 
@@ -121,19 +124,22 @@ class TextureOnStl(Rule):
 
     code = "LW505"
     name = "texture-on-stl"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
         for link, visual in visuals(subject):
             geometry, material = visual.geometry, visual.material
             if material is None or material.texture is None or material.rgba is not None:
                 continue
             if isinstance(geometry, Mesh) and geometry.filename.lower().endswith(".stl"):
                 yield self.report(
-                    f"the texture of link '{link.name}' does not show, for an STL mesh has no texture coordinates",
+                    phrase(
+                        "the texture of link '{name}' does not show, for an STL mesh has no texture coordinates",
+                        name=link.name,
+                    ),
                     material_element(visual),
                     "name",
-                    hint="export the mesh as COLLADA, OBJ or glTF",
+                    hint=phrase("export the mesh as COLLADA, OBJ or glTF"),
                 )
 
 

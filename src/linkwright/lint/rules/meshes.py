@@ -6,14 +6,15 @@ from collections.abc import Iterable, Iterator
 from math import isclose
 from typing import TYPE_CHECKING
 
-from linkwright.diagnostics import Diagnostic, Note, Severity
+from linkwright.diagnostics import Diagnostic, Note, Severity, phrase
 from linkwright.lint.fix import Fix, add_attribute, replace_value
 from linkwright.lint.meshes import MeshUse
-from linkwright.lint.rule import Option, Rule
+from linkwright.lint.option import Option
+from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
 
 if TYPE_CHECKING:
-    from linkwright.inertia import TriangleMesh
+    from linkwright.geometry.meshes import TriangleMesh
 
 
 def loaded(subject: Subject, kind: str | None = None) -> Iterator[tuple[MeshUse, TriangleMesh]]:
@@ -55,16 +56,23 @@ class ZeroScale(Rule):
 
     code = "LW430"
     name = "mesh-scale-zero"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
         for use in subject.meshes.uses:
             if 0 in use.mesh.scale:
                 yield self.report(
-                    f"the scale of the {use.kind} mesh '{file_name(use)}' of link '{use.link.name}' has a zero",
+                    phrase(
+                        "the scale of the {kind} mesh '{file_name}' of link '{name}' has a zero",
+                        kind=use.kind,
+                        file_name=file_name(use),
+                        name=use.link.name,
+                    ),
                     use.element,
                     "scale",
-                    hint="give three factors, such as '1 1 1', or '0.001 0.001 0.001' for a mesh in millimetres",
+                    hint=phrase(
+                        "give three factors, such as '1 1 1', or '0.001 0.001 0.001' for a mesh in millimetres"
+                    ),
                 )
 
 
@@ -91,19 +99,23 @@ class NegativeScale(Rule):
 
     code = "LW431"
     name = "mesh-scale-negative"
+    holds_for_parts = True
     severity = Severity.INFO
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
         for use in subject.meshes.uses:
             x, y, z = use.mesh.scale
             if use.kind == "collision" and x * y * z < 0:
                 yield self.report(
-                    f"the collision mesh '{file_name(use)}' of link '{use.link.name}' is mirrored, which turns its "
-                    "triangles inside out",
+                    phrase(
+                        "the collision mesh '{file_name}' of link '{name}' is mirrored, which turns its"
+                        " triangles inside out",
+                        file_name=file_name(use),
+                        name=use.link.name,
+                    ),
                     use.element,
                     "scale",
-                    hint="export a mirrored mesh for collisions",
+                    hint=phrase("export a mirrored mesh for collisions"),
                 )
 
 
@@ -130,18 +142,24 @@ class UnevenScale(Rule):
 
     code = "LW432"
     name = "mesh-scale-uneven"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
         for use in subject.meshes.uses:
             factors = sorted(map(abs, use.mesh.scale))
             if factors[0] > 0 and any(isclose(factors[2] / factors[0], power, rel_tol=0.01) for power in _POWERS):
                 yield self.report(
-                    f"the scale of the {use.kind} mesh '{file_name(use)}' of link '{use.link.name}' differs "
-                    f"{factors[2] / factors[0]:.3g} times between axes",
+                    phrase(
+                        "the scale of the {kind} mesh '{file_name}' of link '{name}' differs {factors:.3g} times"
+                        " between axes",
+                        kind=use.kind,
+                        file_name=file_name(use),
+                        name=use.link.name,
+                        factors=factors[2] / factors[0],
+                    ),
                     use.element,
                     "scale",
-                    hint="for another unit all three factors are the same",
+                    hint=phrase("for another unit all three factors are the same"),
                 )
 
 
@@ -171,18 +189,23 @@ class Millimetres(Rule):
     options = (Option("largest", 50.0, "largest edge of the box around a mesh, in m"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
-        largest = subject.option(self, "largest", float)
+        largest = self.option(subject, "largest", float)
         for use, mesh in loaded(subject):
             low, high = mesh.bounds
             edge = float((high - low).max())
             if edge > largest:
                 scale = " ".join(f"{factor * 0.001:g}" for factor in use.mesh.scale)
                 yield self.report(
-                    f"the {use.kind} mesh '{file_name(use)}' of link '{use.link.name}' is {edge:.4g} m large",
+                    phrase(
+                        "the {kind} mesh '{file_name}' of link '{name}' is {edge:.4g} m large",
+                        kind=use.kind,
+                        file_name=file_name(use),
+                        name=use.link.name,
+                        edge=edge,
+                    ),
                     use.element,
                     "filename",
-                    hint=f'if the file is in millimetres, write scale="{scale}"',
+                    hint=phrase('if the file is in millimetres, write scale="{scale}"', scale=scale),
                     fix=_scale_fix(use, scale),
                 )
 
@@ -214,8 +237,7 @@ class TooSmall(Rule):
     options = (Option("smallest", 1e-3, "smallest size of the box around a mesh, in m"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
-        smallest = subject.option(self, "smallest", float)
+        smallest = self.option(subject, "smallest", float)
         for use, mesh in loaded(subject):
             low, high = mesh.bounds
             edge = float((high - low).max())
@@ -223,10 +245,18 @@ class TooSmall(Rule):
                 shrunk = max(map(abs, use.mesh.scale)) < 0.1
                 scale = " ".join(f"{factor * 1000:g}" for factor in use.mesh.scale)
                 yield self.report(
-                    f"the {use.kind} mesh '{file_name(use)}' of link '{use.link.name}' is {edge * 1000:.3g} mm large",
+                    phrase(
+                        "the {kind} mesh '{file_name}' of link '{name}' is {edge:.3g} mm large",
+                        kind=use.kind,
+                        file_name=file_name(use),
+                        name=use.link.name,
+                        edge=edge * 1000,
+                    ),
                     use.element,
                     "scale" if "scale" in use.element.attributes else "filename",
-                    hint="the file is in metres already: leave 'scale' out" if shrunk else f'write scale="{scale}"',
+                    hint=phrase("the file is in metres already: leave 'scale' out")
+                    if shrunk
+                    else phrase('write scale="{scale}"', scale=scale),
                     fix=_scale_fix(use, scale),
                 )
 
@@ -255,7 +285,6 @@ class ScalesDiffer(Rule):
     name = "mesh-scales-differ"
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
         first: dict[str, MeshUse] = {}
         for use in subject.meshes.uses:
             if 0 in use.mesh.scale:
@@ -264,14 +293,23 @@ class ScalesDiffer(Rule):
             ratio = max(map(abs, use.mesh.scale)) / max(map(abs, other.mesh.scale))
             if ratio > 0 and not 1 / 99 < ratio < 99:
                 yield self.report(
-                    f"the mesh '{file_name(use)}' of link '{use.link.name}' is scaled "
-                    f"{max(ratio, 1 / ratio):.4g} times {'larger' if ratio > 1 else 'smaller'} than elsewhere",
+                    phrase(
+                        "the mesh '{file_name}' of link '{name}' is scaled {ratio:.4g} times"
+                        " {comparison} than elsewhere",
+                        file_name=file_name(use),
+                        name=use.link.name,
+                        ratio=max(ratio, 1 / ratio),
+                        comparison=phrase("larger") if ratio > 1 else phrase("smaller"),
+                    ),
                     use.element,
                     "scale",
                     notes=[
-                        Note(f"in link '{other.link.name}' it is scaled here", other.element.attribute_span("scale"))
+                        Note(
+                            phrase("in link '{name}' it is scaled here", name=other.link.name),
+                            other.element.attribute_span("scale"),
+                        )
                     ],
-                    hint="a file has one unit: give it the same scale everywhere",
+                    hint=phrase("a file has one unit: give it the same scale everywhere"),
                 )
 
 

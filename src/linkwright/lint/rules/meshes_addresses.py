@@ -7,11 +7,11 @@ import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from linkwright.diagnostics import Diagnostic, did_you_mean, display_path
+from linkwright.diagnostics import Diagnostic, Phrase, did_you_mean, display_path, joined, phrase
 from linkwright.lint.fix import replace_value
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
-from linkwright.workspace import enclosing_package
+from linkwright.packages import enclosing_package
 from linkwright.xmltree import Element
 from linkwright.xmltree.positions import attribute_value_range
 
@@ -56,18 +56,20 @@ class MalformedUri(Rule):
 
     code = "LW420"
     name = "mesh-uri-malformed"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
         for use in subject.meshes.uses:
             uri = use.mesh.filename
             problem, better = malformed(uri)
             if problem:
                 yield self.report(
-                    f"the mesh address '{uri}' {problem}",
+                    phrase("the mesh address '{uri}' {problem}", uri=uri, problem=problem),
                     use.element,
                     "filename",
-                    hint=f"write '{better}'" if better else "write package://PACKAGE/PATH",
+                    hint=phrase("write '{better}'", better=better)
+                    if better
+                    else phrase("write package://PACKAGE/PATH"),
                     fix=replace_value(use.element, "filename", better) if better else None,
                 )
 
@@ -95,19 +97,19 @@ class RelativePath(Rule):
 
     code = "LW421"
     name = "mesh-path-relative"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
         for use in subject.meshes.uses:
             uri = use.mesh.filename
             if not uri.strip() or is_portable(uri) or "\\" in uri:
                 continue
             better = _as_package_uri(subject.meshes.path(use))
             yield self.report(
-                f"the mesh path '{uri}' is relative, which RViz cannot resolve",
+                phrase("the mesh path '{uri}' is relative, which RViz cannot resolve", uri=uri),
                 use.element,
                 "filename",
-                hint=f"write '{better or 'package://PACKAGE/PATH'}'",
+                hint=phrase("write '{better}'", better=better or "package://PACKAGE/PATH"),
                 fix=replace_value(use.element, "filename", better, safe=False) if better else None,
             )
 
@@ -135,19 +137,19 @@ class HomePath(Rule):
 
     code = "LW422"
     name = "mesh-path-home"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
         for use in subject.meshes.uses:
             home = HOME.match(written(use.element, "filename"))
             if home is not None:
                 path = subject.meshes.path(use)
                 better = _as_package_uri(path) or _in_known_package(subject, path)
                 yield self.report(
-                    f"the mesh address holds a folder of one computer, '{home[1]}'",
+                    phrase("the mesh address holds a folder of one computer, '{home}'", home=home[1]),
                     use.element,
                     "filename",
-                    hint=f"write '{better or 'package://PACKAGE/PATH'}'",
+                    hint=phrase("write '{better}'", better=better or "package://PACKAGE/PATH"),
                     fix=replace_value(use.element, "filename", better, safe=False) if better else None,
                 )
 
@@ -174,22 +176,25 @@ class UnknownEnding(Rule):
 
     code = "LW426"
     name = "mesh-format-unknown"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
         for use in subject.meshes.uses:
             name = use.mesh.filename.rpartition("/")[2]
             ending = Path(name).suffix
             if not name or ending.lower() in KNOWN or malformed(use.mesh.filename)[0]:
                 continue
-            what = f"ends in '{ending}', a format" if ending else "has no ending that tells a format"
             yield self.report(
-                f"the mesh file '{name}' {what} that robot tools do not read"
+                phrase(
+                    "the mesh file '{name}' ends in '{ending}', a format that robot tools do not read",
+                    name=name,
+                    ending=ending,
+                )
                 if ending
-                else f"the mesh file '{name}' {what}",
+                else phrase("the mesh file '{name}' has no ending that tells a format", name=name),
                 use.element,
                 "filename",
-                hint="export it as STL, COLLADA (.dae), OBJ or glTF (.glb)",
+                hint=phrase("export it as STL, COLLADA (.dae), OBJ or glTF (.glb)"),
             )
 
 
@@ -216,52 +221,53 @@ class AwkwardName(Rule):
 
     code = "LW427"
     name = "mesh-name-awkward"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
         for use in subject.meshes.uses:
             uri = use.mesh.filename
             name = uri.partition("://")[2].partition("/")[2] if uri.startswith("package://") else uri.rpartition("/")[2]
             if uri.strip() and (" " in name or not name.isascii()):
-                what = "a blank" if " " in name else "letters beyond ASCII"
                 yield self.report(
-                    f"the mesh address '{uri}' has {what}",
+                    phrase("the mesh address '{uri}' has a blank", uri=uri)
+                    if " " in name
+                    else phrase("the mesh address '{uri}' has letters beyond ASCII", uri=uri),
                     use.element,
                     "filename",
-                    hint="rename the file with letters, digits and underscores",
+                    hint=phrase("rename the file with letters, digits and underscores"),
                 )
 
 
 def malformed(uri: str) -> tuple[str | None, str | None]:
     """What is wrong with an address, as the end of a sentence, and a better one where it can be told."""
     if not uri.strip():
-        return "is empty", None
+        return phrase("is empty"), None
     if "\\" in uri:
         better = uri.replace("\\", "/")
-        return "has backslashes", better if malformed(better)[0] is None else None
+        return phrase("has backslashes"), better if malformed(better)[0] is None else None
     if uri != uri.strip():
-        return "has blanks around it", uri.strip()
+        return phrase("has blanks around it"), uri.strip()
     match = _SCHEME.match(uri)
     if match is None:
         return None, None
     scheme, rest = match[1], uri[match.end() :]
     if scheme in ("package", "model") and not rest.startswith("//"):
-        return "lacks a slash", f"{scheme}://{rest.lstrip('/')}"
+        return phrase("lacks a slash"), f"{scheme}://{rest.lstrip('/')}"
     if scheme == "package":
         package, _, path = rest[2:].partition("/")
         if not package:
             path = path.lstrip("/")
-            return "names no package", f"package://{path}" if path.count("/") > 1 else None
-        return (None, None) if path.strip("/") else ("names no file", None)
+            return phrase("names no package"), f"package://{path}" if path.count("/") > 1 else None
+        return (None, None) if path.strip("/") else (phrase("names no file"), None)
     if scheme == "file":
         if rest.startswith(("///", "//localhost/")):
             return None, None
-        return "has no absolute path", f"file:///{rest.lstrip('/')}" if not rest.startswith("//") else None
+        return phrase("has no absolute path"), f"file:///{rest.lstrip('/')}" if not rest.startswith("//") else None
     if scheme.lower() in ("package", "file"):
-        return "has its scheme in capitals", f"{scheme.lower()}:{rest}"
+        return phrase("has its scheme in capitals"), f"{scheme.lower()}:{rest}"
     if scheme in ("model", "http", "https"):
         return None, None
-    return f"has the unknown scheme '{scheme}'", None
+    return phrase("has the unknown scheme '{scheme}'", scheme=scheme), None
 
 
 def _as_package_uri(path: Path | None) -> str | None:
@@ -284,16 +290,17 @@ def _in_known_package(subject: Subject, path: Path | None) -> str | None:
     return None
 
 
-def file_hint(path: Path, endings: Sequence[str]) -> str:
+def file_hint(path: Path, endings: Sequence[str]) -> Phrase:
     """What there is in place of a missing file: files with one of the endings, all in small letters."""
     try:
         names = sorted(each.name for each in path.parent.iterdir() if each.suffix.lower() in endings)
     except OSError:
-        return f"there is no folder '{display_path(path.parent)}'"
+        return phrase("there is no folder '{parent}'", parent=display_path(path.parent))
     near = did_you_mean(path.name, names)
     if near or not names:
-        return near or "put the file there, or correct the address"
-    return f"there are: {', '.join(names[:8])}{', ...' if len(names) > 8 else ''}"
+        return near or phrase("put the file there, or correct the address")
+    shown = names[:8] if len(names) <= 8 else [*names[:8], "..."]
+    return phrase("there are: {names}", names=joined(shown))
 
 
 def normal(path: Path) -> str:

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
-from linkwright.diagnostics import Diagnostic, Severity
-from linkwright.lint.rule import Option, Rule
+from linkwright.diagnostics import Diagnostic, Severity, phrase
+from linkwright.lint.option import Option
+from linkwright.lint.rule import Rule
 from linkwright.lint.rules.meshes import file_name, loaded
 from linkwright.lint.subject import Subject
 
@@ -30,11 +31,11 @@ class HeavyCollision(Rule):
 
     code = "LW435"
     name = "collision-mesh-heavy"
+    holds_for_parts = True
     options = (Option("triangles", 20_000, "most triangles of a collision mesh"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
-        most = subject.option(self, "triangles", int)
+        most = self.option(subject, "triangles", int)
         told: set[Path] = set()
         for use, mesh in loaded(subject, "collision"):
             path = subject.meshes.path(use)
@@ -42,11 +43,15 @@ class HeavyCollision(Rule):
             if count > most and path is not None and path not in told:
                 told.add(path)
                 yield self.report(
-                    f"the collision mesh '{file_name(use)}' of link '{use.link.name}' has {_thousands(count)} "
-                    "triangles",
+                    phrase(
+                        "the collision mesh '{file_name}' of link '{name}' has {thousands} triangles",
+                        file_name=file_name(use),
+                        name=use.link.name,
+                        thousands=_thousands(count),
+                    ),
                     use.element,
                     "filename",
-                    hint="use its convex hull, a decimated copy, or simple shapes",
+                    hint=phrase("use its convex hull, a decimated copy, or simple shapes"),
                 )
 
 
@@ -77,17 +82,21 @@ class VisualAsCollision(Rule):
     options = (Option("triangles", 2000, "triangles from which on a shared mesh is reported"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
-        most = subject.option(self, "triangles", int)
+        most = self.option(subject, "triangles", int)
         seen = {(use.link.name, path) for use, path in subject.meshes.files if use.kind == "visual"}
         for use, mesh in loaded(subject, "collision"):
             if (use.link.name, subject.meshes.path(use)) in seen and len(mesh.faces) > most:
                 yield self.report(
-                    f"the collision of link '{use.link.name}' uses the mesh of its visual, '{file_name(use)}', with "
-                    f"{_thousands(len(mesh.faces))} triangles",
+                    phrase(
+                        "the collision of link '{name}' uses the mesh of its visual, '{file_name}', with"
+                        " {thousands} triangles",
+                        name=use.link.name,
+                        file_name=file_name(use),
+                        thousands=_thousands(len(mesh.faces)),
+                    ),
                     use.element,
                     "filename",
-                    hint="make a lighter mesh for collisions, or use simple shapes",
+                    hint=phrase("make a lighter mesh for collisions, or use simple shapes"),
                 )
 
 
@@ -110,21 +119,25 @@ class OpenMesh(Rule):
 
     code = "LW437"
     name = "collision-mesh-open"
+    holds_for_parts = True
     severity = Severity.INFO
     default = False
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
         told: set[Path] = set()
         for use, mesh in loaded(subject, "collision"):
             path = subject.meshes.path(use)
             if path is not None and path not in told and not mesh.is_watertight:
                 told.add(path)
                 yield self.report(
-                    f"the collision mesh '{file_name(use)}' of link '{use.link.name}' is not watertight",
+                    phrase(
+                        "the collision mesh '{file_name}' of link '{name}' is not watertight",
+                        file_name=file_name(use),
+                        name=use.link.name,
+                    ),
                     use.element,
                     "filename",
-                    hint="close its holes, or use its convex hull",
+                    hint=phrase("close its holes, or use its convex hull"),
                 )
 
 

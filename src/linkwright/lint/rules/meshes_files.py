@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, display_path
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, counted, display_path, phrase
 from linkwright.lint.fix import replace_value
 from linkwright.lint.meshes import MeshUse
 from linkwright.lint.rule import Rule
 from linkwright.lint.rules.meshes_addresses import HOME, KNOWN, file_hint, malformed, normal, written
 from linkwright.lint.subject import Subject
-from linkwright.workspace import PackageNotFoundError, enclosing_package
+from linkwright.packages import PackageNotFoundError, enclosing_package
 
 _LFS = b"version https://git-lfs"
 
@@ -67,11 +67,11 @@ class UnknownPackage(Rule):
 
     code = "LW423"
     name = "mesh-package-unknown"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
         told: dict[str, list[MeshUse]] = {}
-        hints: dict[str, str | None] = {}
+        hints: dict[str, Phrase | None] = {}
         for use in subject.meshes.uses:
             if not use.mesh.filename.startswith("package://") or malformed(use.mesh.filename)[0]:
                 continue
@@ -87,10 +87,13 @@ class UnknownPackage(Rule):
             except LinkwrightError:
                 continue
         for package, uses in told.items():
-            more = f", which {len(uses)} mesh addresses name" if len(uses) > 1 else ""
-            yield self.report(
-                f"package '{package}' is not found{more}", uses[0].element, "filename", hint=hints[package]
+            message = counted(
+                "package '{package}' is not found",
+                "package '{package}' is not found, which {count} mesh addresses name",
+                len(uses),
+                package=package,
             )
+            yield self.report(message, uses[0].element, "filename", hint=hints[package])
 
 
 class MissingFile(Rule):
@@ -116,9 +119,9 @@ class MissingFile(Rule):
 
     code = "LW424"
     name = "mesh-missing"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
         missing: dict[Path, list[tuple[MeshUse, Path]]] = {}
         for use, path in subject.meshes.files:
             if malformed(use.mesh.filename)[0] or HOME.match(written(use.element, "filename")):
@@ -132,11 +135,15 @@ class MissingFile(Rule):
             if len(files) > 1 and not path.parent.exists():
                 gone = path.relative_to(folder).parts[0]
                 yield self.report(
-                    f"{len(files)} mesh files are missing: there is no folder '{display_path(folder / gone)}'",
+                    phrase(
+                        "{count} mesh files are missing: there is no folder '{folder}'",
+                        count=len(files),
+                        folder=display_path(folder / gone),
+                    ),
                     first.element,
                     "filename",
-                    notes=[Note(f"the first is '{first.mesh.filename}'")],
-                    hint="are they in another repository, or fetched by the build?",
+                    notes=[Note(phrase("the first is '{filename}'", filename=first.mesh.filename))],
+                    hint=phrase("are they in another repository, or fetched by the build?"),
                 )
                 continue
             told = set()
@@ -145,10 +152,10 @@ class MissingFile(Rule):
                     continue
                 told.add(path)
                 yield self.report(
-                    f"there is no mesh file '{use.mesh.filename}'",
+                    phrase("there is no mesh file '{filename}'", filename=use.mesh.filename),
                     use.element,
                     "filename",
-                    notes=[Note(f"it would be {display_path(path)}")],
+                    notes=[Note(phrase("it would be {path}", path=display_path(path)))],
                     hint=file_hint(path, KNOWN),
                 )
 
@@ -177,21 +184,25 @@ class WrongCase(Rule):
 
     code = "LW425"
     name = "mesh-case-differs"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
         for use, path in subject.meshes.files:
             twin = case_twin(path)
             if twin is None or not twin.is_file():
                 continue
             better = _with_case(use.mesh.filename, twin)
             yield self.report(
-                f"the mesh file is '{twin.name}', in other capitals than '{path.name}'"
+                phrase(
+                    "the mesh file is '{name}', in other capitals than '{path_name}'",
+                    name=twin.name,
+                    path_name=path.name,
+                )
                 if twin.name != path.name
-                else f"a folder of the mesh file '{path.name}' has other capitals",
+                else phrase("a folder of the mesh file '{name}' has other capitals", name=path.name),
                 use.element,
                 "filename",
-                hint=f"write '{better}'",
+                hint=phrase("write '{better}'", better=better),
                 fix=replace_value(use.element, "filename", better),
             )
 
@@ -220,9 +231,9 @@ class OutsidePackage(Rule):
 
     code = "LW428"
     name = "mesh-outside-package"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
         if enclosing_package(subject.path.absolute().parent) is None:
             return
         for use, path in subject.meshes.files:
@@ -230,21 +241,21 @@ class OutsidePackage(Rule):
             if HOME.match(written(use.element, "filename")):
                 continue  # that is said already
             resolved = Path(normal(path))
-            left = None
+            message = None
             if uri.startswith("package://"):
                 package = uri[len("package://") :].partition("/")[0]
                 share = subject.finder.find(package)
                 if share is not None and not resolved.is_relative_to(normal(share)):
-                    left = f"leaves package '{package}'"
+                    message = phrase("the mesh '{uri}' leaves package '{package}'", uri=uri, package=package)
             elif resolved.is_file() and enclosing_package(resolved.parent) is None:
-                left = "is in no package"
-            if left:
+                message = phrase("the mesh '{uri}' is in no package", uri=uri)
+            if message is not None:
                 yield self.report(
-                    f"the mesh '{uri}' {left}",
+                    message,
                     use.element,
                     "filename",
-                    notes=[Note(f"it is {display_path(resolved)}")],
-                    hint="move it into a folder of the package that is installed",
+                    notes=[Note(phrase("it is {resolved}", resolved=display_path(resolved)))],
+                    hint=phrase("move it into a folder of the package that is installed"),
                 )
 
 
@@ -267,9 +278,9 @@ class UnreadableMesh(Rule):
 
     code = "LW429"
     name = "mesh-unreadable"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
         told = set()
         for use, path in subject.meshes.files:
             if path in told or not path.is_file():
@@ -279,7 +290,7 @@ class UnreadableMesh(Rule):
             if problem is None or problem.diagnostics[0].code != "INR103":
                 continue
             found = problem.diagnostics[0]
-            hint = "it is a pointer of Git LFS: run `git lfs pull`" if _is_lfs_pointer(path) else found.hint
+            hint = phrase("it is a pointer of Git LFS: run `git lfs pull`") if _is_lfs_pointer(path) else found.hint
             yield self.report(found.message, use.element, "filename", hint=hint)
 
 

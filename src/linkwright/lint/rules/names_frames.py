@@ -6,8 +6,8 @@ import re
 from collections.abc import Iterator
 from math import radians
 
-from linkwright.diagnostics import Diagnostic, Note, Severity
-from linkwright.lint.frames import Matrix, angle_between, rotation
+from linkwright.diagnostics import Diagnostic, Note, Severity, phrase
+from linkwright.geometry.placement import Matrix, angle_between, rotation
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
 from linkwright.urdf import Box, Geometry, Mesh
@@ -46,7 +46,6 @@ class BaseLinkMissing(Rule):
     name = "base-link-missing"
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
         robot = subject.robot
         if robot is None or any(
             re.search(r"(^|[_/])base_?(link|footprint)", name, re.IGNORECASE) for name in robot.links
@@ -59,10 +58,17 @@ class BaseLinkMissing(Rule):
         if len(wheels) < 2 or root.element is None:
             return
         notes = [
-            Note(f"'{joint.name}' is a wheel", joint.element.span() if joint.element else None) for joint in wheels[:2]
+            Note(phrase("'{name}' is a wheel", name=joint.name), joint.element.span() if joint.element else None)
+            for joint in wheels[:2]
         ]
-        message = "this robot on wheels has no link 'base_link', which REP 105 asks for"
-        yield self.report(message, root.element, "name", notes=notes, hint=f"call '{root.name}' base_link, or add one")
+        message = phrase("this robot on wheels has no link 'base_link', which REP 105 asks for")
+        yield self.report(
+            message,
+            root.element,
+            "name",
+            notes=notes,
+            hint=phrase("call '{name}' base_link, or add one", name=root.name),
+        )
 
 
 class BaseLinkNotAtTheTop(Rule):
@@ -97,15 +103,19 @@ class BaseLinkNotAtTheTop(Rule):
     default = False
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
         if subject.robot is None:
             return
         for joint in subject.robot.joints.values():
             if joint.child != "base_link" or joint.element is None:
                 continue
             if not re.search("footprint|world|map|odom|dummy|stand|pedestal|table|mount", joint.parent):
-                message = f"'base_link' hangs from '{joint.parent}'; REP 105 has it as the topmost link of a robot"
-                yield self.report(message, joint.element, hint="exchange parent and child, and invert the origin")
+                message = phrase(
+                    "'base_link' hangs from '{parent}'; REP 105 has it as the topmost link of a robot",
+                    parent=joint.parent,
+                )
+                yield self.report(
+                    message, joint.element, hint=phrase("exchange parent and child, and invert the origin")
+                )
 
 
 class FootprintBelowBase(Rule):
@@ -141,14 +151,19 @@ class FootprintBelowBase(Rule):
     default = False
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
         if subject.robot is None:
             return
         for joint in subject.robot.joints.values():
             upside_down = joint.child.endswith("base_footprint") and joint.parent.endswith("base_link")
             if upside_down and joint.element is not None:
-                message = f"'{joint.child}' hangs from '{joint.parent}'; REP 120 has it the other way round"
-                yield self.report(message, joint.element, hint="exchange parent and child, and invert the origin")
+                message = phrase(
+                    "'{child}' hangs from '{parent}'; REP 120 has it the other way round",
+                    child=joint.child,
+                    parent=joint.parent,
+                )
+                yield self.report(
+                    message, joint.element, hint=phrase("exchange parent and child, and invert the origin")
+                )
 
 
 class FootprintHasBody(Rule):
@@ -178,7 +193,6 @@ class FootprintHasBody(Rule):
     name = "footprint-has-body"
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
         for link in subject.links:
             if not link.name.endswith("base_footprint") or link.element is None:
                 continue
@@ -189,8 +203,8 @@ class FootprintHasBody(Rule):
             if part is None and not is_root and link.inertial is not None and link.inertial.mass > 0.1:
                 part = link.element.first("inertial")
             if part is not None:
-                message = f"'{link.name}' is a place on the ground, and has a <{part.tag}>"
-                yield self.report(message, part, hint="move it to the link of the body, such as 'base_link'")
+                message = phrase("'{name}' is a place on the ground, and has a <{tag}>", name=link.name, tag=part.tag)
+                yield self.report(message, part, hint=phrase("move it to the link of the body, such as 'base_link'"))
 
 
 class FixedFrameInRobot(Rule):
@@ -217,11 +231,13 @@ class FixedFrameInRobot(Rule):
     name = "fixed-frame-in-robot"
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
         for link in subject.links:
             if link.name.rpartition("/")[2] in ("map", "odom") and link.element is not None:
-                message = f"'{link.name}' is the name of a frame that localisation publishes (REP 105), not of a link"
-                yield self.report(message, link.element, "name", hint="leave it to localisation and odometry")
+                message = phrase(
+                    "'{name}' is the name of a frame that localisation publishes (REP 105), not of a link",
+                    name=link.name,
+                )
+                yield self.report(message, link.element, "name", hint=phrase("leave it to localisation and odometry"))
 
 
 class OpticalFrameRotation(Rule):
@@ -256,7 +272,6 @@ class OpticalFrameRotation(Rule):
     name = "optical-frame-rotation"
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
         robot = subject.robot
         if robot is None:
             return
@@ -271,13 +286,16 @@ class OpticalFrameRotation(Rule):
             if angle_between(turned, _OPTICAL_ROTATION) <= _TOLERANCE or not _is_slip(turned):
                 continue
             rpy = " ".join(f"{angle:g}" for angle in joint.origin.rpy)
-            message = (
-                f"'{joint.child}' is turned against '{parent}' by rpy '{rpy}', not as REP 103 says of optical frames"
+            message = phrase(
+                "'{child}' is turned against '{parent}' by rpy '{rpy}', not as REP 103 says of optical frames",
+                child=joint.child,
+                parent=parent,
+                rpy=rpy,
             )
             origin = joint.element.first("origin")
             attribute = "rpy" if origin is not None and "rpy" in origin.attributes else None
             element = origin if origin is not None else joint.element
-            hint = 'write rpy="-1.5708 0 -1.5708" (in xacro rpy="${-pi/2} 0 ${-pi/2}"): z forward, y down'
+            hint = phrase('write rpy="-1.5708 0 -1.5708" (in xacro rpy="${-pi/2} 0 ${-pi/2}"): z forward, y down')
             yield self.report(message, element, attribute, hint=hint)
 
 
@@ -326,15 +344,14 @@ class CameraWithoutOpticalFrame(Rule):
     severity = Severity.INFO
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
         if any("optical" in link.name for link in subject.links):
             return
         for element in subject.elements("gazebo"):
             for sensor in element.elements("sensor"):
                 if re.search("camera|depth|rgbd", sensor.attributes.get("type", "")):
                     reference = element.attributes.get("reference", "")
-                    message = f"the camera on '{reference}' has no optical frame"
-                    hint = 'add a link with a fixed joint of rpy="-1.5708 0 -1.5708" below it'
+                    message = phrase("the camera on '{reference}' has no optical frame", reference=reference)
+                    hint = phrase('add a link with a fixed joint of rpy="-1.5708 0 -1.5708" below it')
                     yield self.report(message, sensor, hint=hint)
 
 
@@ -367,11 +384,14 @@ class HumanoidFrames(Rule):
     severity = Severity.INFO
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
         names = {link.name.lower() for link in subject.links}
         has_feet = sum(bool(re.search(r"(foot|ankle|sole)(?!print)", name)) for name in names) >= 2
         has_hands = sum(bool(re.search("hand|wrist|gripper", name)) for name in names) >= 2
         missing = [name for name in _HUMANOID if name not in names]
         if has_feet and has_hands and missing:
             listed = ", ".join(f"'{name}'" for name in missing)
-            yield self.report(f"this humanoid robot lacks frames that REP 120 names: {listed}", subject.root, "name")
+            yield self.report(
+                phrase("this humanoid robot lacks frames that REP 120 names: {listed}", listed=listed),
+                subject.root,
+                "name",
+            )

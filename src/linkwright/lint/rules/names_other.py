@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from linkwright.diagnostics import Diagnostic, Note
+from linkwright.diagnostics import Diagnostic, Note, phrase
 from linkwright.lint.fix import replace_value
 from linkwright.lint.rule import Rule
 from linkwright.lint.rules.names_text import named
@@ -37,15 +37,15 @@ class JointNameIsLinkName(Rule):
 
     code = "LW609"
     name = "joint-name-is-link-name"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
         links = {name: element for kind, name, element in named(subject) if kind == "link"}
         for kind, name, element in named(subject):
             if kind == "joint" and name in links:
-                note = Note("the link is defined here", links[name].attribute_span("name"))
-                hint = f"call the joint '{name.removesuffix('_link')}_joint'"
-                message = f"a joint and a link are both called '{name}', which SDF does not allow"
+                note = Note(phrase("the link is defined here"), links[name].attribute_span("name"))
+                hint = phrase("call the joint '{name}_joint'", name=name.removesuffix("_link"))
+                message = phrase("a joint and a link are both called '{name}', which SDF does not allow", name=name)
                 yield self.report(message, element, "name", notes=[note], hint=hint)
 
 
@@ -75,12 +75,15 @@ class RobotNameUnusual(Rule):
     default = False
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
         name = subject.root.attributes.get("name", "")
         if not name or re.fullmatch(r"[A-Za-z0-9_\-]+", name):
             return
         better = re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_")
-        hint = f"such as '{better}'" if better else "use letters a to z, digits and underscores"
+        hint = (
+            phrase("such as '{better}'", better=better)
+            if better
+            else phrase("use letters a to z, digits and underscores")
+        )
         fix = replace_value(subject.root, "name", better, safe=False) if better else None
-        message = f"the name of the robot '{name}' has characters that names in ROS do not have"
+        message = phrase("the name of the robot '{name}' has characters that names in ROS do not have", name=name)
         yield self.report(message, subject.root, "name", hint=hint, fix=fix)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from linkwright.diagnostics import Diagnostic, Note, Severity
+from linkwright.diagnostics import Diagnostic, Note, Severity, phrase, term
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
 from linkwright.xmltree import Element
@@ -46,14 +46,18 @@ class NameEdgeBlank(Rule):
 
     code = "LW601"
     name = "name-edge-blank"
+    holds_for_parts = True
     severity = Severity.ERROR
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
         for kind, name, element in named(subject):
             if name != name.strip():
-                message = f"the name of the {kind} '{name}' begins or ends with a blank"
-                yield self.report(message, element, "name", hint=f"write '{name.strip()}' wherever it is meant")
+                message = phrase(
+                    "the name of the {kind} '{name}' begins or ends with a blank", kind=term(kind), name=name
+                )
+                yield self.report(
+                    message, element, "name", hint=phrase("write '{name}' wherever it is meant", name=name.strip())
+                )
 
 
 class NameBlank(Rule):
@@ -79,14 +83,19 @@ class NameBlank(Rule):
 
     code = "LW602"
     name = "name-blank"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
         for kind, name, element in named(subject):
             inner = name.strip()
             if re.search(r"\s", inner):
-                hint = f"write '{re.sub(chr(92) + 's+', '_', inner)}' wherever it is meant"
-                yield self.report(f"the name of the {kind} '{name}' has a blank in it", element, "name", hint=hint)
+                hint = phrase("write '{sub}' wherever it is meant", sub=re.sub(chr(92) + "s+", "_", inner))
+                yield self.report(
+                    phrase("the name of the {kind} '{name}' has a blank in it", kind=term(kind), name=name),
+                    element,
+                    "name",
+                    hint=hint,
+                )
 
 
 class NameLeadingSlash(Rule):
@@ -114,14 +123,16 @@ class NameLeadingSlash(Rule):
 
     code = "LW603"
     name = "name-leading-slash"
+    holds_for_parts = True
     severity = Severity.ERROR
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
         for kind, name, element in named(subject):
             if kind == "link" and name.startswith("/"):
-                message = f"the name of the link '{name}' begins with a slash, which tf2 refuses"
-                yield self.report(message, element, "name", hint=f"write '{name.lstrip('/')}' wherever it is meant")
+                message = phrase("the name of the link '{name}' begins with a slash, which tf2 refuses", name=name)
+                yield self.report(
+                    message, element, "name", hint=phrase("write '{name}' wherever it is meant", name=name.lstrip("/"))
+                )
 
 
 class NameNotAscii(Rule):
@@ -147,15 +158,20 @@ class NameNotAscii(Rule):
 
     code = "LW604"
     name = "name-not-ascii"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
         for kind, name, element in named(subject):
             strange = sorted({character for character in name if not character.isascii()})
             if strange:
                 listed = ", ".join(f"'{character}' (U+{ord(character):04X})" for character in strange)
-                message = f"the name of the {kind} '{name}' has letters outside ASCII: {listed}"
-                yield self.report(message, element, "name", hint="use letters a to z, digits and underscores")
+                message = phrase(
+                    "the name of the {kind} '{name}' has letters outside ASCII: {listed}",
+                    kind=term(kind),
+                    name=name,
+                    listed=listed,
+                )
+                yield self.report(message, element, "name", hint=phrase("use letters a to z, digits and underscores"))
 
 
 class NameUnusualCharacter(Rule):
@@ -181,14 +197,19 @@ class NameUnusualCharacter(Rule):
 
     code = "LW605"
     name = "name-unusual-character"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
         for kind, name, element in named(subject):
             strange = sorted({sign for sign in name if sign.isascii() and not _USUAL.fullmatch(sign)})
             if strange and "${" not in name and "$(" not in name and not any(sign.isspace() for sign in strange):
-                message = f"the name of the {kind} '{name}' has unusual characters in it: {' '.join(strange)}"
-                yield self.report(message, element, "name", hint="use letters a to z, digits and underscores")
+                message = phrase(
+                    "the name of the {kind} '{name}' has unusual characters in it: {strange}",
+                    kind=term(kind),
+                    name=name,
+                    strange=" ".join(strange),
+                )
+                yield self.report(message, element, "name", hint=phrase("use letters a to z, digits and underscores"))
 
 
 class NameUpperCase(Rule):
@@ -215,15 +236,17 @@ class NameUpperCase(Rule):
 
     code = "LW606"
     name = "name-upper-case"
+    holds_for_parts = True
     default = False
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
         for kind, name, element in named(subject):
             if name != name.lower() or "-" in name:
                 snake = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).replace("-", "_").lower()
-                message = f"the name of the {kind} '{name}' is not in lower case with underscores"
-                yield self.report(message, element, "name", hint=f"the usual form is '{snake}'")
+                message = phrase(
+                    "the name of the {kind} '{name}' is not in lower case with underscores", kind=term(kind), name=name
+                )
+                yield self.report(message, element, "name", hint=phrase("the usual form is '{snake}'", snake=snake))
 
 
 class NamesDifferInCase(Rule):
@@ -251,16 +274,21 @@ class NamesDifferInCase(Rule):
 
     code = "LW607"
     name = "names-differ-in-case"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
         first: dict[tuple[str, str], tuple[str, Element]] = {}
         for kind, name, element in named(subject):
             other, where = first.setdefault((kind, name.casefold()), (name, element))
             if other != name:
-                message = f"the {kind}s '{other}' and '{name}' differ in upper and lower case alone"
-                note = Note(f"'{other}' is defined here", where.attribute_span("name"))
-                yield self.report(message, element, "name", notes=[note], hint="give one of them another name")
+                message = phrase(
+                    "the {kind}s '{other}' and '{name}' differ in upper and lower case alone",
+                    kind=term(kind),
+                    other=other,
+                    name=name,
+                )
+                note = Note(phrase("'{other}' is defined here", other=other), where.attribute_span("name"))
+                yield self.report(message, element, "name", notes=[note], hint=phrase("give one of them another name"))
 
 
 class NameSuffixDoubled(Rule):
@@ -286,12 +314,17 @@ class NameSuffixDoubled(Rule):
 
     code = "LW608"
     name = "name-suffix-doubled"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
         for kind, name, element in named(subject):
             match = _DOUBLED.fullmatch(name)
             if match:
-                message = f"the name of the {kind} '{name}' ends with '{match[1]}' twice"
+                message = phrase(
+                    "the name of the {kind} '{name}' ends with '{match}' twice",
+                    kind=term(kind),
+                    name=name,
+                    match=match[1],
+                )
                 shorter = name[: -len(match[1]) - 1]
-                yield self.report(message, element, "name", hint=f"'{shorter}' says the same")
+                yield self.report(message, element, "name", hint=phrase("'{shorter}' says the same", shorter=shorter))

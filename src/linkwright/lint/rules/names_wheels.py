@@ -12,8 +12,10 @@ from collections.abc import Iterator
 from math import cos, radians
 from typing import NamedTuple
 
-from linkwright.diagnostics import Diagnostic, Note, Span
-from linkwright.lint.frames import Placement, dot, length, placement, placements, subtracted, turned
+from linkwright.diagnostics import Diagnostic, Note, Span, phrase
+from linkwright.geometry.placement import Placement, placement, turned
+from linkwright.geometry.vectors import dot, length, subtracted
+from linkwright.lint.frames import placements
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
 from linkwright.urdf import Collision, Cylinder, Joint, Link, Robot, Vector3, Visual
@@ -37,12 +39,12 @@ class Wheel(NamedTuple):
     axis: Vector3
 
 
-def wheels(robot: Robot) -> Iterator[Wheel]:
-    """The wheels of a robot that turn freely, in file order."""
+def wheels(robot: Robot, type_of_joint: str = "continuous") -> Iterator[Wheel]:
+    """The wheels of a robot on joints of a type, in file order; by default those that turn freely."""
     frames = placements(robot)
     base = frames.get("base_link", frames[robot.root])
     for joint in robot.joints.values():
-        if joint.type == "continuous" and is_wheel(joint) and joint.child in frames:
+        if joint.type == type_of_joint and is_wheel(joint) and joint.child in frames:
             frame = frames[joint.child].seen_from(base)
             axis = turned(frame.rotation, joint.axis)
             size = length(axis)
@@ -104,32 +106,39 @@ class WheelSide(Rule):
     name = "wheel-side"
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
         if subject.robot is None:
             return
         for left, right in pairs(list(wheels(subject.robot))):
             gap = subtracted(left.frame.position, right.frame.position)
             if gap[1] < -_APART and abs(gap[1]) > abs(gap[0]) and left.joint.element is not None:
-                note = Note(f"'{right.joint.name}' is at y = {right.frame.position[1]:g}", _place(right.joint))
-                message = (
-                    f"'{left.joint.name}' is on the right of '{right.joint.name}', at y = {left.frame.position[1]:g}"
+                note = Note(
+                    phrase("'{name}' is at y = {position:g}", name=right.joint.name, position=right.frame.position[1]),
+                    _place(right.joint),
                 )
-                hint = "REP 103: x is forward and y to the left; exchange the names or the signs of y"
+                message = phrase(
+                    "'{name}' is on the right of '{joint_name}', at y = {position:g}",
+                    name=left.joint.name,
+                    joint_name=right.joint.name,
+                    position=left.frame.position[1],
+                )
+                hint = phrase("REP 103: x is forward and y to the left; exchange the names or the signs of y")
                 yield self.report(message, left.joint.element, notes=[note], hint=hint)
 
 
 class WheelHasLimits(Rule):
-    """The joint of a wheel is revolute or prismatic, not continuous.
+    """The joint that a wheel rolls about is revolute, not continuous.
 
     ## Why
 
     A revolute joint stops at its limits, so the wheel turns once and stands. A wheel turns without end, which is what
-    `continuous` means.
+    `continuous` means. A joint that steers the wheel has limits by right: it is told by its axis, which is not that of
+    the wheel's cylinder, or, where the wheel has no cylinder, does not lie to the side.
 
     ## Example
 
     ```xml
     <joint name="left_wheel_joint" type="revolute">
+      <axis xyz="0 1 0"/>
       <limit lower="-3.14" upper="3.14" effort="10" velocity="20"/>
     ```
 
@@ -137,6 +146,7 @@ class WheelHasLimits(Rule):
 
     ```xml
     <joint name="left_wheel_joint" type="continuous">
+      <axis xyz="0 1 0"/>
       <limit effort="10" velocity="20"/>
     ```
     """
@@ -145,18 +155,18 @@ class WheelHasLimits(Rule):
     name = "wheel-has-limits"
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
         robot = subject.robot
         if robot is None:
             return
         turning = {joint.parent for joint in robot.joints.values() if joint.type == "continuous"}
-        for joint in robot.joints.values():
-            if joint.type not in ("revolute", "prismatic") or not is_wheel(joint) or joint.child in turning:
+        for wheel in wheels(robot, "revolute"):
+            joint = wheel.joint
+            if joint.child in turning or "wheel" not in joint.child.lower() or _is_wide(joint):
                 continue
-            if "wheel" not in joint.child.lower() or joint.element is None or _is_wide(joint):
+            if joint.element is None or not _rolls(wheel):
                 continue
-            message = f"the wheel on joint '{joint.name}' cannot turn freely: the joint is {joint.type}"
-            yield self.report(message, joint.element, "type", hint='write type="continuous"')
+            message = phrase("the wheel on joint '{name}' cannot turn freely: the joint is revolute", name=joint.name)
+            yield self.report(message, joint.element, "type", hint=phrase('write type="continuous"'))
 
 
 class WheelAxis(Rule):
@@ -192,7 +202,6 @@ class WheelAxis(Rule):
     name = "wheel-axis"
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
         if subject.robot is None:
             return
         for wheel in wheels(subject.robot):
@@ -206,9 +215,14 @@ class WheelAxis(Rule):
             shown = _rounded(discs[0])
             element = wheel.joint.element.first("axis")
             written = " ".join(f"{value:g}" for value in axis)
-            message = f"the wheel '{wheel.link.name}' turns about '{written}', and its cylinder lies along '{shown}'"
+            message = phrase(
+                "the wheel '{name}' turns about '{written}', and its cylinder lies along '{shown}'",
+                name=wheel.link.name,
+                written=written,
+                shown=shown,
+            )
             attribute = "xyz" if element is not None else None
-            hint = f'write <axis xyz="{shown}"/>, or turn the cylinder'
+            hint = phrase('write <axis xyz="{shown}"/>, or turn the cylinder', shown=shown)
             yield self.report(message, element if element is not None else wheel.joint.element, attribute, hint=hint)
 
 
@@ -240,14 +254,17 @@ class WheelsTurnAgainst(Rule):
     name = "wheels-turn-against"
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
         if subject.robot is None:
             return
         for left, right in pairs(list(wheels(subject.robot))):
             if dot(left.axis, right.axis) < -_AXIS_TOLERANCE and right.joint.element is not None:
-                note = Note(f"'{left.joint.name}' turns the other way", _place(left.joint))
-                message = f"'{right.joint.name}' turns against '{left.joint.name}' for velocities of one sign"
-                hint = "point both axes to the left, +y, so that positive velocities drive forward"
+                note = Note(phrase("'{name}' turns the other way", name=left.joint.name), _place(left.joint))
+                message = phrase(
+                    "'{name}' turns against '{joint_name}' for velocities of one sign",
+                    name=right.joint.name,
+                    joint_name=left.joint.name,
+                )
+                hint = phrase("point both axes to the left, +y, so that positive velocities drive forward")
                 yield self.report(message, right.joint.element, notes=[note], hint=hint)
 
 
@@ -276,14 +293,23 @@ class WheelsNotMirrored(Rule):
     default = False
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
         if subject.robot is None:
             return
         for left, right in pairs(list(wheels(subject.robot))):
             (lx, ly, lz), (rx, ry, rz) = left.frame.position, right.frame.position
             if max(abs(lx - rx), abs(ly + ry), abs(lz - rz)) > _APART and right.joint.element is not None:
-                note = Note(f"'{left.joint.name}' is at {lx:.4g} {ly:.4g} {lz:.4g}", _place(left.joint))
-                message = f"'{right.joint.name}', at {rx:.4g} {ry:.4g} {rz:.4g}, does not mirror '{left.joint.name}'"
+                note = Note(
+                    phrase("'{name}' is at {lx:.4g} {ly:.4g} {lz:.4g}", name=left.joint.name, lx=lx, ly=ly, lz=lz),
+                    _place(left.joint),
+                )
+                message = phrase(
+                    "'{name}', at {rx:.4g} {ry:.4g} {rz:.4g}, does not mirror '{joint_name}'",
+                    name=right.joint.name,
+                    rx=rx,
+                    ry=ry,
+                    rz=rz,
+                    joint_name=left.joint.name,
+                )
                 yield self.report(message, right.joint.element, notes=[note])
 
 
@@ -313,14 +339,17 @@ class WheelsTurnBackward(Rule):
     default = False
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
         if subject.robot is None:
             return
         for left, right in pairs(list(wheels(subject.robot))):
             if max(left.axis[1], right.axis[1]) < -_AXIS_TOLERANCE and left.joint.element is not None:
-                message = f"positive velocities of '{left.joint.name}' and '{right.joint.name}' drive backward"
+                message = phrase(
+                    "positive velocities of '{name}' and '{joint_name}' drive backward",
+                    name=left.joint.name,
+                    joint_name=right.joint.name,
+                )
                 element = left.joint.element.first("axis")
-                hint = "point both axes to the left, +y in the base frame"
+                hint = phrase("point both axes to the left, +y in the base frame")
                 yield self.report(message, element if element is not None else left.joint.element, hint=hint)
 
 
@@ -331,6 +360,15 @@ def _disc_axes(link: Link) -> Iterator[Vector3]:
         shape = part.geometry
         if isinstance(shape, Cylinder) and 0 < shape.length < 1.5 * shape.radius:
             yield turned(placement(part.origin).rotation, (0.0, 0.0, 1.0))
+
+
+def _rolls(wheel: Wheel) -> bool:
+    """Whether the joint turns the wheel about the wheel's own axis."""
+    discs = list(_disc_axes(wheel.link))
+    if not discs:
+        return abs(wheel.axis[1]) >= _AXIS_TOLERANCE
+    size = length(wheel.joint.axis)
+    return any(abs(dot(disc, wheel.joint.axis)) / size >= _AXIS_TOLERANCE for disc in discs)
 
 
 def _is_wide(joint: Joint) -> bool:

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
-from linkwright.diagnostics import Diagnostic, Note, Severity
-from linkwright.lint.manifest_reader import Manifest
-from linkwright.lint.package import PackageContext
+from linkwright.diagnostics import Diagnostic, Note, Phrase, Severity, phrase
 from linkwright.lint.rules.package_manifest import ManifestRule, PackageRule
-from linkwright.workspace.naming import check_package_name, is_email
+from linkwright.packages.naming import check_package_name, is_accepted_name, is_email
+
+if TYPE_CHECKING:
+    from linkwright.lint.package import PackageContext
+    from linkwright.packages.readers.package_xml import Manifest
 
 _PLACEHOLDER = re.compile(
     r"\btodo\b|\bfixme\b|\bchangeme\b|your[ _-]?(name|package|description)|package description here", re.IGNORECASE
@@ -60,26 +63,41 @@ class PackageNameDiffers(PackageRule):
         element = manifest.root.first("name")
         if name is None or element is None:
             return
-        note = Note(f"package.xml says '{name}'", element.span())
+        note = Note(phrase("package.xml says '{name}'", name=name), element.span())
         setup, cmake = package.setup, package.cmake
         if setup is not None and setup.name is not None and setup.name[0].replace("-", "_") != name.replace("-", "_"):
-            message = f"setup.py calls the package '{setup.name[0]}', package.xml '{name}'"
-            yield self.report(message, span=setup.name[1], source=setup.source, notes=[note], hint=f"write '{name}'")
+            message = phrase(
+                "setup.py calls the package '{name}', package.xml '{other_name}'", name=setup.name[0], other_name=name
+            )
+            yield self.report(
+                message, span=setup.name[1], source=setup.source, notes=[note], hint=phrase("write '{name}'", name=name)
+            )
         if cmake is not None and cmake.project is not None and cmake.is_ament:
             project = cmake.project
             if "$" not in project.text and project.text != name:
-                message = f"CMakeLists.txt calls the project '{project.text}', package.xml the package '{name}'"
+                message = phrase(
+                    "CMakeLists.txt calls the project '{text}', package.xml the package '{name}'",
+                    text=project.text,
+                    name=name,
+                )
                 span = cmake.span(project)
-                yield self.report(message, span=span, source=cmake.source, notes=[note], hint=f"write project({name})")
+                yield self.report(
+                    message,
+                    span=span,
+                    source=cmake.source,
+                    notes=[note],
+                    hint=phrase("write project({name})", name=name),
+                )
 
 
 class PackageName(ManifestRule):
-    """The name of a package is none that ROS accepts, or not as REP 144 wants it.
+    """The name of a package is none that colcon accepts, or not as REP 144 wants it.
 
     ## Why
 
-    Python cannot import a package whose name has a dash, CMake makes no target of one with a blank, and REP 144 asks
-    for lower case, digits and underscores.
+    colcon reads `package.xml` through catkin_pkg, which refuses a name with blanks or dots: that is an error. REP 144
+    asks for lower case, digits and underscores; Python cannot import a package whose name has a dash, and `ros2 pkg
+    create` makes none.
 
     ## Example
 
@@ -102,8 +120,14 @@ class PackageName(ManifestRule):
         name, element = manifest.name, manifest.root.first("name")
         if name is None or element is None:
             return
+        if not name:
+            return  # which LW802 reports
         for found in check_package_name(name):
-            yield self.report(found.message, element, hint=found.hint, severity=found.severity)
+            if is_accepted_name(name):
+                message = phrase("the package name '{name}' does not follow REP 144", name=name)
+                yield self.report(message, element, hint=found.hint, severity=Severity.WARNING)
+            else:
+                yield self.report(found.message, element, hint=found.hint, severity=Severity.ERROR)
 
 
 class FolderNameDiffers(PackageRule):
@@ -134,7 +158,11 @@ class FolderNameDiffers(PackageRule):
             return
         element = manifest.root.first("name")
         if manifest.name is not None and element is not None and manifest.name != package.folder.name:
-            message = f"the package '{manifest.name}' lies in a folder called '{package.folder.name}'"
+            message = phrase(
+                "the package '{name}' lies in a folder called '{folder_name}'",
+                name=manifest.name,
+                folder_name=package.folder.name,
+            )
             yield self.report(message, element)
 
 
@@ -166,14 +194,21 @@ class MaintainerEmail(ManifestRule):
 
     def check_manifest(self, manifest: Manifest) -> Iterator[Diagnostic]:
         """What the rule finds in a manifest."""
-        for element in manifest.root.elements("maintainer"):
+        for element in manifest.root.elements():
+            if element.tag not in ("maintainer", "author"):
+                continue
             email = element.attributes.get("email")
             who = " ".join(element.text().split())
-            if email is None:
-                yield self.report(f"the maintainer '{who}' has no e-mail address", element, hint='add email="..."')
+            if not email:
+                if element.tag == "maintainer":
+                    yield self.report(
+                        phrase("the maintainer '{who}' has no e-mail address", who=who),
+                        element,
+                        hint=phrase('add email="..."'),
+                    )
             elif not is_email(email):
-                message = f"'{email}' is not an e-mail address that colcon accepts"
-                hint = "write it as name@example.org, in ASCII letters"
+                message = phrase("'{email}' is not an e-mail address that colcon accepts", email=email)
+                hint = phrase("write it as name@example.org, in ASCII letters")
                 yield self.report(message, element, "email", hint=hint)
 
 
@@ -212,12 +247,16 @@ class ManifestPlaceholder(ManifestRule):
                 text = " ".join(element.text().split())
                 email = element.attributes.get("email", "")
                 if tag in ("maintainer", "author") and _PLACEHOLDER_EMAIL.search(email):
-                    yield self.report(f"the e-mail address '{email}' is a placeholder", element, "email")
+                    yield self.report(
+                        phrase("the e-mail address '{email}' is a placeholder", email=email), element, "email"
+                    )
                 elif _PLACEHOLDER.search(text):
-                    yield self.report(f"<{tag}> is a placeholder: '{text}'", element, hint=_advice(tag))
+                    yield self.report(
+                        phrase("<{tag}> is a placeholder: '{text}'", tag=tag, text=text), element, hint=_advice(tag)
+                    )
 
 
-def _advice(tag: str) -> str:
+def _advice(tag: str) -> Phrase:
     if tag == "license":
-        return "name it by its SPDX identifier, such as Apache-2.0, MIT or BSD-3-Clause"
-    return "say in a sentence what the package is for" if tag == "description" else "write your name"
+        return phrase("name it by its SPDX identifier, such as Apache-2.0, MIT or BSD-3-Clause")
+    return phrase("say in a sentence what the package is for") if tag == "description" else phrase("write your name")

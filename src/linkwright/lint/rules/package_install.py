@@ -7,13 +7,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from glob import glob
+from typing import TYPE_CHECKING
 
-from linkwright.diagnostics import Diagnostic, Severity, nearest
-from linkwright.lint.cmake_reader import CMakeFile
-from linkwright.lint.package import PackageContext
+from linkwright.diagnostics import Diagnostic, Phrase, Severity, nearest, phrase, quoted
 from linkwright.lint.rules.package_manifest import PackageRule
-from linkwright.lint.setup_reader import Installed, SetupFile
+
+if TYPE_CHECKING:
+    from linkwright.lint.package import PackageContext
+    from linkwright.packages.readers.cmake import CMakeFile
+    from linkwright.packages.readers.setup_py import Installed, SetupFile
 
 _SHARED = re.compile(
     r".*\.(urdf|xacro|sdf|world|rviz|stl|dae|obj|glb|gltf|launch\.py|launch\.xml|launch\.yaml|srdf|yaml)$",
@@ -54,18 +56,22 @@ class PatternMatchesNothing(PackageRule):
         if setup is None:
             return
         for item in setup.installed:
-            if not item.is_pattern or matching(package, item):
+            if not item.is_pattern or item.files(package.folder):
                 continue
             folder = item.text.rpartition("/")[0]
             like = near_folder(package, folder)
             if like:
-                hint: str | None = f"did you mean the folder '{like}'?"
+                hint: Phrase | None = phrase("did you mean the folder '{like}'?", like=like)
             elif folder and package.has(folder):
-                hint = f"there are other files in '{folder}'" if folder in package.folders else f"'{folder}' is empty"
+                hint = (
+                    phrase("there are other files in '{folder}'", folder=folder)
+                    if folder in package.folders
+                    else phrase("'{folder}' is empty", folder=folder)
+                )
             else:
-                hint = f"there is no folder '{folder}'" if folder else None
+                hint = phrase("there is no folder '{folder}'", folder=folder) if folder else None
             severity = self.severity if like or (folder and package.has(folder)) else Severity.INFO
-            message = f"the pattern '{item.text}' in setup.py matches no file"
+            message = phrase("the pattern '{text}' in setup.py matches no file", text=item.text)
             yield self.report(message, span=item.span, source=setup.source, hint=hint, severity=severity)
 
 
@@ -110,14 +116,16 @@ class FolderNotInstalled(PackageRule):
     def _by_setup(self, package: PackageContext, setup: SetupFile) -> Iterator[Diagnostic]:
         if not setup.call or not setup.is_complete:
             return
-        files = {file for item in setup.installed for file in matching(package, item)}
+        files = {file for item in setup.installed for file in item.files(package.folder)}
         installed = {file.rpartition("/")[0] for file in files}
-        empty = [item for item in setup.installed if item.is_pattern and not matching(package, item)]
+        empty = [item for item in setup.installed if item.is_pattern and not item.files(package.folder)]
         meant = {near_folder(package, item.text.rpartition("/")[0]) for item in empty}  # LW821 tells of these
         for folder in shared_folders(package):
             if folder not in installed and folder not in meant:
-                message = f"setup.py does not install the folder '{folder}'"
-                hint = f"add ('share/{package.name}/{folder}', glob('{folder}/*')) to data_files"
+                message = phrase("setup.py does not install the folder '{folder}'", folder=folder)
+                hint = phrase(
+                    "add ('share/{name}/{folder}', glob('{folder}/*')) to data_files", name=package.name, folder=folder
+                )
                 yield self.report(message, span=setup.data_files_span, source=setup.source, hint=hint)
 
     def _by_cmake(self, package: PackageContext, cmake: CMakeFile) -> Iterator[Diagnostic]:
@@ -126,8 +134,8 @@ class FolderNotInstalled(PackageRule):
         for folder in shared_folders(package):
             covered = any(_covers(item.text, folder) for item in cmake.directories)
             if not covered and not any(item.text.startswith(f"{folder}/") for item in cmake.files):
-                message = f"CMakeLists.txt does not install the folder '{folder}'"
-                hint = f"add install(DIRECTORY {folder} DESTINATION share/${{PROJECT_NAME}})"
+                message = phrase("CMakeLists.txt does not install the folder '{folder}'", folder=folder)
+                hint = phrase("add install(DIRECTORY {folder} DESTINATION share/${{PROJECT_NAME}})", folder=folder)
                 span = cmake.span(cmake.project) if cmake.project else None
                 yield self.report(message, span=span, source=cmake.source, hint=hint)
 
@@ -165,7 +173,7 @@ class FileNotInstalled(PackageRule):
         places: dict[str, Installed] = {}
         files: set[str] = set()
         for item in setup.installed:
-            for file in matching(package, item):
+            for file in item.files(package.folder):
                 files.add(file)
                 if item.is_pattern:
                     places.setdefault(file.rpartition("/")[0], item)
@@ -173,8 +181,13 @@ class FileNotInstalled(PackageRule):
             folder = file.rpartition("/")[0]
             pattern = places.get(folder)
             if folder and pattern is not None and file not in files and _is_shared(file):
-                message = f"setup.py installs '{pattern.text}', which leaves out '{file}'"
-                yield self.report(message, span=pattern.span, source=setup.source, hint=f"such as glob('{folder}/*')")
+                message = phrase("setup.py installs '{text}', which leaves out '{file}'", text=pattern.text, file=file)
+                yield self.report(
+                    message,
+                    span=pattern.span,
+                    source=setup.source,
+                    hint=phrase("such as glob('{folder}/*')", folder=folder),
+                )
 
 
 class InstalledFileMissing(PackageRule):
@@ -208,25 +221,16 @@ class InstalledFileMissing(PackageRule):
             for item in setup.installed:
                 if item.is_pattern or package.has(item.text) or item.text == f"resource/{package.name}":
                     continue
-                message = f"setup.py installs '{item.text}', which does not exist"
+                message = phrase("setup.py installs '{text}', which does not exist", text=item.text)
                 yield self.report(message, span=item.span, source=setup.source, hint=near_file(package, item.text))
         if cmake is not None:
-            for each in (*cmake.directories, *cmake.files):
+            for each in cmake.required:
                 text = each.text.rstrip("/")
                 if text and not text.startswith("/") and "<" not in text and not package.has(text):
-                    message = f"CMakeLists.txt installs '{each.text}', which does not exist"
+                    message = phrase("CMakeLists.txt installs '{text}', which does not exist", text=each.text)
                     like = near_folder(package, text)
-                    hint = f"did you mean '{like}'?" if like else near_file(package, text)
-                    yield self.report(message, span=cmake.span(each), source=cmake.source, hint=hint)
-
-
-def matching(package: PackageContext, item: Installed) -> list[str]:
-    """The files of a package that an item of ``data_files`` means, as paths below the package."""
-    if not item.is_pattern:
-        return [item.text] if package.has(item.text) else []
-    # Not Path.glob, whose rules for hidden files and "**" are others than those of the glob that setup.py calls.
-    found = glob(item.text, root_dir=package.folder, recursive=item.recursive)  # noqa: PTH207
-    return [name.replace("\\", "/") for name in found if (package.folder / name).is_file()]
+                    hint = phrase("did you mean {names}?", names=quoted(like)) if like else near_file(package, text)
+                    yield self.report(message, span=cmake.span(each), source=each.source, hint=hint)
 
 
 def shared_folders(package: PackageContext) -> list[str]:
@@ -252,9 +256,9 @@ def _covers(directory: str, folder: str) -> bool:
     return directory in ("", ".") or folder == directory or folder.startswith(f"{directory}/")
 
 
-def near_file(package: PackageContext, path: str) -> str | None:
+def near_file(package: PackageContext, path: str) -> Phrase | None:
     """A hint that names the file beside a path whose name is most like it, or None."""
     folder = path.rpartition("/")[0]
     beside = [file for file in package.files if file.rpartition("/")[0] == folder]
     like = next(iter(nearest(path, beside, 1)), None)
-    return f"did you mean '{like}'?" if like else None
+    return phrase("did you mean {names}?", names=quoted(like)) if like else None

@@ -4,15 +4,20 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
-from linkwright.diagnostics import Diagnostic, Note, Severity
+from linkwright.diagnostics import Diagnostic, Note, Severity, phrase
 from linkwright.lint.fix import remove_element
-from linkwright.lint.manifest_reader import Dependency, Manifest
-from linkwright.lint.package import PackageContext
 from linkwright.lint.rule import Rule, Scope
 from linkwright.lint.subject import Subject
 
+if TYPE_CHECKING:
+    from linkwright.lint.package import PackageContext
+    from linkwright.packages.readers.package_xml import Dependency, Manifest
+
 _REQUIRED = ("name", "version", "description", "maintainer", "license")
+_FILLED = frozenset({"name", "version", "description", "license"})
+"""Elements that catkin_pkg refuses when they are empty; a maintainer may be an address alone."""
 _DOUBLED_BY_DEPEND = frozenset({"build_depend", "build_export_depend", "exec_depend"})
 _BUILD_FILES = {
     "ament_python": "setup.py",
@@ -28,7 +33,6 @@ class PackageRule(Rule):
     scope = Scope.PACKAGE
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
         package = subject.package
         if package is not None:
             yield from self.check_package(package)
@@ -82,7 +86,7 @@ class ManifestMalformed(PackageRule):
         if error is not None:
             found = error.diagnostics[0]
             yield self.report(
-                f"package.xml cannot be read: {found.message}",
+                phrase("package.xml cannot be read: {message}", message=found.message),
                 span=found.span,
                 source=found.source,
                 notes=found.notes,
@@ -124,16 +128,20 @@ class ManifestIncomplete(ManifestRule):
         """What the rule finds in a manifest."""
         root = manifest.root
         if root.tag != "package":
-            yield self.report(f"the root of package.xml is <{root.tag}>, not <package>", root)
+            yield self.report(phrase("the root of package.xml is <{tag}>, not <package>", tag=root.tag), root)
             return
         missing = [tag for tag in _REQUIRED if root.first(tag) is None]
         if missing:
             listed = " and ".join(f"<{tag}>" for tag in missing)
-            yield self.report(f"package.xml lacks {listed}", root, hint=f"add {listed}")
-        for tag in _REQUIRED:
-            element = root.first(tag)
-            if element is not None and not element.text().strip() and next(element.elements(), None) is None:
-                yield self.report(f"<{tag}> of package.xml is empty", element)
+            yield self.report(
+                phrase("package.xml lacks {listed}", listed=listed), root, hint=phrase("add {listed}", listed=listed)
+            )
+        for element in root.elements():
+            if element.tag not in _FILLED:
+                continue
+            if not element.text().strip() and next(element.elements(), None) is None:
+                tag = element.tag
+                yield self.report(phrase("<{tag}> of package.xml is empty", tag=tag), element)
 
 
 class ManifestVersion(ManifestRule):
@@ -165,7 +173,9 @@ class ManifestVersion(ManifestRule):
         version, element = manifest.text("version"), manifest.root.first("version")
         if version and element is not None and not re.fullmatch(r"\d+\.\d+\.\d+", version):
             yield self.report(
-                f"the version '{version}' is not three numbers with dots between", element, hint="such as 1.0.0"
+                phrase("the version '{version}' is not three numbers with dots between", version=version),
+                element,
+                hint=phrase("such as 1.0.0"),
             )
 
 
@@ -203,10 +213,10 @@ class DependencyRepeated(ManifestRule):
             if each.tag in _DOUBLED_BY_DEPEND and first is each:
                 first = generic.get(each.name, each)
             if first is not each and _same_condition(first.element.attributes, each.element.attributes):
-                note = Note(f"<{first.tag}> is here", first.element.span())
-                message = f"the dependency on '{each.name}' is named again"
+                note = Note(phrase("<{tag}> is here", tag=first.tag), first.element.span())
+                message = phrase("the dependency on '{name}' is named again", name=each.name)
                 fix = remove_element(each.element)
-                yield self.report(message, each.element, notes=[note], hint="remove it", fix=fix)
+                yield self.report(message, each.element, notes=[note], hint=phrase("remove it"), fix=fix)
 
 
 class DependencyOnItself(ManifestRule):
@@ -236,8 +246,8 @@ class DependencyOnItself(ManifestRule):
         """What the rule finds in a manifest."""
         for each in manifest.dependencies:
             if each.name == manifest.name:
-                message = f"the package '{each.name}' depends on itself"
-                yield self.report(message, each.element, hint="remove it", fix=remove_element(each.element))
+                message = phrase("the package '{name}' depends on itself", name=each.name)
+                yield self.report(message, each.element, hint=phrase("remove it"), fix=remove_element(each.element))
 
 
 class BuildTypeDiffers(PackageRule):
@@ -285,9 +295,17 @@ class BuildTypeDiffers(PackageRule):
         there = "setup.py" if has["setup.py"] else "CMakeLists.txt"
         export = manifest.root.first("export")
         element = (export and export.first("build_type")) or export or manifest.root
-        said = f"is '{build_type}'" if build_type else "is not given, which means catkin"
-        message = f"the build type {said}, and the package has a {there}"
-        yield self.report(message, element, hint=f"write <build_type>{right}</build_type> in <export>")
+        if build_type:
+            message = phrase(
+                "the build type is '{build_type}', and the package has a {file}", build_type=build_type, file=there
+            )
+        else:
+            message = phrase(
+                "the build type is not given, which means catkin, and the package has a {file}", file=there
+            )
+        yield self.report(
+            message, element, hint=phrase("write <build_type>{right}</build_type> in <export>", right=right)
+        )
 
 
 def _same_condition(first: dict[str, str], second: dict[str, str]) -> bool:

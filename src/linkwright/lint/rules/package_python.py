@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
-from linkwright.diagnostics import Diagnostic, Severity
-from linkwright.lint.package import PackageContext
+from linkwright.diagnostics import Diagnostic, Severity, foreign, phrase
 from linkwright.lint.rules.package_install import near_file
 from linkwright.lint.rules.package_manifest import PackageRule
+
+if TYPE_CHECKING:
+    from linkwright.lint.package import PackageContext
 
 _MARKERS = "share/ament_index/resource_index/packages"
 
@@ -45,7 +48,7 @@ class SetupSyntaxError(PackageRule):
         """What the rule finds in a package."""
         setup = package.setup
         if setup is not None and setup.error is not None:
-            message = f"setup.py is not Python: {setup.error.message}"
+            message = phrase("setup.py is not Python: {message}", message=foreign(setup.error.message))
             yield self.report(message, span=setup.error.span, source=setup.source)
 
 
@@ -80,8 +83,12 @@ class MarkerMissing(PackageRule):
         if wants is None or package.has(marker):
             return
         others = [file for file in package.files if file.startswith("resource/")]
-        hint = f"rename '{others[0]}'" if len(others) == 1 else f"make an empty file '{marker}'"
-        message = f"setup.py installs the marker '{marker}', which does not exist"
+        hint = (
+            phrase("rename '{others}'", others=others[0])
+            if len(others) == 1
+            else phrase("make an empty file '{marker}'", marker=marker)
+        )
+        message = phrase("setup.py installs the marker '{marker}', which does not exist", marker=marker)
         yield self.report(message, span=wants.span, source=setup.source, hint=hint)
 
 
@@ -122,12 +129,12 @@ class MarkerNotInstalled(PackageRule):
             return
         marked = any(item.destination == _MARKERS or item.text.startswith("resource/") for item in setup.installed)
         if not marked:
-            message = f"setup.py does not install the marker of the package '{package.name}'"
-            hint = f"add ('{_MARKERS}', ['resource/{package.name}']) to data_files"
+            message = phrase("setup.py does not install the marker of the package '{name}'", name=package.name)
+            hint = phrase("add ('{markers}', ['resource/{name}']) to data_files", markers=_MARKERS, name=package.name)
             yield self.report(message, span=setup.data_files_span, source=setup.source, hint=hint)
         if not any(item.text == "package.xml" for item in setup.installed):
-            message = "setup.py does not install package.xml"
-            hint = f"add ('share/{package.name}', ['package.xml']) to data_files"
+            message = phrase("setup.py does not install package.xml")
+            hint = phrase("add ('share/{name}', ['package.xml']) to data_files", name=package.name)
             yield self.report(message, span=setup.data_files_span, source=setup.source, hint=hint)
 
 
@@ -167,11 +174,20 @@ class EntryPointMissing(PackageRule):
             path = entry.module.replace(".", "/")
             file = next((name for name in (f"{path}.py", f"{path}/__init__.py") if package.has(name)), None)
             if file is None:
-                message = f"the executable '{entry.executable}' runs '{entry.module}', which does not exist"
+                message = phrase(
+                    "the executable '{executable}' runs '{module}', which does not exist",
+                    executable=entry.executable,
+                    module=entry.module,
+                )
                 yield self.report(message, span=entry.span, source=setup.source, hint=near_file(package, f"{path}.py"))
             elif entry.function is not None and not _defines(package, file, entry.function.partition(".")[0]):
-                message = f"the executable '{entry.executable}' runs '{entry.function}', which '{file}' does not define"
-                hint = f"define {entry.function}() in it"
+                message = phrase(
+                    "the executable '{executable}' runs '{function}', which '{file}' does not define",
+                    executable=entry.executable,
+                    function=entry.function,
+                    file=file,
+                )
+                hint = phrase("define {function}() in it", function=entry.function)
                 yield self.report(message, span=entry.span, source=setup.source, hint=hint)
 
 
@@ -208,9 +224,12 @@ class PythonPackageMissing(PackageRule):
         for name, span in setup.packages:
             path = name.replace(".", "/")
             if name and not package.has(path):
-                message = f"setup.py names the Python package '{name}', which has no folder"
+                message = phrase("setup.py names the Python package '{name}', which has no folder", name=name)
                 yield self.report(
-                    message, span=span, source=setup.source, hint=f"add an empty file '{path}/__init__.py'"
+                    message,
+                    span=span,
+                    source=setup.source,
+                    hint=phrase("add an empty file '{path}/__init__.py'", path=path),
                 )
 
 
@@ -247,15 +266,22 @@ class SetupCfgDiffers(PackageRule):
         wanted = f"$base/lib/{package.name}"
         source = package.text("setup.cfg")
         if source is None:
-            message = "without a setup.cfg, ros2 run does not find the executables of this package"
-            hint = f"write one with install_scripts={wanted} in [install]"
+            message = phrase("without a setup.cfg, ros2 run does not find the executables of this package")
+            hint = phrase("write one with install_scripts={wanted} in [install]", wanted=wanted)
             yield self.report(message, span=setup.entry_points[0].span, source=setup.source, hint=hint)
             return
         for match in re.finditer(r"^(script_dir|install_scripts)[ \t]*=[ \t]*(\S+)[ \t]*$", source.text, re.MULTILINE):
             if match[2] != wanted:
                 span = source.span(*match.span(2))
-                message = f"setup.cfg puts executables into '{match[2]}', where ros2 run does not look"
-                yield self.report(message, span=span, source=source, hint=f"write {match[1]}={wanted}")
+                message = phrase(
+                    "setup.cfg puts executables into '{match}', where ros2 run does not look", match=match[2]
+                )
+                yield self.report(
+                    message,
+                    span=span,
+                    source=source,
+                    hint=phrase("write {match}={wanted}", match=match[1], wanted=wanted),
+                )
 
 
 def is_ament_python(package: PackageContext) -> bool:

@@ -11,9 +11,11 @@ from collections.abc import Iterable, Sequence
 from math import hypot, sqrt
 from typing import NamedTuple
 
-from linkwright.diagnostics import Diagnostic, Note, Span
-from linkwright.lint.frames import placement, placements
-from linkwright.lint.rule import Option, Rule
+from linkwright.diagnostics import Diagnostic, Note, Span, phrase
+from linkwright.geometry.placement import placement
+from linkwright.lint.frames import placements
+from linkwright.lint.option import Option
+from linkwright.lint.rule import Rule
 from linkwright.lint.rules.names_wheels import wheels
 from linkwright.lint.subject import Subject
 from linkwright.urdf import Cylinder, Link, Robot, Sphere, Vector3
@@ -84,25 +86,30 @@ class WheelsNotLevel(Rule):
     options = (Option("tolerance", 0.01, "how far above the ground a wheel may be, in m"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
         robot = subject.robot
         found = contacts(robot) if robot is not None else None
         if found is None or sum(contact.is_wheel for contact in found) < 2:
             return
-        tolerance = subject.option(self, "tolerance", float)
+        tolerance = self.option(subject, "tolerance", float)
         driven = [contact for contact in found if contact.is_wheel]
         ground = min(contact.place[2] for contact in driven)
         for contact in found:
             gap = contact.place[2] - ground
             if abs(gap) > tolerance:
                 lowest = min(driven, key=lambda each: each.place[2]).link
-                where = "above" if gap > 0 else "below"
+                where = phrase("above") if gap > 0 else phrase("below")
                 yield self.report(
-                    f"'{contact.link.name}' ends {abs(gap) * 1000:.3g} mm {where} the ground '{lowest.name}' is on",
+                    phrase(
+                        "'{name}' ends {gap:.3g} mm {where} the ground '{lowest_name}' is on",
+                        name=contact.link.name,
+                        gap=abs(gap) * 1000,
+                        where=where,
+                        lowest_name=lowest.name,
+                    ),
                     contact.link.element,
                     "name",
-                    notes=[Note(f"'{lowest.name}' is defined here", _place(lowest))],
-                    hint="check the heights of their joints, and the radii",
+                    notes=[Note(phrase("'{name}' is defined here", name=lowest.name), _place(lowest))],
+                    hint=phrase("check the heights of their joints, and the radii"),
                 )
 
 
@@ -128,7 +135,6 @@ class CenterBeyondWheels(Rule):
     options = (Option("margin", 0.01, "how far outside it may be, in m"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """See the class."""
         robot = subject.robot
         found = contacts(robot) if robot is not None else None
         if robot is None or found is None or len(found) < 3:
@@ -138,20 +144,29 @@ class CenterBeyondWheels(Rule):
         if len(corners) < 3 or center is None:
             return
         distance = _distance_outside(center, corners)
-        if distance > subject.option(self, "margin", float):
+        if distance > self.option(subject, "margin", float):
             holder = max(
                 (link for link in robot.links.values() if link.inertial is not None),
                 key=lambda link: link.inertial.mass if link.inertial is not None else 0.0,
             )
             yield self.report(
-                f"the centre of mass of the robot is {distance * 100:.3g} cm beyond its wheels, so it tips over",
+                phrase(
+                    "the centre of mass of the robot is {distance:.3g} cm beyond its wheels, so it tips over",
+                    distance=distance * 100,
+                ),
                 holder.element,
                 "name",
                 notes=[
-                    Note(f"it is at x = {center[0]:.3g} m, y = {center[1]:.3g} m"),
-                    Note(f"'{holder.name}' is the heaviest link"),
+                    Note(
+                        phrase(
+                            "it is at x = {center:.3g} m, y = {other_center:.3g} m",
+                            center=center[0],
+                            other_center=center[1],
+                        )
+                    ),
+                    Note(phrase("'{name}' is the heaviest link", name=holder.name)),
                 ],
-                hint="check the origins of the heavy links' <inertial>, and where the casters are",
+                hint=phrase("check the origins of the heavy links' <inertial>, and where the casters are"),
             )
 
 

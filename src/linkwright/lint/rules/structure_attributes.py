@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from linkwright.diagnostics import Diagnostic, Severity
+from linkwright.diagnostics import Diagnostic, Severity, phrase, quoted
 from linkwright.lint.fix import rename_attribute
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
@@ -40,6 +40,7 @@ class MisspeltAttribute(Rule):
 
     code = "LW106"
     name = "misspelt-attribute"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Every attribute nobody reads whose name is near one that is not given."""
@@ -50,10 +51,10 @@ class MisspeltAttribute(Rule):
                 continue
             span = attribute_name_span(place.element, attribute)
             yield self.report(
-                f"'{attribute}' in {place} is not read",
+                phrase("'{attribute}' in {place} is not read", attribute=attribute, place=place),
                 place.element,
                 span=span,
-                hint=f"did you mean '{meant}'?",
+                hint=phrase("did you mean {names}?", names=quoted(meant)),
                 fix=rename_attribute(place.element, attribute, meant, safe=False),
             )
 
@@ -79,6 +80,7 @@ class UnknownAttribute(Rule):
 
     code = "LW108"
     name = "unknown-attribute"
+    holds_for_parts = True
     severity = Severity.INFO
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
@@ -91,8 +93,10 @@ class UnknownAttribute(Rule):
                 continue
             known = ", ".join(f"'{rule.name}'" for rule in place.rule.attributes)
             yield self.report(
-                f"'{attribute}' in {place} is not read",
+                phrase("'{attribute}' in {place} is not read", attribute=attribute, place=place),
                 place.element,
                 span=attribute_name_span(place.element, attribute),
-                hint=f"what is read here: {known}" if known else f"<{place.rule.tag}> has no attributes",
+                hint=phrase("what is read here: {known}", known=known)
+                if known
+                else phrase("<{tag}> has no attributes", tag=place.rule.tag),
             )

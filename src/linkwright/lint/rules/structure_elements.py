@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from linkwright.diagnostics import Diagnostic, Severity
+from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.lint.fix import rename_element
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
@@ -45,6 +45,7 @@ class MisspeltElement(Rule):
 
     code = "LW104"
     name = "misspelt-element"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Every element nobody reads whose name is near one that could stand there."""
@@ -54,9 +55,9 @@ class MisspeltElement(Rule):
             if meant is None or child.span() in told:
                 continue
             yield self.report(
-                f"<{child.tag}> in {inside(place)} is not read",
+                phrase("<{tag}> in {place} is not read", tag=child.tag, place=inside(place)),
                 child,
-                hint=f"did you mean <{meant}>?",
+                hint=phrase("did you mean <{tag}>?", tag=meant),
                 fix=rename_element(child, meant, safe=False) if is_misspelt(child.tag, meant) else None,
             )
 
@@ -92,6 +93,7 @@ class MisplacedElement(Rule):
 
     code = "LW105"
     name = "misplaced-element"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Every element that is known elsewhere; a material in a collision has a rule of its own."""
@@ -103,9 +105,9 @@ class MisplacedElement(Rule):
             around = place.parent.tag if place.parent is not None else ""
             listed = " or ".join(f"<{home}>" for home in ((around,) if around in homes else homes))
             yield self.report(
-                f"<{child.tag}> in {inside(place)} is not read",
+                phrase("<{tag}> in {place} is not read", tag=child.tag, place=inside(place)),
                 child,
-                hint=f"it belongs directly in {listed}",
+                hint=phrase("it belongs directly in {listed}", listed=listed),
             )
 
 
@@ -132,6 +134,7 @@ class UnknownElement(Rule):
 
     code = "LW107"
     name = "unknown-element"
+    holds_for_parts = True
     severity = Severity.INFO
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
@@ -143,9 +146,11 @@ class UnknownElement(Rule):
             if meant_element(place.rule, child) is None and child.span() not in told:
                 known = ", ".join(f"<{rule.tag}>" for rule in place.rule.children)
                 yield self.report(
-                    f"<{child.tag}> in {inside(place)} is not read",
+                    phrase("<{tag}> in {place} is not read", tag=child.tag, place=inside(place)),
                     child,
-                    hint=f"what is read here: {known}" if known else f"<{place.rule.tag}> holds no elements",
+                    hint=phrase("what is read here: {known}", known=known)
+                    if known
+                    else phrase("<{tag}> holds no elements", tag=place.rule.tag),
                 )
 
 
@@ -173,6 +178,7 @@ class MaterialInCollision(Rule):
 
     code = "LW110"
     name = "material-in-collision"
+    holds_for_parts = True
     default = False
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
@@ -183,8 +189,8 @@ class MaterialInCollision(Rule):
             if place.rule.tag == "collision":
                 for material in place.element.elements("material"):
                     yield self.report(
-                        f"<material> in {place} is not read",
+                        phrase("<material> in {place} is not read", place=place),
                         material,
-                        hint="write it in the <visual>",
+                        hint=phrase("write it in the <visual>"),
                         fix=remove_element(material),
                     )

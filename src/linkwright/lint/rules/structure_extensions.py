@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from linkwright.diagnostics import Diagnostic
+from linkwright.diagnostics import Diagnostic, phrase, quoted
 from linkwright.lint.extension_names import ATTRIBUTES, CHILDREN
 from linkwright.lint.fix import rename_attribute, rename_element
 from linkwright.lint.rule import Rule
@@ -38,6 +38,7 @@ class MisspeltExtension(Rule):
 
     code = "LW109"
     name = "misspelt-extension"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Every element and attribute there whose name is near a known one."""
@@ -60,9 +61,13 @@ class MisspeltExtension(Rule):
         near = close_name(child.tag, known)
         if near:
             yield self.report(
-                f"<{child.tag}> in <{parent.tag}> is not known to any reader of <{parent.tag}>",
+                phrase(
+                    "<{tag}> in <{parent_tag}> is not known to any reader of <{parent_tag}>",
+                    tag=child.tag,
+                    parent_tag=parent.tag,
+                ),
                 child,
-                hint=f"did you mean <{near}>?",
+                hint=phrase("did you mean <{tag}>?", tag=near),
                 fix=rename_element(child, near, safe=False),
             )
 
@@ -72,9 +77,9 @@ class MisspeltExtension(Rule):
             near = close_name(attribute, [name for name in known if name not in element.attributes])
             if attribute not in known and near:
                 yield self.report(
-                    f"'{attribute}' in <{element.tag}> is not read",
+                    phrase("'{attribute}' in <{tag}> is not read", attribute=attribute, tag=element.tag),
                     element,
                     span=attribute_name_span(element, attribute),
-                    hint=f"did you mean '{near}'?",
+                    hint=phrase("did you mean {names}?", names=quoted(near)),
                     fix=rename_attribute(element, attribute, near, safe=False),
                 )

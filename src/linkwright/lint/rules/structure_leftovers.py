@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import PurePath
 
-from linkwright.diagnostics import Diagnostic, Severity
+from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
 from linkwright.lint.walk import known_elements
-from linkwright.urdf import schema
+from linkwright.urdf.value_types import TEXT
 from linkwright.xmltree import Text
 
 
@@ -45,15 +45,18 @@ class XacroInUrdf(Rule):
         for place in known_elements(subject):
             for attribute, written in place.element.attributes.items():
                 rule = place.rule.attribute(attribute)
-                if rule is None or rule.kind is not schema.Kind.TEXT:
+                if rule is None or rule.type is not TEXT:
                     continue
                 if "${" in written or "$(" in written:
                     yield self.report(
-                        f"nobody evaluates '{written}' in a file that is not xacro",
+                        phrase("nobody evaluates '{written}' in a file that is not xacro", written=written),
                         place.element,
                         attribute,
-                        hint='declare xmlns:xacro="http://www.ros.org/wiki/xacro" on <robot> and call the file '
-                        f"{PurePath(subject.path).stem}.urdf.xacro",
+                        hint=phrase(
+                            'declare xmlns:xacro="http://www.ros.org/wiki/xacro" on <robot> and call the file'
+                            " {stem}.urdf.xacro",
+                            stem=PurePath(subject.path).stem,
+                        ),
                     )
 
 
@@ -78,6 +81,7 @@ class StrayText(Rule):
 
     code = "LW116"
     name = "stray-text"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Every text with something in it; where a value is missing besides, the reader says it."""
@@ -95,11 +99,15 @@ class StrayText(Rule):
                     start = child.offset + len(child.data) - len(child.data.lstrip())
                     span = child.source.span(start, start + len(child.data.strip().partition("\n")[0]))
                 yield self.report(
-                    f"the text '{text}' in {place if place.owner else '<robot>'} is not read",
+                    phrase(
+                        "the text '{text}' in {place} is not read", text=text, place=place if place.owner else "<robot>"
+                    ),
                     place.element,
                     span=span,
                     source=child.source,
-                    hint=f"make it a comment: <!-- {text} -->" if "--" not in text else "remove it",
+                    hint=phrase("make it a comment: <!-- {text} -->", text=text)
+                    if "--" not in text
+                    else phrase("remove it"),
                 )
 
 
@@ -125,6 +133,7 @@ class EmptyName(Rule):
 
     code = "LW117"
     name = "empty-name"
+    holds_for_parts = True
     severity = Severity.ERROR
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
@@ -134,9 +143,9 @@ class EmptyName(Rule):
             name = element.attributes.get("name")
             if name is not None and not name.strip():
                 yield self.report(
-                    f"the name of a <{element.tag}> is empty",
+                    phrase("the name of a <{tag}> is empty", tag=element.tag),
                     element,
                     "name",
-                    hint="give it a name",
+                    hint=phrase("give it a name"),
                     severity=Severity.WARNING if element is subject.root else None,
                 )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from linkwright.diagnostics import Diagnostic, Note, Severity, did_you_mean, nearest
+from linkwright.diagnostics import Diagnostic, Note, Severity, did_you_mean, nearest, phrase, quoted
 from linkwright.lint.extension_names import INTERFACES
 from linkwright.lint.fix import replace_value
 from linkwright.lint.rule import Rule
@@ -55,10 +55,10 @@ class GazeboReferenceUnknown(Rule):
             if name and name not in known:
                 near = nearest(name, known, limit=1)
                 yield self.report(
-                    f"<gazebo> refers to '{name}', which is neither a link nor a joint",
+                    phrase("<gazebo> refers to '{name}', which is neither a link nor a joint", name=name),
                     element,
                     "reference",
-                    hint=did_you_mean(name, known) or "give the name of a link or joint",
+                    hint=did_you_mean(name, known) or phrase("give the name of a link or joint"),
                     fix=replace_value(element, "reference", near[0], safe=False) if near else None,
                 )
 
@@ -95,10 +95,10 @@ class TransmissionJointUnknown(Rule):
                 name = joint.attributes.get("name")
                 if name and name not in known:
                     yield self.report(
-                        f"<transmission> is of joint '{name}', which does not exist",
+                        phrase("<transmission> is of joint '{name}', which does not exist", name=name),
                         joint,
                         "name",
-                        hint=did_you_mean(name, known) or "give the name of a joint",
+                        hint=did_you_mean(name, known) or phrase("give the name of a joint"),
                     )
 
 
@@ -135,10 +135,10 @@ class ControlJointUnknown(Rule):
             if name and name not in known:
                 near = nearest(name, known, limit=1)
                 yield self.report(
-                    f"<ros2_control> has joint '{name}', which the robot does not have",
+                    phrase("<ros2_control> has joint '{name}', which the robot does not have", name=name),
                     joint,
                     "name",
-                    hint=did_you_mean(name, known) or f'add <joint name="{name}" ...> to the robot',
+                    hint=did_you_mean(name, known) or phrase('add <joint name="{name}" ...> to the robot', name=name),
                     fix=replace_value(joint, "name", near[0], safe=False) if near else None,
                 )
 
@@ -166,6 +166,7 @@ class ControlInterfaceMisspelt(Rule):
 
     code = "LW123"
     name = "control-interface-misspelt"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Every interface of a joint that is near a standard name without being it."""
@@ -177,10 +178,10 @@ class ControlInterfaceMisspelt(Rule):
                 near = close_name(name, INTERFACES) if name.isalpha() and name not in INTERFACES else None
                 if near is not None:
                     yield self.report(
-                        f"no controller asks for an interface '{name}'",
+                        phrase("no controller asks for an interface '{name}'", name=name),
                         interface,
                         "name",
-                        hint=f"did you mean '{near}'?",
+                        hint=phrase("did you mean {names}?", names=quoted(near)),
                         fix=replace_value(interface, "name", near, safe=False),
                     )
 
@@ -211,6 +212,7 @@ class ControlPluginMissing(Rule):
 
     code = "LW124"
     name = "control-plugin-missing"
+    holds_for_parts = True
     severity = Severity.ERROR
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
@@ -223,10 +225,15 @@ class ControlPluginMissing(Rule):
             if plugin is None or not plugin.text().strip():
                 missing = "<hardware>" if hardware is None else "<plugin>"
                 yield self.report(
-                    f"<ros2_control> '{system.attributes.get('name', '')}' has no {missing}",
+                    phrase(
+                        "<ros2_control> '{attributes}' has no {missing}",
+                        attributes=system.attributes.get("name", ""),
+                        missing=missing,
+                    ),
                     plugin or hardware or system,
-                    hint="add <hardware><plugin>PACKAGE/CLASS</plugin></hardware>, "
-                    "such as mock_components/GenericSystem",
+                    hint=phrase(
+                        "add <hardware><plugin>PACKAGE/CLASS</plugin></hardware>, such as mock_components/GenericSystem"
+                    ),
                 )
 
 
@@ -252,6 +259,7 @@ class ControlJointRepeated(Rule):
 
     code = "LW125"
     name = "control-joint-repeated"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Every joint after the first of its name."""
@@ -262,11 +270,11 @@ class ControlJointRepeated(Rule):
                 before = first.setdefault(name, joint)
                 if name and before is not joint:
                     yield self.report(
-                        f"joint '{name}' is in this <ros2_control> twice",
+                        phrase("joint '{name}' is in this <ros2_control> twice", name=name),
                         joint,
                         "name",
-                        hint="write all its interfaces in one <joint>",
-                        notes=(Note("first here", before.span()),),
+                        hint=phrase("write all its interfaces in one <joint>"),
+                        notes=(Note(phrase("first here"), before.span()),),
                     )
 
 
@@ -303,10 +311,10 @@ class ControlOfFixedJoint(Rule):
             if joint.element.attributes.get("type") != "fixed":
                 continue  # a type that is none, which the reader reports
             yield self.report(
-                f"<ros2_control> commands joint '{joint.name}', which is fixed",
+                phrase("<ros2_control> commands joint '{name}', which is fixed", name=joint.name),
                 command,
-                hint="remove it, or give the joint a type that moves",
-                notes=(Note(f"joint '{joint.name}' is defined here", joint.element.span()),),
+                hint=phrase("remove it, or give the joint a type that moves"),
+                notes=(Note(phrase("joint '{name}' is defined here", name=joint.name), joint.element.span()),),
             )
 
 
@@ -346,9 +354,11 @@ class TransmissionIgnored(Rule):
         """The first transmission of the form of ROS 1."""
         found = list(subject.elements("transmission"))
         if found:
-            count = f" (and {len(found) - 1} more)" if len(found) > 1 else ""
+            message = phrase("nothing in ROS 2 reads <transmission> directly in <robot>")
+            if len(found) > 1:
+                message = phrase("{message} (and {count} more)", message=message, count=len(found) - 1)
             yield self.report(
-                f"nothing in ROS 2 reads <transmission> directly in <robot>{count}",
+                message,
                 found[0],
-                hint="write <ros2_control> with the joints and their interfaces",
+                hint=phrase("write <ros2_control> with the joints and their interfaces"),
             )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable
 
-from linkwright.diagnostics import Diagnostic, Note, Severity
+from linkwright.diagnostics import Diagnostic, Note, Severity, phrase
 from linkwright.lint.fix import remove_element
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
@@ -47,9 +47,11 @@ class NothingToSee(Rule):
             for link in robot.links.values()
         ):
             yield self.report(
-                f"none of the {len(robot.links)} links of robot '{robot.name}' has a shape",
+                phrase(
+                    "none of the {count} links of robot '{name}' has a shape", count=len(robot.links), name=robot.name
+                ),
                 subject.root,
-                hint="give the links a <visual>",
+                hint=phrase("give the links a <visual>"),
             )
 
 
@@ -98,13 +100,24 @@ class DisconnectedPart(Rule):
             if root in (main, roots[1]) or element is None:
                 continue  # of the second root the reader speaks
             below = sizes[root] - 1
-            what = f"link '{root}'" + (f" and the {below} below it" if below else "")
-            verb = "are" if below else "is"
+            if below:
+                message = phrase(
+                    "link '{root}' and the {count} below it are not connected to '{main}'",
+                    root=root,
+                    count=below,
+                    main=main,
+                )
+            else:
+                message = phrase("link '{root}' is not connected to '{main}'", root=root, main=main)
             yield self.report(
-                f"{what} {verb} not connected to '{main}'",
+                message,
                 element,
-                hint=f'add <joint name="{root}_joint" type="fixed"><parent link="{main}"/><child link="{root}"/>'
-                f"</joint>, with the parent it hangs from",
+                hint=phrase(
+                    'add <joint name="{root}_joint" type="fixed"><parent link="{main}"/><child'
+                    ' link="{root}"/></joint>, with the parent it hangs from',
+                    root=root,
+                    main=main,
+                ),
             )
 
 
@@ -131,6 +144,7 @@ class RepeatedElement(Rule):
 
     code = "LW111"
     name = "repeated-element"
+    holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Every element after the first of its tag, where one is read."""
@@ -143,10 +157,10 @@ class RepeatedElement(Rule):
                 before = first.setdefault(child.tag, child)
                 if before is not child:
                     yield self.report(
-                        f"{place} has more than one <{child.tag}>; only the first is read",
+                        phrase("{place} has more than one <{tag}>; only the first is read", place=place, tag=child.tag),
                         child,
-                        hint="keep the one that is meant",
-                        notes=(Note("this one is read", before.span()),),
+                        hint=phrase("keep the one that is meant"),
+                        notes=(Note(phrase("this one is read"), before.span()),),
                         fix=remove_element(child, safe=False),
                     )
 
@@ -179,10 +193,10 @@ class NewerVersion(Rule):
         if robot is not None and robot.version > (1, 0):
             written = ".".join(map(str, robot.version))
             yield self.report(
-                f"URDF version '{written}' is refused by the urdfdom of ROS 2 Jazzy and older",
+                phrase("URDF version '{written}' is refused by the urdfdom of ROS 2 Jazzy and older", written=written),
                 subject.root,
                 "version",
-                hint='write version="1.0" where nothing newer is used',
+                hint=phrase('write version="1.0" where nothing newer is used'),
             )
 
 

@@ -5,18 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import islice
 
-from linkwright.diagnostics import Diagnostic
+from linkwright.diagnostics import Diagnostic, phrase
 from linkwright.lint.fix import Edit, Fix
-from linkwright.lint.rule import Rule
-from linkwright.lint.subject import Subject
-from linkwright.lint.xacro_facts import xacro_facts
+from linkwright.lint.rules.xacro_rule import XacroRule
+from linkwright.lint.xacro_facts import XacroFacts
 from linkwright.lint.xacro_names import DEPRECATED, is_constant
 from linkwright.xacro.faults import attribute_part
 from linkwright.xmltree import Element
 from linkwright.xmltree.positions import attribute_value_range, raw_offset
 
 
-class DeprecatedFunction(Rule):
+class DeprecatedFunction(XacroRule):
     """A function of xacro is called by its bare name, which is deprecated.
 
     ## Why
@@ -39,13 +38,10 @@ class DeprecatedFunction(Rule):
 
     code = "LW714"
     name = "deprecated-function"
+    holds_for_parts = True
     replaces = ("XAC507",)
 
-    def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
-        if subject.expansion is None:
-            return
-        facts = xacro_facts(subject)
+    def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
         taken = {definition.name for file in facts.files.values() for definition in file.properties}
         for file in facts.files.values():
             for use in file.uses:
@@ -66,11 +62,13 @@ class DeprecatedFunction(Rule):
                 start = raw_offset(source.text, *written, at)
                 if source.text.startswith(name, start):
                     fix = Fix((Edit(source.name, start, start, better.removesuffix(name)),))
-        message = f"calling '{name}' by its bare name is deprecated"
-        return self.report(message, element, attribute, span=span, hint=f"write {better}", fix=fix)
+        message = phrase("calling '{name}' by its bare name is deprecated", name=name)
+        return self.report(
+            message, element, attribute, span=span, hint=phrase("write {better}", better=better), fix=fix
+        )
 
 
-class ConstantCondition(Rule):
+class ConstantCondition(XacroRule):
     """The condition of ``xacro:if`` or ``xacro:unless`` is always the same.
 
     ## Why
@@ -99,22 +97,19 @@ class ConstantCondition(Rule):
     code = "LW715"
     name = "constant-condition"
 
-    def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
-        if subject.expansion is None:
-            return
-        for file in xacro_facts(subject).own.values():
+    def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
+        for file in facts.own.values():
             for element in islice(file.document.root.walk(), 1, None):
                 if element.tag not in ("xacro:if", "xacro:unless"):
                     continue
                 value = element.attributes.get("value", "")
                 if value and is_constant(value):
-                    message = f"the condition of '{element.tag}' is always '{value}'"
-                    hint = "make it an argument, or remove the tag with what is never there"
+                    message = phrase("the condition of '{tag}' is always '{value}'", tag=element.tag, value=value)
+                    hint = phrase("make it an argument, or remove the tag with what is never there")
                     yield self.report(message, element, "value", hint=hint)
 
 
-class UndeclaredArgument(Rule):
+class UndeclaredArgument(XacroRule):
     """An argument is used, in a branch that was not taken, and nothing declares it.
 
     ## Why
@@ -142,15 +137,10 @@ class UndeclaredArgument(Rule):
     name = "undeclared-argument"
     default = False
 
-    def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
-        expansion = subject.expansion
-        if expansion is None:
-            return
-        facts = xacro_facts(subject)
+    def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
         if facts.is_library:
             return
-        known = set(expansion.arguments)
+        known = set(facts.given)
         known |= {definition.name for file in facts.files.values() for definition in file.arguments}
         if any("$" in name for name in known):
             return
@@ -159,6 +149,8 @@ class UndeclaredArgument(Rule):
                 text = use.element.attributes.get(use.attribute, "") if use.attribute else ""
                 for name in sorted(use.found.arguments - known):
                     if f"$(arg {name})" in text:
-                        message = f"nothing declares the argument '{name}', which a branch not taken uses"
-                        hint = f'declare it: <xacro:arg name="{name}" default="..."/>'
+                        message = phrase(
+                            "nothing declares the argument '{name}', which a branch not taken uses", name=name
+                        )
+                        hint = phrase('declare it: <xacro:arg name="{name}" default="..."/>', name=name)
                         yield self.report(message, use.element, use.attribute, hint=hint)

@@ -7,12 +7,14 @@ import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from linkwright.diagnostics import Diagnostic, Note, Severity
+from linkwright.diagnostics import Diagnostic, Note, Severity, phrase
 from linkwright.lint.fix import Fix, add_attribute, rename_element, replace_value
 from linkwright.lint.rule import Rule
+from linkwright.lint.rules.xacro_rule import XacroRule
 from linkwright.lint.subject import Subject
-from linkwright.lint.xacro_facts import Definition, FileFacts, xacro_facts
-from linkwright.urdf.schema import ROBOT, ElementRule
+from linkwright.lint.xacro_facts import Definition, FileFacts, XacroFacts
+from linkwright.schema import ElementRule
+from linkwright.urdf.schema import ROBOT
 from linkwright.xacro.faults import attribute_part
 from linkwright.xmltree import Document, Element
 
@@ -54,11 +56,11 @@ class XacroPrefixMissing(Rule):
 
     code = "LW720"
     name = "xacro-prefix-missing"
+    holds_for_parts = True
     severity = Severity.ERROR
     replaces = ("LW104", "LW105", "LW107")
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
         documents = subject.sources.values()
         macros = _macro_names(documents)
         for document in documents:
@@ -71,11 +73,15 @@ class XacroPrefixMissing(Rule):
                     needed = ()
                 if needed is None or not all(name in element.attributes for name in needed):
                     continue
-                message = f"<{element.tag}> without the prefix 'xacro:' means nothing"
-                hint = f"write <xacro:{element.tag} ...>"
+                message = phrase("<{tag}> without the prefix 'xacro:' means nothing", tag=element.tag)
+                hint = phrase("write <xacro:{tag} ...>", tag=element.tag)
                 fix = rename_element(element, f"xacro:{element.tag}", safe=False)
                 if "xmlns:xacro" not in root.attributes:
-                    hint += f', and declare the prefix on the root: xmlns:xacro="{ADDRESS}"'
+                    hint = phrase(
+                        'write <xacro:{tag} ...>, and declare the prefix on the root: xmlns:xacro="{address}"',
+                        tag=element.tag,
+                        address=ADDRESS,
+                    )
                     declared = add_attribute(root, "xmlns:xacro", ADDRESS)
                     if fix is not None and declared is not None:
                         fix = Fix((*declared.edits, *fix.edits), safe=False)
@@ -97,7 +103,7 @@ def _elements_of(rule: ElementRule) -> set[str]:
     return {rule.tag}.union(*map(_elements_of, rule.children))
 
 
-class XacroNamespaceMissing(Rule):
+class XacroNamespaceMissing(XacroRule):
     """A file is written in xacro and does not declare it.
 
     ## Why
@@ -121,20 +127,23 @@ class XacroNamespaceMissing(Rule):
 
     code = "LW721"
     name = "xacro-namespace-missing"
+    holds_for_parts = True
 
-    def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
-        if subject.expansion is None:
-            return
-        file = xacro_facts(subject).main
+    def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
+        file = facts.main
         root = file.document.root
         if "xmlns:xacro" in root.attributes or not file.uses:
             return
         if any(_NEEDED.get(element.tag) for element in _described(root)):
             return  # the prefix is missing too, and that was said
-        message = "this file has expressions of xacro and does not declare the prefix 'xacro'"
+        message = phrase("this file has expressions of xacro and does not declare the prefix 'xacro'")
         fix = add_attribute(root, "xmlns:xacro", ADDRESS)
-        yield self.report(message, root, hint=f'write <{root.tag} ... xmlns:xacro="{ADDRESS}">', fix=fix)
+        yield self.report(
+            message,
+            root,
+            hint=phrase('write <{tag} ... xmlns:xacro="{address}">', tag=root.tag, address=ADDRESS),
+            fix=fix,
+        )
 
 
 class XacroNamespaceAddress(Rule):
@@ -159,22 +168,25 @@ class XacroNamespaceAddress(Rule):
 
     code = "LW722"
     name = "xacro-namespace-address"
+    holds_for_parts = True
     default = False
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
         for document in subject.sources.values():
             root = document.root
             address = root.attributes.get("xmlns:xacro", ADDRESS)
             if address == ADDRESS:
                 continue
-            what = "an old address" if _OLD_ADDRESSES.fullmatch(address) else "an address that is not ROS's"
+            if _OLD_ADDRESSES.fullmatch(address):
+                message = phrase("the prefix 'xacro' is declared with an old address")
+            else:
+                message = phrase("the prefix 'xacro' is declared with an address that is not ROS's")
             fix = replace_value(root, "xmlns:xacro", ADDRESS)
-            hint = f'write xmlns:xacro="{ADDRESS}"'
-            yield self.report(f"the prefix 'xacro' is declared with {what}", root, "xmlns:xacro", hint=hint, fix=fix)
+            hint = phrase('write xmlns:xacro="{address}"', address=ADDRESS)
+            yield self.report(message, root, "xmlns:xacro", hint=hint, fix=fix)
 
 
-class IncludeAbsolutePath(Rule):
+class IncludeAbsolutePath(XacroRule):
     """An include names its file by an absolute path.
 
     ## Why
@@ -198,20 +210,18 @@ class IncludeAbsolutePath(Rule):
 
     code = "LW723"
     name = "include-absolute-path"
+    holds_for_parts = True
 
-    def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
-        if subject.expansion is None:
-            return
-        for file in xacro_facts(subject).own.values():
+    def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
+        for file in facts.own.values():
             for include in file.includes:
                 if _ABSOLUTE.match(include.name):
-                    message = f"the included file '{include.name}' is named by an absolute path"
-                    hint = "name it relative to this file, or with $(find PACKAGE)"
+                    message = phrase("the included file '{name}' is named by an absolute path", name=include.name)
+                    hint = phrase("name it relative to this file, or with $(find PACKAGE)")
                     yield self.report(message, include.element, "filename", hint=hint)
 
 
-class IncludeOutsidePackage(Rule):
+class IncludeOutsidePackage(XacroRule):
     """An include names its file by a path that leaves the package.
 
     ## Why
@@ -234,13 +244,13 @@ class IncludeOutsidePackage(Rule):
 
     code = "LW728"
     name = "include-outside-package"
+    holds_for_parts = True
 
-    def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
-        package = subject.package
-        if package is None or subject.expansion is None:
+    def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
+        package = facts.package
+        if package is None:
             return
-        for path, file in xacro_facts(subject).own.items():
+        for path, file in facts.own.items():
             folder = path.absolute().parent
             if not folder.is_relative_to(package.folder):
                 continue
@@ -248,12 +258,16 @@ class IncludeOutsidePackage(Rule):
                 if include.name.startswith("../") and "$" not in include.name:
                     target = Path(os.path.normpath(folder / include.name))
                     if not target.is_relative_to(package.folder):
-                        message = f"'{include.name}' lies outside the package '{package.name}'"
-                        hint = "name it with $(find PACKAGE)/..."
+                        message = phrase(
+                            "'{name}' lies outside the package '{package_name}'",
+                            name=include.name,
+                            package_name=package.name,
+                        )
+                        hint = phrase("name it with $(find PACKAGE)/...")
                         yield self.report(message, include.element, "filename", hint=hint)
 
 
-class UndeclaredPackage(Rule):
+class UndeclaredPackage(XacroRule):
     """``$(find ...)`` names a package that ``package.xml`` does not depend on.
 
     ## Why
@@ -279,27 +293,28 @@ class UndeclaredPackage(Rule):
     code = "LW724"
     name = "undeclared-package"
 
-    def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
-        package = subject.package
-        if subject.expansion is None or package is None or package.manifest is None:
+    def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
+        package = facts.package
+        if package is None or package.manifest is None:
             return
         said: set[str] = set()
-        for file in xacro_facts(subject).own.values():
+        for file in facts.own.values():
             for use in file.uses:
                 for name, at in use.found.packages:
                     if name in said or package.manifest.declares(name) or use.attribute is None:
                         continue
                     said.add(name)
                     span = attribute_part(use.element, use.attribute, at, at + len(name))
-                    message = (
-                        f"the package '{name}' is used here, and the package.xml of '{package.name}' does not name it"
+                    message = phrase(
+                        "the package '{name}' is used here, and the package.xml of '{package_name}' does not name it",
+                        name=name,
+                        package_name=package.name,
                     )
-                    hint = f"add <exec_depend>{name}</exec_depend> to package.xml"
+                    hint = phrase("add <exec_depend>{name}</exec_depend> to package.xml", name=name)
                     yield self.report(message, use.element, use.attribute, span=span, hint=hint)
 
 
-class RecursiveMacro(Rule):
+class RecursiveMacro(XacroRule):
     """A macro calls itself without a condition.
 
     ## Why
@@ -329,23 +344,23 @@ class RecursiveMacro(Rule):
 
     code = "LW725"
     name = "recursive-macro"
+    holds_for_parts = True
     severity = Severity.ERROR
 
-    def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
-        if subject.expansion is None:
-            return
-        for file in xacro_facts(subject).own.values():
+    def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
+        for file in facts.own.values():
             for macro in file.macros:
                 call = _unconditional_call(macro, file)
                 if call is not None:
-                    note = Note(f"the macro '{macro.name}' is defined here", macro.element.span())
-                    message = f"the macro '{macro.name}' calls itself without a condition, so a call never ends"
-                    hint = "put the call into xacro:if or xacro:unless"
+                    note = Note(phrase("the macro '{name}' is defined here", name=macro.name), macro.element.span())
+                    message = phrase(
+                        "the macro '{name}' calls itself without a condition, so a call never ends", name=macro.name
+                    )
+                    hint = phrase("put the call into xacro:if or xacro:unless")
                     yield self.report(message, call.element, notes=[note], hint=hint)
 
 
-class IncludeOfItself(Rule):
+class IncludeOfItself(XacroRule):
     """A file includes itself, directly or through others.
 
     ## Why
@@ -367,21 +382,18 @@ class IncludeOfItself(Rule):
 
     code = "LW726"
     name = "include-of-itself"
+    holds_for_parts = True
 
-    def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
-        if subject.expansion is None:
-            return
-        facts = xacro_facts(subject)
+    def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
         for path, file in facts.own.items():
             for include in file.includes:
                 target = include.name.replace("\\", "/")
                 if "$" not in target and (path.parent / target).absolute() == path.absolute():
-                    message = f"'{path.name}' includes itself"
-                    yield self.report(message, include.element, "filename", hint="remove the include")
+                    message = phrase("'{name}' includes itself", name=path.name)
+                    yield self.report(message, include.element, "filename", hint=phrase("remove the include"))
 
 
-class MacroDefinedTwice(Rule):
+class MacroDefinedTwice(XacroRule):
     """A macro is defined again in the same file, with another body.
 
     ## Why
@@ -403,26 +415,26 @@ class MacroDefinedTwice(Rule):
 
     code = "LW727"
     name = "macro-defined-twice"
+    holds_for_parts = True
 
-    def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
-        if subject.expansion is None:
-            return
-        for file in xacro_facts(subject).own.values():
+    def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
+        for file in facts.own.values():
             first: dict[tuple[str, int], Definition] = {}
             for macro in file.macros:
                 if macro.is_conditional or not macro.name:
                     continue
                 earlier = first.setdefault((macro.name, id(macro.parents[-1])), macro)
                 if earlier is not macro:
-                    note = Note("it is defined first here", earlier.element.attribute_span("name"))
-                    message = f"the macro '{macro.name}' is defined twice in this file"
-                    yield self.report(message, macro.element, "name", notes=[note], hint="rename or remove one of them")
+                    note = Note(phrase("it is defined first here"), earlier.element.attribute_span("name"))
+                    message = phrase("the macro '{name}' is defined twice in this file", name=macro.name)
+                    yield self.report(
+                        message, macro.element, "name", notes=[note], hint=phrase("rename or remove one of them")
+                    )
 
 
 def _unconditional_call(macro: Definition, file: FileFacts) -> Definition | None:
-    for call in file.calls:
-        if call.name != macro.name or macro.element not in call.parents or call.element.tag != f"xacro:{macro.name}":
+    for call in file.calls_by_macro.get(id(macro.element), ()):
+        if call.name != macro.name or call.element.tag != f"xacro:{macro.name}":
             continue
         inside = call.parents[call.parents.index(macro.element) + 1 :]
         if not any(parent.tag.startswith("xacro:") for parent in inside):

@@ -10,15 +10,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from linkwright.diagnostics import Diagnostic
+from linkwright.diagnostics import Diagnostic, Phrase, phrase
 from linkwright.lint.fix import remove_element
-from linkwright.lint.rule import Rule
-from linkwright.lint.subject import Subject
-from linkwright.lint.xacro_facts import Definition, FileFacts, XacroFacts, parameter_span, xacro_facts
+from linkwright.lint.rules.xacro_rule import XacroRule
+from linkwright.lint.xacro_facts import Definition, FileFacts, XacroFacts, parameter_span
 from linkwright.xmltree import Element
 
 
-class UnusedProperty(Rule):
+class UnusedProperty(XacroRule):
     """A property that nothing uses.
 
     ## Why
@@ -46,11 +45,7 @@ class UnusedProperty(Rule):
     code = "LW701"
     name = "unused-property"
 
-    def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
-        if subject.expansion is None:
-            return
-        facts = xacro_facts(subject)
+    def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
         if facts.is_open or facts.is_library:
             return
         for file in facts.own.values():
@@ -61,7 +56,7 @@ class UnusedProperty(Rule):
                 if file is not facts.main and (definition.macro is None or "scope" in element.attributes):
                     continue
                 yield self.report(
-                    f"nothing uses the property '{name}'",
+                    phrase("nothing uses the property '{name}'", name=name),
                     element,
                     "name",
                     hint=_hint(name, facts.names),
@@ -69,7 +64,7 @@ class UnusedProperty(Rule):
                 )
 
 
-class UnusedArgument(Rule):
+class UnusedArgument(XacroRule):
     """An argument of a file that nothing uses.
 
     ## Why
@@ -96,11 +91,7 @@ class UnusedArgument(Rule):
     code = "LW702"
     name = "unused-argument"
 
-    def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
-        if subject.expansion is None:
-            return
-        facts = xacro_facts(subject)
+    def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
         if facts.arguments_open:
             return
         for file in facts.own.values():
@@ -108,7 +99,7 @@ class UnusedArgument(Rule):
                 name = definition.name
                 if name and "$" not in name and name not in facts.used_arguments and _is_first(definition, file):
                     yield self.report(
-                        f"nothing uses the argument '{name}'",
+                        phrase("nothing uses the argument '{name}'", name=name),
                         definition.element,
                         "name",
                         hint=_hint(name, facts.used_arguments, "$(arg ...)"),
@@ -116,7 +107,7 @@ class UnusedArgument(Rule):
                     )
 
 
-class UnusedMacro(Rule):
+class UnusedMacro(XacroRule):
     """A macro that nothing calls.
 
     ## Why
@@ -148,17 +139,13 @@ class UnusedMacro(Rule):
     code = "LW703"
     name = "unused-macro"
 
-    def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
-        if subject.expansion is None:
-            return
-        facts = xacro_facts(subject)
+    def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
         if facts.is_library or facts.calls_open:
             return
         for definition in facts.main.macros:
             if definition.name and definition.name not in facts.called:
                 yield self.report(
-                    f"nothing calls the macro '{definition.name}'",
+                    phrase("nothing calls the macro '{name}'", name=definition.name),
                     definition.element,
                     "name",
                     hint=_hint(definition.name, facts.called, f"<xacro:{definition.name} .../>"),
@@ -166,7 +153,7 @@ class UnusedMacro(Rule):
                 )
 
 
-class UnusedInclude(Rule):
+class UnusedInclude(XacroRule):
     """An include of a file that contributes nothing.
 
     ## Why
@@ -188,11 +175,7 @@ class UnusedInclude(Rule):
     code = "LW704"
     name = "unused-include"
 
-    def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
-        if subject.expansion is None:
-            return
-        facts = xacro_facts(subject)
+    def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
         if facts.is_library or any(file.is_open or file.calls_open for file in facts.files.values()):
             return
         paths = _included_paths(facts)
@@ -201,15 +184,15 @@ class UnusedInclude(Rule):
                 path = paths.get(id(include.element))
                 if path is not None and not _contributes(path, facts, paths):
                     yield self.report(
-                        f"nothing in '{Path(path).name}' is used",
+                        phrase("nothing in '{name}' is used", name=Path(path).name),
                         include.element,
                         "filename",
-                        hint="use what it defines, or remove the include",
+                        hint=phrase("use what it defines, or remove the include"),
                         fix=remove_element(include.element, safe=False),
                     )
 
 
-class UnusedMacroParameter(Rule):
+class UnusedMacroParameter(XacroRule):
     """A parameter of a macro that its body does not use.
 
     ## Why
@@ -237,11 +220,7 @@ class UnusedMacroParameter(Rule):
     code = "LW705"
     name = "unused-macro-parameter"
 
-    def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
-        if subject.expansion is None:
-            return
-        facts = xacro_facts(subject)
+    def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
         if facts.calls_open:
             return  # macros that are called by a value of their name must all take the same parameters
         for file in facts.own.values():
@@ -250,7 +229,7 @@ class UnusedMacroParameter(Rule):
 
     def _of_macro(self, macro: Definition, file: FileFacts, facts: XacroFacts) -> Iterator[Diagnostic]:
         used, blocks, is_open = _used_inside(macro.element, file)
-        calls_others = any(macro.element in call.parents for call in file.calls)
+        calls_others = bool(file.calls_by_macro.get(id(macro.element)))
         for parameter in file.parameters(macro.element):
             name = parameter.name.lstrip("*")
             if parameter.is_block:
@@ -261,10 +240,13 @@ class UnusedMacroParameter(Rule):
                 is_used = is_used or (bool(blocks) and name in facts.names)
             if name and not is_used and name.isidentifier():
                 span = parameter_span(macro.element, parameter)
-                what = "block" if parameter.is_block else "parameter"
-                message = f"the macro '{macro.name}' does not use its {what} '{name}'"
+                message = (
+                    phrase("the macro '{macro}' does not use its block '{name}'", macro=macro.name, name=name)
+                    if parameter.is_block
+                    else phrase("the macro '{macro}' does not use its parameter '{name}'", macro=macro.name, name=name)
+                )
                 yield self.report(
-                    message, macro.element, "params", span=span, hint="use it, or take it out of the calls too"
+                    message, macro.element, "params", span=span, hint=phrase("use it, or take it out of the calls too")
                 )
 
 
@@ -272,10 +254,9 @@ def _used_inside(macro: Element, file: FileFacts) -> tuple[set[str], set[str], b
     """Names and blocks that a macro's body mentions, and whether it may mention others."""
     names: set[str] = set()
     is_open = False
-    for use in file.uses:
-        if macro in use.parents or (use.element is macro and use.attribute == "params"):
-            names |= use.found.names
-            is_open = is_open or use.found.is_open or bool(use.found.pasted)
+    for use in (*file.uses_by_macro.get(id(macro), ()), *file.uses_of_parameters.get(id(macro), ())):
+        names |= use.found.names
+        is_open = is_open or use.found.is_open or bool(use.found.pasted)
     blocks: set[str] = set()
     for element in macro.walk():
         if element.tag == "xacro:insert_block":
@@ -296,13 +277,13 @@ def _is_first(definition: Definition, file: FileFacts) -> bool:
     return first is definition
 
 
-def _hint(name: str, used: frozenset[str], form: str = "${...}") -> str:
+def _hint(name: str, used: frozenset[str], form: str = "${...}") -> Phrase:
     from linkwright.diagnostics import nearest
 
     close = [each for each in nearest(name, used, 1) if len(each) > 3 and abs(len(each) - len(name)) < 2]
     if close:
-        return f"'{close[0]}' is used: is that this one? Otherwise remove it"
-    return f"use it with {form}, or remove it"
+        return phrase("'{close}' is used: is that this one? Otherwise remove it", close=close[0])
+    return phrase("use it with {form}, or remove it", form=form)
 
 
 def _included_paths(facts: XacroFacts) -> dict[int, Path]:

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import pairwise
 
-from linkwright.diagnostics import Diagnostic, Note, Span
-from linkwright.lint.rule import Rule
-from linkwright.lint.subject import Subject
-from linkwright.lint.xacro_facts import Definition, FileFacts, XacroFacts, is_global, parameter_span, xacro_facts
+from linkwright.diagnostics import Diagnostic, Note, Phrase, Span, phrase
+from linkwright.lint.rules.xacro_rule import XacroRule
+from linkwright.lint.xacro_facts import Definition, FileFacts, XacroFacts, is_global, parameter_span
 from linkwright.lint.xacro_names import DEPRECATED
 from linkwright.xacro.literals import literal
 from linkwright.xmltree import Element
@@ -16,7 +15,7 @@ from linkwright.xmltree import Element
 _NAMES = frozenset({"name", "link", "joint", "reference", "filename", "joint1", "joint2", "frame", "parent", "child"})
 
 
-class LiteralChangesType(Rule):
+class LiteralChangesType(XacroRule):
     """A value that xacro turns into a number or a truth value before it becomes part of a name.
 
     ## Why
@@ -42,11 +41,7 @@ class LiteralChangesType(Rule):
     code = "LW710"
     name = "literal-changes-type"
 
-    def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
-        if subject.expansion is None:
-            return
-        facts = xacro_facts(subject)
+    def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
         for file in facts.own.values():
             for call in file.calls:
                 yield from self._of_call(call, facts)
@@ -61,8 +56,7 @@ class LiteralChangesType(Rule):
         macros = [
             (file, macro)
             for file in facts.files.values()
-            for macro in file.macros
-            if macro.name == call.name.rpartition(".")[2]
+            for macro in file.macros_by_name.get(call.name.rpartition(".")[2], ())
         ]
         if len(macros) != 1:
             return
@@ -77,13 +71,23 @@ class LiteralChangesType(Rule):
         self, element: Element, attribute: str, name: str, value: str, use: tuple[Element, str], quotes: str
     ) -> Diagnostic:
         changed = literal(value)
-        note = Note(f"'{name}' becomes part of a name here", use[0].attribute_span(use[1]))
-        message = f"xacro takes '{value}' for {_kind(changed)} and writes '{changed}' into a name"
-        hint = f'write {attribute}="{quotes}{value}{quotes}" to keep it as it is'
+        note = Note(phrase("'{name}' becomes part of a name here", name=name), use[0].attribute_span(use[1]))
+        message = phrase(
+            "xacro takes '{value}' for {kind} and writes '{changed}' into a name",
+            value=value,
+            kind=_kind(changed),
+            changed=changed,
+        )
+        hint = phrase(
+            'write {attribute}="{quotes}{value}{quotes}" to keep it as it is',
+            attribute=attribute,
+            quotes=quotes,
+            value=value,
+        )
         return self.report(message, element, attribute, notes=[note], hint=hint)
 
 
-class PropertyDefinedTwice(Rule):
+class PropertyDefinedTwice(XacroRule):
     """A property gets another value before anything used the first one.
 
     ## Why
@@ -110,11 +114,7 @@ class PropertyDefinedTwice(Rule):
     code = "LW711"
     name = "property-defined-twice"
 
-    def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
-        if subject.expansion is None:
-            return
-        facts = xacro_facts(subject)
+    def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
         for file in facts.own.values():
             groups: dict[tuple[str, int], list[Definition]] = {}
             for definition in file.properties:
@@ -124,11 +124,17 @@ class PropertyDefinedTwice(Rule):
                 for first, second in pairwise(definitions):
                     if self._is_lost(first, second, file, facts):
                         note = Note(
-                            f"the value '{first.element.attributes['value']}' given here has no effect",
+                            phrase(
+                                "the value '{value}' given here has no effect", value=first.element.attributes["value"]
+                            ),
                             first.element.attribute_span("value"),
                         )
-                        message = f"the property '{first.name}' gets another value before anything used the first"
-                        yield self.report(message, second.element, "value", notes=[note], hint="keep one of the two")
+                        message = phrase(
+                            "the property '{name}' gets another value before anything used the first", name=first.name
+                        )
+                        yield self.report(
+                            message, second.element, "value", notes=[note], hint=phrase("keep one of the two")
+                        )
 
     def _is_lost(self, first: Definition, second: Definition, file: FileFacts, facts: XacroFacts) -> bool:
         one, other = first.element.attributes, second.element.attributes
@@ -144,7 +150,7 @@ class PropertyDefinedTwice(Rule):
         return not between or not (facts.is_open or name in facts.names)
 
 
-class ShadowedProperty(Rule):
+class ShadowedProperty(XacroRule):
     """A parameter or property inside a macro hides a property of the file.
 
     ## Why
@@ -171,11 +177,7 @@ class ShadowedProperty(Rule):
     name = "shadowed-property"
     default = False
 
-    def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
-        if subject.expansion is None:
-            return
-        facts = xacro_facts(subject)
+    def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
         outer: dict[str, Definition] = {}
         for file in facts.files.values():
             for definition in file.properties:
@@ -186,19 +188,27 @@ class ShadowedProperty(Rule):
                 for parameter in file.parameters(macro.element):
                     if parameter.name in outer and not parameter.forward:
                         span = parameter_span(macro.element, parameter)
-                        what = f"the parameter '{parameter.name}' of the macro '{macro.name}'"
+                        what = phrase(
+                            "the parameter '{name}' of the macro '{macro_name}'",
+                            name=parameter.name,
+                            macro_name=macro.name,
+                        )
                         yield self._found(macro.element, span, what, outer[parameter.name])
             for inner in file.properties:
                 if inner.macro is not None and inner.name in outer and "scope" not in inner.element.attributes:
                     span = inner.element.attribute_span("name")
-                    yield self._found(inner.element, span, f"the property '{inner.name}'", outer[inner.name])
+                    yield self._found(
+                        inner.element, span, phrase("the property '{name}'", name=inner.name), outer[inner.name]
+                    )
 
     def _found(self, element: Element, span: Span | None, what: str, outer: Definition) -> Diagnostic:
-        note = Note("the outer one is defined here", outer.element.attribute_span("name"))
-        return self.report(f"{what} hides a property of the same name", element, span=span, notes=[note])
+        note = Note(phrase("the outer one is defined here"), outer.element.attribute_span("name"))
+        return self.report(
+            phrase("{what} hides a property of the same name", what=what), element, span=span, notes=[note]
+        )
 
 
-class ParameterHidesGlobal(Rule):
+class ParameterHidesGlobal(XacroRule):
     """A parameter of a macro hides a name that xacro provides, such as ``pi`` or ``e``.
 
     ## Why
@@ -221,21 +231,21 @@ class ParameterHidesGlobal(Rule):
 
     code = "LW713"
     name = "parameter-hides-global"
+    holds_for_parts = True
     default = False
 
-    def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """What the rule finds."""
-        if subject.expansion is None:
-            return
-        for file in xacro_facts(subject).own.values():
+    def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
+        for file in facts.own.values():
             for macro in file.macros:
                 for parameter in file.parameters(macro.element):
                     if is_global(parameter.name) or parameter.name in DEPRECATED:
-                        message = (
-                            f"the parameter '{parameter.name}' of the macro '{macro.name}' hides a name of xacro's"
+                        message = phrase(
+                            "the parameter '{name}' of the macro '{macro_name}' hides a name of xacro's",
+                            name=parameter.name,
+                            macro_name=macro.name,
                         )
                         span = parameter_span(macro.element, parameter)
-                        hint = "give the parameter another name"
+                        hint = phrase("give the parameter another name")
                         yield self.report(message, macro.element, "params", span=span, hint=hint)
 
 
@@ -244,8 +254,8 @@ def _changes(value: str) -> bool:
     return "$" not in value and "'" not in value and str(literal(value)) != value
 
 
-def _kind(value: object) -> str:
-    return "a truth value" if isinstance(value, bool) else "a number"
+def _kind(value: object) -> Phrase:
+    return phrase("a truth value") if isinstance(value, bool) else phrase("a number")
 
 
 def _use_in_name(name: str, facts: XacroFacts, macro: Element | None) -> tuple[Element, str] | None:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from pathlib import Path, PurePosixPath
 
-from linkwright.diagnostics import LinkwrightError
-from linkwright.workspace import PackageFinder, enclosing_package
+from linkwright.diagnostics import LinkwrightError, phrase
+from linkwright.packages import PackageFinder, enclosing_package
 
 _PACKAGE = re.compile(r"package://([^/\s\"'%]+)/")
 _ENDINGS = frozenset(
@@ -54,7 +54,7 @@ class Assets:
                 self._finder = PackageFinder()
             share = self._finder.find(found[1])
             if share is None:
-                raise AssetRefusedError(f"there is no package '{found[1]}'")
+                raise AssetRefusedError(phrase("there is no package '{found}'", found=found[1]))
             return _content(found[1], share, relative)
         except LinkwrightError as error:
             raise AssetRefusedError(error.diagnostics[0].message) from None

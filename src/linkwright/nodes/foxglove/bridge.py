@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.graph import DESCRIPTION_QOS, Graph
 from linkwright.messages import String
 from linkwright.nodes.foxglove.assets import Assets
@@ -114,7 +114,7 @@ class FoxgloveBridge(SingleNode):
             self._loop.call_soon_threadsafe(self._look_soon)
 
     def _look_soon(self) -> None:
-        if self._look_due is None and not self._node.is_destroyed:
+        if self._look_due is None and not self._node.handle.is_destroyed:
             self._look_due = self._loop.call_later(_LOOK_AFTER, self._look)
 
     def _look(self) -> None:
@@ -224,8 +224,13 @@ def _listen(address: str, port: int) -> socket.socket:
         listener = socket.create_server((address, port), family=socket.AF_INET6 if ":" in address else socket.AF_INET)
     except (OSError, OverflowError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        message = f"foxglove_bridge cannot listen on port {port} of '{address}': {reason}"
-        hint = "choose another port with the parameter 'port', or with '--foxglove'"
+        message = phrase(
+            "foxglove_bridge cannot listen on port {port} of '{address}': {reason}",
+            port=port,
+            address=address,
+            reason=foreign(reason),
+        )
+        hint = phrase("choose another port with the parameter 'port', or with '--foxglove'")
         raise LinkwrightError(Diagnostic("NODE702", message, hint=hint)) from None
     listener.setblocking(False)
     return listener

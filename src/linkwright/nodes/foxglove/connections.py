@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from linkwright.graph import EndpointKind, Node
-from linkwright.graph.names import join
+from linkwright.graph.names.rules import join
 
 Names = dict[str, list[str]]
 Connections = tuple[Names, Names, Names]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError
-from linkwright.graph.expressions import Expression, ExpressionError, TooCostlyError
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
+from linkwright.graph.names.expressions import Expression, ExpressionError, TooCostlyError
 
 _MOST_KNOWN = 10_000
 """Names of which it is remembered whether they are wanted; clients may ask for as many as they like."""
@@ -47,5 +47,10 @@ def _read(parameter: str, expression: str) -> Expression:
     try:
         return Expression(expression)
     except ExpressionError as error:
-        message = f"parameter '{parameter}': '{expression}' is no regular expression: {error}"
+        message = phrase(
+            "parameter '{parameter}': '{expression}' is no regular expression: {error}",
+            parameter=parameter,
+            expression=expression,
+            error=foreign(error),
+        )
         raise LinkwrightError(Diagnostic("NODE701", message)) from None

@@ -8,8 +8,8 @@ from typing import Any
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import EndpointKind, MessageInfo, Node, Publisher, QoSProfile, Subscription
-from linkwright.graph.qos import QoSPresetProfiles
-from linkwright.graph.qos_fitting import fit
+from linkwright.graph.qos.fitting import fit
+from linkwright.graph.qos.profile import QoSPresetProfiles
 from linkwright.messages import deserialize, get_message
 from linkwright.messages.schema_text import schema_of
 from linkwright.nodes.foxglove.clients import Client
@@ -103,9 +103,9 @@ class Forwarding:
         self._client = client
         self._number = number
         self._subscription: Subscription[Any] = Subscription(
-            node, get_message(channel.type_name), channel.topic, self._qos(), self._forward, raw=True
+            node.handle, get_message(channel.type_name), channel.topic, self._qos(), self._forward, raw=True
         )
-        node.add_subscription(self._subscription)
+        node.handle.add(self._subscription)
 
     def close(self) -> None:
         """Send no more."""

@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import Graph
+from linkwright.graph.command_line.log_setup import Logging, set_up
+from linkwright.graph.command_line.ros_arguments import RosArguments, parse
 from linkwright.graph.faults import RclError
-from linkwright.graph.log.setup import Logging, set_up
-from linkwright.graph.ros_arguments import RosArguments, parse
 from linkwright.standins.rclpy_api import logging
 from linkwright.standins.rclpy_api.errors import RCLInvalidROSArgsError, UnknownROSArgsError
 from linkwright.standins.rclpy_api.signals import shut_down_on_signal
@@ -25,14 +25,14 @@ from linkwright.standins.rclpy_api.signals import shut_down_on_signal
 if TYPE_CHECKING:
     from typing_extensions import Self
 
-    from linkwright.graph import dds
+    from linkwright.wire import dds
 
 _LONGEST_JOINING_S = 3.0
 _open: weakref.WeakSet[Context] = weakref.WeakSet()
 
 
 class Context:
-    """One graph with its nodes, and whether the program is to go on. It is initialised once.
+    """A graph and its nodes from initialisation to shutdown, each of which happens once.
 
     Args:
         graph: the graph, where there is one already; it is closed with the context.
@@ -52,12 +52,12 @@ class Context:
 
     @property
     def enable_rosout(self) -> bool:
-        """Whether the command line lets nodes publish what they log."""
+        """Whether nodes publish their log messages, which the command line may turn off."""
         return self.ros_arguments.rosout_logs is not False
 
     @property
     def handle(self) -> Context | None:
-        """Something to be entered while the context is used; None before it is initialised."""
+        """The context itself, for ``with context.handle``; None before it is initialised."""
         return self if self._initialized else None
 
     @property
@@ -69,7 +69,7 @@ class Context:
             return self._graph
 
     def wait_for_network(self) -> None:
-        """Wait for the graph to have joined, the first time: loading DDS would make the first timers of a node late."""
+        """Wait, the first time, until the graph has joined the network; else DDS delays the first timers."""
         joining, self._joining = self._joining, None
         if joining is not None:
             joining.wait_until_ready(_LONGEST_JOINING_S)
@@ -77,7 +77,7 @@ class Context:
     def init(
         self, args: Sequence[str] | None = None, *, initialize_logging: bool = True, domain_id: int | None = None
     ) -> None:
-        """Begin.
+        """Initialise it.
 
         Args:
             args: the command line; ``sys.argv`` when None.
@@ -121,7 +121,7 @@ class Context:
         return int(text) if text.isdigit() else 0
 
     def on_shutdown(self, callback: Callable[[], object]) -> None:
-        """Have something called at the end; at once when that has come. Bound methods are held weakly.
+        """Call something at shutdown, or at once where that has happened. Bound methods are held weakly.
 
         Raises:
             TypeError: it cannot be called.
@@ -136,7 +136,7 @@ class Context:
         callback()
 
     def shutdown(self) -> None:
-        """End: executors stop spinning, the nodes leave the graph, nothing of it stays behind.
+        """Shut down: executors stop spinning and the nodes leave the graph.
 
         Raises:
             RclError: it was not initialised, or is shut down already, other than by a signal.
@@ -149,19 +149,19 @@ class Context:
         self._end()
 
     def try_shutdown(self) -> None:
-        """End, unless that has happened already."""
+        """Shut down, unless that has happened already."""
         if self._initialized and (self._ok or self._ended_by_signal):
             self.shutdown()
 
     def shutdown_by_signal(self) -> None:
-        """Tell executors to stop; the rest is left to `shutdown`, for a signal comes at any moment."""
+        """Tell executors to stop. The rest is left to `shutdown`, because a signal may come at any moment."""
         if self._ok:
             self._ended_by_signal = True
             self._ok = False
             self._tell()
 
     def destroy(self) -> None:
-        """End, if that has not happened (rclpy)."""
+        """Shut down, unless that has happened already (rclpy)."""
         self.try_shutdown()
 
     def __enter__(self) -> Self:
@@ -195,7 +195,7 @@ class Context:
                 callback()
 
     def _new_graph(self) -> Graph:
-        from linkwright.graph import dds
+        from linkwright.wire import dds
 
         graph = Graph(threads=True, on_log=logging.write, levels=logging.LEVELS)
         self._joining = dds.join(graph, domain_id=self._domain_id)
@@ -203,7 +203,7 @@ class Context:
 
 
 def read_ros_arguments(arguments: Sequence[str]) -> RosArguments:
-    """What a command line says to ROS.
+    """The ROS arguments of a command line.
 
     Raises:
         UnicodeEncodeError: an argument is not text.

@@ -1,4 +1,4 @@
-"""Executors that belong to the default context when they are given none (rclpy ``executors``)."""
+"""Executors, which belong to the default context unless another is given (rclpy ``executors``)."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 from linkwright.graph import executors
 from linkwright.standins.rclpy_api.context import Context
-from linkwright.standins.rclpy_api.session import get_default_context
+from linkwright.standins.rclpy_api.defaults import get_default_context
 
 
 class Executor(executors.Executor):
@@ -33,7 +33,7 @@ class MultiThreadedExecutor(executors.MultiThreadedExecutor, Executor):
 
 
 async def await_or_execute(callback: Callable[..., Any], *args: Any) -> Any:
-    """Await what a coroutine function gives, or call anything else."""
+    """Await a coroutine function, or call any other callable."""
     if inspect.iscoroutinefunction(callback):
         return await callback(*args)
     return callback(*args)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from linkwright.graph.dispatch import CallbackGroup
-from linkwright.graph.lifecycle.node import LifecycleNodeMixin
+from linkwright.graph.lifecycle.managed_node import LifecycleNodeMixin
+from linkwright.graph.loop.callback_groups import CallbackGroup
 from linkwright.standins.rclpy_api.node import Node
 
 
@@ -36,7 +36,3 @@ class LifecycleNode(LifecycleNodeMixin, Node):
         LifecycleNodeMixin.__init__(
             self, enable_communication_interface=enable_communication_interface, callback_group=callback_group
         )
-
-    def destroy_node(self) -> None:
-        """Take the node and all it made out of the graph."""
-        Node.destroy_node(self)

@@ -1,4 +1,4 @@
-"""The loggers of the process, which exist before and after contexts (rclpy ``logging``)."""
+"""The loggers of the process, which outlive contexts (rclpy ``logging``)."""
 
 from __future__ import annotations
 
@@ -6,8 +6,10 @@ import os
 import time
 from pathlib import Path
 
-from linkwright.graph.log.levels import LogLevels, level_named
-from linkwright.graph.log.logger import Logger, LogLevel, LogRecord, LogSink, print_to_console
+from linkwright.graph.log.console import print_to_console
+from linkwright.graph.log.levels import LogLevel, LogLevels, level_named
+from linkwright.graph.log.logger import Logger
+from linkwright.graph.log.record import LogRecord, LogSink
 
 LEVELS = LogLevels()
 """The levels of all loggers of the process."""
@@ -23,12 +25,12 @@ def write(record: LogRecord) -> None:
 
 
 def write_to(sink: LogSink) -> None:
-    """Have all loggers of the process write to something else than the console."""
+    """Redirect all loggers of the process from the console."""
     _sinks[1:] = [sink]
 
 
 def is_configured() -> bool:
-    """Whether they write to something else than the console."""
+    """Whether they are redirected from the console."""
     return len(_sinks) > 1
 
 
@@ -64,17 +66,17 @@ def clear_config() -> None:
 
 
 def set_logger_level(name: str, level: int, detailed_error: bool = False) -> None:  # noqa: ARG001  # rclpy's signature
-    """Give a logger a level, which its children inherit; the empty name stands for the default level."""
+    """Set the level of a logger, which its children inherit; the empty name sets the default level."""
     LEVELS.set(name, LogLevel(level))
 
 
 def get_logger_effective_level(name: str) -> LogLevel:
-    """The level that holds for a logger."""
+    """The level of a logger, its own or inherited."""
     return LEVELS.effective(name)
 
 
 def get_logger_level(name: str) -> LogLevel:
-    """The level that a logger has itself; UNSET where it has none."""
+    """A logger's own level; UNSET where it has none."""
     return LEVELS.own(name)
 
 

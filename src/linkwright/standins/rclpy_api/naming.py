@@ -1,8 +1,8 @@
-"""Checks of names, as rclpy has them in modules of their own."""
+"""Checks of names, which rclpy has in a module each."""
 
 from __future__ import annotations
 
-from linkwright.graph import names
+from linkwright.graph.names import rules as names
 from linkwright.graph.parameters.errors import InvalidParameterException
 
 TOPIC_SEPARATOR_STRING = "/"
@@ -10,7 +10,7 @@ HIDDEN_TOPIC_PREFIX = "_"
 
 
 def validate_node_name(node_name: str) -> bool:
-    """True for a name that a node may bear.
+    """True for a valid node name.
 
     Raises:
         InvalidNodeNameError: for any other.
@@ -32,7 +32,7 @@ def validate_namespace(namespace: str) -> bool:
 
 
 def validate_topic_name(name: str, *, is_service: bool = False) -> bool:
-    """True for the name of a topic or service as code gives it, which may be relative or private.
+    """True for a valid topic or service name, which may be relative or private.
 
     Raises:
         InvalidTopicNameError, InvalidServiceNameError: for any other.
@@ -55,7 +55,7 @@ def validate_full_topic_name(name: str, *, is_service: bool = False) -> bool:
 
 
 def expand_topic_name(topic_name: str, node_name: str, node_namespace: str) -> str:
-    """The absolute name of a topic that a node names.
+    """The absolute form of a topic name that a node uses.
 
     Raises:
         ValueError: one of the names is not valid.
@@ -69,7 +69,7 @@ def expand_topic_name(topic_name: str, node_name: str, node_namespace: str) -> s
 
 
 def topic_or_service_is_hidden(name: str) -> bool:
-    """Whether tools leave a topic or service out unless they are asked: a part of its name begins with ``_``.
+    """Whether tools hide a topic or service by default: a part of its name begins with ``_``.
 
     Raises:
         InvalidTopicNameError: the name is not valid.
@@ -79,7 +79,7 @@ def topic_or_service_is_hidden(name: str) -> bool:
 
 
 def validate_parameter_name(name: str) -> bool:
-    """True for a name that a parameter may have: any but the empty one.
+    """True for a valid parameter name: any but the empty one.
 
     Raises:
         InvalidParameterException: for that.

@@ -15,14 +15,14 @@ if TYPE_CHECKING:
 
 
 class ParameterService(ParameterServices):
-    """The services through which others read and set the parameters of a node."""
+    """The services by which other nodes read and set the parameters of a node."""
 
     def __init__(self, node: Node) -> None:
-        super().__init__(node.graph_node)
+        super().__init__(node, node.get_name(), node.create_service)
 
 
 def get_parameter_value(string_value: str) -> Any:
-    """What a text means as the value of a parameter: rcl_interfaces/msg/ParameterValue.
+    """A text as a parameter's value: rcl_interfaces/msg/ParameterValue.
 
     It is read as YAML; what that cannot be a parameter's value stays a text.
     """

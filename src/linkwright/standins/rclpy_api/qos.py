@@ -5,9 +5,9 @@ from __future__ import annotations
 import warnings
 from typing import Any, Literal
 
+from linkwright.graph.endpoints.publisher import Publisher
 from linkwright.graph.parameters.qos_overrides import QoSOverridingOptions, override_qos
-from linkwright.graph.publisher import Publisher
-from linkwright.graph.qos import (
+from linkwright.graph.qos.profile import (
     DurabilityPolicy,
     HistoryPolicy,
     LivelinessPolicy,
@@ -18,7 +18,7 @@ from linkwright.graph.qos import (
 
 
 class _OldName:
-    """Gives the value of a policy by its old name, and says the new one."""
+    """A policy's deprecated name, which gives the value with a warning that has the new name."""
 
     def __init__(self, policy: type[QoSPolicyEnum], old: str, new: str) -> None:
         self._policy = policy
@@ -32,7 +32,7 @@ class _OldName:
 
 
 def add_old_names() -> None:
-    """Let values be found by names such as ``ReliabilityPolicy.RMW_QOS_POLICY_RELIABILITY_BEST_EFFORT``."""
+    """Add the deprecated names of values, such as ``ReliabilityPolicy.RMW_QOS_POLICY_RELIABILITY_BEST_EFFORT``."""
     for policy in (DurabilityPolicy, HistoryPolicy, LivelinessPolicy, ReliabilityPolicy):
         word = policy.__name__.removesuffix("Policy").upper()
         for value in policy:

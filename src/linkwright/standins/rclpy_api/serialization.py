@@ -21,7 +21,7 @@ def serialize_message(message: Any) -> bytes:
 
 
 def deserialize_message(serialized_message: bytes, message_type: type[M]) -> M:
-    """The message of some bytes.
+    """The message that bytes encode.
 
     Raises:
         TypeError: the type is not that of a message.

@@ -1,4 +1,4 @@
-"""The functions of the package ``rclpy`` itself: beginning, ending, spinning."""
+"""The functions of the package ``rclpy`` itself: initialise, shut down, spin."""
 
 from __future__ import annotations
 
@@ -7,9 +7,11 @@ from collections.abc import Sequence
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
-from linkwright.graph.faults import NotInitializedError, RclError
-from linkwright.graph.future import Future
+from linkwright.graph.loop.future import Future
 from linkwright.standins.rclpy_api.context import Context
+from linkwright.standins.rclpy_api.defaults import get_default_context, has_default_context, is_default
+from linkwright.standins.rclpy_api.executors import Executor, SingleThreadedExecutor
+from linkwright.standins.rclpy_api.node import Node
 from linkwright.standins.rclpy_api.signals import (
     SignalHandlerOptions,
     install_signal_handlers,
@@ -19,22 +21,15 @@ from linkwright.standins.rclpy_api.signals import (
 if TYPE_CHECKING:
     from typing_extensions import Self
 
-    from linkwright.graph import Graph
-    from linkwright.standins.rclpy_api.executors import Executor
-    from linkwright.standins.rclpy_api.node import Node
-
 _lock = threading.RLock()
 
 
-class _Defaults:
-    """What stands in for arguments that are left out."""
-
-    context: Context | None = None
+class _Global:
     executor: Executor | None = None
 
 
 class InitContextManager:
-    """What `init` gives: entered, it shuts the context down at the end of the block.
+    """What `init` returns: as a context manager it shuts the context down at the end of the block.
 
     Attributes:
         context: the context that was initialised.
@@ -49,32 +44,7 @@ class InitContextManager:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
     ) -> None:
-        if self.context is _Defaults.context:
-            try_shutdown()
-        else:
-            self.context.try_shutdown()
-
-
-def get_default_context(*, shutting_down: bool = False) -> Context:
-    """The context of everything that is given none; a new one after the old one was shut down.
-
-    Args:
-        shutting_down: forget it; the next call gives a new one.
-
-    Raises:
-        RclError: there is none to be shut down.
-    """
-    with _lock:
-        if shutting_down:
-            if _Defaults.context is None:
-                raise RclError(
-                    "Context must be initialized before it can be shutdown: rclpy.init() has not been called"
-                )
-            context, _Defaults.context = _Defaults.context, None
-            return context
-        if _Defaults.context is None:
-            _Defaults.context = Context()
-        return _Defaults.context
+        try_shutdown(context=self.context)
 
 
 def init(
@@ -84,7 +54,7 @@ def init(
     domain_id: int | None = None,
     signal_handler_options: SignalHandlerOptions | None = None,
 ) -> InitContextManager:
-    """Begin; before this there are no nodes.
+    """Initialise a context, before which there can be no nodes.
 
     Args:
         args: the command line; ``sys.argv`` when None.
@@ -103,31 +73,13 @@ def init(
     return InitContextManager(chosen)
 
 
-def use_graph(graph: Graph, args: Sequence[str]) -> Context:
-    """Begin with a graph that is there already, as `linkwright.testing` does; it is closed with the context.
-
-    Args:
-        graph: the graph in which the nodes of the default context are.
-        args: the command line.
-
-    Raises:
-        RuntimeError: the default context was initialised already.
-    """
-    with _lock:
-        if _Defaults.context is not None and _Defaults.context.ok():
-            raise RuntimeError("rclpy.init() has been called already")
-        context = _Defaults.context = Context(graph)
-    context.init(args, initialize_logging=False)
-    return context
-
-
 def ok(*, context: Context | None = None) -> bool:
-    """Whether the program is to go on: `init` was called, and nothing has ended it since."""
+    """Whether a context is initialised and not shut down."""
     return (get_default_context() if context is None else context).ok()
 
 
 def shutdown(*, context: Context | None = None, uninstall_handlers: bool | None = None) -> None:
-    """End what `init` began.
+    """Shut a context down.
 
     Args:
         context: what is shut down; the default context when None.
@@ -137,34 +89,32 @@ def shutdown(*, context: Context | None = None, uninstall_handlers: bool | None 
         RclError: it is not initialised, or shut down already.
     """
     _end_global_executor(context)
-    is_default = context is None or context is _Defaults.context
-    (get_default_context(shutting_down=True) if is_default else context).shutdown()  # type: ignore[union-attr]
-    if uninstall_handlers or (uninstall_handlers is None and is_default):
+    default = is_default(context)
+    (get_default_context(shutting_down=True) if default else context).shutdown()  # type: ignore[union-attr]
+    if uninstall_handlers or (uninstall_handlers is None and default):
         uninstall_signal_handlers()
 
 
 def try_shutdown(*, context: Context | None = None, uninstall_handlers: bool | None = None) -> None:
-    """As `shutdown`, but it does nothing where there is nothing to shut down."""
-    is_default = context is None or context is _Defaults.context
-    if is_default and _Defaults.context is None:
+    """Shut a context down, if it is up."""
+    default = is_default(context)
+    if default and not has_default_context():
         return
-    if is_default:
+    if default:
         _end_global_executor(context)
         get_default_context(shutting_down=True).try_shutdown()
     elif context is not None:
         context.try_shutdown()
-    if uninstall_handlers or (uninstall_handlers is None and is_default):
+    if uninstall_handlers or (uninstall_handlers is None and default):
         uninstall_signal_handlers()
 
 
 def get_global_executor() -> Executor:
-    """The executor of everything that is given none; it belongs to the default context."""
+    """The executor used where none is given; it belongs to the default context."""
     with _lock:
-        if _Defaults.executor is None:
-            from linkwright.standins.rclpy_api.executors import SingleThreadedExecutor
-
-            _Defaults.executor = SingleThreadedExecutor()
-        return _Defaults.executor
+        if _Global.executor is None:
+            _Global.executor = SingleThreadedExecutor()
+        return _Global.executor
 
 
 def create_node(node_name: str, **arguments: Any) -> Node:
@@ -173,8 +123,6 @@ def create_node(node_name: str, **arguments: Any) -> Node:
     Raises:
         NotInitializedError: its context is not initialised.
     """
-    from linkwright.standins.rclpy_api.node import Node
-
     return Node(node_name, **arguments)
 
 
@@ -234,16 +182,10 @@ def spin_until_future_complete(
             runner.remove_node(node)
 
 
-def check_initialized(context: Context, what: str) -> None:
-    """Raise NotInitializedError unless a context is ok."""
-    if not context.ok():
-        raise NotInitializedError(what)
-
-
 def _end_global_executor(context: Context | None) -> None:
     with _lock:
-        executor = _Defaults.executor
+        executor = _Global.executor
         if executor is None or (context is not None and executor.context is not context):
             return
-        _Defaults.executor = None
+        _Global.executor = None
     executor.shutdown(0)

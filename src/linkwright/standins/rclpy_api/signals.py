@@ -1,4 +1,4 @@
-"""What happens to a program's contexts when a signal tells it to end (rclpy ``signals``)."""
+"""Signals that shut contexts down (rclpy ``signals``)."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ _previous: dict[int, Any] = {}
 
 
 def shut_down_on_signal(context: Any) -> None:
-    """Have the method ``shutdown_by_signal`` of a context called when a signal comes."""
+    """Call ``shutdown_by_signal`` of a context when a signal comes."""
     _on_signal.add(context)
 
 
 def install_signal_handlers(options: SignalHandlerOptions = SignalHandlerOptions.ALL) -> None:
-    """Shut all contexts down when one of the signals comes; what handled it before handles it afterwards.
+    """Shut all contexts down when one of the signals comes, then run the handler that was there before.
 
     So Ctrl-C still raises KeyboardInterrupt. Outside of the main thread nothing is done: Python allows it there only.
     """

@@ -1,4 +1,4 @@
-"""What lets clocks follow ``/clock`` (rclpy ``time_source``); a node's own clock does so without it."""
+"""Sets clocks by ``/clock`` (rclpy ``time_source``). A node's own clock does not need it."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ import weakref
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from linkwright.graph.clock import Clock, ROSClock
 from linkwright.graph.parameters.parameter import Parameter
-from linkwright.graph.qos import CLOCK_QOS
-from linkwright.graph.time import ClockType, Time
+from linkwright.graph.qos.profile import CLOCK_QOS
+from linkwright.graph.time.clock import Clock, ROSClock
+from linkwright.graph.time.values import ClockType, Time
 from linkwright.messages import get_message
 
 if TYPE_CHECKING:
-    from linkwright.graph.subscription import Subscription
+    from linkwright.graph.endpoints.subscription import Subscription
     from linkwright.standins.rclpy_api.node import Node
 
 CLOCK_TOPIC = "/clock"
@@ -21,7 +21,7 @@ USE_SIM_TIME_NAME = "use_sim_time"
 
 
 class TimeSource:
-    """Moves clocks by ``/clock`` while the parameter ``use_sim_time`` of a node is true.
+    """Sets clocks by ``/clock`` while the parameter ``use_sim_time`` of a node is true.
 
     Args:
         node: whose parameter counts, and who subscribes; may be attached later.
@@ -38,7 +38,7 @@ class TimeSource:
 
     @property
     def ros_time_is_active(self) -> bool:
-        """Whether the clocks are simulated."""
+        """Whether the clocks follow ``/clock``."""
         return self._active
 
     @ros_time_is_active.setter
@@ -54,7 +54,7 @@ class TimeSource:
             self._unsubscribe()
 
     def attach_node(self, node: Node) -> None:
-        """Go by the parameter of a node, and no longer by that of another."""
+        """Follow the parameter of this node, in place of any other."""
         self.detach_node()
         self._node = weakref.ref(node)
         if not node.has_parameter(USE_SIM_TIME_NAME):
@@ -63,7 +63,7 @@ class TimeSource:
         node.add_post_set_parameters_callback(self._on_set_parameters)
 
     def detach_node(self) -> None:
-        """Go by no node's parameter; the clocks stay as they are."""
+        """Follow no node's parameter; the clocks stay as they are."""
         node = self._get_node()
         if node is not None:
             self._unsubscribe()
@@ -71,7 +71,7 @@ class TimeSource:
         self._node = None
 
     def attach_clock(self, clock: Clock) -> None:
-        """Move a clock, too.
+        """Set this clock too.
 
         Raises:
             ValueError: it is none of ROS time.

@@ -1,11 +1,11 @@
-"""Small things that rclpy offers in ``utilities``."""
+"""The command line, timeouts and middleware names (rclpy ``utilities``)."""
 
 from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
 
-from linkwright.graph import ros_arguments
+from linkwright.graph.command_line import ros_arguments
 
 _NANOSECONDS_PER_SECOND = 1_000_000_000
 _MIDDLEWARE = "rmw_cyclonedds_cpp"
@@ -28,10 +28,10 @@ def timeout_sec_to_nsec(timeout_sec: float | None) -> int:
 
 
 def get_rmw_implementation_identifier() -> str:
-    """The middleware that ours is compatible with."""
+    """The name of the middleware that ours is compatible with."""
     return _MIDDLEWARE
 
 
 def get_available_rmw_implementations() -> set[str]:
-    """The middlewares that there are."""
+    """The names of the available middlewares."""
     return {_MIDDLEWARE}

@@ -1,4 +1,4 @@
-"""How much of each kind something is made of (rclpy ``waitable``)."""
+"""Counts of entities (rclpy ``waitable``)."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import astuple, dataclass
 
 @dataclass
 class NumberOfEntities:
-    """Numbers of entities, which can be added up."""
+    """How many entities of each kind something consists of; counts can be added."""
 
     num_subscriptions: int = 0
     num_guard_conditions: int = 0

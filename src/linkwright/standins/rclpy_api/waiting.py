@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from linkwright.graph.executors import ReentrantCallbackGroup
-from linkwright.graph.future import Future
-from linkwright.graph.qos import DEFAULT_QOS, QoSProfile
+from linkwright.graph.loop.future import Future
+from linkwright.graph.qos.profile import DEFAULT_QOS, QoSProfile
 from linkwright.standins.rclpy_api.executors import SingleThreadedExecutor
 
 if TYPE_CHECKING:

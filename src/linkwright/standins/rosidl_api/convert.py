@@ -17,7 +17,7 @@ def message_to_yaml(
     no_str: bool = False,
     flow_style: bool = False,
 ) -> str:
-    """A message as YAML; its bytes as they are, in YAML's form for such."""
+    """A message as YAML; raw bytes become YAML's ``!!binary``."""
     if isinstance(msg, bytes):
         import yaml
 
@@ -26,7 +26,7 @@ def message_to_yaml(
 
 
 def message_to_csv(msg: Any, *, truncate_length: int | None = None, no_arr: bool = False, no_str: bool = False) -> str:
-    """The values of a message with commas between them; its bytes as Python shows them."""
+    """The values of a message separated by commas; raw bytes as Python's ``repr``."""
     if isinstance(msg, bytes):
         return str(msg)
     return to_csv(msg, truncate_length=truncate_length, no_arr=no_arr, no_str=no_str)
@@ -54,7 +54,7 @@ def convert_value(
     no_arr: bool = False,
     no_str: bool = False,
 ) -> Any:
-    """A value of a message as a plain one: texts, lists, tuples and dictionaries are cut to a length, each item too."""
+    """A value as plain Python; texts and containers, and the items in them, are cut to a length."""
 
     def convert(item: Any) -> Any:
         return convert_value(item, truncate_length=truncate_length, no_arr=no_arr, no_str=no_str)

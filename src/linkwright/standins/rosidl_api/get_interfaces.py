@@ -1,9 +1,10 @@
-"""Which interfaces there are."""
+"""The interfaces of all packages."""
 
 from collections.abc import Iterable
 
+from linkwright.diagnostics import phrase
 from linkwright.messages.library import LIBRARY
-from linkwright.workspace import current_finder, interface_files
+from linkwright.packages import current_finder, interface_files
 
 
 def get_interface_packages() -> list[str]:
@@ -63,5 +64,5 @@ def _by_package(kinds: tuple[str, ...], package_names: Iterable[str]) -> dict[st
                 found.setdefault(package, []).append(rest)
     missing = sorted(wanted - set(found) - set(get_interface_packages()))
     if missing:
-        raise LookupError(f"Unknown package '{missing[0]}'")
+        raise LookupError(phrase("Unknown package '{missing}'", missing=missing[0]))
     return {package: sorted(names) for package, names in sorted(found.items())}

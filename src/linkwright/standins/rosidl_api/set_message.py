@@ -8,7 +8,7 @@ from linkwright.messages import set_fields
 def set_message_fields(
     msg: Any, values: dict[str, Any], expand_header_auto: bool = False, expand_time_now: bool = False
 ) -> list[Any]:
-    """Set fields; gives functions that set the stamps which were left to be set when the message is sent.
+    """Set fields; returns functions that fill in the stamps given as ``now`` when the message is sent.
 
     Raises:
         AttributeError: a field that there is not.

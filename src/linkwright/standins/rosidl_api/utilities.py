@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from linkwright.diagnostics import LinkwrightError
+from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.messages import classes
 from linkwright.messages.library import LIBRARY
 from linkwright.messages.names import split_name
@@ -43,7 +43,9 @@ def _found(getter: Any, identifier: str, what: str) -> Any:
     except LinkwrightError as error:
         known = LIBRARY.names(name.kind, name.package)
         if not any(LIBRARY.names(kind, name.package) for kind in ("msg", "srv", "action")):
-            raise ModuleNotFoundError(f"No module named '{name.package}'", name=name.package) from error
+            raise ModuleNotFoundError(
+                phrase("No module named '{package}'", package=name.package), name=name.package
+            ) from error
         if identifier in known:
             raise ValueError(f"Expected '{identifier}' to be a {what}") from error
         raise AttributeError(str(error)) from error

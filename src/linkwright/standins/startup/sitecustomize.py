@@ -15,7 +15,7 @@ import sys
 from importlib.machinery import ModuleSpec, PathFinder
 
 _HERE = os.path.dirname(os.path.abspath(__file__))
-_STAND_INS = os.path.join(os.path.dirname(_HERE), "path")
+_TABLES = os.path.join(os.path.dirname(_HERE), "tables")
 _LINKWRIGHT = os.path.dirname(os.path.dirname(os.path.dirname(_HERE)))
 
 _WITH_ANY_ROS = frozenset({"tf_transformations"})
@@ -42,11 +42,14 @@ class StandIns:
         top, _, rest = name.partition(".")
         if rest:
             return self.interface(name) if rest.partition(".")[0] in _INTERFACE_KINDS else None
-        if top in self._stand_ins():
+        if self.has(top):
             if top not in _WITH_ANY_ROS and self.has_real_ros():
                 return None
             _make_importable()
-            return PathFinder.find_spec(name, [_STAND_INS])
+            from linkwright.standins import modules
+
+            modules.install()
+            return modules.find_spec(name)
         return self.interface(name) if _may_hold_interfaces(top) else None
 
     def interface(self, name: str) -> ModuleSpec | None:
@@ -62,37 +65,47 @@ class StandIns:
         finally:
             self._searching = False
 
-    def _stand_ins(self) -> frozenset[str]:
+    def has(self, name: str) -> bool:
+        """Whether there is a stand-in of this name."""
         if self._names is None:
             try:
-                self._names = frozenset(name.removesuffix(".py") for name in os.listdir(_STAND_INS))
+                self._names = frozenset(name.removesuffix(".txt") for name in os.listdir(_TABLES))
             except OSError:
                 self._names = frozenset()
-        return self._names
+        return name in self._names
 
     def has_real_ros(self) -> bool:
         """Whether there is an rclpy besides ours."""
         if self._real_ros is None:
-            found = PathFinder.find_spec("rclpy", [entry for entry in sys.path if entry != _STAND_INS])
+            found = PathFinder.find_spec("rclpy", [entry for entry in sys.path if entry != _TABLES])
             self._real_ros = found is not None and found.origin is not None
         return self._real_ros
 
 
-class InterfaceFolders:
-    """A finder that comes before all others, for ``my_msgs.msg`` where Python takes folders for packages.
+class SourceFolders:
+    """A finder that comes before all others, where Python would take folders of a package's sources for modules.
 
-    In a folder with a package's sources, ``my_msgs/msg`` would else be a module without anything in it.
+    ``my_msgs/msg`` would else be a module without anything in it, and so would ``launch`` beside ``package.xml``.
     """
 
     def __init__(self, stand_ins: StandIns) -> None:
         self._stand_ins = stand_ins
 
     def find_spec(self, name: str, path: object = None, target: object = None) -> ModuleSpec | None:  # noqa: ARG002
-        """The module of interfaces in a package that is nothing but a folder."""
+        """The stand-in, or the module of interfaces in a package, that is nothing but a folder."""
         package, _, kind = name.rpartition(".")
+        if not package:
+            return self._stand_ins.find_spec(name) if self._is_hidden(name) else None
         if kind not in _INTERFACE_KINDS or package not in sys.modules:
             return None
         return None if getattr(sys.modules[package], "__file__", None) else self._stand_ins.interface(name)
+
+    def _is_hidden(self, name: str) -> bool:
+        """Whether a stand-in has the name of a folder that is no package."""
+        if not self._stand_ins.has(name):
+            return False
+        found = PathFinder.find_spec(name)
+        return found is not None and found.origin is None
 
 
 def _may_hold_interfaces(package: str) -> bool:
@@ -141,15 +154,16 @@ def _run_next_sitecustomize() -> None:
 
 
 def _tell_how_to_get(kind: type[BaseException], error: BaseException, traceback: object) -> None:
-    """Python's own last words about an error; where a module of ROS is missing, what to do about it too."""
+    """Python's own last words about an error; where a module of ROS, or a name in it, is missing, what to do too."""
     sys.__excepthook__(kind, error, traceback)  # type: ignore[arg-type]  # naming its type would import a module
     name = getattr(error, "name", None)
-    if isinstance(error, ModuleNotFoundError) and name and not _stand_ins.has_real_ros():
+    if isinstance(error, ImportError) and name and not _stand_ins.has_real_ros():
         try:
             _make_importable()
-            from linkwright.launch.providers import known_provider_hint
+            from linkwright.launch.errors.missing_modules import known_provider_hint
+            from linkwright.launch.errors.user_code import where_it_is
 
-            hint = known_provider_hint(name)
+            hint = known_provider_hint(name) if isinstance(error, ModuleNotFoundError) else where_it_is(error)
         except Exception:  # noqa: BLE001 - the error that is told is the program's
             return
         if hint:
@@ -158,6 +172,6 @@ def _tell_how_to_get(kind: type[BaseException], error: BaseException, traceback:
 
 _stand_ins = StandIns()
 sys.excepthook = _tell_how_to_get
-sys.meta_path.insert(0, InterfaceFolders(_stand_ins))
+sys.meta_path.insert(0, SourceFolders(_stand_ins))
 sys.meta_path.append(_stand_ins)
 _run_next_sitecustomize()

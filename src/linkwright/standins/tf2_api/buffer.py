@@ -9,7 +9,7 @@ from linkwright.standins.tf2_api.interface import BufferInterface
 
 
 class Buffer(transform_waiting.Buffer, BufferInterface):
-    """Keeps transforms, waits for them, and takes messages from one frame to another.
+    """Stores transforms, waits for them, and transforms messages from one frame to another.
 
     Args:
         cache_time: how far back transforms are kept; 10 seconds when left out.

@@ -1,10 +1,11 @@
-"""Transforms that another process looks up (tf2_ros ``BufferClient``)."""
+"""Transforms looked up by another process (tf2_ros ``BufferClient``)."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from linkwright.graph.time import Duration, Time
+from linkwright.diagnostics import phrase
+from linkwright.graph.time.values import Duration, Time
 from linkwright.graph.transforms.errors import (
     ConnectivityException,
     ExtrapolationException,
@@ -58,6 +59,10 @@ class BufferClient(BufferInterface):
         self.timeout_padding = (
             timeout_padding if isinstance(timeout_padding, Duration) else Duration(seconds=timeout_padding)
         )
+
+    def destroy(self) -> None:
+        """Destroy the client of the action."""
+        self.action_client.destroy()
 
     def lookup_transform(self, target_frame: str, source_frame: str, time: Any, timeout: Duration = NO_TIME) -> Any:
         """The pose of the source frame in the target frame.
@@ -129,7 +134,7 @@ class BufferClient(BufferInterface):
 
     def _ask(self, goal: Any, timeout: Duration) -> Any:
         if not self.action_client.server_is_ready():
-            raise TimeoutException("The BufferServer is not ready.")
+            raise TimeoutException(phrase("The BufferServer is not ready."))
         wait_sec = (timeout.nanoseconds + self.timeout_padding.nanoseconds) / 1e9
         sent = self.action_client.send_goal_async(goal)
         if not sent.wait(wait_sec) or sent.cancelled():
@@ -147,7 +152,7 @@ class BufferClient(BufferInterface):
         return result.transform
 
 
-_NO_ANSWER = (
+_NO_ANSWER = phrase(
     "The LookupTransform goal sent to the BufferServer did not come back {}. Something is likely wrong with the server."
 )
 

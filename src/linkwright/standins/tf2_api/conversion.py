@@ -32,12 +32,12 @@ class NotImplementedException(Exception):
 
 
 class TransformRegistration:
-    """How things of each type are taken from one frame to another; the same for all objects of this class."""
+    """How each type is transformed from one frame to another; one registry for all objects of this class."""
 
     _by_type: ClassVar[dict[Any, Transformation]] = {}
 
     def add(self, key: Any, callback: Transformation) -> None:
-        """Register a function of a thing and a transform, for a type."""
+        """Register a type's function of a value and a transform."""
         self._by_type[key] = callback
 
     def get(self, key: Any) -> Transformation:
@@ -54,39 +54,39 @@ class TransformRegistration:
 
 
 class ConvertRegistration:
-    """How things of each type become messages, come from them, or become others directly; the same for all objects."""
+    """How each type is converted to and from messages, or to another type; one registry for all objects."""
 
     _to_msg: ClassVar[dict[Any, Conversion]] = {}
     _from_msg: ClassVar[dict[Any, Conversion]] = {}
     _direct: ClassVar[dict[Any, Conversion]] = {}
 
     def add_from_msg(self, key: Any, callback: Conversion) -> None:
-        """Register how a message becomes a thing of a type."""
+        """Register how a message is converted to a type."""
         self._from_msg[key] = callback
 
     def add_to_msg(self, key: Any, callback: Conversion) -> None:
-        """Register how a thing of a type becomes a message."""
+        """Register how a type is converted to a message."""
         self._to_msg[key] = callback
 
     def add_convert(self, key: tuple[Any, Any], callback: Conversion) -> None:
-        """Register how a thing of the first type becomes one of the second."""
+        """Register how the first type is converted to the second."""
         self._direct[key] = callback
 
     def get_from_msg(self, key: Any) -> Conversion:
-        """How a message becomes a thing of a type; TypeException where that is not registered."""
+        """How a message is converted to a type; TypeException where that is not registered."""
         return _found(self._from_msg, key)
 
     def get_to_msg(self, key: Any) -> Conversion:
-        """How a thing of a type becomes a message; TypeException where that is not registered."""
+        """How a type is converted to a message; TypeException where that is not registered."""
         return _found(self._to_msg, key)
 
     def get_convert(self, key: tuple[Any, Any]) -> Conversion:
-        """How a thing of one type becomes one of another; TypeException where that is not registered."""
+        """How one type is converted to another; TypeException where that is not registered."""
         return _found(self._direct, key)
 
 
 def convert(a: Any, b_type: Any) -> Any:
-    """A thing as one of another type, by way of a message if need be; a copy where the type is the same.
+    """A value converted to another type, by way of a message if need be; a copy where the type is the same.
 
     Raises:
         TypeException: it is not registered how.

@@ -1,4 +1,4 @@
-"""Has buffers transform the messages of geometry_msgs (``import tf2_geometry_msgs``)."""
+"""Registers the messages of geometry_msgs with buffers (``import tf2_geometry_msgs``)."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _TRANSFORMATIONS = {
 
 
 def to_msg_msg(msg: Any) -> Any:
-    """The message that a message is."""
+    """The message itself."""
     return msg
 
 
@@ -27,7 +27,7 @@ from_msg_msg = to_msg_msg
 
 
 def register() -> None:
-    """Have buffers transform them from now on."""
+    """Let all buffers transform them."""
     for name, transformation in _TRANSFORMATIONS.items():
         kind = get_message(f"geometry_msgs/msg/{name}")
         TransformRegistration().add(kind, transformation)

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
-from linkwright.graph.time import Duration, Time
+from linkwright.graph.time.values import Duration, Time
 from linkwright.standins.tf2_api.conversion import NotImplementedException, TransformRegistration, convert
 
 NO_TIME = Duration()
 
 
 class BufferInterface:
-    """Something that looks up transforms, and takes messages from one frame to another by them."""
+    """Looks up transforms, and transforms messages by them."""
 
     def __init__(self) -> None:
         self.registration = TransformRegistration()
@@ -19,7 +19,7 @@ class BufferInterface:
     def transform(
         self, object_stamped: Any, target_frame: str, timeout: Duration = NO_TIME, new_type: Any = None
     ) -> Any:
-        """A thing with a header in another frame.
+        """A stamped object in another frame.
 
         Args:
             object_stamped: the thing, of a registered type: ``import tf2_geometry_msgs`` registers those of
@@ -47,7 +47,7 @@ class BufferInterface:
         timeout: Duration = NO_TIME,
         new_type: Any = None,
     ) -> Any:
-        """A thing with a header in another frame at another time, by way of a frame that does not move.
+        """A stamped object in another frame at another time, by way of a fixed frame.
 
         Raises:
             TypeException: the type is not registered.
@@ -62,7 +62,7 @@ class BufferInterface:
         return result if new_type is None else convert(result, new_type)
 
     def lookup_transform(self, *_question: Any, **_options: Any) -> Any:
-        """The pose of the source frame in the target frame: of two frames, a time and a timeout."""
+        """The pose of the source frame in the target frame."""
         raise NotImplementedException
 
     def lookup_transform_full(self, *_question: Any, **_options: Any) -> Any:

@@ -6,7 +6,7 @@ import threading
 from typing import Any
 
 from linkwright.graph.executors import ExternalShutdownException, ReentrantCallbackGroup
-from linkwright.graph.qos import STATIC_TF_SUBSCRIPTION_QOS, TF_QOS, QoSProfile
+from linkwright.graph.qos.profile import STATIC_TF_SUBSCRIPTION_QOS, TF_QOS, QoSProfile
 from linkwright.graph.transforms.listener import DEFAULT_STATIC_TF_TOPIC, DEFAULT_TF_TOPIC
 from linkwright.messages import TFMessage
 from linkwright.standins.rclpy_api.executors import SingleThreadedExecutor
@@ -16,7 +16,7 @@ _AUTHORITY = "default_authority"
 
 
 class TransformListener:
-    """Takes what is published on ``/tf`` and ``/tf_static`` into a buffer.
+    """Puts the transforms of ``/tf`` and ``/tf_static`` into a buffer.
 
     Its callbacks are in a reentrant group, so that another callback of the node may wait for a transform.
 
@@ -65,7 +65,7 @@ class TransformListener:
             self.dedicated_listener_thread.start()
 
     def unregister(self) -> None:
-        """Listen no more."""
+        """Stop listening."""
         subscriptions, self._subscriptions = self._subscriptions, []
         for subscription in subscriptions:
             self.node.destroy_subscription(subscription)
@@ -92,7 +92,7 @@ class TransformListener:
 
 
 class StaticTransformListener(TransformListener):
-    """Takes what is published on ``/tf_static`` into a buffer.
+    """Puts the transforms of ``/tf_static`` into a buffer.
 
     Args:
         buffer: what is filled.

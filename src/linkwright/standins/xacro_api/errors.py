@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from xml.parsers.expat import ExpatError
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError
-from linkwright.launch.engine.descriptions import DescriptionError, XacroCall
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
+from linkwright.launch.model.descriptions import DescriptionError, XacroCall
 
 
 class XacroException(LinkwrightError):
@@ -28,7 +28,7 @@ class XacroException(LinkwrightError):
         self, msg: object = None, suffix: object = None, exc: BaseException | None = None, macro: object = None
     ) -> None:
         words = " ".join(str(part) for part in (msg, exc, suffix) if part is not None and str(part))
-        super().__init__(Diagnostic("XAC706", words or "xacro failed"))
+        super().__init__(Diagnostic("XAC706", foreign(words) or phrase("xacro failed")))
         self.suffix = suffix
         self.exc = exc
         self.macros = [] if macro is None else [macro]

@@ -7,12 +7,12 @@ import keyword
 from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
-from linkwright.diagnostics import LinkwrightError
+from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.standins.xacro_api.errors import XacroException, translated
 from linkwright.standins.xacro_api.stacks import STATE, abs_filename_spec
 from linkwright.xacro import yamldata
-from linkwright.xacro.engine import Inputs
 from linkwright.xacro.faults import Fault
+from linkwright.xacro.inputs import Inputs
 from linkwright.xacro.literals import truth
 from linkwright.xacro.scope import Namespace, Scope
 from linkwright.xacro.session import Session
@@ -42,7 +42,7 @@ def safe_eval(expr: str, globals: Mapping[str, Any] | None, locals: Mapping[str,
     Raises:
         XacroException: it has none, or may not be used.
     """
-    from linkwright.xacro.template import compile_expression
+    from linkwright.xacro.expression import compile_expression
 
     session = _session()
     scope = _scope(session, globals)
@@ -123,7 +123,7 @@ class YamlDictWrapper(dict[Any, Any]):
         try:
             return self[item]
         except KeyError:
-            raise AttributeError(f"the YAML mapping has no key '{item}'") from None
+            raise AttributeError(phrase("the YAML mapping has no key '{item}'", item=item)) from None
 
 
 class YamlListWrapper(list[Any]):

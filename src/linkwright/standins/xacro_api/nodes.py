@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 from xml.dom import minidom
 
+from linkwright.diagnostics import phrase
 from linkwright.standins.xacro_api import colour
 from linkwright.standins.xacro_api.errors import XacroException
 from linkwright.standins.xacro_api.evaluation import eval_text, get_boolean_value, is_valid_name
@@ -65,7 +66,7 @@ def reqd_attrs(tag: Any, attrs: Sequence[str]) -> list[str]:
     """
     for name in attrs:
         if not tag.hasAttribute(name):
-            raise RuntimeError(f"'{tag.nodeName}' lacks its attribute '{name}'")
+            raise RuntimeError(phrase("'{nodename}' lacks its attribute '{name}'", nodename=tag.nodeName, name=name))
     return [tag.getAttribute(name) for name in attrs]
 
 
@@ -91,7 +92,14 @@ def import_xml_namespaces(parent: Any, attributes: Any) -> None:
         if not name.startswith("xmlns:"):
             continue
         if parent.hasAttribute(name) and parent.getAttribute(name) != value:
-            colour.warning(f"'{name}' is declared as '{value}' here and as '{parent.getAttribute(name)}' around it")
+            colour.warning(
+                phrase(
+                    "'{name}' is declared as '{value}' here and as '{getattribute}' around it",
+                    name=name,
+                    value=value,
+                    getattribute=parent.getAttribute(name),
+                )
+            )
         else:
             parent.setAttribute(name, value)
 
@@ -150,10 +158,12 @@ def grab_property(elt: Any, table: Table) -> None:
     )
     name = eval_text(name, table)
     if not isinstance(name, str) or not is_valid_name(name) or name.startswith("__"):
-        raise XacroException(f"'{name}' cannot be the name of a property")
+        raise XacroException(phrase("'{name}' cannot be the name of a property", name=name))
     removed = _flag(remove, table, default=False)
     if (value is not None) + (default is not None) + removed > 1:
-        raise XacroException(f"the property '{name}' has more than one of 'value', 'default' and 'remove'")
+        raise XacroException(
+            phrase("the property '{name}' has more than one of 'value', 'default' and 'remove'", name=name)
+        )
     replace_node(elt, by=None)
     if removed:
         if name in table:

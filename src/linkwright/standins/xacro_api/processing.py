@@ -10,13 +10,16 @@ from pathlib import Path
 from typing import IO, Any
 from xml.dom import minidom
 
+from linkwright.descriptions import Description
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, print_diagnostics
-from linkwright.launch.engine.descriptions import XacroCall, current_descriptions
+from linkwright.launch.model.descriptions import XacroCall, current_descriptions
 from linkwright.standins.xacro_api import dom
 from linkwright.standins.xacro_api.command_line import process_args
 from linkwright.standins.xacro_api.errors import XacroException, translated
 from linkwright.standins.xacro_api.stacks import STATE, StackExpander, StackSession, init_stacks
-from linkwright.xacro.engine import Expansion, Inputs, banner
+from linkwright.xacro.engine import banner
+from linkwright.xacro.expansion import Expansion
+from linkwright.xacro.inputs import Inputs
 from linkwright.xacro.limits import room_for
 from linkwright.xmltree import Document
 from linkwright.xmltree import parse as parse_text
@@ -41,7 +44,7 @@ class XacroDocument(minidom.Document):
         if descriptions is None or self.call is None or expansion is None or not isinstance(text, str):
             return text
         if dom.is_same(self, expansion.document):
-            descriptions.remember(self.call, expansion, text)
+            descriptions.remember(self.call, Description.of_expansion(str(self.call.path), expansion), text)
         return text
 
 

@@ -1,4 +1,4 @@
-"""Where an expansion is: the files and macros being processed, as the module ``xacro`` keeps them for the process."""
+"""The state of the module ``xacro``: the files and macros being processed."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from typing import Any
 from linkwright.standins.xacro_api.macros import Macro
 from linkwright.xacro.calls import call_macro
 from linkwright.xacro.directives import DIRECTIVES
-from linkwright.xacro.engine import Inputs
 from linkwright.xacro.expander import Directive, Expander, Site
 from linkwright.xacro.faults import Fault
+from linkwright.xacro.inputs import Inputs
 from linkwright.xacro.macros import Macro as EngineMacro
 from linkwright.xacro.macros import MacroTable
 from linkwright.xacro.session import Session
@@ -24,7 +24,7 @@ _PREFIX = "xacro:"
 
 
 class State:
-    """What the module ``xacro`` holds in variables.
+    """The variables of the module ``xacro``.
 
     Attributes:
         filestack: the files being processed, the innermost last; None stands for a text.
@@ -47,44 +47,26 @@ class State:
 STATE = State()
 
 
+def _of_state(name: str) -> property:
+    def change(_: ModuleType, value: Any) -> None:
+        setattr(STATE, name, value)
+
+    return property(lambda _: getattr(STATE, name), change)
+
+
 class LiveModule(ModuleType):
-    """A module some of whose variables are those of `STATE`, so that they can be read and set from outside."""
+    """A module whose variables are those of `STATE`, so that programs can read and set them."""
 
-    @property
-    def filestack(self) -> list[str | None] | None:
-        """See `State`."""
-        return STATE.filestack
+    filestack = _of_state("filestack")
+    macrostack = _of_state("macrostack")
+    root_dir = _of_state("root_dir")
+    verbosity = _of_state("verbosity")
+    all_includes = _of_state("all_includes")
 
-    @filestack.setter
-    def filestack(self, stack: list[str | None] | None) -> None:
-        STATE.filestack = stack
 
-    @property
-    def macrostack(self) -> list[Macro] | None:
-        """See `State`."""
-        return STATE.macrostack
-
-    @macrostack.setter
-    def macrostack(self, stack: list[Macro] | None) -> None:
-        STATE.macrostack = stack
-
-    @property
-    def root_dir(self) -> str | Path:
-        """See `State`."""
-        return STATE.root_dir
-
-    @root_dir.setter
-    def root_dir(self, folder: str | Path) -> None:
-        STATE.root_dir = folder
-
-    @property
-    def verbosity(self) -> int:
-        """See `State`."""
-        return STATE.verbosity
-
-    @verbosity.setter
-    def verbosity(self, level: int) -> None:
-        STATE.verbosity = level
+def share_state() -> None:
+    """Have the module ``xacro`` hold the variables of `STATE`."""
+    sys.modules["xacro"].__class__ = LiveModule
 
 
 def init_stacks(file: str | Path | None) -> None:
@@ -116,12 +98,12 @@ def print_location() -> None:
 
 
 class StackExpander(Expander):
-    """An expander that tells its session where mistakes are made."""
+    """An expander that tells its session when it finds an error."""
 
     session: StackSession
 
     def note(self, fault: Fault) -> None:
-        """Keep a mistake; see `Expander.note`."""
+        """Keep an error, and where it was."""
         self.session.keep_place()
         super().note(fault)
 
@@ -163,12 +145,12 @@ class StackSession(Session):
         STATE.all_includes.append(file)
 
     def keep_place(self) -> None:
-        """Remember that this is where the first mistake was made, though the walk goes on."""
+        """Remember the place of the first error; expansion goes on after it."""
         if self._mistake is None:
             self._mistake = (list(STATE.filestack or []), list(STATE.macrostack or []))
 
     def return_to_mistake(self) -> None:
-        """The expansion has failed: leave the stacks as they were at the first mistake."""
+        """Leave the stacks as they were at the first error, because the expansion has failed."""
         if self._mistake is not None:
             STATE.filestack, STATE.macrostack = self._mistake
 

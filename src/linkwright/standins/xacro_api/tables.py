@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from typing import Any
 
+from linkwright.diagnostics import phrase
 from linkwright.standins.xacro_api import colour
 from linkwright.standins.xacro_api.errors import XacroException
 from linkwright.standins.xacro_api.evaluation import eval_text
@@ -117,4 +118,4 @@ class NameSpace(Table):
         try:
             return self[item]
         except KeyError:
-            raise NameError(f"name '{item}' is not defined") from None
+            raise NameError(phrase("name '{item}' is not defined", item=item)) from None

@@ -1,10 +1,9 @@
 """Points from messages: positions, channels, and the colours that RViz's transformers give them."""
 
 from linkwright.viewer.clouds.colours import AXES, TRANSFORMERS, ColourSettings, coloured, supported_transformers
-from linkwright.viewer.clouds.decimation import decimated
 from linkwright.viewer.clouds.depth import DepthCamera, DepthCloudBuilder
 from linkwright.viewer.clouds.laser import ScanProjector
-from linkwright.viewer.clouds.points import BadCloudError, Points, points_of_cloud, points_of_legacy_cloud
+from linkwright.viewer.clouds.points import BadCloudError, Points, decimated, points_of_cloud, points_of_legacy_cloud
 from linkwright.viewer.clouds.sweep import swept
 
 __all__ = [

@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from linkwright.geometry.arrays import rotation_matrix
+from linkwright.geometry.single import normalized
 from linkwright.viewer.clouds.points import Points
-from linkwright.viewer.placing import rotation_matrix
 
 INTENSITY, AXIS, FLAT, RGB8, RGBF32 = TRANSFORMERS = ("Intensity", "AxisColor", "FlatColor", "RGB8", "RGBF32")
 AXES = ("X", "Y", "Z")
@@ -115,7 +116,7 @@ def _by_axis(
     points: Points, settings: ColourSettings, pose: NDArray[np.float64] | None
 ) -> tuple[Colours, tuple[float, float] | None]:
     if settings.in_fixed_frame and pose is not None:
-        row = rotation_matrix(pose)[settings.axis].astype(np.float32)
+        row = rotation_matrix(normalized(*pose[3:]))[settings.axis].astype(np.float32)
         values = points.positions @ row + np.float32(pose[settings.axis])
     else:
         values = points.positions[:, settings.axis]

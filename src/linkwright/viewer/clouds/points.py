@@ -7,7 +7,10 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from msgspec.structs import replace
 from numpy.typing import NDArray
+
+from linkwright.viewer.protocol.points import CloudPoints
 
 # sensor_msgs/msg/PointField: constants of its `datatype`
 _FORMATS = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 8: "f8"}
@@ -126,3 +129,12 @@ def _coordinates(data: NDArray[np.uint8], offsets: list[int], order: str, step: 
 def _column(data: NDArray[np.uint8], offset: int, kind: str, step: int, count: int) -> NDArray[Any]:
     column: NDArray[Any] = np.ndarray((count,), kind, data.data, offset, (step,))
     return column
+
+
+def decimated(cloud: CloudPoints, size: int) -> CloudPoints:
+    """Every k-th point, so that the arrays have at most so many bytes; at least one point is left."""
+    whole = cloud.positions.nbytes + cloud.colours.nbytes
+    step = -(-whole // max(1, size))
+    if step <= 1:
+        return cloud
+    return replace(cloud, positions=cloud.positions[::step], colours=cloud.colours[::step], step=step)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from linkwright.viewer.displays.base import ViewerDisplay
-from linkwright.viewer.frame_view import transform_status
-from linkwright.viewer.property_store import Path
-from linkwright.viewer.schema import FIXED_FRAME, PropertySpec
+from linkwright.viewer.config.property_store import Path
+from linkwright.viewer.config.schema import FIXED_FRAME, PropertySpec
+from linkwright.viewer.displays.base.display import ViewerDisplay
+from linkwright.viewer.frames.view import transform_status
 
 _FRAME = "Reference Frame"
 
@@ -31,4 +31,4 @@ class AxesDisplay(ViewerDisplay):
 
     def frames_changed(self) -> None:
         """Say whether the frame can be placed."""
-        self.set_status([transform_status(self.stage.frames, self.properties.text(_FRAME))])
+        self.set_status([transform_status(self.host.frames, self.properties.text(_FRAME))])

@@ -7,16 +7,17 @@ from typing import Any
 
 import numpy as np
 
-from linkwright.viewer.displays.base import Stage, ViewerDisplay
-from linkwright.viewer.displays.data_display import Pose
-from linkwright.viewer.displays.image_topic import ImageTopicDisplay
-from linkwright.viewer.displays.side_topic import SideTopic, camera_info_topic
-from linkwright.viewer.displays.topic_display import TOPIC
-from linkwright.viewer.displays.topic_properties import qos_of, topic_spec
-from linkwright.viewer.property_store import Schema
-from linkwright.viewer.protocol import CameraModel
-from linkwright.viewer.rviz_config import DisplayConfig
-from linkwright.viewer.schema import PropertySpec
+from linkwright.viewer.config.property_store import Schema
+from linkwright.viewer.config.rviz_config import DisplayConfig
+from linkwright.viewer.config.schema import PropertySpec
+from linkwright.viewer.config.topic_properties import qos_of, topic_spec
+from linkwright.viewer.displays.base.data_display import Pose
+from linkwright.viewer.displays.base.display import ViewerDisplay
+from linkwright.viewer.displays.base.host import DisplayHost
+from linkwright.viewer.displays.base.image_topic import ImageTopicDisplay
+from linkwright.viewer.displays.base.side_topic import SideTopic, camera_info_topic
+from linkwright.viewer.displays.base.topic_display import TOPIC
+from linkwright.viewer.protocol.images import CameraModel
 
 _INFO = "Camera Info"
 _MOST_WAITING = 10
@@ -56,10 +57,10 @@ class CameraDisplay(ImageTopicDisplay):
     CLASS = "rviz_default_plugins/Camera"
     SCHEMA = _SPECS
 
-    def __init__(self, stage: Stage, identity: str, config: DisplayConfig) -> None:
+    def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
         self._boxes: Schema = ()
-        super().__init__(stage, identity, config)
-        self._infos = SideTopic(stage, "sensor_msgs/msg/CameraInfo", self._info_received)
+        super().__init__(host, identity, config)
+        self._infos = SideTopic(host, "sensor_msgs/msg/CameraInfo", self._info_received)
         self._info: Any = None
 
     def schema(self) -> Schema:

@@ -10,10 +10,13 @@ import numpy as np
 
 from linkwright.graph import HistoryPolicy, QoSProfile, ReliabilityPolicy
 from linkwright.viewer.clouds import BadCloudError, DepthCamera, DepthCloudBuilder, Points
-from linkwright.viewer.displays.base import Stage
-from linkwright.viewer.displays.cloud_display import CloudDisplay
-from linkwright.viewer.displays.data_display import Pose
-from linkwright.viewer.displays.depth_properties import (
+from linkwright.viewer.config.property_store import Path, Schema
+from linkwright.viewer.config.rviz_config import DisplayConfig
+from linkwright.viewer.displays.base.cloud_display import CloudDisplay
+from linkwright.viewer.displays.base.data_display import Pose
+from linkwright.viewer.displays.base.host import DisplayHost
+from linkwright.viewer.displays.base.side_topic import SideTopic, camera_info_topic
+from linkwright.viewer.displays.properties.depth import (
     AUTO_SIZE,
     COLOUR_TOPIC,
     COLOUR_TRANSPORT,
@@ -30,10 +33,7 @@ from linkwright.viewer.displays.depth_properties import (
     SOURCES,
     TOPIC_FILTER,
 )
-from linkwright.viewer.displays.side_topic import SideTopic, camera_info_topic
 from linkwright.viewer.images import BadImageError, ImageSource, RangeFinder, Unpacker, picture_of
-from linkwright.viewer.property_store import Path, Schema
-from linkwright.viewer.rviz_config import DisplayConfig
 
 _SYNC_NS = 500_000_000
 """A colour image farther from the depths in time does not belong to them."""
@@ -52,11 +52,11 @@ class DepthCloudDisplay(CloudDisplay):
     TOPIC = (DEPTH_TOPIC,)
     TOPIC_ROW: ClassVar[str] = "Depth Map"
 
-    def __init__(self, stage: Stage, identity: str, config: DisplayConfig) -> None:
+    def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
         self._filters = True
-        super().__init__(stage, identity, config)
+        super().__init__(host, identity, config)
         self._filters = self.properties.flag(TOPIC_FILTER)
-        self._infos = SideTopic(stage, "sensor_msgs/msg/CameraInfo", self._info_received)
+        self._infos = SideTopic(host, "sensor_msgs/msg/CameraInfo", self._info_received)
         self._colours: SideTopic | None = None
         self._depth_unpacker = Unpacker()
         self._colour_unpacker = Unpacker()
@@ -154,7 +154,7 @@ class DepthCloudDisplay(CloudDisplay):
         problem = self._infos.listen(info, self._qos())
         self.say("Depth Camera Info", "error" if problem else "warn", problem or f"No CameraInfo received on [{info}]")
         if colour.topic:
-            self._colours = SideTopic(self.stage, colour.message_type, self._colour_received)
+            self._colours = SideTopic(self.host, colour.message_type, self._colour_received)
             if problem := self._colours.listen(colour.topic, self._qos()):
                 self.say("Message", "error", problem)
             self.choose_transformer("RGB8")

@@ -9,18 +9,20 @@ from typing import Any
 import numpy as np
 
 from linkwright.diagnostics import LinkwrightError
+from linkwright.geometry.single import quaternion_multiply, rotation_from_z
 from linkwright.graph import DESCRIPTION_QOS, TransformException
 from linkwright.messages import String
-from linkwright.urdf import Joint, Vector3
-from linkwright.viewer.display_config import DisplayConfig
-from linkwright.viewer.displays.base import Stage
-from linkwright.viewer.displays.look_properties import alpha
-from linkwright.viewer.displays.recent import RecentDisplay
-from linkwright.viewer.displays.topic_properties import topic_spec
-from linkwright.viewer.property_store import Path, Schema
-from linkwright.viewer.protocol import DataContent, EffortRings
-from linkwright.viewer.robot_scene import frame_of
-from linkwright.viewer.schema import PropertySpec
+from linkwright.urdf import Joint
+from linkwright.viewer.config.displays import DisplayConfig
+from linkwright.viewer.config.property_store import Path, Schema
+from linkwright.viewer.config.schema import PropertySpec
+from linkwright.viewer.config.topic_properties import topic_spec
+from linkwright.viewer.displays.base.host import DisplayHost
+from linkwright.viewer.displays.base.recent import RecentDisplay
+from linkwright.viewer.displays.properties.look import alpha
+from linkwright.viewer.protocol.geometry import EffortRings
+from linkwright.viewer.protocol.message import DataContent
+from linkwright.viewer.robot.scene import frame_of
 
 _DESCRIPTION = "Robot Description"
 _PREFIX = "TF Prefix"
@@ -54,11 +56,11 @@ class EffortDisplay(RecentDisplay):
         PropertySpec(_PREFIX, "string", "", "What stands before a slash and a link's name in the name of its frame."),
     )
 
-    def __init__(self, stage: Stage, identity: str, config: DisplayConfig) -> None:
+    def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
         self._joints: dict[str, Joint] | None = None
         self._row: tuple[str, str] | None = None
         self._descriptions: Any = None
-        super().__init__(stage, identity, config)
+        super().__init__(host, identity, config)
 
     def schema(self) -> Schema:
         """The fixed properties, and a box for each joint that has a limit."""
@@ -75,7 +77,7 @@ class EffortDisplay(RecentDisplay):
         self._follow()
 
     def stop(self) -> None:
-        """Listen no more."""
+        """Stop listening."""
         self._leave()
         super().stop()
 
@@ -97,7 +99,7 @@ class EffortDisplay(RecentDisplay):
         """The frame of the first joint that is drawn: joint states are in no frame of their own."""
         stamp = message.header.stamp
         joint = next((self._joints[name] for name in message.name if self._joints and name in self._joints), None)
-        frame = self.stage.frames.fixed_frame if joint is None else self._frame(joint)
+        frame = self.host.frames.fixed_frame if joint is None else self._frame(joint)
         return frame, stamp.sec * 1_000_000_000 + stamp.nanosec
 
     def content(self, message: Any) -> DataContent | None:
@@ -127,14 +129,16 @@ class EffortDisplay(RecentDisplay):
         if not math.isfinite(effort):
             self.say(joint.name, "error", f"Invalid effort: {effort}")
             return None
-        frame, fixed_frame = self._frame(joint), self.stage.frames.fixed_frame
+        frame, fixed_frame = self._frame(joint), self.host.frames.fixed_frame
         try:
-            pose = self.stage.history.pose(fixed_frame, frame, stamp_ns)
+            pose = self.context.transforms.pose(fixed_frame, frame, stamp_ns)
         except TransformException:
             self.say(joint.name, "error", f"Error transforming from frame '{frame}' to frame '{fixed_frame}'")
             return None
         self.say(joint.name, "ok", "OK")
-        return (*(float(part) for part in pose[:3]), *_product(pose[3:], _from_z(joint.axis)))
+        x, y, z, *rotation = (float(part) for part in pose)
+        qx, qy, qz, qw = rotation
+        return (x, y, z, *quaternion_multiply((qx, qy, qz, qw), rotation_from_z(joint.axis)))
 
     def _frame(self, joint: Joint) -> str:
         return frame_of(joint.child, self.properties.text(_PREFIX))
@@ -147,18 +151,18 @@ class EffortDisplay(RecentDisplay):
         if not self.enabled or not topic:
             return
         try:
-            self._descriptions = self.stage.node.create_subscription(String, topic, self._described, DESCRIPTION_QOS)
+            self._descriptions = self.context.node.create_subscription(String, topic, self._described, DESCRIPTION_QOS)
         except LinkwrightError as error:
             self.say(_URDF, "error", f"Error subscribing: {error.diagnostics[0].message}")
 
     def _leave(self) -> None:
         if self._descriptions is not None:
             with suppress(ValueError):  # the node may have been destroyed before
-                self.stage.node.destroy_subscription(self._descriptions)
+                self.context.node.destroy_subscription(self._descriptions)
             self._descriptions = None
 
     def _described(self, message: String) -> None:
-        robot = self.stage.library.read(message.data).robot
+        robot = self.context.library.read(message.data).robot
         if robot is None:
             self.say(_URDF, "error", "Unable to parse robot model description!")
             return
@@ -170,26 +174,3 @@ class EffortDisplay(RecentDisplay):
         if known is None or known.keys() != self._joints.keys():
             self.publish_properties()
         self.show_again()
-
-
-def _from_z(axis: Vector3) -> tuple[float, float, float, float]:
-    """The shortest turn of z to an axis, x y z w."""
-    x, y, z = axis
-    norm = math.sqrt(x * x + y * y + z * z)
-    if norm == 0.0 or z / norm < -1.0 + 1e-9:
-        return (1.0, 0.0, 0.0, 0.0) if norm else (0.0, 0.0, 0.0, 1.0)
-    x, y, z = x / norm, y / norm, z / norm
-    w = math.sqrt((1.0 + z) / 2.0)
-    return (-y / (2.0 * w), x / (2.0 * w), 0.0, w)
-
-
-def _product(a: Any, b: tuple[float, float, float, float]) -> tuple[float, float, float, float]:
-    """Of two quaternions: first b, then a."""
-    ax, ay, az, aw = (float(part) for part in a)
-    bx, by, bz, bw = b
-    return (
-        aw * bx + ax * bw + ay * bz - az * by,
-        aw * by - ax * bz + ay * bw + az * bx,
-        aw * bz + ax * by - ay * bx + az * bw,
-        aw * bw - ax * bx - ay * by - az * bz,
-    )

@@ -6,7 +6,7 @@ from collections.abc import Collection
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from linkwright.graph.expressions import Expression
+    from linkwright.graph.names.expressions import Expression
 
 _NOT_USED = "This expression is not used"
 
@@ -29,7 +29,7 @@ class FrameFilter:
         self._known: set[str] = set()
         self._found: set[str] = set()
         if text:
-            from linkwright.graph.expressions import Expression, ExpressionError
+            from linkwright.graph.names.expressions import Expression, ExpressionError
 
             try:
                 self._expression = Expression(text)
@@ -44,7 +44,7 @@ class FrameFilter:
     def found_in(self, names: Collection[str]) -> set[str]:
         """Those names in which the expression is found; with one that takes too long there is none from now on."""
         if self._expression is not None:
-            from linkwright.graph.expressions import TooCostlyError
+            from linkwright.graph.names.expressions import TooCostlyError
 
             try:
                 found = self._expression.among(name for name in names if name not in self._known)

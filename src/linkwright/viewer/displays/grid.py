@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from linkwright.viewer.displays.base import ViewerDisplay
-from linkwright.viewer.displays.look_properties import alpha, line_style, line_width
-from linkwright.viewer.frame_view import transform_status
-from linkwright.viewer.property_store import Path
-from linkwright.viewer.schema import FIXED_FRAME, PropertySpec, vector
+from linkwright.viewer.config.property_store import Path
+from linkwright.viewer.config.schema import FIXED_FRAME, PropertySpec, vector
+from linkwright.viewer.displays.base.display import ViewerDisplay
+from linkwright.viewer.displays.properties.look import alpha, line_style, line_width
+from linkwright.viewer.frames.view import transform_status
 
 
 class GridDisplay(ViewerDisplay):
@@ -43,4 +43,4 @@ class GridDisplay(ViewerDisplay):
 
     def frames_changed(self) -> None:
         """Say whether the reference frame can be placed."""
-        self.set_status([transform_status(self.stage.frames, self.properties.text("Reference Frame"))])
+        self.set_status([transform_status(self.host.frames, self.properties.text("Reference Frame"))])

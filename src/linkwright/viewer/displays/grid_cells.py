@@ -7,12 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from linkwright.viewer.displays.data_display import Pose
-from linkwright.viewer.displays.look_properties import alpha
-from linkwright.viewer.displays.topic_display import TOPIC, TopicDisplay
-from linkwright.viewer.displays.topic_properties import topic_spec
-from linkwright.viewer.protocol import CellGrid, StatusLevel
-from linkwright.viewer.schema import PropertySpec
+from linkwright.viewer.config.schema import PropertySpec
+from linkwright.viewer.config.topic_properties import topic_spec
+from linkwright.viewer.displays.base.data_display import Pose
+from linkwright.viewer.displays.base.topic_display import TOPIC, TopicDisplay
+from linkwright.viewer.displays.properties.look import alpha
+from linkwright.viewer.protocol.parts import StatusLevel
+from linkwright.viewer.protocol.points import CellGrid
 
 
 class GridCellsDisplay(TopicDisplay):

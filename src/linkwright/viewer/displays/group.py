@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from linkwright.viewer.displays.base import ViewerDisplay
-from linkwright.viewer.former_names import GROUP
+from linkwright.viewer.config.former_names import GROUP
+from linkwright.viewer.displays.base.display import ViewerDisplay
 
 
 class GroupDisplay(ViewerDisplay):

@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from linkwright.viewer.displays.data_display import Pose
-from linkwright.viewer.displays.image_topic import ImageTopicDisplay
-from linkwright.viewer.displays.topic_properties import topic_spec
+from linkwright.viewer.config.property_store import Path, Schema
+from linkwright.viewer.config.schema import PropertySpec
+from linkwright.viewer.config.topic_properties import topic_spec
+from linkwright.viewer.displays.base.data_display import Pose
+from linkwright.viewer.displays.base.image_topic import ImageTopicDisplay
 from linkwright.viewer.images import Range, has_range
-from linkwright.viewer.property_store import Path, Schema
-from linkwright.viewer.schema import PropertySpec
 
 _NORMALIZE = "Normalize Range"
 

@@ -7,20 +7,21 @@ from functools import partial
 from typing import Any
 
 from linkwright.diagnostics import LinkwrightError
+from linkwright.geometry.single import Transform
 from linkwright.graph import TransformException
-from linkwright.graph.transforms.pose import Pose as FramePose
 from linkwright.messages import get_message
-from linkwright.viewer.display_config import DisplayConfig
-from linkwright.viewer.displays.base import Stage
-from linkwright.viewer.displays.data_display import DataDisplay, Pose
+from linkwright.viewer.config.displays import DisplayConfig
+from linkwright.viewer.config.property_store import Path
+from linkwright.viewer.config.schema import PropertySpec
+from linkwright.viewer.displays.base.data_display import DataDisplay, Pose
+from linkwright.viewer.displays.base.host import DisplayHost
 from linkwright.viewer.markers import BadMarkerError
 from linkwright.viewer.markers.client import ClientEvents, InteractiveMarkerClient
 from linkwright.viewer.markers.controls import read_interactive_marker
 from linkwright.viewer.markers.shapes import pose_of
-from linkwright.viewer.mesh_files import MeshIndex
-from linkwright.viewer.property_store import Path
-from linkwright.viewer.protocol import InteractiveMarkerMoved, MarkerFeedback, StatusLevel
-from linkwright.viewer.schema import PropertySpec
+from linkwright.viewer.protocol.interactive_markers import InteractiveMarkerMoved, MarkerFeedback
+from linkwright.viewer.protocol.parts import StatusLevel
+from linkwright.viewer.web.mesh_files import MeshIndex
 
 _NAMESPACE = "Interactive Markers Namespace"
 _TRANSPARENCY = "Enable Transparency"
@@ -43,15 +44,15 @@ class InteractiveMarkersDisplay(DataDisplay):
         PropertySpec(_TRANSPARENCY, "bool", True, "Whether arrows and rings that a server left out are seen through."),
     )
 
-    def __init__(self, stage: Stage, identity: str, config: DisplayConfig) -> None:
-        super().__init__(stage, identity, config)
+    def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
+        super().__init__(host, identity, config)
         self._client: InteractiveMarkerClient | None = None
         self._release: Any = None
         self._markers: dict[str, Any] = {}
         self._poses: dict[str, list[float]] = {}
         self._unplaced: set[str] = set()
         self._held: list[Callable[[], None]] = []
-        self._index = MeshIndex(stage.finder)
+        self._index = MeshIndex(host.context.finder)
 
     @classmethod
     def topic_value(cls, topic: str) -> str:
@@ -66,12 +67,12 @@ class InteractiveMarkersDisplay(DataDisplay):
             self._connect()
 
     def stop(self) -> None:
-        """Leave the server; pages may read the files that its markers named no more."""
+        """Leave the server, and withdraw the files that its markers named from pages."""
         self._disconnect()
-        self.stage.meshes.replace(self.id, {})
+        self.context.meshes.replace(self.id, {})
 
     def changed(self, path: Path) -> None:
-        """Connect to another server, or make its markers anew."""
+        """Connect to another server, or rebuild its markers."""
         if path in ((_NAMESPACE,), (_TRANSPARENCY,)):
             self.reset()
 
@@ -80,7 +81,7 @@ class InteractiveMarkersDisplay(DataDisplay):
         self.reset()
 
     def reset(self) -> None:
-        """Begin anew."""
+        """Start over."""
         self._disconnect()
         if self.enabled:
             self._connect()
@@ -92,7 +93,7 @@ class InteractiveMarkersDisplay(DataDisplay):
 
     def time_changed(self) -> None:
         """Show what the server said while time stood still."""
-        if not self.stage.time.paused:
+        if not self.host.time.paused:
             held, self._held = self._held, []
             for take in held:
                 take()
@@ -108,7 +109,7 @@ class InteractiveMarkersDisplay(DataDisplay):
             self._poses[message.marker] = message.pose
         feedback = get_message("visualization_msgs/msg/InteractiveMarkerFeedback")()
         feedback.header = marker.header
-        feedback.client_id = self.stage.node.get_fully_qualified_name() + "/" + self.id
+        feedback.client_id = self.context.node.get_fully_qualified_name() + "/" + self.id
         feedback.marker_name = message.marker
         feedback.control_name = message.control
         feedback.event_type = _EVENTS[message.event]
@@ -124,7 +125,7 @@ class InteractiveMarkersDisplay(DataDisplay):
         if not namespace:
             self.say(_CLIENT, "error", "Error connecting: empty namespace")
             return
-        self._release = self.stage.history.use(self._transforms_came)
+        self._release = self.context.transforms.use(self._transforms_came)
         events = ClientEvents(
             lambda markers: self._soon(partial(self._take_all, markers)),
             lambda update: self._soon(partial(self._take_update, update)),
@@ -132,7 +133,7 @@ class InteractiveMarkersDisplay(DataDisplay):
             self._client_status,
         )
         try:
-            self._client = InteractiveMarkerClient(self.stage.node, namespace, events)
+            self._client = InteractiveMarkerClient(self.context.node, namespace, events)
         except LinkwrightError as error:
             self.say(_CLIENT, "error", f"Error connecting: {error.diagnostics[0].message}")
 
@@ -153,7 +154,7 @@ class InteractiveMarkersDisplay(DataDisplay):
 
     def _soon(self, take: Callable[[], None]) -> None:
         """Take something from the server, which waits while time is paused."""
-        if self.stage.time.paused:
+        if self.host.time.paused:
             self._held.append(take)
         else:
             take()
@@ -232,18 +233,18 @@ class InteractiveMarkersDisplay(DataDisplay):
         self._unplaced.discard(name)
         self.unsay(name)
         shape.pose = self._poses[name]
-        self.stage.meshes.replace(self.id, self._index.folders)
+        self.context.meshes.replace(self.id, self._index.folders)
         self.send(shape, key=f"marker {name}", frame=frame, pose=at)
 
     def _frame_pose(self, marker: Any, frame: str) -> Pose | None:
         """Where the marker's frame was; None for a marker that follows it, which one without a time does."""
-        fixed_frame = self.stage.frames.fixed_frame
+        fixed_frame = self.host.frames.fixed_frame
         stamp = marker.header.stamp
-        pose = self.stage.history.pose(fixed_frame, frame, stamp.sec * 1_000_000_000 + stamp.nanosec)
+        pose = self.context.transforms.pose(fixed_frame, frame, stamp.sec * 1_000_000_000 + stamp.nanosec)
         return None if _is_latest(marker) else pose
 
-    def _relative(self, reference: str, frame: str) -> FramePose:
-        x, y, z, qx, qy, qz, qw = self.stage.history.pose(reference, frame, 0).tolist()
+    def _relative(self, reference: str, frame: str) -> Transform:
+        x, y, z, qx, qy, qz, qw = self.context.transforms.pose(reference, frame, 0).tolist()
         return x, y, z, qx, qy, qz, qw
 
     def _transforms_came(self) -> None:

@@ -8,12 +8,12 @@ import numpy as np
 
 from linkwright.graph import TransformException
 from linkwright.viewer.clouds import Points, ScanProjector, swept
-from linkwright.viewer.displays.base import Stage
-from linkwright.viewer.displays.cloud_display import CloudDisplay
-from linkwright.viewer.displays.cloud_properties import STYLE_SPECS, TRANSFORMER_SPECS
-from linkwright.viewer.displays.data_display import Pose
-from linkwright.viewer.displays.topic_properties import topic_spec
-from linkwright.viewer.rviz_config import DisplayConfig
+from linkwright.viewer.config.rviz_config import DisplayConfig
+from linkwright.viewer.config.topic_properties import topic_spec
+from linkwright.viewer.displays.base.cloud_display import CloudDisplay
+from linkwright.viewer.displays.base.data_display import Pose
+from linkwright.viewer.displays.base.host import DisplayHost
+from linkwright.viewer.displays.properties.cloud import STYLE_SPECS, TRANSFORMER_SPECS
 
 _IDENTITY = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0])
 
@@ -33,8 +33,8 @@ class LaserScanDisplay(CloudDisplay):
         *TRANSFORMER_SPECS,
     )
 
-    def __init__(self, stage: Stage, identity: str, config: DisplayConfig) -> None:
-        super().__init__(stage, identity, config)
+    def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
+        super().__init__(host, identity, config)
         self._projector = ScanProjector()
 
     def points_of(self, message: Any) -> Points:
@@ -48,9 +48,9 @@ class LaserScanDisplay(CloudDisplay):
         seconds = steps * float(message.time_increment)
         if stamp_ns == 0 or steps < 1 or not 0.0 < seconds < 3600.0:
             return points, pose
-        fixed_frame = self.stage.frames.fixed_frame
+        fixed_frame = self.host.frames.fixed_frame
         try:
-            end = self.stage.history.pose(fixed_frame, frame.removeprefix("/"), stamp_ns + int(seconds * 1e9))
+            end = self.context.transforms.pose(fixed_frame, frame.removeprefix("/"), stamp_ns + int(seconds * 1e9))
         except TransformException:
             return points, pose
         if np.allclose(end, pose, rtol=0.0, atol=1e-9):

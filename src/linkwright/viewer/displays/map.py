@@ -4,23 +4,68 @@ from __future__ import annotations
 
 import asyncio
 import time
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.viewer.displays.base import Stage
-from linkwright.viewer.displays.data_display import Pose
-from linkwright.viewer.displays.map_properties import MAP_SCHEMA, UPDATE_TOPIC, USE_TIMESTAMP, readings
-from linkwright.viewer.displays.side_topic import SideTopic
-from linkwright.viewer.displays.topic_display import TOPIC, TRANSFORM, TopicDisplay
-from linkwright.viewer.displays.topic_properties import qos_of
-from linkwright.viewer.property_store import Path
-from linkwright.viewer.protocol import OccupancyMap, PropertyChanged
-from linkwright.viewer.rviz_config import DisplayConfig
+from linkwright.viewer.config.property_store import Path, Schema
+from linkwright.viewer.config.rviz_config import DisplayConfig
+from linkwright.viewer.config.schema import PropertySpec
+from linkwright.viewer.config.topic_properties import qos_of, topic_spec
+from linkwright.viewer.displays.base.data_display import Pose
+from linkwright.viewer.displays.base.host import DisplayHost
+from linkwright.viewer.displays.base.side_topic import SideTopic
+from linkwright.viewer.displays.base.topic_display import TOPIC, TRANSFORM, TopicDisplay
+from linkwright.viewer.displays.properties.look import alpha
+from linkwright.viewer.protocol.displays import PropertyChanged
+from linkwright.viewer.protocol.images import OccupancyMap
 
 _UPDATE_PERIOD = 0.1
 """Seconds between two maps that updates have pages sent."""
+
+_UPDATE_TOPIC = "Update Topic"
+_USE_TIMESTAMP = "Use Timestamp"
+_BINARY = "Binary representation"
+
+
+def _told(name: str, axes: str, description: str) -> PropertySpec:
+    rest = tuple(PropertySpec(axis, "float", 1.0 if axis == "W" else 0.0, read_only=True) for axis in axes)
+    return PropertySpec(name, "group", description=description, children=rest)
+
+
+_SCHEMA: Schema = (
+    topic_spec(description="nav_msgs/msg/OccupancyGrid", filter_size=10),
+    topic_spec(
+        _UPDATE_TOPIC,
+        description="map_msgs/msg/OccupancyGridUpdate: the topic with updates of parts of the map; without one, the "
+        "map's topic with '_updates' behind it.",
+        messages=("map_msgs/msg/OccupancyGridUpdate",),
+    ),
+    alpha("Opacity of the map: 0 is invisible.", 0.7),
+    PropertySpec(
+        "Color Scheme", "enum", "map", "What colours the values of the cells have.", options=("map", "costmap", "raw")
+    ),
+    PropertySpec("Draw Behind", "bool", False, "Draw the map behind everything else, wherever it is."),
+    PropertySpec("Resolution", "float", 0.0, "Side of a cell, in metres.", read_only=True),
+    PropertySpec("Width", "int", 0, "Cells along x.", read_only=True),
+    PropertySpec("Height", "int", 0, "Cells along y.", read_only=True),
+    _told("Position", "XYZ", "Where the lower left corner is in the map's frame, in metres."),
+    _told("Orientation", "XYZW", "How the map is turned in its frame."),
+    PropertySpec(
+        _USE_TIMESTAMP, "bool", False, "Place the map where its frame was at the map's time, not where it is now."
+    ),
+    PropertySpec(_BINARY, "bool", False, "Show free and occupied only."),
+    PropertySpec(
+        "Binary threshold",
+        "int",
+        100,
+        "The least value that counts as occupied.",
+        minimum=0,
+        maximum=100,
+    ),
+)
 
 
 class MapDisplay(TopicDisplay):
@@ -31,11 +76,11 @@ class MapDisplay(TopicDisplay):
 
     CLASS = "rviz_default_plugins/Map"
     MESSAGE = "nav_msgs/msg/OccupancyGrid"
-    SCHEMA = MAP_SCHEMA
+    SCHEMA = _SCHEMA
 
-    def __init__(self, stage: Stage, identity: str, config: DisplayConfig) -> None:
-        super().__init__(stage, identity, config)
-        self._updates = SideTopic(stage, "map_msgs/msg/OccupancyGridUpdate", self._updated)
+    def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
+        super().__init__(host, identity, config)
+        self._updates = SideTopic(host, "map_msgs/msg/OccupancyGridUpdate", self._updated)
         self._map: Any = None
         self._cells: NDArray[np.uint8] = np.empty((0, 0), np.uint8)
         self._is_own = False  # else the cells are the message's, which others have too
@@ -47,7 +92,7 @@ class MapDisplay(TopicDisplay):
     def frame_of(self, message: Any) -> tuple[str, int]:
         """The map's frame, ``map`` where it names none; the latest time unless the timestamp is to be used."""
         frame, stamp_ns = super().frame_of(message)
-        return frame or "map", stamp_ns if self.properties.flag(USE_TIMESTAMP) else 0
+        return frame or "map", stamp_ns if self.properties.flag(_USE_TIMESTAMP) else 0
 
     def take(self, message: Any, pose: Pose | None) -> None:
         """Show a map; one that was updated meanwhile stays as it is."""
@@ -60,25 +105,25 @@ class MapDisplay(TopicDisplay):
         """Follow another topic, other updates, or the timestamp."""
         if path == (TOPIC,):
             self._follow_topic(file_too=True)
-            self.stage.publish(PropertyChanged(self.property_id((UPDATE_TOPIC,)), self.properties.text(UPDATE_TOPIC)))
+            self.pages.publish(PropertyChanged(self.property_id((_UPDATE_TOPIC,)), self.properties.text(_UPDATE_TOPIC)))
         super().changed(path)
-        if path[0] == UPDATE_TOPIC:
+        if path[0] == _UPDATE_TOPIC:
             self._restart()
-        elif path == (USE_TIMESTAMP,):
+        elif path == (_USE_TIMESTAMP,):
             self.show_again()
 
     def recalled(self) -> None:
-        """Updates of which the file says nothing again come from beside the topic."""
+        """Updates that the file does not name again come from the topic beside the map's."""
         super().recalled()
         self._follow_topic(file_too=False)
 
     def frames_changed(self) -> None:
         """Say whether the map can be placed now."""
         super().frames_changed()
-        if self._map is None or self.properties.flag(USE_TIMESTAMP):
+        if self._map is None or self.properties.flag(_USE_TIMESTAMP):
             return
         frame = self.frame_of(self._map)[0].removeprefix("/")
-        problem = self.stage.frames.problem(frame)
+        problem = self.host.frames.problem(frame)
         self.say(TRANSFORM, "error" if problem else "ok", problem or "Transform OK")
 
     def time_changed(self) -> None:
@@ -96,20 +141,20 @@ class MapDisplay(TopicDisplay):
         super().reset()
 
     def stop(self) -> None:
-        """Listen no more."""
+        """Stop listening."""
         super().stop()
         if self._sending is not None:
             self._sending.cancel()
             self._sending = None
 
     def _follow_topic(self, *, file_too: bool) -> None:
-        """Have the updates come from beside the topic, as RViz does; a file that names no topic of theirs gets none."""
+        """Take updates from the topic beside the map's, as RViz does; a file without a topic for them gets none."""
         topic = self.properties.text(TOPIC).strip()
         updates = f"{topic}_updates" if topic else ""
-        if self.config.section.text(UPDATE_TOPIC) is None:
-            self.properties.tell((UPDATE_TOPIC,), updates)
+        if self.config.section.text(_UPDATE_TOPIC) is None:
+            self.properties.tell((_UPDATE_TOPIC,), updates)
         elif file_too:
-            self.properties.set((UPDATE_TOPIC,), updates)
+            self.properties.set((_UPDATE_TOPIC,), updates)
 
     def _subscribe(self) -> None:
         super()._subscribe()
@@ -117,8 +162,8 @@ class MapDisplay(TopicDisplay):
         if not topic:
             return
         self.say("Message", "warn", "No map received")
-        updates = self.properties.text(UPDATE_TOPIC).strip() or f"{topic}_updates"
-        problem = self._updates.listen(updates, qos_of(self.properties, UPDATE_TOPIC))
+        updates = self.properties.text(_UPDATE_TOPIC).strip() or f"{topic}_updates"
+        problem = self._updates.listen(updates, qos_of(self.properties, _UPDATE_TOPIC))
         self.say("Update Topic", "error" if problem else "ok", problem or "OK")
 
     def _unsubscribe(self) -> None:
@@ -148,9 +193,9 @@ class MapDisplay(TopicDisplay):
         return False
 
     def _tell(self, message: Any) -> None:
-        for path, value in readings(message.info):
+        for path, value in _readings(message.info):
             if self.properties.tell(path, value):
-                self.stage.publish(PropertyChanged(self.property_id(path), value))
+                self.pages.publish(PropertyChanged(self.property_id(path), value))
 
     def _updated(self, update: Any) -> None:
         if self._map is None:
@@ -184,7 +229,7 @@ class MapDisplay(TopicDisplay):
     def _send(self) -> None:
         info = self._map.info
         frame, stamp_ns = self.frame_of(self._map)
-        timed = self.properties.flag(USE_TIMESTAMP)
+        timed = self.properties.flag(_USE_TIMESTAMP)
         content = OccupancyMap(
             width=info.width,
             height=info.height,
@@ -197,7 +242,20 @@ class MapDisplay(TopicDisplay):
 
 
 def _pose_of(origin: Any) -> list[float]:
-    """Its x y z qx qy qz qw; a quaternion of zeros is none, and stands for no turn."""
+    """Its x y z qx qy qz qw; a quaternion of zeros stands for no rotation."""
     p, q = origin.position, origin.orientation
     turn = [q.x, q.y, q.z, q.w]
     return [p.x, p.y, p.z, *(turn if any(turn) else [0.0, 0.0, 0.0, 1.0])]
+
+
+def _readings(info: Any) -> Iterator[tuple[Path, float | int]]:
+    """What the read-only properties show of a nav_msgs/msg/MapMetaData."""
+    yield ("Resolution",), float(info.resolution)
+    yield ("Width",), info.width
+    yield ("Height",), info.height
+    for name, part, axes in (
+        ("Position", info.origin.position, "xyz"),
+        ("Orientation", info.origin.orientation, "xyzw"),
+    ):
+        for axis in axes:
+            yield (name, axis.upper()), float(getattr(part, axis))

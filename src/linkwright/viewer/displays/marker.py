@@ -5,27 +5,27 @@ from __future__ import annotations
 import asyncio
 from typing import Any
 
+from linkwright.geometry.single import Transform
 from linkwright.graph import TransformException
-from linkwright.graph.transforms.pose import Pose as FramePose
-from linkwright.viewer.displays.base import Stage
-from linkwright.viewer.displays.data_display import Pose
-from linkwright.viewer.displays.topic_display import TopicDisplay
-from linkwright.viewer.displays.topic_properties import topic_spec
+from linkwright.viewer.config.property_store import Path, Schema
+from linkwright.viewer.config.rviz_config import DisplayConfig
+from linkwright.viewer.config.schema import PropertySpec
+from linkwright.viewer.config.topic_properties import topic_spec
+from linkwright.viewer.displays.base.data_display import Pose
+from linkwright.viewer.displays.base.host import DisplayHost
+from linkwright.viewer.displays.base.topic_display import TopicDisplay
 from linkwright.viewer.markers import BadMarkerError, MarkerReading, MarkerStore, read_marker
 from linkwright.viewer.markers.shapes import ADD, DELETE, DELETE_ALL, marker_id, placed_in
-from linkwright.viewer.mesh_files import MeshIndex
-from linkwright.viewer.outbox import Payload
-from linkwright.viewer.property_store import Path, Schema
-from linkwright.viewer.protocol import MeshStatus
-from linkwright.viewer.rviz_config import DisplayConfig
-from linkwright.viewer.schema import PropertySpec
+from linkwright.viewer.protocol.robot import MeshStatus
+from linkwright.viewer.web.mesh_files import MeshIndex
+from linkwright.viewer.web.outbox import Payload
 
 _NAMESPACES = "Namespaces"
 _SHORTEST_LIFE_NS = 100_000
 """A lifetime up to this counts as none, as in RViz."""
 
 _EXPIRY_PERIOD = 0.1
-"""Seconds between looks for markers whose life is over, while there are such."""
+"""Seconds between checks for expired markers, while any have a lifetime."""
 
 _DUPLICATES = "Duplicate Marker Check"
 
@@ -54,17 +54,17 @@ class MarkerDisplay(TopicDisplay):
     TRANSFORMED = False
     FOLLOWS_TRANSFORMS = True
 
-    def __init__(self, stage: Stage, identity: str, config: DisplayConfig) -> None:
+    def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
         self._namespaces: list[str] = []
-        super().__init__(stage, identity, config)
+        super().__init__(host, identity, config)
         self._store = MarkerStore(identity)
         self._markers: dict[str, _Marker] = {}
         self._unplaced: set[str] = set()
-        self._arriving: dict[str, None] = {}  # those that could not be placed since they came, the first of them first
-        self._frame_poses: dict[tuple[str, int], FramePose] = {}  # of this moment: an array has thousands of a kind
-        self._meshes = MeshIndex(stage.finder)
+        self._arriving: dict[str, None] = {}  # those that could not be placed yet, oldest first
+        self._frame_poses: dict[tuple[str, int], Transform] = {}  # computed once: an array has thousands of a kind
+        self._meshes = MeshIndex(host.context.finder)
         self._expiry: asyncio.TimerHandle | None = None
-        self._clock = stage.node.get_clock()
+        self._clock = host.context.node.get_clock()
 
     def schema(self) -> Schema:
         """The topic, and a box for each namespace seen."""
@@ -98,13 +98,13 @@ class MarkerDisplay(TopicDisplay):
         self._unplaced.clear()
         self._arriving.clear()
         self._store.clear()
-        self._meshes = MeshIndex(self.stage.finder)
+        self._meshes = MeshIndex(self.context.finder)
         self._show()
 
     def stop(self) -> None:
-        """Listen no more; pages may read the files that markers named no more."""
+        """Stop listening, and withdraw the files that markers named from pages."""
         super().stop()
-        self.stage.meshes.replace(self.id, {})
+        self.context.meshes.replace(self.id, {})
         if self._expiry is not None:
             self._expiry.cancel()
             self._expiry = None
@@ -176,7 +176,7 @@ class MarkerDisplay(TopicDisplay):
         self.unsay(identity)
 
     def _place_marker(self, identity: str, marker: _Marker) -> None:
-        fixed_frame = self.stage.frames.fixed_frame
+        fixed_frame = self.host.frames.fixed_frame
         shape = marker.reading.shape
         try:
             frame = self._frame_pose(fixed_frame, marker.frame, 0 if marker.locked else marker.stamp_ns)
@@ -199,19 +199,19 @@ class MarkerDisplay(TopicDisplay):
             shape.frame, shape.pose = "", placed_in(frame, marker.reading)
         self._store.put(shape)
 
-    def _frame_pose(self, fixed_frame: str, frame: str, stamp_ns: int) -> FramePose:
+    def _frame_pose(self, fixed_frame: str, frame: str, stamp_ns: int) -> Transform:
         known = self._frame_poses.get((frame, stamp_ns))
         if known is None:
             known = self._frame_poses[frame, stamp_ns] = tuple(
-                self.stage.history.pose(fixed_frame, frame, stamp_ns).tolist()
+                self.context.transforms.pose(fixed_frame, frame, stamp_ns).tolist()
             )
         return known
 
     def _show(self) -> None:
         """Send what has changed: all of a message at once."""
         self._frame_poses.clear()
-        self.stage.meshes.replace(self.id, self._meshes.folders)
-        self.stage.send_data(self._store.key, self._store)
+        self.context.meshes.replace(self.id, self._meshes.folders)
+        self.pages.send_data(self._store.key, self._store)
 
     # --- lifetimes ---------------------------------------------------------------------------------------------
 

@@ -7,14 +7,15 @@ from typing import Any
 
 import numpy as np
 
-from linkwright.viewer.display_config import DisplayConfig
-from linkwright.viewer.displays.base import Stage
-from linkwright.viewer.displays.pose_properties import covariance, pose_shape
+from linkwright.viewer.config.displays import DisplayConfig
+from linkwright.viewer.config.schema import PropertySpec
+from linkwright.viewer.config.topic_properties import topic_spec
+from linkwright.viewer.displays.base.host import DisplayHost
+from linkwright.viewer.displays.base.recent import RecentDisplay
 from linkwright.viewer.displays.poses import pose_row
-from linkwright.viewer.displays.recent import RecentDisplay
-from linkwright.viewer.displays.topic_properties import topic_spec
-from linkwright.viewer.protocol import DataContent, PoseMarks
-from linkwright.viewer.schema import PropertySpec
+from linkwright.viewer.displays.properties.pose import covariance, pose_shape
+from linkwright.viewer.protocol.geometry import PoseMarks
+from linkwright.viewer.protocol.message import DataContent
 
 _NORM_TOLERANCE = 10e-3
 
@@ -38,8 +39,8 @@ class OdometryDisplay(RecentDisplay):
         covariance(),
     )
 
-    def __init__(self, stage: Stage, identity: str, config: DisplayConfig) -> None:
-        super().__init__(stage, identity, config)
+    def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
+        super().__init__(host, identity, config)
         self._marked: tuple[float, ...] | None = None
 
     def content(self, message: Any) -> DataContent | None:

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
-from linkwright.viewer.displays.look_properties import alpha, length, line_style, line_width
+from linkwright.viewer.config.schema import PropertySpec, vector
+from linkwright.viewer.config.topic_properties import topic_spec
+from linkwright.viewer.displays.base.recent import RecentDisplay
 from linkwright.viewer.displays.poses import NO_COVARIANCE, pose_rows
-from linkwright.viewer.displays.recent import RecentDisplay
-from linkwright.viewer.displays.topic_properties import topic_spec
-from linkwright.viewer.protocol import DataContent, PoseMarks
-from linkwright.viewer.schema import PropertySpec, vector
+from linkwright.viewer.displays.properties.look import alpha, length, line_style, line_width
+from linkwright.viewer.protocol.geometry import PoseMarks
+from linkwright.viewer.protocol.message import DataContent
 
 _AXES = (("Pose Style",), "Axes")
 _ARROWS = (("Pose Style",), "Arrows")

@@ -6,10 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from linkwright.viewer.displays.recent import RecentDisplay
-from linkwright.viewer.displays.topic_properties import topic_spec
-from linkwright.viewer.protocol import DataContent, PointMarks
-from linkwright.viewer.schema import PropertySpec
+from linkwright.viewer.config.schema import PropertySpec
+from linkwright.viewer.config.topic_properties import topic_spec
+from linkwright.viewer.displays.base.recent import RecentDisplay
+from linkwright.viewer.protocol.geometry import PointMarks
+from linkwright.viewer.protocol.message import DataContent
 
 
 class PointStampedDisplay(RecentDisplay):

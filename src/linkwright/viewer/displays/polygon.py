@@ -6,11 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from linkwright.viewer.displays.look_properties import alpha
-from linkwright.viewer.displays.recent import RecentDisplay
-from linkwright.viewer.displays.topic_properties import topic_spec
-from linkwright.viewer.protocol import DataContent, PolygonLine
-from linkwright.viewer.schema import PropertySpec
+from linkwright.viewer.config.schema import PropertySpec
+from linkwright.viewer.config.topic_properties import topic_spec
+from linkwright.viewer.displays.base.recent import RecentDisplay
+from linkwright.viewer.displays.properties.look import alpha
+from linkwright.viewer.protocol.geometry import PolygonLine
+from linkwright.viewer.protocol.message import DataContent
 
 
 class PolygonDisplay(RecentDisplay):

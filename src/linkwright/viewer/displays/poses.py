@@ -7,12 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from linkwright.viewer.displays.look_properties import alpha, length
-from linkwright.viewer.displays.pose_properties import covariance, pose_shape
-from linkwright.viewer.displays.recent import RecentDisplay
-from linkwright.viewer.displays.topic_properties import topic_spec
-from linkwright.viewer.protocol import DataContent, Floats, PoseMarks
-from linkwright.viewer.schema import PropertySpec
+from linkwright.viewer.config.schema import PropertySpec
+from linkwright.viewer.config.topic_properties import topic_spec
+from linkwright.viewer.displays.base.recent import RecentDisplay
+from linkwright.viewer.displays.properties.look import alpha, length
+from linkwright.viewer.displays.properties.pose import covariance, pose_shape
+from linkwright.viewer.protocol.data import Floats
+from linkwright.viewer.protocol.geometry import PoseMarks
+from linkwright.viewer.protocol.message import DataContent
 
 NO_COVARIANCE: Floats = np.zeros(0, dtype=np.float32)
 

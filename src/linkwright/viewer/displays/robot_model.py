@@ -6,16 +6,20 @@ from collections.abc import Sequence
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, translated
 from linkwright.urdf import Robot
-from linkwright.viewer.displays.base import Stage, ViewerDisplay
-from linkwright.viewer.displays.description_source import DESCRIPTION_SPECS, DescriptionSource
-from linkwright.viewer.displays.look_properties import alpha
-from linkwright.viewer.displays.robot_rows import ALL, JOINTS, LINKS, NO_ROWS, STYLE, RobotRows
-from linkwright.viewer.mesh_files import MeshIndex
-from linkwright.viewer.property_store import Path, Schema
-from linkwright.viewer.protocol import LinkStory, MeshStatus, PropertyChanged, RobotScene, ServerMessage, StatusRow
-from linkwright.viewer.robot_scene import SceneBuilder
-from linkwright.viewer.rviz_config import DisplayConfig
-from linkwright.viewer.schema import PropertySpec
+from linkwright.viewer.config.property_store import Path, Schema
+from linkwright.viewer.config.rviz_config import DisplayConfig
+from linkwright.viewer.config.schema import PropertySpec
+from linkwright.viewer.displays.base.display import ViewerDisplay
+from linkwright.viewer.displays.base.host import DisplayHost
+from linkwright.viewer.displays.properties.look import alpha
+from linkwright.viewer.displays.properties.robot import ALL, JOINTS, LINKS, NO_ROWS, STYLE, RobotRows
+from linkwright.viewer.protocol.displays import PropertyChanged
+from linkwright.viewer.protocol.message import ServerMessage
+from linkwright.viewer.protocol.parts import StatusRow
+from linkwright.viewer.protocol.robot import LinkProvenance, MeshStatus, RobotScene
+from linkwright.viewer.robot.description_source import DESCRIPTION_SPECS, DescriptionSource
+from linkwright.viewer.robot.scene import SceneBuilder
+from linkwright.viewer.web.mesh_files import MeshIndex
 
 _STATIC = (
     PropertySpec("Visual Enabled", "bool", True, "Draw what the robot looks like."),
@@ -49,14 +53,17 @@ class RobotModelDisplay(ViewerDisplay):
 
     CLASS = "rviz_default_plugins/RobotModel"
 
-    def __init__(self, stage: Stage, identity: str, config: DisplayConfig) -> None:
+    def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
         self._rows: RobotRows | None = None
         self._robot_specs: Schema = NO_ROWS
-        super().__init__(stage, identity, config)
+        super().__init__(host, identity, config)
         self.robot: Robot | None = None
         self.scene = RobotScene(display=identity, revision=0, name="", links=[])
         self._source = DescriptionSource(
-            stage.node, stage.library, stage.finder, self.properties, self._described, self._refused
+            host.context,
+            self.properties,
+            self._described,
+            self._refused,
         )
         self._text = ""
         self._held: str | None = None
@@ -92,9 +99,9 @@ class RobotModelDisplay(ViewerDisplay):
         self._show_status()
 
     def stop(self) -> None:
-        """Leave the source; the page may read the robot's files no more."""
+        """Leave the source, and withdraw the robot's files from pages."""
         self._source.close()
-        self.stage.meshes.replace(self.id, {})
+        self.context.meshes.replace(self.id, {})
 
     def changed(self, path: Path) -> None:
         """Follow another source or prefix, or the box over all links."""
@@ -111,7 +118,7 @@ class RobotModelDisplay(ViewerDisplay):
 
     def time_changed(self) -> None:
         """Read the description that came while time stood still."""
-        if self._held is not None and not self.stage.time.paused:
+        if self._held is not None and not self.host.time.paused:
             self._described(self._held)
 
     def messages(self) -> list[ServerMessage]:
@@ -131,33 +138,33 @@ class RobotModelDisplay(ViewerDisplay):
             name = status.url.partition("?")[0].rpartition("/")[2]
             self._page_problems[key] = f"Could not load mesh '{name}': {status.error[:500]}"
             if self._page_problems[key] != known:
-                self.stage.node.get_logger().error(f"Link '{status.link}': {self._page_problems[key]}")
+                self.context.node.get_logger().error(f"Link '{status.link}': {self._page_problems[key]}")
         self._show_status()
 
-    def story(self, link: str) -> LinkStory | None:
-        """How a link came to be; None for one that this robot does not have. Takes as long as an expansion does."""
-        from linkwright.xacro.story_text import story_lines
+    def provenance(self, link: str) -> LinkProvenance | None:
+        """Where a link was written; None for one that the robot lacks. Takes as long as an expansion does."""
+        from linkwright.xacro.provenance_text import provenance_lines
 
         element = self.robot.links[link].element if self.robot and link in self.robot.links else None
         if element is None:
             return None
         try:
-            story = self.stage.library.story(self._text, element)
+            provenance = self.context.library.provenance(self._text, element)
         except LinkwrightError as error:
-            return LinkStory(self.id, link, [each.message for each in translated(error.diagnostics)])
-        return None if story is None else LinkStory(self.id, link, story_lines(story))
+            return LinkProvenance(self.id, link, [each.message for each in translated(error.diagnostics)])
+        return None if provenance is None else LinkProvenance(self.id, link, provenance_lines(provenance))
 
     # --- descriptions ------------------------------------------------------------------------------------------
 
     def _described(self, text: str) -> None:
-        self._held = text if self.robot is not None and self.stage.time.paused else None
+        self._held = text if self.robot is not None and self.host.time.paused else None
         if self._held is not None:
             return
         if not text.strip():
             self._description = [StatusRow("URDF", "error", "URDF is empty")]
             self._show_status()
             return
-        reading = self.stage.library.read(text)
+        reading = self.context.library.read(text)
         if reading.robot is None:
             self._refused(reading.diagnostics)
             return
@@ -179,9 +186,9 @@ class RobotModelDisplay(ViewerDisplay):
 
     def _show_robot(self, robot: Robot) -> None:
         before = {link.frame for link in self.scene.links}
-        builder = SceneBuilder(MeshIndex(self.stage.finder))
+        builder = SceneBuilder(MeshIndex(self.context.finder))
         links = builder.links(robot, self.properties.text("TF Prefix"))
-        self.stage.meshes.replace(self.id, builder.index.folders)
+        self.context.meshes.replace(self.id, builder.index.folders)
         self._log_new_problems(builder.problems)
         self._file_problems = builder.problems
         self._page_problems.clear()
@@ -189,9 +196,9 @@ class RobotModelDisplay(ViewerDisplay):
         joints = builder.joints(robot)
         if (self.scene.name, self.scene.links, self.scene.joints) != (robot.name, links, joints):
             self.scene = RobotScene(self.id, self.scene.revision + 1, robot.name, links, joints)
-            self.stage.publish(self.scene)
+            self.pages.publish(self.scene)
         self._list_rows(robot)
-        self.stage.robot_changed(before - {link.frame for link in links})
+        self.host.robot_changed(before - {link.frame for link in links})
         self._show_status()
 
     def recalled(self) -> None:
@@ -231,7 +238,7 @@ class RobotModelDisplay(ViewerDisplay):
             self.publish_properties()
             return
         for each in changed:
-            self.stage.publish(PropertyChanged(self.property_id(each), self.properties.get(*each)))
+            self.pages.publish(PropertyChanged(self.property_id(each), self.properties.get(*each)))
 
     def _derive_boxes(self, rows: RobotRows) -> list[Path]:
         derived = rows.derived(self.properties.text(*STYLE), lambda path: self.properties.flag(*path))
@@ -241,7 +248,7 @@ class RobotModelDisplay(ViewerDisplay):
         for link, texts in problems.items():
             for text in texts:
                 if text not in self._file_problems.get(link, ()):
-                    self.stage.node.get_logger().error(f"Link '{link}': {text}")
+                    self.context.node.get_logger().error(f"Link '{link}': {text}")
 
     # --- status ------------------------------------------------------------------------------------------------
 
@@ -250,7 +257,7 @@ class RobotModelDisplay(ViewerDisplay):
         self.set_status(self._description + [self._link_status(link.name, link.frame) for link in links])
 
     def _link_status(self, name: str, frame: str) -> StatusRow:
-        problems = [problem] if (problem := self.stage.frames.problem(frame)) else []
+        problems = [problem] if (problem := self.host.frames.problem(frame)) else []
         problems += self._file_problems.get(name, ())
         problems += [text for (link, _), text in self._page_problems.items() if link == name]
         if problems:

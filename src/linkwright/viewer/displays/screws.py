@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from linkwright.viewer.displays.look_properties import alpha
-from linkwright.viewer.displays.recent import RecentDisplay
-from linkwright.viewer.displays.topic_properties import topic_spec
-from linkwright.viewer.property_store import Schema
-from linkwright.viewer.protocol import DataContent, Screw
-from linkwright.viewer.schema import PropertySpec
+from linkwright.viewer.config.property_store import Schema
+from linkwright.viewer.config.schema import PropertySpec
+from linkwright.viewer.config.topic_properties import topic_spec
+from linkwright.viewer.displays.base.recent import RecentDisplay
+from linkwright.viewer.displays.properties.look import alpha
+from linkwright.viewer.protocol.geometry import Screw
+from linkwright.viewer.protocol.message import DataContent
 
 
 def _screw_specs(linear: str, angular: str) -> Schema:

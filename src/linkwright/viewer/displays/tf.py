@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from linkwright.viewer.display_config import DisplayConfig
-from linkwright.viewer.displays.base import Stage, ViewerDisplay
+from linkwright.viewer.config.displays import DisplayConfig
+from linkwright.viewer.config.property_store import Path, Schema
+from linkwright.viewer.config.schema import PropertySpec
+from linkwright.viewer.displays.base.display import ViewerDisplay
+from linkwright.viewer.displays.base.host import DisplayHost
 from linkwright.viewer.displays.frame_filter import FrameFilter
-from linkwright.viewer.property_store import Path, Schema
-from linkwright.viewer.protocol import PropertyChanged, StatusRow
-from linkwright.viewer.schema import PropertySpec
+from linkwright.viewer.protocol.displays import PropertyChanged
+from linkwright.viewer.protocol.parts import StatusRow
 
 _WHITELIST, _BLACKLIST = "Filter (whitelist)", "Filter (blacklist)"
 _STATIC = (
@@ -40,13 +42,13 @@ class TfDisplay(ViewerDisplay):
 
     CLASS = "rviz_default_plugins/TF"
 
-    def __init__(self, stage: Stage, identity: str, config: DisplayConfig) -> None:
+    def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
         self._shown: tuple[str, ...] = ()
         self._parents: tuple[tuple[str, str | None], ...] = ()
         self._schema: Schema | None = None
         self._only = FrameFilter()
         self._without = FrameFilter()
-        super().__init__(stage, identity, config)
+        super().__init__(host, identity, config)
 
     def schema(self) -> Schema:
         """The fixed properties, a box for each frame, and the tree of frames."""
@@ -69,11 +71,11 @@ class TfDisplay(ViewerDisplay):
             self.publish_properties()
         elif path[0] == "Frames" and not self.properties.flag(*path) and self.properties.flag(*_ALL):
             self.properties.set(_ALL, False)
-            self.stage.publish(PropertyChanged(self.property_id(_ALL), False))
+            self.pages.publish(PropertyChanged(self.property_id(_ALL), False))
 
     def frames_changed(self) -> None:
-        """List the frames anew, and say which of them can be placed."""
-        frames = self.stage.frames
+        """List the frames again, and say which of them can be placed."""
+        frames = self.host.frames
         shown = tuple(sorted(self._filtered(set(frames.names))))
         above = {
             name: frames.names[parent] if parent >= 0 else None
@@ -88,7 +90,7 @@ class TfDisplay(ViewerDisplay):
         self.set_status(problems + [self._frame_status(name) for name in shown])
 
     def _frame_status(self, name: str) -> StatusRow:
-        problem = self.stage.frames.problem(name)
+        problem = self.host.frames.problem(name)
         return StatusRow(name, "warn", problem) if problem else StatusRow(name, "ok", "Transform OK")
 
     def _filtered(self, names: set[str]) -> set[str]:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from linkwright.viewer.displays.base import ViewerDisplay
-from linkwright.viewer.protocol import StatusRow
+from linkwright.viewer.displays.base.display import ViewerDisplay
+from linkwright.viewer.protocol.parts import StatusRow
 
 
 class UnsupportedDisplay(ViewerDisplay):

@@ -1,4 +1,4 @@
-"""Colours of an image that was taken through a Bayer mosaic."""
+"""Demosaicing: colours of an image taken through a Bayer filter."""
 
 from __future__ import annotations
 

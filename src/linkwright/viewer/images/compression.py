@@ -1,21 +1,21 @@
-"""Images made smaller for a slow line, with Pillow."""
+"""Scales and compresses images for slow connections, with Pillow."""
 
 from __future__ import annotations
 
-from dataclasses import replace
 from io import BytesIO
 from typing import Any
 
 import numpy as np
+from msgspec.structs import replace
 
-from linkwright.viewer.protocol import ImageFrame
+from linkwright.viewer.protocol.images import ImageFrame
 
 _STEPS = ((1, 85), (1, 70), (1, 50), (2, 70), (2, 50), (3, 50), (4, 50), (6, 45), (8, 40), (12, 35), (16, 30))
 """Of how many pixels of a row one is left, and the quality of the WebP: each is about two thirds of the one before."""
 
 _MOST_TRIES = 3
 _MOST_PIXELS = 1 << 26
-"""Of a file that is unpacked to be made smaller; a small file can say that it is as large as it likes."""
+"""Of a file that is unpacked to be made smaller; a small file can claim any size."""
 
 _ROOMY = 2.5
 """With so much room left the next image may be better."""

@@ -9,10 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from linkwright.diagnostics.extras import install_hint
 from linkwright.viewer.images.decoding import BadImageError
 
 MOST_PIXELS = 1 << 24
-"""No image with more pixels is unpacked here: a small file can say that it is as large as it likes."""
+"""No image with more pixels is unpacked here: a small file can claim any size."""
 
 _PNG, _JPEG = b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff"
 
@@ -53,8 +54,10 @@ def file_pixels(data: NDArray[np.uint8]) -> NDArray[Any]:
     Raises:
         BadImageError: it is neither, has too many pixels, or is broken.
     """
-    from PIL import JpegImagePlugin, PngImagePlugin
-
+    try:
+        from PIL import JpegImagePlugin, PngImagePlugin
+    except ModuleNotFoundError:
+        raise BadImageError(f"PNG and JPEG files cannot be unpacked: {install_hint('image')}") from None
     start = data[:8].tobytes()
     if not start.startswith((_PNG, _JPEG)):
         raise BadImageError("The image is neither a PNG nor a JPEG")

@@ -10,7 +10,7 @@ from typing import Any
 
 from linkwright.graph import Client, Node, Publisher, QoSProfile, Subscription
 from linkwright.messages import get_message, get_service
-from linkwright.viewer.protocol import StatusLevel
+from linkwright.viewer.protocol.parts import StatusLevel
 
 _PERIOD = 0.25
 """Seconds between two looks whether the server is there."""
@@ -21,7 +21,7 @@ _UPDATE = 1
 
 @dataclass(slots=True)
 class ClientEvents:
-    """What is told of a server.
+    """What happens at a server.
 
     Attributes:
         everything: its markers, at the beginning and when updates were lost.

@@ -7,25 +7,24 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from typing import Any, get_args
 
 import numpy as np
+from msgspec.structs import replace
 from numpy.typing import NDArray
 
-from linkwright.graph.transforms.pose import Pose, compose, invert
+from linkwright.geometry.arrays import rotation_matrix
+from linkwright.geometry.single import Transform, compose, invert
 from linkwright.viewer.markers.shapes import BadMarkerError, pose_of, read_marker, unit_quaternion
-from linkwright.viewer.mesh_files import MeshIndex
-from linkwright.viewer.placing import rotation_matrix
-from linkwright.viewer.protocol import (
+from linkwright.viewer.protocol.interactive_markers import (
     InteractionMode,
     InteractiveControl,
     InteractiveMarkerShape,
-    MarkerKind,
     MarkerMenuEntry,
-    MarkerShape,
     OrientationMode,
 )
+from linkwright.viewer.protocol.markers import MarkerKind, MarkerShape
+from linkwright.viewer.web.mesh_files import MeshIndex
 
 _MODES: tuple[InteractionMode, ...] = get_args(InteractionMode)
 _ORIENTATIONS: tuple[OrientationMode, ...] = get_args(OrientationMode)
@@ -38,7 +37,7 @@ _DARK = 0.6
 _NONE = np.empty((0, 4), dtype=np.float32)
 
 
-FramePlacer = Callable[[str, str], Pose]
+FramePlacer = Callable[[str, str], Transform]
 """Gives the pose of the second frame in the first, now; raises a LinkwrightError where it has none."""
 
 
@@ -130,7 +129,7 @@ def _marker(marker: Any, message: Any, index: MeshIndex, frames: FramePlacer) ->
     return shape
 
 
-def _as_pose(pose: list[float]) -> Pose:
+def _as_pose(pose: list[float]) -> Transform:
     x, y, z, qx, qy, qz, qw = pose
     return x, y, z, qx, qy, qz, qw
 
@@ -152,7 +151,7 @@ def _default_markers(
 
 def _color_of(orientation: list[float]) -> list[float]:
     """Red for an axis along x, green along y, blue along z, mixed between."""
-    axis = np.abs(rotation_matrix(np.array([0, 0, 0, *orientation]))[:, 0])
+    axis = np.abs(rotation_matrix(orientation)[:, 0])
     color: list[float] = (axis / axis.max()).tolist()
     return color
 

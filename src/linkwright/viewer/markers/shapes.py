@@ -10,9 +10,9 @@ from typing import Any, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.graph.transforms.pose import Pose, compose
-from linkwright.viewer.mesh_files import IMAGE_TYPES, MESH_TYPES, MeshIndex
-from linkwright.viewer.protocol import MarkerKind, MarkerMesh, MarkerShape
+from linkwright.geometry.single import Quaternion, Transform, compose, normalized
+from linkwright.viewer.protocol.markers import MarkerKind, MarkerMesh, MarkerShape
+from linkwright.viewer.web.mesh_files import IMAGE_TYPES, MESH_TYPES, MeshIndex
 
 ADD, DELETE, DELETE_ALL = 0, 2, 3
 
@@ -38,7 +38,7 @@ class MarkerReading:
     """
 
     shape: MarkerShape
-    pose: Pose
+    pose: Transform
     warning: str | None = None
 
 
@@ -86,7 +86,7 @@ def read_marker(message: Any, index: MeshIndex) -> MarkerReading:
     return MarkerReading(shape, pose, warning)
 
 
-def placed_in(frame: Pose, reading: MarkerReading) -> list[float]:
+def placed_in(frame: Transform, reading: MarkerReading) -> list[float]:
     """The marker's pose in the frame that the pose of its own frame is given in."""
     return list(compose(frame, reading.pose))
 
@@ -96,17 +96,14 @@ def pose_of(pose: Any) -> list[float]:
     return list(_pose(pose))
 
 
-def _pose(pose: Any) -> Pose:
+def _pose(pose: Any) -> Transform:
     position = pose.position
     return (position.x, position.y, position.z, *unit_quaternion(pose.orientation))
 
 
-def unit_quaternion(q: Any) -> tuple[float, float, float, float]:
-    """A geometry_msgs/msg/Quaternion of length one; one that nobody set is taken for no rotation, as RViz does."""
-    length = math.hypot(q.x, q.y, q.z, q.w)
-    if length == 0.0:
-        return 0.0, 0.0, 0.0, 1.0
-    return q.x / length, q.y / length, q.z / length, q.w / length
+def unit_quaternion(q: Any) -> Quaternion:
+    """A geometry_msgs/msg/Quaternion of length one; one that was not set stands for no rotation, as in RViz."""
+    return normalized(q.x, q.y, q.z, q.w)
 
 
 def _rgba(color: Any) -> list[float]:

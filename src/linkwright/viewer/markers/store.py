@@ -1,8 +1,9 @@
-"""The markers that a display shows now, and what each page lacks of them."""
+"""The markers that a display shows, and the changes that each page has yet to be sent."""
 
 from __future__ import annotations
 
-from linkwright.viewer.protocol import MarkersChanged, MarkerShape, pack_data
+from linkwright.viewer.protocol.data import pack_data
+from linkwright.viewer.protocol.markers import MarkersChanged, MarkerShape
 
 _MOST_GONE = 5000
 """How many markers that went are remembered; a page that missed more of them is sent everything anew."""
@@ -45,7 +46,7 @@ class MarkerStore:
         self._shown[shape.id] = (self._change, shape)
 
     def remove(self, identity: str) -> bool:
-        """Show a marker no more; False when it was not shown."""
+        """Remove a marker; False when it was not shown."""
         if self._shown.pop(identity, None) is None:
             return False
         self._change += 1

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from linkwright.viewer.protocol.record import record
+from linkwright.viewer.protocol.message import PageMessage, Record, ServerMessage
 
 EditKind = Literal["set", "enable", "disable", "add", "duplicate", "rename", "remove", "move", "group"]
 Question = Literal["unsaved", "exists", "changed_on_disk"]
@@ -13,16 +13,14 @@ Question = Literal["unsaved", "exists", "changed_on_disk"]
 # --- server to page ------------------------------------------------------------------------------------------------
 
 
-@record
-class EditName:
+class EditName(Record):
     """What undo or redo would do: the kind of edit, and the name of the property or display."""
 
     kind: EditKind
     name: str
 
 
-@record
-class Configuration:
+class Configuration(ServerMessage):
     """The configuration that the page sees.
 
     Attributes:
@@ -42,27 +40,22 @@ class Configuration:
     redo: EditName | None
     own: bool
     recent: list[str]
-    type: Literal["configuration"] = "configuration"
 
 
-@record
-class DisplayClass:
+class DisplayClass(Record):
     """A class of displays that can be added, and the types of the topics that it shows."""
 
     cls: str
     messages: list[str]
 
 
-@record
-class DisplayClasses:
+class DisplayClasses(ServerMessage):
     """All classes of displays that can be added."""
 
     classes: list[DisplayClass]
-    type: Literal["display_classes"] = "display_classes"
 
 
-@record
-class TopicChoice:
+class TopicChoice(Record):
     """A topic of the graph, its type, and the classes of displays that show it; none when no display does."""
 
     topic: str
@@ -70,175 +63,132 @@ class TopicChoice:
     classes: list[str]
 
 
-@record
-class TopicChoices:
+class TopicChoices(ServerMessage):
     """Answers `AskTopics`."""
 
     topics: list[TopicChoice]
-    type: Literal["topic_choices"] = "topic_choices"
 
 
-@record
-class Folder:
+class Folder(ServerMessage):
     """Answers `AskFolder`: the folders and configuration files in a folder of the server, by name."""
 
     path: str
     parent: str | None
     folders: list[str]
     files: list[str]
-    type: Literal["folder"] = "folder"
 
 
-@record
-class ConfigurationText:
+class ConfigurationText(ServerMessage):
     """Answers `AskConfigurationText`: the file as it would be saved now, and a name for it."""
 
     name: str
     text: str
-    type: Literal["configuration_text"] = "configuration_text"
 
 
-@record
-class ConfigurationSaved:
+class ConfigurationSaved(ServerMessage):
     """The configuration was saved."""
 
     path: str
-    type: Literal["configuration_saved"] = "configuration_saved"
 
 
-@record
-class ConfigurationRefused:
+class ConfigurationRefused(ServerMessage):
     """What a page asked for was not done. With a question, it is done when the page asks again and says so."""
 
     message: str
     question: Question | None
     path: str | None
-    type: Literal["configuration_refused"] = "configuration_refused"
 
 
 # --- page to server ------------------------------------------------------------------------------------------------
 
 
-@record
-class AddDisplay:
+class AddDisplay(PageMessage):
     """Add a display of a class, enabled; into a group, if one is named, and showing a topic, if one is named."""
 
     cls: str
     name: str
     group: str | None
     topic: str | None
-    type: Literal["add_display"] = "add_display"
 
 
-@record
-class DuplicateDisplays:
+class DuplicateDisplays(PageMessage):
     """Add a display alike after each of these."""
 
     displays: list[str]
-    type: Literal["duplicate_displays"] = "duplicate_displays"
 
 
-@record
-class RenameDisplay:
+class RenameDisplay(PageMessage):
     """Give a display another name."""
 
     display: str
     name: str
-    type: Literal["rename_display"] = "rename_display"
 
 
-@record
-class RemoveDisplays:
+class RemoveDisplays(PageMessage):
     """Remove displays, and what is in them."""
 
     displays: list[str]
-    type: Literal["remove_displays"] = "remove_displays"
 
 
-@record
-class MoveDisplays:
+class MoveDisplays(PageMessage):
     """Put displays into a group (None for none), in front of one of it (None for the end)."""
 
     displays: list[str]
     group: str | None
     before: str | None
-    type: Literal["move_displays"] = "move_displays"
 
 
-@record
-class GroupDisplays:
+class GroupDisplays(PageMessage):
     """Put displays into a new group, where the first of them is."""
 
     displays: list[str]
     name: str
-    type: Literal["group_displays"] = "group_displays"
 
 
-@record
-class Undo:
+class Undo(PageMessage):
     """Take back the last edit of any page."""
 
-    type: Literal["undo"] = "undo"
 
-
-@record
-class Redo:
+class Redo(PageMessage):
     """Do again what was taken back."""
 
-    type: Literal["redo"] = "redo"
 
-
-@record
-class AskTopics:
+class AskTopics(PageMessage):
     """Which topics there are, and which displays show them."""
 
-    type: Literal["ask_topics"] = "ask_topics"
 
-
-@record
-class AskFolder:
+class AskFolder(PageMessage):
     """What is in a folder of the server; None for that of the open file."""
 
     path: str | None
-    type: Literal["ask_folder"] = "ask_folder"
 
 
-@record
-class NewConfiguration:
+class NewConfiguration(PageMessage):
     """Begin anew with RViz's default; `discard` says that what is unsaved may be lost."""
 
     discard: bool
-    type: Literal["new_configuration"] = "new_configuration"
 
 
-@record
-class OpenConfiguration:
+class OpenConfiguration(PageMessage):
     """Open a file of the server; `discard` says that what is unsaved may be lost."""
 
     path: str
     discard: bool
-    type: Literal["open_configuration"] = "open_configuration"
 
 
-@record
-class LoadConfiguration:
+class LoadConfiguration(PageMessage):
     """Open a file of the browser's machine: its name and text."""
 
     name: str
     text: str
     discard: bool
-    type: Literal["load_configuration"] = "load_configuration"
 
 
-@record
-class RevertConfiguration:
-    """Open the file anew, without what was edited."""
-
-    type: Literal["revert_configuration"] = "revert_configuration"
+class RevertConfiguration(PageMessage):
+    """Open the file again, without what was edited."""
 
 
-@record
-class SaveConfiguration:
+class SaveConfiguration(PageMessage):
     """Save to the file, or to another one of the server, which is the configuration's file from then on.
 
     Attributes:
@@ -248,11 +198,7 @@ class SaveConfiguration:
 
     path: str | None
     replace: bool
-    type: Literal["save_configuration"] = "save_configuration"
 
 
-@record
-class AskConfigurationText:
+class AskConfigurationText(PageMessage):
     """The file as it would be saved now, to be kept on the browser's machine."""
-
-    type: Literal["ask_configuration_text"] = "ask_configuration_text"

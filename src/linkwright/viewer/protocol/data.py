@@ -8,19 +8,16 @@ endian, or ``u1``, and the offset counts bytes from the end of the padded header
 
 from __future__ import annotations
 
-import dataclasses
 import json
 import struct
-from functools import cache
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import Any, ClassVar
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.viewer.protocol.record import record
-
-if TYPE_CHECKING:
-    from linkwright.viewer.protocol import DataContent
+from linkwright.viewer.protocol.codec import plain
+from linkwright.viewer.protocol.message import DataContent, ServerMessage
 
 DATA_KIND = 2
 _HEADER = struct.Struct("<IIII")
@@ -36,18 +33,14 @@ _TYPES = {"f": ("f4", "<f4"), "u": ("u1", "u1")}
 _EMPTY: dict[str, dict[str, list[Any]]] = {kind: {"$": [name, 0, 0]} for kind, (name, _) in _TYPES.items()}
 """What stands for empty arrays, of which simple markers have three each."""
 
-_PLAIN_TYPES = frozenset((str, float, int, bool, type(None)))
 
-
-@record
-class DisplayForgotten:
+class DisplayForgotten(ServerMessage):
     """Content of a display is to be drawn no more: that with a key, or all of it."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("display", "key")
 
     display: str
     key: str | None
-    type: Literal["display_forgotten"] = "display_forgotten"
 
 
 def pack_data(
@@ -69,9 +62,6 @@ def pack_data(
         pose: x, y, z, qx, qy, qz, qw of that frame in the Fixed Frame when the content was true; None when it is to
             follow the frame wherever it goes.
         stamp: of the content, seconds.
-
-    Raises:
-        ValueError: when a number outside of the arrays is not finite.
     """
     arrays = _Arrays()
     header = {
@@ -80,9 +70,9 @@ def pack_data(
         "frame": frame,
         "stamp": stamp,
         "pose": None if pose is None else [float(each) for each in pose],
-        "content": _plain(content, arrays),
+        "content": content,
     }
-    text = json.dumps(header, ensure_ascii=False, allow_nan=False, separators=(",", ":")).encode("utf-8", "replace")
+    text = _json(header, arrays)
     parts = [_HEADER.pack(DATA_KIND, len(text), 0, 0), text, _padding(_HEADER.size + len(text))]
     return b"".join([*parts, *arrays.parts])
 
@@ -98,6 +88,15 @@ class _Arrays:
         self.parts: list[bytes] = []
         self._length = 0
 
+    def clear(self) -> None:
+        """Forget all of them."""
+        self.parts.clear()
+        self._length = 0
+
+    def put_aside(self, value: Any) -> Any:
+        """Add an array; what stands for it in the header. Other values are made plain."""
+        return self.put(value) if isinstance(value, np.ndarray) else plain(value)
+
     def put(self, array: NDArray[Any]) -> dict[str, list[Any]]:
         """Add one; what stands for it in the header."""
         if array.size == 0:
@@ -111,28 +110,14 @@ class _Arrays:
         return reference
 
 
-def _plain(value: Any, arrays: _Arrays) -> Any:
-    """As JSON can have it. A frame may hold thousands of markers, most of them numbers in lists."""
-    kind: Any = type(value)
-    if kind in _PLAIN_TYPES:
-        return value
-    if kind is list:
-        return [item if type(item) in _PLAIN_TYPES else _plain(item, arrays) for item in value]
-    if isinstance(value, np.ndarray):
-        return arrays.put(value)
-    if kind is dict:
-        return {key: _plain(item, arrays) for key, item in value.items()}
-    if isinstance(value, (str, int, float)):
-        return value  # of classes derived from these
-    return {
-        name: item if type(item := getattr(value, name)) in _PLAIN_TYPES else _plain(item, arrays)
-        for name in _field_names(kind)
-    }
-
-
-@cache
-def _field_names(cls: Any) -> tuple[str, ...]:
-    return tuple(each.name for each in dataclasses.fields(cls))
+def _json(header: dict[str, Any], arrays: _Arrays) -> bytes:
+    """The header, its arrays put aside; half characters, as names of files may have, become question marks."""
+    try:
+        return msgspec.json.encode(header, enc_hook=arrays.put_aside)
+    except UnicodeEncodeError:
+        arrays.clear()
+        header = msgspec.to_builtins(header, enc_hook=arrays.put_aside)
+        return json.dumps(header, ensure_ascii=False, separators=(",", ":")).encode("utf-8", "replace")
 
 
 def _padding(length: int) -> bytes:

@@ -7,11 +7,10 @@ from __future__ import annotations
 
 from typing import ClassVar, Literal
 
-from linkwright.viewer.protocol.record import record
+from linkwright.viewer.protocol.message import PageMessage, Record, ServerMessage
 
 
-@record
-class CallSite:
+class CallSite(Record):
     """Where a macro was called, or, without a macro, a file included; 1-based."""
 
     macro: str | None
@@ -20,8 +19,7 @@ class CallSite:
     column: int
 
 
-@record
-class SourceRange:
+class SourceRange(Record):
     """Characters of a text, from 1, the end exclusive; `file` is empty for the expanded description."""
 
     file: str
@@ -31,8 +29,7 @@ class SourceRange:
     end_column: int
 
 
-@record
-class Written:
+class Written(Record):
     """Where an element stands in the expanded text and where it was written, with the calls between them.
 
     `origin` is None where only the expanded text is known. `calls` has macro calls and includes, innermost first;
@@ -44,8 +41,7 @@ class Written:
     calls: list[CallSite]
 
 
-@record
-class LinkInertia:
+class LinkInertia(Record):
     """Mass in kg and centre of mass in the link's frame, m.
 
     `box` has the edges, m, of the uniform box of the same inertia, whose axes `quaternion` turns into the link's; it is
@@ -58,8 +54,7 @@ class LinkInertia:
     quaternion: list[float]
 
 
-@record
-class LinkDetails:
+class LinkDetails(Record):
     """A link as it is described; `frame` is its name in tf."""
 
     name: str
@@ -69,8 +64,7 @@ class LinkDetails:
     written: Written
 
 
-@record
-class JointMimic:
+class JointMimic(Record):
     """Position = multiplier * position of `joint` + offset."""
 
     joint: str
@@ -78,8 +72,7 @@ class JointMimic:
     offset: float
 
 
-@record
-class JointDetails:
+class JointDetails(Record):
     """A joint as it is described: the origin in the parent's frame, the unit axis in the joint's frame; SI units.
 
     What is not written, or is no finite number, is None.
@@ -107,8 +100,7 @@ class JointDetails:
     written: Written
 
 
-@record
-class Description:
+class Description(ServerMessage):
     """What stands behind the robot of a RobotModel display; answers `AskDescription`.
 
     Links are in the order of the file. `files` are the files that the description was made from, the main one first.
@@ -123,11 +115,9 @@ class Description:
     links: list[LinkDetails]
     joints: list[JointDetails]
     files: list[str]
-    type: Literal["description"] = "description"
 
 
-@record
-class DescriptionChanged:
+class DescriptionChanged(ServerMessage):
     """A display shows another description now; the links and joints that say something else than before are named."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("display",)
@@ -136,11 +126,9 @@ class DescriptionChanged:
     revision: int
     links: list[str]
     joints: list[str]
-    type: Literal["description_changed"] = "description_changed"
 
 
-@record
-class DescriptionText:
+class DescriptionText(ServerMessage):
     """A text of a description, or the expanded one where `file` is empty; None for what is no file of it."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("display", "file")
@@ -149,11 +137,9 @@ class DescriptionText:
     revision: int
     file: str
     text: str | None
-    type: Literal["description_text"] = "description_text"
 
 
-@record
-class InertiaFinding:
+class InertiaFinding(Record):
     """What is implausible about the mass or inertia of a link."""
 
     link: str
@@ -162,8 +148,7 @@ class InertiaFinding:
     hint: str
 
 
-@record
-class InertiaFindings:
+class InertiaFindings(ServerMessage):
     """All that is implausible about the masses of a robot; answers `AskInertia`."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("display",)
@@ -171,19 +156,15 @@ class InertiaFindings:
     display: str
     revision: int
     findings: list[InertiaFinding]
-    type: Literal["inertia_findings"] = "inertia_findings"
 
 
-@record
-class AskDescription:
+class AskDescription(PageMessage):
     """The page shows links, joints or masses of a RobotModel display."""
 
     display: str
-    type: Literal["ask_description"] = "ask_description"
 
 
-@record
-class AskDescriptionText:
+class AskDescriptionText(PageMessage):
     """The page shows a text of a description; an empty `file` is the expanded one.
 
     `display` may be empty: then `file` is one that a diagnostic is about.
@@ -191,12 +172,9 @@ class AskDescriptionText:
 
     display: str
     file: str
-    type: Literal["ask_description_text"] = "ask_description_text"
 
 
-@record
-class AskInertia:
+class AskInertia(PageMessage):
     """The page wants to mark links whose masses are implausible, which takes the server a while."""
 
     display: str
-    type: Literal["ask_inertia"] = "ask_inertia"

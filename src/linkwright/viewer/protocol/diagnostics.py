@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from typing import Literal
 
-from linkwright.viewer.protocol.record import record
+from linkwright.viewer.protocol.message import Record, ServerMessage
 
 
-@record
-class DiagnosticNote:
+class DiagnosticNote(Record):
     """A note of a diagnostic."""
 
     message: str
@@ -17,8 +16,7 @@ class DiagnosticNote:
     column: int | None
 
 
-@record
-class DiagnosticItem:
+class DiagnosticItem(Record):
     """A diagnostic for the page; `excerpt` is the source line, if there is one."""
 
     code: str
@@ -34,9 +32,7 @@ class DiagnosticItem:
     hints: list[str]
 
 
-@record
-class Diagnostics:
+class Diagnostics(ServerMessage):
     """What is wrong with the description now; none clears the list."""
 
     items: list[DiagnosticItem]
-    type: Literal["diagnostics"] = "diagnostics"

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from typing import ClassVar, Literal
+from typing import ClassVar
 
+from linkwright.viewer.protocol.message import PageMessage, Record, ServerMessage
 from linkwright.viewer.protocol.parts import Property, PropertyValue, StatusLevel, StatusRow
-from linkwright.viewer.protocol.record import record
 
 
-@record
-class Display:
+class Display(Record):
     """One display of the Displays panel. `cls` is RViz's class, such as ``rviz_default_plugins/Grid``.
 
     `group` is the id of the group it is in, ``rviz_common/Group``, which comes before it. `enabled` is its own box; it
     is drawn when those of the groups around it are on too.
+
+    `drawing` is the class whose drawing the page uses: its own, or for a display of another package the one it is like.
 
     `supported` is false for a class this program does not draw; it is kept and shown as such. What the rows mean:
 
@@ -25,6 +26,7 @@ class Display:
 
     id: str
     cls: str
+    drawing: str
     name: str
     group: str | None
     enabled: bool
@@ -34,30 +36,25 @@ class Display:
     properties: list[Property]
 
 
-@record
-class Tree:
+class Tree(ServerMessage):
     """The whole Displays tree: sent at the start and whenever displays come or go."""
 
     global_options: list[Property]
     global_status: list[StatusRow]
     global_level: StatusLevel
     displays: list[Display]
-    type: Literal["tree"] = "tree"
 
 
-@record
-class DisplayProperties:
+class DisplayProperties(ServerMessage):
     """The property rows of one display anew (the links of a new robot, the frames of TF)."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("display",)
 
     display: str
     properties: list[Property]
-    type: Literal["display_properties"] = "display_properties"
 
 
-@record
-class PropertyChanged:
+class PropertyChanged(ServerMessage):
     """One value, set by any page or by the server. Enable boxes are the property ``<display>/Enabled``."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("id",)
@@ -65,11 +62,9 @@ class PropertyChanged:
     id: str
     value: PropertyValue
     options: list[str] | None = None
-    type: Literal["property_changed"] = "property_changed"
 
 
-@record
-class DisplayStatus:
+class DisplayStatus(ServerMessage):
     """The status rows of one display, or of ``global``."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("display",)
@@ -77,13 +72,10 @@ class DisplayStatus:
     display: str
     level: StatusLevel
     status: list[StatusRow]
-    type: Literal["display_status"] = "display_status"
 
 
-@record
-class SetProperty:
+class SetProperty(PageMessage):
     """The user edited a property."""
 
     id: str
     value: PropertyValue
-    type: Literal["set_property"] = "set_property"

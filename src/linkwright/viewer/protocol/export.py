@@ -4,31 +4,25 @@ from __future__ import annotations
 
 from typing import Literal
 
-from linkwright.viewer.protocol.record import record
+from linkwright.viewer.protocol.message import PageMessage, ServerMessage
 from linkwright.viewer.protocol.views import View
 
 
-@record
-class AskExport:
+class AskExport(PageMessage):
     """The user wants what is seen as a file; `view` is the camera as the page has it."""
 
     format: Literal["html", "glb"]
     view: View
-    type: Literal["ask_export"] = "ask_export"
 
 
-@record
-class ExportReady:
+class ExportReady(ServerMessage):
     """The file can be fetched, once, from an address of the server; answers `AskExport`."""
 
     url: str
     name: str
-    type: Literal["export_ready"] = "export_ready"
 
 
-@record
-class ExportFailed:
+class ExportFailed(ServerMessage):
     """The file could not be made; answers `AskExport`."""
 
     message: str
-    type: Literal["export_failed"] = "export_failed"

@@ -3,25 +3,23 @@
 from __future__ import annotations
 
 import struct
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.viewer.protocol.record import record
+from linkwright.viewer.protocol.message import ServerMessage
 
 _TRANSFORMS_HEADER = struct.Struct("<IIIId")
 TRANSFORMS_KIND = 1
 
 
-@record
-class FrameTable:
+class FrameTable(ServerMessage):
     """Names and parents (index, -1 for a root) of the frames in the binary frames with this revision."""
 
     revision: int
     names: list[str]
     parents: list[int]
-    type: Literal["frame_table"] = "frame_table"
 
 
 def pack_transforms(revision: int, stamp: float, poses: NDArray[Any], ages: NDArray[Any]) -> bytes:

@@ -5,11 +5,10 @@ from __future__ import annotations
 from typing import Literal
 
 from linkwright.viewer.protocol.data import Bytes
-from linkwright.viewer.protocol.record import record
+from linkwright.viewer.protocol.message import DataContent, Record
 
 
-@record
-class CameraModel:
+class CameraModel(Record):
     """The pinhole camera that an image is seen through, from the projection matrix of its CameraInfo.
 
     Sizes, focal lengths and the principal point are pixels; `offset_x` and `offset_y` say how far, in metres right and
@@ -26,8 +25,7 @@ class CameraModel:
     offset_y: float
 
 
-@record
-class ImageFrame:
+class ImageFrame(DataContent):
     """Image and Camera: one image.
 
     `width` and `height` are those of the message; `columns` and `rows` those of the data, which may have fewer pixels.
@@ -43,11 +41,9 @@ class ImageFrame:
     data: Bytes
     camera: CameraModel | None = None
     quality: int = 0
-    kind: Literal["image_frame"] = "image_frame"
 
 
-@record
-class OccupancyMap:
+class OccupancyMap(DataContent):
     """Map: the cells row by row from the origin's corner, each the byte of its int8 value.
 
     `origin` is the pose of that corner in the frame of the message: x y z (metres) qx qy qz qw.
@@ -58,4 +54,3 @@ class OccupancyMap:
     resolution: float
     origin: list[float]
     cells: Bytes
-    kind: Literal["occupancy_map"] = "occupancy_map"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Literal
 
 from linkwright.viewer.protocol.markers import MarkerShape
-from linkwright.viewer.protocol.record import record
+from linkwright.viewer.protocol.message import DataContent, PageMessage, Record
 
 OrientationMode = Literal["inherit", "fixed", "view_facing"]
 """In the order of visualization_msgs' numbers, as the modes below."""
@@ -25,8 +25,7 @@ InteractionMode = Literal[
 FeedbackEvent = Literal["pose_update", "menu_select", "button_click", "mouse_down", "mouse_up"]
 
 
-@record
-class InteractiveControl:
+class InteractiveControl(Record):
     """A handle of an interactive marker.
 
     Its axis is the x axis of `orientation` (x y z w, in the frame that the orientation mode says). The poses of
@@ -43,8 +42,7 @@ class InteractiveControl:
     markers: list[MarkerShape]
 
 
-@record
-class MarkerMenuEntry:
+class MarkerMenuEntry(Record):
     """An entry of a marker's menu; `parent` is 0 at the top."""
 
     id: int
@@ -52,8 +50,7 @@ class MarkerMenuEntry:
     title: str
 
 
-@record
-class InteractiveMarkerShape:
+class InteractiveMarkerShape(DataContent, tag="interactive_marker"):
     """An interactive marker in the frame of the content; `pose` is x y z qx qy qz qw, `scale` metres."""
 
     name: str
@@ -62,20 +59,16 @@ class InteractiveMarkerShape:
     scale: float
     controls: list[InteractiveControl]
     menu: list[MarkerMenuEntry]
-    kind: Literal["interactive_marker"] = "interactive_marker"
 
 
-@record
-class InteractiveMarkerMoved:
+class InteractiveMarkerMoved(DataContent):
     """An interactive marker has another pose in the frame of the content."""
 
     name: str
     pose: list[float]
-    kind: Literal["interactive_marker_moved"] = "interactive_marker_moved"
 
 
-@record
-class MarkerFeedback:
+class MarkerFeedback(PageMessage):
     """The user did something to an interactive marker; poses and points are in the marker's frame.
 
     `mouse_point` is where the mouse met the marker, or none.
@@ -88,4 +81,3 @@ class MarkerFeedback:
     pose: list[float]
     menu_entry: int
     mouse_point: list[float]
-    type: Literal["marker_feedback"] = "marker_feedback"

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from typing import Literal
 
-from linkwright.viewer.protocol.record import record
+from linkwright.viewer.protocol.message import PageMessage, Record, ServerMessage
 
 
-@record
-class JointControl:
+class JointControl(Record):
     """A row of the Joints panel.
 
     `mimic` is the joint it follows, position = multiplier * position of that + offset: such a row cannot be moved.
@@ -24,48 +23,34 @@ class JointControl:
     offset: float = 0.0
 
 
-@record
-class Joints:
+class Joints(ServerMessage):
     """The rows of the Joints panel; None closes the panel."""
 
     controls: list[JointControl] | None
-    type: Literal["joints"] = "joints"
 
 
-@record
-class JointPositions:
+class JointPositions(ServerMessage):
     """Positions of the Joints panel's joints, rad or m, mimicking joints included."""
 
     positions: dict[str, float]
-    type: Literal["joint_positions"] = "joint_positions"
 
 
-@record
-class SetJoint:
+class SetJoint(PageMessage):
     """The user moved a joint, rad or m."""
 
     name: str
     position: float
-    type: Literal["set_joint"] = "set_joint"
 
 
-@record
-class SetJoints:
+class SetJoints(PageMessage):
     """A pose was recalled, or a sweep goes on: several joints at once, rad or m."""
 
     positions: dict[str, float]
-    type: Literal["set_joints"] = "set_joints"
 
 
-@record
-class RandomizeJoints:
+class RandomizeJoints(PageMessage):
     """The Randomize button."""
 
-    type: Literal["randomize_joints"] = "randomize_joints"
 
-
-@record
-class CenterJoints:
+class CenterJoints(PageMessage):
     """The Center button."""
-
-    type: Literal["center_joints"] = "center_joints"

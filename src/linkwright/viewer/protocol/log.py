@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Literal
-
-from linkwright.viewer.protocol.record import record
+from linkwright.viewer.protocol.message import PageMessage, Record, ServerMessage
 
 
-@record
-class LogLine:
+class LogLine(Record):
     """A record. `level` is rcl_interfaces/msg/Log's: 10 debug, 20 info, 30 warning, 40 error, 50 fatal; `time` in s."""
 
     level: int
@@ -20,18 +17,14 @@ class LogLine:
     line: int
 
 
-@record
-class LogLines:
+class LogLines(ServerMessage):
     """New records in the order they came; `missed` counts those that were too many to be sent."""
 
     lines: list[LogLine]
     missed: int
-    type: Literal["log_lines"] = "log_lines"
 
 
-@record
-class WatchLog:
+class WatchLog(PageMessage):
     """Whether the page wants to be told of new records."""
 
     watched: bool
-    type: Literal["watch_log"] = "watch_log"

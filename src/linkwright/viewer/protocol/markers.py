@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Literal
 
 from linkwright.viewer.protocol.data import Bytes, Floats
-from linkwright.viewer.protocol.record import record
+from linkwright.viewer.protocol.message import DataContent, Record
 
 MarkerKind = Literal[
     "arrow",
@@ -25,8 +25,7 @@ MarkerKind = Literal[
 """In the order of visualization_msgs' numbers; the last since Jazzy."""
 
 
-@record
-class MarkerMesh:
+class MarkerMesh(Record):
     """The file of a mesh marker: an address, or the bytes that came with the message.
 
     `embedded` is whether its own materials are used, tinted by the marker's colour.
@@ -38,8 +37,7 @@ class MarkerMesh:
     embedded: bool
 
 
-@record
-class MarkerShape:
+class MarkerShape(Record):
     """One marker, as visualization_msgs/msg/Marker has it.
 
     `id` is ``<namespace>/<number>``. `pose` (x y z qx qy qz qw) is in the Fixed Frame, or, when `frame` is not empty,
@@ -62,8 +60,7 @@ class MarkerShape:
     texture: str | None
 
 
-@record
-class MarkersChanged:
+class MarkersChanged(DataContent):
     """Marker and MarkerArray: markers that are new or others now, and those that have gone.
 
     With `everything` set, whatever was there before has gone too.
@@ -72,4 +69,3 @@ class MarkersChanged:
     everything: bool
     gone: list[str]
     markers: list[MarkerShape]
-    kind: Literal["markers_changed"] = "markers_changed"

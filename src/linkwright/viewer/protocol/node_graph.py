@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Literal
-
-from linkwright.viewer.protocol.record import record
+from linkwright.viewer.protocol.message import PageMessage, Record, ServerMessage
 
 
-@record
-class GraphTopic:
+class GraphTopic(Record):
     """A topic with the full names of the nodes at both ends."""
 
     name: str
@@ -17,18 +14,14 @@ class GraphTopic:
     subscribers: list[str]
 
 
-@record
-class NodeGraph:
+class NodeGraph(ServerMessage):
     """All nodes and topics; sent when the panel opens and when they change."""
 
     nodes: list[str]
     topics: list[GraphTopic]
-    type: Literal["node_graph"] = "node_graph"
 
 
-@record
-class WatchNodeGraph:
+class WatchNodeGraph(PageMessage):
     """Whether the page wants to be told of the node graph."""
 
     watched: bool
-    type: Literal["watch_node_graph"] = "watch_node_graph"

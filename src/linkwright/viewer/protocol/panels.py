@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from typing import Literal
 
-from linkwright.viewer.protocol.record import record
+from linkwright.viewer.protocol.message import PageMessage, ServerMessage
 
 PanelName = Literal["displays", "selection", "tool-properties", "views", "time", "transformation"]
 """The panels that RViz has, too; the names are the page's."""
 
 
-@record
-class Panels:
+class Panels(ServerMessage):
     """What the configuration says of panels.
 
     Attributes:
@@ -23,12 +22,9 @@ class Panels:
     opened: int
     origin: str
     shown: list[PanelName] | None
-    type: Literal["panels"] = "panels"
 
 
-@record
-class ShowPanels:
+class ShowPanels(PageMessage):
     """The user opened or closed one of these panels, and these are open in the page now. The file takes that over."""
 
     shown: list[PanelName]
-    type: Literal["show_panels"] = "show_panels"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar, Literal
 
-from linkwright.viewer.protocol.record import record
+from linkwright.viewer.protocol.message import PageMessage, Record, ServerMessage
 
 ParameterKind = Literal[
     "not_set",
@@ -20,8 +20,7 @@ ParameterKind = Literal[
 ]
 
 
-@record
-class ParameterRow:
+class ParameterRow(Record):
     """A parameter. `minimum`, `maximum` and `step` are those of its range, as text; empty where there is none."""
 
     name: str
@@ -35,27 +34,22 @@ class ParameterRow:
     step: str
 
 
-@record
-class ParameterNodes:
+class ParameterNodes(ServerMessage):
     """Full names of the nodes whose parameters can be asked for."""
 
     nodes: list[str]
-    type: Literal["parameter_nodes"] = "parameter_nodes"
 
 
-@record
-class NodeParameters:
+class NodeParameters(ServerMessage):
     """The parameters of a node, sorted by name; sent when it is watched and on every change. `error`: no answer."""
 
     node: str
     parameters: list[ParameterRow]
     error: str | None
-    type: Literal["node_parameters"] = "node_parameters"
 
 
-@record
-class ParameterResult:
-    """What came of `SetParameter`; `reason` is the node's."""
+class ParameterResult(ServerMessage):
+    """The outcome of `SetParameter`; `reason` is the node's."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("node", "name")
 
@@ -63,43 +57,34 @@ class ParameterResult:
     name: str
     successful: bool
     reason: str
-    type: Literal["parameter_result"] = "parameter_result"
 
 
-@record
-class ParameterDump:
+class ParameterDump(ServerMessage):
     """Answers `DumpParameters`: a parameter file, and what to call it."""
 
     node: str
     file: str
     text: str
     error: str | None
-    type: Literal["parameter_dump"] = "parameter_dump"
 
 
-@record
-class WatchParameters:
+class WatchParameters(PageMessage):
     """What the page wants to know of parameters from now on: the list of nodes, and the parameters of one."""
 
     listed: bool
     node: str | None
-    type: Literal["watch_parameters"] = "watch_parameters"
 
 
-@record
-class SetParameter:
+class SetParameter(PageMessage):
     """The user edited a parameter."""
 
     node: str
     name: str
     kind: ParameterKind
     values: list[str]
-    type: Literal["set_parameter"] = "set_parameter"
 
 
-@record
-class DumpParameters:
+class DumpParameters(PageMessage):
     """The user wants the parameters of a node as a file."""
 
     node: str
-    type: Literal["dump_parameters"] = "dump_parameters"

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import field
 from typing import Literal
 
-from linkwright.viewer.protocol.record import record
+from msgspec import field
+
+from linkwright.viewer.protocol.message import Record
 
 StatusLevel = Literal["ok", "warn", "error"]
 PropertyKind = Literal["group", "bool", "int", "float", "string", "color", "enum", "frame", "topic"]
@@ -13,16 +14,14 @@ PropertyValue = bool | int | float | str | None
 RowDetails = Literal["frame", "link", "joint", "effort"]
 
 
-@record
-class TopicOffer:
+class TopicOffer(Record):
     """Which topics are offered for a row: those of one of the types with one of the words, if any, in their names."""
 
     messages: list[str]
     words: list[str]
 
 
-@record
-class Property:
+class Property(Record):
     """One row of a property tree, as RViz shows it.
 
     `id` is unique in the page and stable for the life of a display. Colours are ``#rrggbb``. A `group` has no value;
@@ -49,8 +48,7 @@ class Property:
     topics: TopicOffer | None = None
 
 
-@record
-class StatusRow:
+class StatusRow(Record):
     """One row below a display's Status."""
 
     name: str
@@ -58,8 +56,7 @@ class StatusRow:
     text: str
 
 
-@record
-class Place:
+class Place(Record):
     """A place in a source file, 1-based, with the way there (macro calls and includes, innermost first)."""
 
     file: str

@@ -9,28 +9,26 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Sequence
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.viewer.protocol.record import record
+from linkwright.viewer.protocol.message import PageMessage, Record, ServerMessage
 
 SAMPLES_KIND = 3
 _HEADER = struct.Struct("<IIII")
 _SERIES = struct.Struct("<II")
 
 
-@record
-class PlotField:
+class PlotField(Record):
     """A field that can be plotted, as it is written behind the topic's name; `kind` is the type of its values."""
 
     path: str
     kind: str
 
 
-@record
-class PlotSeries:
+class PlotSeries(Record):
     """A series that a page plots; the page chooses the id, which no other series of it has."""
 
     id: int
@@ -38,47 +36,38 @@ class PlotSeries:
     path: str
 
 
-@record
-class SeriesState:
+class SeriesState(Record):
     """Why a series has no values; None when it has, or when it waits for a first message."""
 
     id: int
     error: str | None
 
 
-@record
-class TopicFields:
+class TopicFields(ServerMessage):
     """What can be plotted of a topic; answers `AskFields`, and once more when a message tells how long arrays are."""
 
     topic: str
     kind: str
     fields: list[PlotField]
     error: str | None
-    type: Literal["topic_fields"] = "topic_fields"
 
 
-@record
-class SeriesStates:
+class SeriesStates(ServerMessage):
     """How the series of the page are."""
 
     states: list[SeriesState]
-    type: Literal["series_states"] = "series_states"
 
 
-@record
-class AskFields:
+class AskFields(PageMessage):
     """The user chooses from the fields of a topic; None when the choice is over."""
 
     topic: str | None
-    type: Literal["ask_fields"] = "ask_fields"
 
 
-@record
-class WatchSeries:
+class WatchSeries(PageMessage):
     """All series that the page plots from now on."""
 
     series: list[PlotSeries]
-    type: Literal["watch_series"] = "watch_series"
 
 
 def pack_samples(series: Sequence[tuple[int, NDArray[Any]]]) -> bytes:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from typing import ClassVar, Literal
+from typing import ClassVar
 
 from linkwright.viewer.protocol.data import Bytes, Floats
-from linkwright.viewer.protocol.record import record
+from linkwright.viewer.protocol.message import DataContent, PageMessage, ServerMessage
 
 
-@record
-class CloudPoints:
+class CloudPoints(DataContent):
     """PointCloud2 and its kin: points in the frame of the message, metres, shape (N, 3).
 
     `colours` has red, green, blue and alpha of each point, shape (N, 4), or nothing where all have the display's own
@@ -23,31 +22,25 @@ class CloudPoints:
     translucent: bool = False
     pixel: float = 0.0
     step: int = 1
-    kind: Literal["cloud_points"] = "cloud_points"
 
 
-@record
-class CellGrid:
+class CellGrid(DataContent):
     """GridCells: middles of the cells in the frame of the message, metres, shape (N, 3), and the sides of a cell."""
 
     positions: Floats
     width: float
     height: float
-    kind: Literal["cell_grid"] = "cell_grid"
 
 
-@record
-class AskPoint:
+class AskPoint(PageMessage):
     """The user selected a point of a display's content and wants to know its fields; answered by `PointFields`."""
 
     display: str
     key: str
     index: int
-    type: Literal["ask_point"] = "ask_point"
 
 
-@record
-class PointFields:
+class PointFields(ServerMessage):
     """The fields of a point besides its coordinates, by name, in the order of the message.
 
     A packed colour is ``#rrggbbaa``; a value that is no finite number is a text.
@@ -57,5 +50,4 @@ class PointFields:
     key: str
     index: int
     fields: dict[str, float | str]
-    type: Literal["point_fields"] = "point_fields"
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("display", "key", "index")

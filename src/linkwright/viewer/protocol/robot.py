@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import field
 from typing import ClassVar, Literal
 
+from msgspec import field
+
 from linkwright.viewer.protocol.description import LinkInertia
+from linkwright.viewer.protocol.message import PageMessage, Record, ServerMessage
 from linkwright.viewer.protocol.parts import Place
-from linkwright.viewer.protocol.record import record
 
 ShapeKind = Literal["box", "cylinder", "capsule", "sphere", "mesh"]
 
 
-@record
-class Shape:
+class Shape(Record):
     """A shape to draw, posed in its link's frame.
 
     `size` is x, y, z for a box; radius, length for a cylinder or capsule (along z); radius for a sphere; scale x, y, z
@@ -32,8 +32,7 @@ class Shape:
     name: str = ""
 
 
-@record
-class LinkScene:
+class LinkScene(Record):
     """A link to draw in the frame of its name."""
 
     name: str
@@ -45,8 +44,7 @@ class LinkScene:
     inertia: LinkInertia | None = None
 
 
-@record
-class JointScene:
+class JointScene(Record):
     """A joint, posed in its parent link's frame; `axis` is in the joint's own. SI units.
 
     `lower` and `upper` are None without a limit; a number of the description that is not finite is None too.
@@ -63,8 +61,7 @@ class JointScene:
     upper: float | None
 
 
-@record
-class RobotScene:
+class RobotScene(ServerMessage):
     """What one RobotModel display draws; `revision` counts descriptions. No links means no robot."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("display",)
@@ -74,34 +71,27 @@ class RobotScene:
     name: str
     links: list[LinkScene]
     joints: list[JointScene] = field(default_factory=list)
-    type: Literal["robot_scene"] = "robot_scene"
 
 
-@record
-class MeshStatus:
+class MeshStatus(PageMessage):
     """How loading a mesh went in the page; `error` is None when it is drawn."""
 
     display: str
     link: str
     url: str
     error: str | None
-    type: Literal["mesh_status"] = "mesh_status"
 
 
-@record
-class AskStory:
-    """The user selected a link of a RobotModel display and wants to know how it came to be."""
+class AskProvenance(PageMessage):
+    """The user selected a link of a RobotModel display and wants to know where it was written."""
 
     display: str
     link: str
-    type: Literal["ask_story"] = "ask_story"
 
 
-@record
-class LinkStory:
-    """Where a link was written, through which macro calls, and with which values, line by line; answers `AskStory`."""
+class LinkProvenance(ServerMessage):
+    """Where a link was written, through which macro calls, with which values, as lines; answers `AskProvenance`."""
 
     display: str
     link: str
     lines: list[str]
-    type: Literal["link_story"] = "link_story"

@@ -2,24 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from linkwright.viewer.protocol.message import PageMessage, ServerMessage
 
-from linkwright.viewer.protocol.record import record
+PROTOCOL_VERSION = 4
+"""Raised on every change that an older page would misread; the page reloads itself when it differs."""
 
 
-@record
-class Hello:
+class Hello(ServerMessage):
     """First message on every connection."""
 
     protocol: int
     version: str
     title: str
-    type: Literal["hello"] = "hello"
 
 
-@record
-class Received:
+class Received(PageMessage):
     """How many messages of this connection the page has; sent after the first one and after each large one."""
 
     count: int
-    type: Literal["received"] = "received"

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from typing import Literal
 
-from linkwright.viewer.protocol.record import record
+from linkwright.viewer.protocol.message import PageMessage, Record, ServerMessage
 
 TwistKind = Literal["auto", "Twist", "TwistStamped"]
 
 
-@record
-class TeleopTarget:
+class TeleopTarget(Record):
     """Where a pad publishes; `auto` takes the type that the topic's subscribers have, Twist where there are none."""
 
     topic: str
@@ -18,27 +17,22 @@ class TeleopTarget:
     frame_id: str
 
 
-@record
-class TeleopState:
-    """What became of a pad's target: the type it publishes, how many listen, and why it does not publish, if so."""
+class TeleopState(ServerMessage):
+    """The state of a pad: the type it publishes, how many listen, and why it does not publish, if so."""
 
     topic: str
     kind: str
     subscribers: int
     error: str | None
-    type: Literal["teleop_state"] = "teleop_state"
 
 
-@record
-class AimTeleop:
+class AimTeleop(PageMessage):
     """The page opens its pad, or gives it another target; None closes it."""
 
     target: TeleopTarget | None
-    type: Literal["aim_teleop"] = "aim_teleop"
 
 
-@record
-class Drive:
+class Drive(PageMessage):
     """A velocity to publish now: m/s along x, y, z and rad/s around x, y, z. Comes again and again while one is held.
 
     When none comes for a while, or the page goes, zero is published.
@@ -46,4 +40,3 @@ class Drive:
 
     linear: list[float]
     angular: list[float]
-    type: Literal["drive"] = "drive"

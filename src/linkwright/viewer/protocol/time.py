@@ -4,24 +4,21 @@ from __future__ import annotations
 
 from typing import Literal
 
-from linkwright.viewer.protocol.record import record
+from linkwright.viewer.protocol.message import PageMessage, ServerMessage
 
 SyncMode = Literal["Off", "Exact", "Approximate"]
 
 
-@record
-class TimeState:
-    """How time goes, whenever that changes. `sources` are the displays whose messages can lead it."""
+class TimeState(ServerMessage):
+    """The state of time, sent when it changes. `sources` are the displays whose messages can drive it."""
 
     paused: bool
     mode: SyncMode
     source: str
     sources: list[str]
-    type: Literal["time_state"] = "time_state"
 
 
-@record
-class Clock:
+class Clock(ServerMessage):
     """The clocks now, in seconds, for pages that watch them.
 
     `ros_start` and `wall_start` are when the time that elapsed began. While `running` the ROS time goes on as the
@@ -33,36 +30,25 @@ class Clock:
     wall: float
     wall_start: float
     running: bool
-    type: Literal["clock"] = "clock"
 
 
-@record
-class TimeReset:
-    """Time began anew: what displays keep of messages is gone."""
-
-    type: Literal["time_reset"] = "time_reset"
+class TimeReset(ServerMessage):
+    """Time was reset: displays dropped their messages."""
 
 
-@record
-class SetTime:
+class SetTime(PageMessage):
     """The user pauses, goes on, or leads time by a display's messages."""
 
     paused: bool
     mode: SyncMode
     source: str
-    type: Literal["set_time"] = "set_time"
 
 
-@record
-class ResetTime:
+class ResetTime(PageMessage):
     """The Reset button: displays are cleared, and elapsed times begin at zero."""
 
-    type: Literal["reset_time"] = "reset_time"
 
-
-@record
-class WatchClock:
+class WatchClock(PageMessage):
     """A page shows the clocks, or no more."""
 
     watching: bool
-    type: Literal["watch_clock"] = "watch_clock"

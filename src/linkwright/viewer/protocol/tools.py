@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from typing import ClassVar, Literal
+from typing import ClassVar
 
+from linkwright.viewer.protocol.message import PageMessage, Record, ServerMessage
 from linkwright.viewer.protocol.parts import Property, PropertyValue
-from linkwright.viewer.protocol.record import record
 
 
-@record
-class Tool:
+class Tool(Record):
     """A tool of the toolbar. `supported` is false for a class that this program does not know; the file keeps it."""
 
     id: str
@@ -19,76 +18,61 @@ class Tool:
     properties: list[Property]
 
 
-@record
-class ToolClass:
+class ToolClass(Record):
     """A class of tools that can be added."""
 
     cls: str
     name: str
 
 
-@record
-class Tools:
+class Tools(ServerMessage):
     """The tools in the order of the toolbar, whenever they change; the first is the default one."""
 
     tools: list[Tool]
     classes: list[ToolClass]
-    type: Literal["tools"] = "tools"
 
 
-@record
-class ToolPropertyChanged:
+class ToolPropertyChanged(ServerMessage):
     """One setting of a tool, set by any page; a refused value is answered with the one that stands."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("id",)
 
     id: str
     value: PropertyValue
-    type: Literal["tool_property_changed"] = "tool_property_changed"
 
 
-@record
-class SetToolProperty:
+class SetToolProperty(PageMessage):
     """The user edited a setting of a tool."""
 
     id: str
     value: PropertyValue
-    type: Literal["set_tool_property"] = "set_tool_property"
 
 
-@record
-class AddTool:
+class AddTool(PageMessage):
     """Add a tool of a class at the end of the toolbar."""
 
     cls: str
-    type: Literal["add_tool"] = "add_tool"
 
 
-@record
-class RemoveTool:
+class RemoveTool(PageMessage):
     """Take a tool out of the toolbar."""
 
     id: str
-    type: Literal["remove_tool"] = "remove_tool"
 
 
-@record
-class PoseChosen:
+class PoseChosen(PageMessage):
     """A 2D Pose Estimate or 2D Goal Pose was set in the Fixed Frame: metres, and radians about z."""
 
     tool: str
     x: float
     y: float
     yaw: float
-    type: Literal["pose_chosen"] = "pose_chosen"
 
 
-@record
-class PointChosen:
+class PointChosen(PageMessage):
     """A Publish Point tool was used on a point of the Fixed Frame, metres."""
 
     tool: str
     x: float
     y: float
     z: float
-    type: Literal["point_chosen"] = "point_chosen"

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import field
-from typing import ClassVar, Literal
+from typing import ClassVar
 
-from linkwright.viewer.protocol.record import record
+from msgspec import field
+
+from linkwright.viewer.protocol.message import PageMessage, Record, ServerMessage
 
 
-@record
-class TopicRow:
+class TopicRow(Record):
     """A topic of the graph; several `types` are a mistake of its users."""
 
     name: str
@@ -18,8 +18,7 @@ class TopicRow:
     subscribers: int
 
 
-@record
-class TopicTraffic:
+class TopicTraffic(Record):
     """What a measured topic carries: hertz and bytes a second. `error` tells why it cannot be measured or shown.
 
     Both figures are None before there are two messages.
@@ -31,8 +30,7 @@ class TopicTraffic:
     error: str | None
 
 
-@record
-class MessageField:
+class MessageField(Record):
     """A field of a message with its value as text; `omitted` counts elements or fields that are left out."""
 
     name: str
@@ -42,24 +40,19 @@ class MessageField:
     omitted: int = 0
 
 
-@record
-class TopicList:
+class TopicList(ServerMessage):
     """All topics, sorted by name."""
 
     topics: list[TopicRow]
-    type: Literal["topic_list"] = "topic_list"
 
 
-@record
-class TopicFigures:
+class TopicFigures(ServerMessage):
     """The figures of every topic that the page measures, once a second."""
 
     traffic: list[TopicTraffic]
-    type: Literal["topic_figures"] = "topic_figures"
 
 
-@record
-class TopicMessage:
+class TopicMessage(ServerMessage):
     """The last message of an opened topic, a few times a second at most; `received` is seconds since the epoch."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("topic",)
@@ -67,14 +60,11 @@ class TopicMessage:
     topic: str
     received: float
     fields: list[MessageField]
-    type: Literal["topic_message"] = "topic_message"
 
 
-@record
-class WatchTopics:
-    """What the page wants to know of topics from now on: their list, figures of some, messages of some."""
+class WatchTopics(PageMessage):
+    """What the page follows of topics from now on: their list, figures of some, messages of some."""
 
     listed: bool
     measured: list[str]
     opened: list[str]
-    type: Literal["watch_topics"] = "watch_topics"

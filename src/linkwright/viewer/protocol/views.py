@@ -5,14 +5,11 @@ The values of a view are named by the path of their property: ``Distance``, ``Fo
 
 from __future__ import annotations
 
-from typing import Literal
-
+from linkwright.viewer.protocol.message import PageMessage, Record, ServerMessage
 from linkwright.viewer.protocol.parts import Property, PropertyValue
-from linkwright.viewer.protocol.record import record
 
 
-@record
-class View:
+class View(Record):
     """A view: RViz's class of it (``rviz_default_plugins/Orbit``), its name, and its values."""
 
     cls: str
@@ -20,8 +17,7 @@ class View:
     values: dict[str, PropertyValue]
 
 
-@record
-class ViewClass:
+class ViewClass(Record):
     """A class of views: its rows, whose ids are names of values, and RViz's defaults, also of rows not shown."""
 
     cls: str
@@ -29,16 +25,13 @@ class ViewClass:
     defaults: dict[str, PropertyValue]
 
 
-@record
-class ViewClasses:
+class ViewClasses(ServerMessage):
     """All classes of views; comes before the first view."""
 
     classes: list[ViewClass]
-    type: Literal["view_classes"] = "view_classes"
 
 
-@record
-class ViewState:
+class ViewState(ServerMessage):
     """The view of a configuration; the page owns the camera from then on.
 
     `revision` counts the configurations that were opened: a page that comes back keeps its camera while it is the same.
@@ -46,53 +39,41 @@ class ViewState:
 
     view: View
     revision: int
-    type: Literal["view_state"] = "view_state"
 
 
-@record
-class SavedView:
+class SavedView(Record):
     """A saved view and its id, which stays while it is renamed or changed."""
 
     id: str
     view: View
 
 
-@record
-class SavedViews:
+class SavedViews(ServerMessage):
     """The saved views, in their order, whenever they change."""
 
     views: list[SavedView]
-    type: Literal["saved_views"] = "saved_views"
 
 
-@record
-class ViewChanged:
+class ViewChanged(PageMessage):
     """The camera as the page has it now, at most a few times a second; the last of any page is saved in the file."""
 
     view: View
-    type: Literal["view_changed"] = "view_changed"
 
 
-@record
-class SaveView:
+class SaveView(PageMessage):
     """Add a view to the saved ones."""
 
     view: View
-    type: Literal["save_view"] = "save_view"
 
 
-@record
-class ChangeSavedView:
+class ChangeSavedView(PageMessage):
     """Give a saved view another name or other values."""
 
     id: str
     view: View
-    type: Literal["change_saved_view"] = "change_saved_view"
 
 
-@record
-class RemoveSavedView:
+class RemoveSavedView(PageMessage):
     """Take a saved view away."""
 
     id: str
-    type: Literal["remove_saved_view"] = "remove_saved_view"

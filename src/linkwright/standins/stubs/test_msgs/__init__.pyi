@@ -2,3 +2,5 @@
 from test_msgs import msg as msg
 from test_msgs import srv as srv
 from test_msgs import action as action
+from test_msgs import message_fixtures as message_fixtures
+__all__ = []

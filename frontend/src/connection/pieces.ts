@@ -1,0 +1,27 @@
+import { PIECE_KIND } from "../protocol";
+
+const HEADER_BYTES = 16;
+
+/** Puts binary frames together that come in pieces, as `pack_piece` of `viewer/protocol/pieces.py` cuts them. */
+export class Pieces {
+  private number = 0;
+  private whole = new Uint8Array();
+
+  /** Takes a piece; returns the frame that it completes, or null while there is more to come. */
+  take(piece: ArrayBuffer): ArrayBuffer | null {
+    const header = new DataView(piece);
+    const [number, offset, length] = [4, 8, 12].map((at) => header.getUint32(at, true)) as [number, number, number];
+    if (offset === 0) [this.number, this.whole] = [number, new Uint8Array(length)];
+    if (number !== this.number) return null;
+    const bytes = new Uint8Array(piece, HEADER_BYTES);
+    this.whole.set(bytes, offset);
+    if (offset + bytes.length < length) return null;
+    const { buffer } = this.whole;
+    this.whole = new Uint8Array();
+    return buffer;
+  }
+}
+
+export function isPiece(bytes: ArrayBuffer): boolean {
+  return bytes.byteLength >= HEADER_BYTES && new DataView(bytes).getUint32(0, true) === PIECE_KIND;
+}

@@ -1,0 +1,47 @@
+"""Words of the form ``name:=value``, as ROS 2 commands take them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, phrase
+
+_SINGLE_SIGN = re.compile(r"^-*([A-Za-z_][\w-]*)(=|:)(?!=)(.*)$", re.DOTALL)
+
+
+def _malformed(word: str, hint: Phrase) -> Diagnostic:
+    message = phrase("'{word}' is not an argument of the form name:=value", word=word)
+    return Diagnostic("CLI101", message, hint=hint)
+
+
+def parse_assignments(
+    words: Iterable[str], malformed: Callable[[str, Phrase], Diagnostic] = _malformed
+) -> dict[str, str]:
+    """Names and values of ``name:=value`` words; a later word of a name wins.
+
+    Args:
+        words: the words.
+        malformed: what is said of a word that is not of this form, of the word and a hint.
+
+    Raises:
+        LinkwrightError: CLI101 by default, for every word that is not of this form.
+    """
+    values: dict[str, str] = {}
+    wrong = []
+    for word in words:
+        name, sign, value = word.partition(":=")
+        if sign and name and not name.startswith("-"):
+            values[name] = value
+        else:
+            wrong.append(malformed(word, _hint(word)))
+    if wrong:
+        raise LinkwrightError(*wrong)
+    return values
+
+
+def _hint(word: str) -> Phrase:
+    found = _SINGLE_SIGN.match(word)
+    if found:
+        return phrase("write {name}:={value}", name=found[1], value=found[3])
+    return phrase("arguments are written name:=value")

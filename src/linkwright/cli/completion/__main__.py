@@ -1,0 +1,16 @@
+"""What shells run for TAB: ``python -m linkwright.cli.completion (--line LINE | WORD ...)``.
+
+The words are those of the command line, the program first and the word at the cursor, which may be empty, last. What
+may stand there is printed, a line each.
+"""
+
+from __future__ import annotations
+
+import sys
+
+from linkwright.cli.completion.candidates import complete, divided
+
+if __name__ == "__main__":
+    given = sys.argv[1:]
+    for candidate in complete(divided(given[1]) if given[:1] == ["--line"] else given):
+        print(candidate)

@@ -1,0 +1,93 @@
+"""Names of the running graph, as the last look found them.
+
+To find the nodes of other processes takes longer than a user waits for TAB. So TAB gives what the last look found, and
+begins a new one in a process of its own.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+import time
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from linkwright.packages.cache import cache_folder
+
+if TYPE_CHECKING:
+    from linkwright.cli.session import Session
+
+_FRESH_SECONDS = 2.0
+"""A look this young is not repeated."""
+_STALE_SECONDS = 600.0
+"""One this old tells of what is long gone."""
+
+
+def names_of(kind: str) -> list[str]:
+    """The ``topics``, ``nodes``, ``services`` or ``actions`` that the last look found."""
+    path = _path()
+    try:
+        age = time.time() - path.stat().st_mtime
+        found: list[str] = json.loads(path.read_text(encoding="utf-8"))[kind]
+    except (OSError, ValueError, KeyError):
+        age, found = _STALE_SECONDS, []
+    if age > _FRESH_SECONDS:
+        _look_soon(path)
+    return found if age < _STALE_SECONDS else []
+
+
+def _path() -> Path:
+    return cache_folder() / "completion" / f"graph-{os.environ.get('ROS_DOMAIN_ID') or 0}.json"
+
+
+def _look_soon(path: Path) -> None:
+    """Begin a look in a process of its own, unless one was begun just now."""
+    begun = path.with_suffix(".begun")
+    with suppress(OSError):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        if begun.exists() and time.time() - begun.stat().st_mtime < _FRESH_SECONDS:
+            return
+        begun.touch()
+        import subprocess
+
+        subprocess.Popen(
+            [sys.executable, "-m", "linkwright.cli.completion.graph_names"],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            start_new_session=True,
+        )
+
+
+def look() -> int:
+    """Find the names of the graph now, and write them where `names_of` reads them."""
+    from argparse import Namespace
+
+    from linkwright.cli.calls import node_names
+    from linkwright.cli.lookup import visible
+    from linkwright.cli.session import run_in_graph
+
+    async def job(session: Session) -> int:
+        node = session.node
+        found = {
+            "topics": [name for name, _ in visible(node.get_topic_names_and_types(), hidden=False)],
+            "services": [name for name, _ in visible(node.get_service_names_and_types(), hidden=False)],
+            "nodes": node_names(session, hidden=False),
+        }
+        ending = "/_action/feedback"
+        topics = [name for name, _ in node.get_topic_names_and_types()]
+        found["actions"] = sorted(name.removesuffix(ending) for name in topics if name.endswith(ending))
+        path = _path()
+        path.parent.mkdir(parents=True, exist_ok=True)
+        written = path.with_suffix(f".{os.getpid()}")
+        written.write_text(json.dumps(found), encoding="utf-8")
+        written.replace(path)
+        return 0
+
+    return run_in_graph(Namespace(), job)
+
+
+if __name__ == "__main__":
+    raise SystemExit(look())

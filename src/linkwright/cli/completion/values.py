@@ -1,0 +1,137 @@
+"""What an argument may be: packages, executables, launch files and their arguments, names and types of the graph."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from linkwright.cli.completion.graph_names import names_of
+from linkwright.cli.completion.scripts import FILES
+from linkwright.packages import PackageFinder, install_prefix, is_installed
+
+_LAUNCH_FILE = re.compile(r"[._]launch\.(py|xml|ya?ml)$|launch\.(py|xml|ya?ml)$")
+_DECLARED = re.compile(
+    r"""Declare(?:Boolean)?LaunchArgument\(\s*(?:name\s*=\s*)?["']([^"']+)["']"""
+    r"""|<arg\s[^>]*?\bname\s*=\s*["']([^"']+)["']|-\s*arg:\s*\n\s+name:\s*["']?([\w./-]+)"""
+)
+_XACRO_ARGUMENT = re.compile(r"""<xacro:arg\s[^>]*?\bname\s*=\s*["']([^"']+)["']""")
+_DEPTH = 4
+
+_INTERFACE_KINDS = {"topic": ("msg",), "bag": ("msg",), "service": ("srv",), "action": ("action",)}
+
+Asked = tuple[list[str], list[str], Mapping[str, Any]]
+"""The names of the command, the words before, and the table of commands."""
+
+
+def candidates_of(kind: str, path: list[str], placed: list[str], table: Mapping[str, Any]) -> Iterable[str]:
+    """What an argument may be.
+
+    Args:
+        kind: its name in the help.
+        path: the command's names, such as ``topic`` and ``echo``.
+        placed: the words before it that are no options.
+        table: the commands, with our executables and types.
+    """
+    find = _KINDS.get(kind)
+    return [] if find is None else find((path, placed, table))
+
+
+def _packages(asked: Asked) -> Iterable[str]:
+    return sorted({*PackageFinder().packages(), *asked[2]["executables"]})
+
+
+def _executables(asked: Asked) -> Iterable[str]:
+    _, placed, table = asked
+    package = placed[-1] if placed else ""
+    found = set(table["executables"].get(package, ()))
+    share = PackageFinder().find(package)
+    if share is not None:
+        if not is_installed(share):
+            from linkwright.packages.programs.source_programs import source_programs
+
+            programs = source_programs(share)
+            found |= {*programs.entry_points, *programs.scripts}
+        folder = install_prefix(share) / "lib" / package
+        found |= {each.name for each in folder.glob("*") if each.is_file() and each.suffix not in (".so", ".dylib")}
+    return sorted(found)
+
+
+def _launch_packages(_: Asked) -> Iterable[str]:
+    return [*sorted(PackageFinder().packages()), FILES]
+
+
+def _launch_files(asked: Asked) -> Iterable[str]:
+    named = Path(asked[1][0])
+    if named.is_file():
+        return _arguments_in(named, _DECLARED)
+    share = PackageFinder().find(asked[1][0])
+    return [] if share is None else sorted(each.name for each in _launch_files_below(share))
+
+
+def _launch_arguments(asked: Asked) -> Iterable[str]:
+    package, file = asked[1][:2]
+    if Path(package).is_file():
+        return _arguments_in(Path(package), _DECLARED)
+    share = PackageFinder().find(package)
+    found = next((each for each in _launch_files_below(share) if each.name == file), None) if share else None
+    return [] if found is None else _arguments_in(found, _DECLARED)
+
+
+def _launch_files_below(share: Path, depth: int = _DEPTH) -> Iterable[Path]:
+    for entry in sorted(share.iterdir()):
+        if entry.is_dir():
+            if depth and not entry.name.startswith(".") and entry.name not in ("build", "install", "log"):
+                yield from _launch_files_below(entry, depth - 1)
+        elif _LAUNCH_FILE.search(entry.name):
+            yield entry
+
+
+def _description_arguments(asked: Asked) -> Iterable[str]:
+    given = [Path(word) for word in asked[1] if ":=" not in word]
+    return [name for path in given if path.is_file() for name in _arguments_in(path, _XACRO_ARGUMENT)]
+
+
+def _arguments_in(path: Path, pattern: re.Pattern[str]) -> list[str]:
+    """The names of the arguments that a file declares; it is searched as text, because to run it takes too long."""
+    text = path.read_text(encoding="utf-8", errors="replace")
+    names = (next(filter(None, found.groups())) for found in pattern.finditer(text))
+    return [f"{name}:=" for name in dict.fromkeys(names)]
+
+
+def _types(asked: Asked) -> Iterable[str]:
+    path, _, table = asked
+    kinds = _INTERFACE_KINDS.get(path[0], ("msg", "srv", "action"))
+    own = (
+        f"{package}/{kind}/{file.stem}"
+        for package, share in PackageFinder().packages().items()
+        for kind in kinds
+        for file in (share / kind).glob(f"*.{kind}")
+    )
+    return sorted({*(each for kind in kinds for each in table["types"][kind]), *own})
+
+
+def _graph(kind: str) -> Callable[[Asked], Iterable[str]]:
+    return lambda _: names_of(kind)
+
+
+def _files(_: Asked) -> Iterable[str]:
+    return [FILES]
+
+
+_KINDS: dict[str, Callable[[Asked], Iterable[str]]] = {
+    "PACKAGE": _packages,
+    "EXECUTABLE": _executables,
+    "LAUNCH_PACKAGE": _launch_packages,
+    "LAUNCH_FILE": _launch_files,
+    "LAUNCH_ARGUMENT": _launch_arguments,
+    "NAME:=VALUE": _description_arguments,
+    "TOPIC": _graph("topics"),
+    "NODE": _graph("nodes"),
+    "CONTAINER": _graph("nodes"),
+    "SERVICE": _graph("services"),
+    "ACTION": _graph("actions"),
+    "TYPE": _types,
+    **dict.fromkeys(("FILE", "FOLDER", "DIR", "OUT", "BAG", "FILE|FOLDER|NAME:=VALUE"), _files),
+}

@@ -1,0 +1,31 @@
+"""``linkwright completion``: print what a shell needs to complete our command lines."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import argparse
+
+HELP = "print what makes TAB complete command lines in bash, zsh or fish"
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    from linkwright.cli.completion.scripts import SHELLS
+
+    parser.add_argument("shell", metavar="SHELL", choices=tuple(SHELLS), help="bash, zsh or fish")
+    parser.epilog = (
+        'Put `eval "$(linkwright completion bash)"` into `~/.bashrc`, `eval "$(linkwright completion zsh)"` into '
+        "`~/.zshrc`, or `linkwright completion fish | source` into `~/.config/fish/config.fish`. "
+        "`linkwright shell` has it already."
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Print it."""
+    from linkwright.cli.completion.scripts import script
+
+    print(script(arguments.shell, sys.executable, ["linkwright"]), end="")
+    return 0

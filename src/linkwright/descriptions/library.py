@@ -1,0 +1,78 @@
+"""Sharing a description between everything that reads the same text."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from linkwright.descriptions.description import TEXT_NAME, Description
+from linkwright.diagnostics import LinkwrightError
+from linkwright.urdf import Reading, read
+from linkwright.urdf.plaintext import parse_as_urdfdom
+from linkwright.xmltree import Document, Element
+
+if TYPE_CHECKING:
+    from linkwright.xacro.provenance import Provenance
+
+_KEPT_TEXTS = 32
+
+
+class DescriptionLibrary:
+    """The descriptions that are about, by their texts, so that each is read once.
+
+    The launcher remembers the description that a text was expanded from; the nodes and the viewer, which get the bare
+    text from a parameter or topic, then know where everything was written.
+    """
+
+    def __init__(self) -> None:
+        self._descriptions: OrderedDict[str, Description] = OrderedDict()
+
+    def remember(self, description: Description, text: str | None = None) -> str:
+        """Keep a description for those who have no more than its text.
+
+        Args:
+            description: a description.
+            text: what stands for its text elsewhere, where that is another one.
+
+        Returns:
+            The text.
+        """
+        text = description.text if text is None else text
+        self._descriptions[text] = description
+        self._descriptions.move_to_end(text)
+        if len(self._descriptions) > _KEPT_TEXTS:
+            self._descriptions.popitem(last=False)
+        return text
+
+    def files(self, text: str) -> tuple[Path, ...]:
+        """What a remembered description was made from, the main file first; empty where nobody said so."""
+        known = self._descriptions.get(text)
+        return () if known is None else known.files
+
+    def provenance(self, text: str, element: Element) -> Provenance | None:
+        """How an element of a remembered description came to be; None for a text that nobody tells about.
+
+        Raises:
+            LinkwrightError: XAC802, its files are no longer what they were.
+        """
+        known = self._descriptions.get(text)
+        return None if known is None else known.provenance(element)
+
+    def read(self, text: str) -> Reading:
+        """The reading of a description text, which is plain URDF; one that is not XML has no robot and says why."""
+        known = self._descriptions.get(text)
+        if known is None:
+            known = _read(text)
+            self.remember(known, text)
+        else:
+            self._descriptions.move_to_end(text)
+        return known.reading
+
+
+def _read(text: str) -> Description:
+    try:
+        document = parse_as_urdfdom(text, TEXT_NAME)
+    except LinkwrightError as error:
+        return Description(TEXT_NAME, Document(Element("robot")), Reading(None, error.diagnostics))
+    return Description(TEXT_NAME, document, read(document))

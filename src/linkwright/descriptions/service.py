@@ -1,0 +1,96 @@
+"""Reading a description: what is xacro and what is plain URDF is decided here, and nowhere else."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Union
+
+from linkwright.descriptions.description import TEXT_NAME, Description
+from linkwright.diagnostics import LinkwrightError
+from linkwright.urdf import Robot, read
+from linkwright.urdf.plaintext import parse_as_urdfdom
+from linkwright.xmltree import Element, Overlay
+from linkwright.xmltree.collection import seldom_collected
+from linkwright.xmltree.reader import read_bytes
+
+if TYPE_CHECKING:
+    from linkwright.packages import PackageFinder
+
+Packages = Union[Mapping[str, str | Path], "PackageFinder", None]
+
+
+def load(
+    path_or_text: str | Path,
+    *,
+    arguments: Mapping[str, str] | None = None,
+    packages: Packages = None,
+) -> Robot:
+    """The robot of a URDF or xacro file or text.
+
+    A link part that urdfdom would drop with an error message is dropped here too, silently; `examine` tells.
+
+    Args:
+        path_or_text: a path, or a text, which is known by its ``<``.
+        arguments: values for the file's ``<xacro:arg>``.
+        packages: for ``$(find)``: package name -> share folder, or a finder.
+
+    Raises:
+        LinkwrightError: it cannot be read or expanded, or urdfdom would refuse the model; with all findings.
+    """
+    with seldom_collected():
+        description = examine(path_or_text, arguments=arguments, packages=packages)
+    if description.robot is None:
+        raise LinkwrightError(*description.diagnostics)
+    return description.robot
+
+
+def examine(
+    path_or_text: str | Path,
+    *,
+    arguments: Mapping[str, str] | None = None,
+    packages: Packages = None,
+    overlay: Overlay | None = None,
+    xacro: bool | None = None,
+    partly: bool = False,
+) -> Description:
+    """A URDF or xacro file or text with its robot and all findings about it; arguments as for `load`.
+
+    Args:
+        path_or_text: see `load`.
+        arguments: see `load`.
+        packages: see `load`.
+        overlay: texts that stand for those of files, for the file itself and all that it includes or loads.
+        xacro: whether to expand it; None for what the file says, see `is_xacro`. A plain URDF file is read as urdfdom
+            reads it.
+        partly: whether to make do with the parts that can be expanded when others cannot; `Description.problems` then
+            says what is wrong.
+
+    Raises:
+        LinkwrightError: it is not XML, or it cannot be expanded.
+    """
+    is_text = isinstance(path_or_text, str) and "<" in path_or_text
+    name = TEXT_NAME if is_text else str(path_or_text)
+    text = str(path_or_text) if is_text else overlay.text(name) if overlay is not None else None
+    if not xacro:
+        document = parse_as_urdfdom(read_bytes(name) if text is None else text, name)
+        if xacro is False or not (arguments or is_xacro(name, document.root)):
+            return Description(name, document, read(document), overlay=overlay)
+        text = document.source.text if is_text and document.source else text
+    from linkwright.xacro import expand
+
+    try:
+        expansion = expand(name, arguments, packages=packages, text=text, overlay=overlay)
+    except LinkwrightError as error:
+        if not partly:
+            raise
+        from linkwright.xacro.inputs import Inputs
+        from linkwright.xacro.parts import expand_parts
+
+        expansion = expand_parts(Inputs(name, arguments or {}, packages, text, overlay=overlay), error)
+    return Description.of_expansion(name, expansion, overlay)
+
+
+def is_xacro(name: str, root: Element) -> bool:
+    """Whether a document is to be expanded: its file is named so, or it declares the prefix of xacro."""
+    return name.endswith(".xacro") or "xmlns:xacro" in root.attributes or root.tag.startswith("xacro:")

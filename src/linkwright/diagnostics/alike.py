@@ -1,0 +1,35 @@
+"""Findings that say the same of many places, told once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+from linkwright.diagnostics.diagnostic import Diagnostic, Note
+from linkwright.diagnostics.phrase import as_phrase, counted
+
+_FEW = 3
+"""So many are shown one by one."""
+_PLACES = 2
+"""So many places are named besides the first."""
+
+
+def alike_together(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
+    """The diagnostics as people want them: of many alike the first, with a count of the others.
+
+    Alike are those of one code and severity whose messages differ in nothing but names and numbers.
+    """
+    groups: dict[object, list[Diagnostic]] = {}
+    for each in diagnostics:
+        groups.setdefault((each.code, each.severity, as_phrase(each.message).template), []).append(each)
+    return [each for group in groups.values() for each in (group if len(group) <= _FEW else [_together(group)])]
+
+
+def _together(group: list[Diagnostic]) -> Diagnostic:
+    first, *others = group
+    notes = [Note(other.message, other.span) for other in others[:_PLACES]]
+    rest = len(others) - _PLACES
+    notes.append(
+        Note(counted("and {count} more like it (--all shows it)", "and {count} more like it (--all shows them)", rest))
+    )
+    return replace(first, notes=(*first.notes, *notes))

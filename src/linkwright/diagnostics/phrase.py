@@ -1,0 +1,275 @@
+"""Texts that say what they are made of: a template in English and what was filled in, so that they can be translated.
+
+A `Phrase` is an ordinary string, the English text, wherever one is wanted. What reads it in another language looks its
+template up in that language's catalogue and fills that in with the same arguments, translated where they are phrases.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from string import Formatter
+from typing import TYPE_CHECKING, Protocol
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
+
+TERMS = "term"
+"""The context of words that tables and files hold, such as ``link``, in catalogues."""
+
+FOREIGN = "foreign"
+"""The context of what other programs say: Python, the operating system, libraries."""
+
+RULES = "rule"
+"""The context of what rules and other diagnostic codes report: the titles of their pages."""
+
+
+class Wording(Protocol):
+    """A language's catalogue, as gettext's translations are; a text that it does not know comes back as it is."""
+
+    def gettext(self, message: str, /) -> str:
+        """The template in this language."""
+
+    def ngettext(self, one: str, many: str, count: int, /) -> str:
+        """The one of two templates that fits the number, in this language."""
+
+    def pgettext(self, context: str, message: str, /) -> str:
+        """The template in this language, as it is to be read in the context."""
+
+
+class Phrase(str):
+    """An English text that can be translated; made by `phrase` and the functions after it.
+
+    Attributes:
+        template: with a named placeholder for each argument; without arguments the text itself, braces and all.
+        arguments: what fills the placeholders: phrases, the user's own words, numbers.
+    """
+
+    __slots__ = ("arguments", "template")
+    template: str
+    arguments: Mapping[str, object]
+
+    def __new__(cls, template: str, arguments: Mapping[str, object] | None = None) -> Self:
+        """Fill the template in."""
+        kept = {name: _kept(value) for name, value in (arguments or {}).items()}
+        self = super().__new__(cls, template.format_map(kept) if kept else template)
+        self.template = template
+        self.arguments = kept
+        return self
+
+    def __str__(self) -> Phrase:
+        """Itself, so that an exception that was raised with a phrase gives it back."""
+        return self
+
+    def __reduce__(self) -> tuple[type[Self], tuple[object, ...]]:
+        return type(self), (self.template, self.arguments)
+
+    def said_in(self, wording: Wording) -> str:
+        """The text in another language."""
+        return self._filled(wording.gettext(self.template), wording) if self.template else ""
+
+    @property
+    def chosen_template(self) -> str:
+        """The English template that was filled in: of those for one and for several things, the one that fits."""
+        return self.template
+
+    def translated(self, wording: Wording) -> Phrase:
+        """The text in another language, which still knows what it is made of."""
+        return _Said(self.said_in(wording), self)
+
+    def _filled(self, template: str, wording: Wording) -> str:
+        if not self.arguments:
+            return template
+        text = ""
+        after_phrase = False
+        for literal, name, spec, _ in Formatter().parse(template):
+            text = _spaced(text, literal) if after_phrase else text + literal
+            if name is None:
+                continue
+            value = self.arguments[name]
+            after_phrase = isinstance(value, Phrase)
+            if isinstance(value, Phrase):
+                text = _spaced(text, value.said_in(wording))
+            else:
+                text += format(value, spec or "")
+        return text
+
+
+class _Said(Phrase):
+    """A phrase in another language."""
+
+    __slots__ = ("original",)
+    original: Phrase
+
+    def __new__(cls, text: str, original: Phrase) -> Self:
+        self = super().__new__(cls, text)
+        self.template = original.template
+        self.arguments = original.arguments
+        self.original = original
+        return self
+
+    def __reduce__(self) -> tuple[type[Self], tuple[object, ...]]:
+        return type(self), (str.__str__(self), self.original)
+
+    @property
+    def chosen_template(self) -> str:
+        return self.original.chosen_template
+
+    def said_in(self, wording: Wording) -> str:
+        return self.original.said_in(wording)
+
+
+class _Counted(Phrase):
+    """A phrase that is another for one thing than for several."""
+
+    __slots__ = ("several",)
+    several: str
+
+    def __new__(cls, template: str, arguments: Mapping[str, object], several: str) -> Self:
+        self = super().__new__(cls, template if arguments["count"] == 1 else several, arguments)
+        self.template = template
+        self.several = several
+        return self
+
+    def __reduce__(self) -> tuple[type[Self], tuple[object, ...]]:
+        return type(self), (self.template, self.arguments, self.several)
+
+    @property
+    def chosen_template(self) -> str:
+        return self.template if self.arguments["count"] == 1 else self.several
+
+    def said_in(self, wording: Wording) -> str:
+        count = self.arguments["count"]
+        assert isinstance(count, int)
+        return self._filled(wording.ngettext(self.template, self.several, count), wording)
+
+
+class _Known(Phrase):
+    """A text that is looked up as a whole, in a context."""
+
+    __slots__ = ("context",)
+    context: str
+
+    def __new__(cls, template: str, context: str) -> Self:
+        self = super().__new__(cls, template)
+        self.context = context
+        return self
+
+    def __reduce__(self) -> tuple[type[Self], tuple[object, ...]]:
+        return type(self), (self.template, self.context)
+
+    def said_in(self, wording: Wording) -> str:
+        return wording.pgettext(self.context, self.template) if self.template else ""
+
+
+class _Joined(Phrase):
+    """Several things in a row."""
+
+    __slots__ = ("items", "last", "separator")
+    items: tuple[str, ...]
+    separator: str
+    last: str
+
+    def __new__(cls, items: tuple[str, ...], separator: str, last: str) -> Self:
+        self = super().__new__(cls, _in_a_row(items, separator, last))
+        self.items = items
+        self.separator = separator
+        self.last = last
+        return self
+
+    def __reduce__(self) -> tuple[type[Self], tuple[object, ...]]:
+        return type(self), (self.items, self.separator, self.last)
+
+    def said_in(self, wording: Wording) -> str:
+        items = [each.said_in(wording) if isinstance(each, Phrase) else each for each in self.items]
+        return _in_a_row(items, wording.pgettext(TERMS, self.separator), wording.pgettext(TERMS, self.last))
+
+
+def phrase(template: str, **arguments: object) -> Phrase:
+    """A text that can be translated.
+
+    Args:
+        template: in English, a literal: the catalogues are checked against what stands in the source. Each argument has
+            a placeholder by its name, with a format for numbers where wanted: ``{length:g} m``.
+        arguments: the user's own words, numbers, or phrases, which are translated too.
+    """
+    return Phrase(template, arguments)
+
+
+def counted(one: str, several: str, count: int, **arguments: object) -> Phrase:
+    """A text about a number of things, which English says in one way of one thing and in another of several.
+
+    Args:
+        one: the template for one thing; ``{count}`` stands for the number.
+        several: the template for any other number.
+        count: how many there are.
+        arguments: what else the templates name.
+    """
+    return _Counted(one, {"count": count, **arguments}, several)
+
+
+def term(word: str) -> Phrase:
+    """A word or text that comes from a table or a file, such as the tag ``link``; looked up as a whole, among terms."""
+    return _Known(word, TERMS)
+
+
+def title_of_page(text: str) -> Phrase:
+    """What a rule or another diagnostic code reports, as its page begins; looked up as a whole, among titles."""
+    return _Known(text, RULES)
+
+
+def foreign(words: object) -> Phrase:
+    """What another program said, such as the text of an exception; translated where a catalogue has exactly this."""
+    said = str(words)
+    return said if isinstance(said, Phrase) else _Known(said, FOREIGN)
+
+
+def quoted(name: object) -> Phrase:
+    """A name between quotation marks, which are others in other languages."""
+    return phrase("'{name}'", name=name)
+
+
+def joined(texts: Iterable[str], separator: str = ", ", last: str | None = None) -> Phrase:
+    """Texts in a row, such as ``a, b or c``.
+
+    Args:
+        texts: the user's own words or phrases.
+        separator: what stands between two of them.
+        last: what stands before the last one instead, such as ``" or "``.
+    """
+    return _Joined(tuple(texts), separator, separator if last is None else last)
+
+
+def quoted_names(names: Iterable[object], last: str | None = None) -> Phrase:
+    """Names in a row, each between quotation marks: ``'a', 'b' or 'c'``."""
+    return joined(map(quoted, names), last=last)
+
+
+def as_phrase(text: str) -> Phrase:
+    """The text itself where it is a phrase, else one of it as a whole."""
+    return text if isinstance(text, Phrase) else Phrase(text)
+
+
+def _kept(value: object) -> object:
+    return value if isinstance(value, (str, int, float)) else str(value)
+
+
+def _in_a_row(items: Iterable[str], separator: str, last: str) -> str:
+    *first, end = items or ("",)
+    return f"{separator.join(first)}{last}{end}" if first else end
+
+
+def _spaced(left: str, right: str) -> str:
+    """Two texts in a row, with a blank where Latin and Chinese letters meet, as Chinese is set."""
+    return f"{left} {right}" if _meet(left[-1:], right[:1]) else left + right
+
+
+def _meet(left: str, right: str) -> bool:
+    return (_is_latin(left, "<>)") and _is_chinese(right)) or (_is_chinese(left) and _is_latin(right, "<("))
+
+
+def _is_latin(letter: str, signs: str) -> bool:
+    return (letter.isascii() and letter.isalnum()) or (letter != "" and letter in signs)
+
+
+def _is_chinese(letter: str) -> bool:
+    return "\u4e00" <= letter <= "\u9fff"

@@ -1,0 +1,17 @@
+"""The catalogues: gettext's, one for each language other than English, beside this module."""
+
+from __future__ import annotations
+
+import os
+from functools import cache
+from gettext import GNUTranslations, NullTranslations
+
+
+@cache
+def wording(language: str) -> NullTranslations:
+    """The catalogue of a language, read once; an empty one in a checkout where it was not compiled."""
+    try:
+        with open(f"{os.path.dirname(__file__)}/{language}.mo", "rb") as file:  # noqa: PTH120, PTH123 - pathlib is slow to import
+            return GNUTranslations(file)
+    except FileNotFoundError:
+        return NullTranslations()

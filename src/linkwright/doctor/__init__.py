@@ -1,0 +1,29 @@
+"""Finds the classic problems of a running graph: observed for a few seconds, examined as plain data."""
+
+from linkwright.doctor.examination import examine
+from linkwright.doctor.parameter_files import examine_parameter_files
+from linkwright.doctor.record import (
+    ClockSeen,
+    DescriptionSeen,
+    FixedFrame,
+    JointSeen,
+    Observation,
+    StampSeen,
+    TransformSeen,
+)
+from linkwright.doctor.report import report
+from linkwright.doctor.watching import observe
+
+__all__ = [
+    "ClockSeen",
+    "DescriptionSeen",
+    "FixedFrame",
+    "JointSeen",
+    "Observation",
+    "StampSeen",
+    "TransformSeen",
+    "examine",
+    "examine_parameter_files",
+    "observe",
+    "report",
+]

@@ -1,0 +1,54 @@
+"""Problems of the environment: settings that keep nodes from seeing each other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from linkwright.diagnostics import Diagnostic, Note, Severity, phrase
+from linkwright.doctor.record import Observation
+
+_HIGHEST_SAFE_DOMAIN = 101
+"""On Linux the ports of higher domains overlap with those that the system gives away."""
+
+
+def examine_environment(seen: Observation) -> Iterator[Diagnostic]:
+    """Settings that keep nodes from seeing each other, and a graph with nobody in it."""
+    yield from _domain(seen.environment.get("ROS_DOMAIN_ID", ""))
+    if seen.nodes:
+        return
+    settings = [f"{name}={value}" for name, value in sorted(seen.environment.items()) if value]
+    notes = [
+        Note(
+            phrase(
+                "looked for {seconds:g} s in domain {environment}",
+                seconds=seen.seconds,
+                environment=seen.environment.get("ROS_DOMAIN_ID") or 0,
+            )
+        )
+    ]
+    if settings:
+        notes.append(Note(phrase("set in this shell: {settings}", settings=", ".join(settings))))
+    yield Diagnostic(
+        "DOC801",
+        phrase("no nodes are running where this shell looks"),
+        severity=Severity.WARNING,
+        notes=tuple(notes),
+        hint=phrase(
+            "use the same ROS_DOMAIN_ID as the nodes; for nodes on other computers set "
+            "ROS_AUTOMATIC_DISCOVERY_RANGE=SUBNET (and leave ROS_LOCALHOST_ONLY unset)"
+        ),
+    )
+
+
+def _domain(text: str) -> Iterator[Diagnostic]:
+    if text.strip().isdecimal() and int(text) > _HIGHEST_SAFE_DOMAIN:
+        yield Diagnostic(
+            "DOC803",
+            phrase(
+                "ROS_DOMAIN_ID is {domain}; above {highest} the ports may be those that the system gives away",
+                domain=text,
+                highest=_HIGHEST_SAFE_DOMAIN,
+            ),
+            severity=Severity.INFO,
+            hint=phrase("choose one from 0 to {highest}", highest=_HIGHEST_SAFE_DOMAIN),
+        )

@@ -1,0 +1,317 @@
+"""Problems of frames: without a transform, with two publishers, or not connected to the others."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from linkwright.diagnostics import Diagnostic, Note, Phrase, Severity, did_you_mean, foreign, phrase
+from linkwright.doctor.record import Observation, TransformSeen, listed, nodes_of
+from linkwright.doctor.robots import MOVING, RobotSeen
+from linkwright.graph.endpoints.info import EndpointKind
+from linkwright.urdf import Joint
+
+_JOINT_STATE = "sensor_msgs/msg/JointState"
+
+
+def examine_frames(seen: Observation, robots: Sequence[RobotSeen]) -> Iterator[Diagnostic]:
+    """What is wrong with frames."""
+    yield from _contradictions(seen)
+    yield from _numbers(seen)
+    circle = _circle(seen.transforms)
+    if circle:
+        yield Diagnostic(
+            "DOC307",
+            phrase("the parents of frames go in a circle: {circle}", circle=" -> ".join(circle)),
+            hint=phrase("two nodes disagree who is whose parent; publish each frame's transform from one node only"),
+        )
+    for robot in robots:
+        yield from _missing(seen, robot)
+    yield from _trees(seen, robots)
+    yield from _fixed_frames(seen, robots)
+
+
+def _contradictions(seen: Observation) -> Iterator[Diagnostic]:
+    by_child: dict[str, list[TransformSeen]] = {}
+    for each in seen.transforms:
+        by_child.setdefault(each.child, []).append(each)
+    shared: dict[tuple[str, ...], list[str]] = {}
+    for child, transforms in sorted(by_child.items()):
+        parents = sorted({each.parent for each in transforms})
+        senders = tuple(sorted({sender for each in transforms for sender in each.senders}))
+        if len(parents) > 1:
+            notes = tuple(
+                Note(
+                    phrase("{senders} says '{parent}' is its parent", senders=listed(each.senders), parent=each.parent)
+                )
+                for each in sorted(transforms, key=lambda each: each.parent)
+            )
+            yield Diagnostic(
+                "DOC303",
+                phrase(
+                    "frame '{child}' has {count} parents, {parents}, and jumps between them",
+                    child=child,
+                    count=len(parents),
+                    parents=listed(parents),
+                ),
+                notes=notes,
+                hint=phrase("a frame has one parent: leave one of the publishers out, or turn one transform round"),
+            )
+        elif len(senders) > 1:
+            shared.setdefault(senders, []).append(child)
+    for senders, children in sorted(shared.items()):
+        yield Diagnostic(
+            "DOC302",
+            phrase(
+                "{count} nodes publish the transform of {frames}: {senders}",
+                count=len(senders),
+                frames=_frames(children),
+                senders=listed(senders),
+            ),
+            notes=(Note(phrase("what is shown jumps between what they say")),),
+            hint=phrase("end one of them, or have it leave these frames out (such as publish_tf: false)"),
+        )
+
+
+def _numbers(seen: Observation) -> Iterator[Diagnostic]:
+    for each in seen.transforms:
+        if not each.valid:
+            yield Diagnostic(
+                "DOC306",
+                phrase(
+                    "the transform of frame '{child}' has numbers that are none, or a rotation of length zero",
+                    child=each.child,
+                ),
+                notes=(Note(phrase("it is published by {senders}", senders=listed(each.senders))),),
+                hint=phrase(
+                    "look at the joint positions and origins that go into it; a rotation that turns nothing is w: 1"
+                ),
+            )
+
+
+def _circle(transforms: Sequence[TransformSeen]) -> list[str]:
+    """The frames on a way from parent to parent that comes back to its start; empty when there is none."""
+    parent = {each.child: each.parent for each in transforms}
+    done: set[str] = set()
+    for start in parent:
+        way: list[str] = []
+        frame: str | None = start
+        while frame is not None and frame not in done:
+            if frame in way:
+                return [*way[way.index(frame) :], frame]
+            way.append(frame)
+            frame = parent.get(frame)
+        done.update(way)
+    return []
+
+
+def _missing(seen: Observation, robot: RobotSeen) -> Iterator[Diagnostic]:
+    """Why the frames of a robot's links are not there; frames with the same reason together."""
+    there = {each.child for each in seen.transforms}
+    without = [joint for joint in robot.joints if robot.frame(joint.child) not in there]
+    if not without:
+        return
+    if len(without) == len(robot.joints) and not any(
+        endpoint.name.rpartition("/")[2] in ("tf", "tf_static") for endpoint in seen.of_kind(EndpointKind.PUBLISHER)
+    ):
+        frames = [robot.frame(joint.child) for joint in without]
+        yield Diagnostic(
+            "DOC301",
+            phrase("there is no transform of {frames}: nobody publishes transforms", frames=_frames(frames)),
+            notes=(
+                Note(
+                    phrase(
+                        "they are links of the robot on topic '{topic}', published by '{sender}'",
+                        topic=robot.topic,
+                        sender=robot.sender,
+                    )
+                ),
+            ),
+            hint=phrase("start robot_state_publisher with this description"),
+        )
+        return
+    fixed = [joint for joint in without if joint.type not in MOVING]
+    unstated = [joint for joint in without if joint.type in MOVING and not _has_state(seen, robot, joint)]
+    stated = [joint for joint in without if joint.type in MOVING and _has_state(seen, robot, joint)]
+    if fixed:
+        yield _never_sent(robot, fixed)
+    if unstated:
+        yield from _without_state(seen, robot, unstated)
+    if stated:
+        yield _not_followed(seen, robot, stated)
+
+
+def _has_state(seen: Observation, robot: RobotSeen, joint: Joint) -> bool:
+    return robot.leader(joint) in {each.name for each in seen.joints}
+
+
+def _never_sent(robot: RobotSeen, joints: Sequence[Joint]) -> Diagnostic:
+    frames = [robot.frame(joint.child) for joint in joints]
+    return Diagnostic(
+        "DOC304",
+        phrase("there is no transform of {frames}: no static transform of it was published", frames=_frames(frames)),
+        notes=(Note(phrase("fixed joints: {joints}", joints=listed(joint.name for joint in joints))),),
+        hint=phrase(
+            "robot_state_publisher publishes those once on /tf_static when it starts: is it running with this "
+            "description, and is its publisher transient local so that late comers get them?"
+        ),
+    )
+
+
+def _without_state(seen: Observation, robot: RobotSeen, joints: Sequence[Joint]) -> Iterator[Diagnostic]:
+    names = list(dict.fromkeys(robot.leader(joint) for joint in joints))
+    frames = [robot.frame(joint.child) for joint in joints]
+    senders = nodes_of(
+        endpoint for endpoint in seen.of_kind(EndpointKind.PUBLISHER) if endpoint.type_name == _JOINT_STATE
+    )
+    published = [each.name for each in seen.joints]
+    if not senders:
+        yield Diagnostic(
+            "DOC401",
+            phrase("nobody publishes joint states, so there is no transform of {frames}", frames=_frames(frames)),
+            notes=(Note(phrase("joints of the robot that move: {names}", names=listed(names))),),
+            hint=phrase("start joint_state_publisher, joint_state_publisher_gui, or the robot's driver"),
+        )
+    elif not published:
+        yield Diagnostic(
+            "DOC402",
+            phrase(
+                "{senders} did not publish joint states in {seconds:g} s, so there is no transform of {frames}",
+                senders=listed(senders),
+                seconds=seen.seconds,
+                frames=_frames(frames),
+            ),
+            notes=(Note(phrase("joints of the robot that move: {names}", names=listed(names))),),
+            hint=phrase("is it waiting for a description, or for a controller that is not active?"),
+        )
+    else:
+        for name in names:
+            behind = [robot.frame(joint.child) for joint in joints if robot.leader(joint) == name]
+            near = did_you_mean(name, [each for each in published if each not in robot.joint_names])
+            yield Diagnostic(
+                "DOC403",
+                phrase(
+                    "joint '{name}' is not in the joint states, so there is no transform of {frames}",
+                    name=name,
+                    frames=_frames(behind),
+                ),
+                notes=(
+                    Note(
+                        phrase("{senders} publishes {published}", senders=listed(senders), published=listed(published))
+                    ),
+                ),
+                hint=near
+                or phrase(
+                    "have its driver or controller publish it (joint_state_broadcaster: joints), or run "
+                    "joint_state_publisher with source_list"
+                ),
+            )
+
+
+def _not_followed(seen: Observation, robot: RobotSeen, joints: Sequence[Joint]) -> Diagnostic:
+    frames = [robot.frame(joint.child) for joint in joints]
+    wanted = {robot.leader(joint) for joint in joints}
+    topics = sorted({topic for each in seen.joints if each.name in wanted for topic in each.topics})
+    heard = nodes_of(
+        endpoint
+        for endpoint in seen.of_kind(EndpointKind.SUBSCRIPTION)
+        if endpoint.name in topics and endpoint.type_name == _JOINT_STATE
+    )
+    if not heard:
+        hint = phrase(
+            "nobody subscribes to {topics}: remap robot_state_publisher's joint_states to it", topics=listed(topics)
+        )
+    else:
+        hint = phrase(
+            "are the stamps of the joint states zero or going back? robot_state_publisher ignores such states"
+        )
+    return Diagnostic(
+        "DOC305",
+        phrase(
+            "joint {joints} is published, but there is no transform of {frames}",
+            joints=listed(joint.name for joint in joints),
+            frames=_frames(frames),
+        ),
+        notes=(Note(phrase("it is published on {topics}", topics=listed(topics))),),
+        hint=hint,
+    )
+
+
+def _frames(names: Sequence[str]) -> Phrase:
+    if len(names) == 1:
+        return phrase("frame {names}", names=listed(names))
+    return phrase("{count} frames, {names}", count=len(names), names=listed(names))
+
+
+def _trees(seen: Observation, robots: Sequence[RobotSeen]) -> Iterator[Diagnostic]:
+    children = {each.child for each in seen.transforms}
+    roots = sorted({each.parent for each in seen.transforms} - children)
+    if len(roots) < 2:
+        return
+    # A robot's own missing transforms were told above; they need no second finding.
+    broken = {robot.frame(joint.child) for robot in robots for joint in robot.joints} - children
+    apart = [root for root in roots if root not in broken]
+    if len(apart) < 2:
+        return
+    sizes = {root: _size(root, seen.transforms) for root in apart}
+    largest = max(apart, key=lambda root: sizes[root])
+    notes = tuple(Note(phrase("frames below '{root}': {sizes}", root=root, sizes=sizes[root])) for root in apart)
+    others = [root for root in apart if root != largest]
+    yield Diagnostic(
+        "DOC308",
+        phrase("frames fall into {count} trees that nothing connects", count=len(apart)),
+        severity=Severity.WARNING,
+        notes=notes,
+        hint=phrase(
+            "publish a transform between them: ros2 run tf2_ros static_transform_publisher"
+            " --frame-id {largest} --child-frame-id {others}",
+            largest=largest,
+            others=others[0],
+        ),
+    )
+
+
+def _size(root: str, transforms: Sequence[TransformSeen]) -> int:
+    below: dict[str, set[str]] = {}
+    for each in transforms:
+        below.setdefault(each.parent, set()).add(each.child)
+    found, pending = set(), [root]
+    while pending:
+        for child in below.get(pending.pop(), ()):
+            if child not in found:
+                found.add(child)
+                pending.append(child)
+    return len(found)
+
+
+def _fixed_frames(seen: Observation, robots: Sequence[RobotSeen]) -> Iterator[Diagnostic]:
+    known = {name for each in seen.transforms for name in (each.parent, each.child)}
+    known |= {robot.frame(robot.root) for robot in robots}
+    roots = sorted({each.parent for each in seen.transforms} - {each.child for each in seen.transforms})
+    for frame in seen.fixed_frames:
+        if frame.name in known:
+            continue
+        there = (
+            phrase("frames there are: {known}", known=listed(sorted(known)))
+            if known
+            else phrase("there are no frames at all")
+        )
+        near = did_you_mean(frame.name, known)
+        yield Diagnostic(
+            "DOC309",
+            phrase(
+                "the fixed frame '{name}' of {source} does not exist, so nothing is shown",
+                name=frame.name,
+                source=foreign(frame.source),
+            ),
+            notes=(Note(there),),
+            hint=near or _another(roots),
+        )
+
+
+def _another(roots: Sequence[str]) -> Phrase:
+    """What to do about a fixed frame that is none of the frames."""
+    if not roots:
+        return phrase("choose another Fixed Frame")
+    if len(roots) == 1:
+        return phrase("choose another Fixed Frame; the root of all frames is {roots}", roots=listed(roots))
+    return phrase("choose another Fixed Frame; the roots of the trees of frames are {roots}", roots=listed(roots))

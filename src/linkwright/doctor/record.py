@@ -1,0 +1,165 @@
+"""What was observed of a running graph, as plain data for the examinations."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+
+from linkwright.diagnostics import Phrase, phrase, quoted_names
+from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
+from linkwright.graph.names.rules import join
+
+UNKNOWN_NODE = "an unknown node"
+"""The name of who sent something, where discovery does not tell."""
+
+
+@dataclass(frozen=True, slots=True)
+class TransformSeen:
+    """The transforms of one frame to one parent.
+
+    Attributes:
+        parent: the parent frame.
+        child: the frame.
+        senders: full names of the nodes that published it, sorted.
+        static: whether it came on a topic of static transforms.
+        valid: whether all its numbers are finite and its rotation is one.
+    """
+
+    parent: str
+    child: str
+    senders: tuple[str, ...]
+    static: bool = False
+    valid: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class JointSeen:
+    """The states of one joint.
+
+    Attributes:
+        name: of the joint.
+        senders: full names of the nodes that published it, sorted.
+        topics: where it came, sorted.
+    """
+
+    name: str
+    senders: tuple[str, ...]
+    topics: tuple[str, ...] = ("/joint_states",)
+
+
+@dataclass(frozen=True, slots=True)
+class DescriptionSeen:
+    """A robot description.
+
+    Attributes:
+        topic: where it came.
+        sender: full name of the node that published it.
+        text: the URDF.
+    """
+
+    topic: str
+    sender: str
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class StampSeen:
+    """The stamps of one node on one topic.
+
+    Attributes:
+        topic: where they came.
+        sender: full name of the node that published it.
+        behind_ns: how far the last stamp lay behind the clock when it came; negative when ahead.
+        zero: whether the stamp was 0, that is, never set.
+    """
+
+    topic: str
+    sender: str
+    behind_ns: int
+    zero: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class ClockSeen:
+    """What ``/clock`` told.
+
+    Attributes:
+        ticks: how many times.
+        first_ns: the first time.
+        last_ns: the last time.
+    """
+
+    ticks: int
+    first_ns: int
+    last_ns: int
+
+
+@dataclass(frozen=True, slots=True)
+class FixedFrame:
+    """A frame that a viewer shows everything in.
+
+    Attributes:
+        name: of the frame.
+        source: who says so: a file, or a node.
+    """
+
+    name: str
+    source: str
+
+
+@dataclass(frozen=True, slots=True)
+class Observation:
+    """All that was seen.
+
+    Attributes:
+        seconds: for how long was looked.
+        nodes: full names, each as often as there are nodes of it.
+        endpoints: publishers, subscriptions, services and clients.
+        transforms: what was published of frames.
+        joints: what was published of joints.
+        descriptions: the robot descriptions published.
+        stamps: of topics whose messages have a header.
+        clock: what ``/clock`` told; None when it told nothing.
+        sim_time: ``use_sim_time`` of the nodes that answered, by full name.
+        lifecycle: states of the managed nodes, by full name.
+        fixed_frames: those that viewers go by.
+        environment: the variables that say who sees whom.
+    """
+
+    seconds: float = 0.0
+    nodes: tuple[str, ...] = ()
+    endpoints: tuple[EndpointInfo, ...] = ()
+    transforms: tuple[TransformSeen, ...] = ()
+    joints: tuple[JointSeen, ...] = ()
+    descriptions: tuple[DescriptionSeen, ...] = ()
+    stamps: tuple[StampSeen, ...] = ()
+    clock: ClockSeen | None = None
+    sim_time: Mapping[str, bool] = field(default_factory=dict)
+    lifecycle: Mapping[str, str] = field(default_factory=dict)
+    fixed_frames: tuple[FixedFrame, ...] = ()
+    environment: Mapping[str, str] = field(default_factory=dict)
+
+    def of_kind(self, kind: EndpointKind) -> list[EndpointInfo]:
+        """The endpoints of a kind."""
+        return [endpoint for endpoint in self.endpoints if endpoint.kind is kind]
+
+    def publishers_of(self, topic: str) -> list[EndpointInfo]:
+        """The publishers of a topic."""
+        return [endpoint for endpoint in self.of_kind(EndpointKind.PUBLISHER) if endpoint.name == topic]
+
+
+def node_of(endpoint: EndpointInfo) -> str:
+    """The full name of the node that an endpoint belongs to."""
+    return UNKNOWN_NODE if endpoint.node is None else join(endpoint.node.namespace, endpoint.node.name)
+
+
+def nodes_of(endpoints: Iterable[EndpointInfo]) -> list[str]:
+    """The full names of the nodes that endpoints belong to, each once, sorted."""
+    return sorted({node_of(endpoint) for endpoint in endpoints})
+
+
+def listed(names: Iterable[str], limit: int = 6) -> Phrase:
+    """Names in quotes with commas between; of many the first, and how many more there are."""
+    every = list(names)
+    shown = quoted_names(every[:limit])
+    return phrase("{names} and {more} more", names=shown, more=len(every) - limit) if len(every) > limit else shown

@@ -1,0 +1,146 @@
+"""The report of ``ros2 doctor --report``: the computer, its network, the packages, the graph."""
+
+from __future__ import annotations
+
+import os
+import platform
+import socket
+import sys
+from collections.abc import Iterable, Mapping, Sequence
+from importlib import metadata
+
+from linkwright.doctor.record import Observation, node_of
+from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
+from linkwright.graph.qos.compatibility import QoSCompatibility, qos_check_compatible
+
+Section = tuple[str, Sequence[tuple[str, str]]]
+"""A title, and names with values."""
+
+_PACKAGES = ("linkwright", "cyclonedds", "rosbags", "numpy", "PyYAML", "colcon-core")
+_MARKS = ("ROS", "RMW", "RCUTILS", "CYCLONEDDS", "LINKWRIGHT", "AMENT", "COLCON")
+_EVERYWHERE = frozenset({"/parameter_events", "/rosout"})
+_PADDING = 4
+
+
+def report(seen: Observation) -> str:
+    """The whole report."""
+    return sections_text(
+        [
+            ("NETWORK CONFIGURATION", _network()),
+            ("PACKAGE VERSIONS", _packages()),
+            ("PLATFORM INFORMATION", _platform()),
+            ("QOS COMPATIBILITY LIST", _compatibility(seen)),
+            ("RMW MIDDLEWARE", [("middleware name", _middleware())]),
+            ("ROS ENVIRONMENT", _environment(os.environ)),
+            ("TOPIC LIST", _topics(seen)),
+            ("NODE LIST", [("node", name) for name in seen.nodes] or [("node", "none")]),
+        ]
+    )
+
+
+def sections_text(sections: Iterable[Section]) -> str:
+    """Sections as ros2 doctor prints them."""
+    lines = []
+    for title, items in sections:
+        lines.append(f"\n   {title}")
+        width = max((len(name) for name, _ in items), default=0) + _PADDING
+        lines += [f"{name:{width}}: {value}" for name, value in items]
+    return "\n".join(lines) + "\n"
+
+
+def _network() -> list[tuple[str, str]]:
+    items = [("host", socket.gethostname())]
+    try:
+        names = [name for _, name in socket.if_nameindex()]
+    except (AttributeError, OSError):  # not on every system
+        names = []
+    for name in names:
+        items.append(("device", name))
+        address = _address(name)
+        if address:
+            items.append(("inet", address))
+    return items
+
+
+def _address(interface: str) -> str:
+    """The IPv4 address of an interface; empty where it has none or the system does not tell."""
+    if not sys.platform.startswith("linux"):
+        return ""
+    import fcntl
+    import struct
+
+    get_address = 0x8915  # SIOCGIFADDR
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        try:
+            answer = fcntl.ioctl(probe.fileno(), get_address, struct.pack("256s", interface[:15].encode()))
+        except OSError:
+            return ""
+    return socket.inet_ntoa(answer[20:24])
+
+
+def _packages() -> list[tuple[str, str]]:
+    return [(name, _version(name)) for name in _PACKAGES]
+
+
+def _version(package: str) -> str:
+    try:
+        return metadata.version(package)
+    except metadata.PackageNotFoundError:
+        return "not installed"
+
+
+def _platform() -> list[tuple[str, str]]:
+    items = [
+        ("system", platform.system()),
+        ("platform info", platform.platform()),
+        ("release", platform.release()),
+        ("processor", platform.processor() or platform.machine()),
+        ("python", f"{platform.python_implementation()} {platform.python_version()}"),
+    ]
+    distribution = os.environ.get("ROS_DISTRO")
+    return [*items, ("distribution name", distribution)] if distribution else items
+
+
+def _middleware() -> str:
+    from linkwright.wire import dds
+
+    return "Eclipse Cyclone DDS (as rmw_cyclonedds_cpp)" if dds.available() else f"none: {dds.why_not()}"
+
+
+def _environment(variables: Mapping[str, str]) -> list[tuple[str, str]]:
+    named = sorted(name for name in variables if any(mark in name for mark in _MARKS))
+    return [(name, variables[name]) for name in named] or [("variables", "none")]
+
+
+def _compatibility(seen: Observation) -> list[tuple[str, str]]:
+    items = []
+    subscriptions = seen.of_kind(EndpointKind.SUBSCRIPTION)
+    for publisher in _shown(seen.of_kind(EndpointKind.PUBLISHER)):
+        for subscription in subscriptions:
+            if subscription.name == publisher.name:
+                compatibility, reason = qos_check_compatible(publisher.qos, subscription.qos)
+                status = "OK" if compatibility is QoSCompatibility.OK else reason
+                items += [
+                    ("topic [type]", f"{publisher.name} [{publisher.type_name}]"),
+                    ("publisher node", node_of(publisher)),
+                    ("subscriber node", node_of(subscription)),
+                    ("compatibility status", status),
+                ]
+    return items or [("compatibility status", "No publisher/subscriber pairs found")]
+
+
+def _topics(seen: Observation) -> list[tuple[str, str]]:
+    publishers, subscriptions = seen.of_kind(EndpointKind.PUBLISHER), seen.of_kind(EndpointKind.SUBSCRIPTION)
+    items = []
+    for topic in sorted({each.name for each in _shown([*publishers, *subscriptions])}):
+        items += [
+            ("topic", topic),
+            ("publisher count", str(sum(each.name == topic for each in publishers))),
+            ("subscriber count", str(sum(each.name == topic for each in subscriptions))),
+        ]
+    return items or [("topic", "none")]
+
+
+def _shown(endpoints: Iterable[EndpointInfo]) -> list[EndpointInfo]:
+    found = (each for each in endpoints if each.name not in _EVERYWHERE)
+    return sorted(found, key=lambda each: (each.name, node_of(each)))

@@ -1,0 +1,170 @@
+"""Problems of robots: their descriptions, and the joint states published for them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from linkwright.descriptions import DescriptionLibrary
+from linkwright.diagnostics import Diagnostic, Note, Severity, did_you_mean, foreign, phrase
+from linkwright.doctor.record import Observation, listed
+from linkwright.urdf import Joint, Robot
+
+MOVING = frozenset({"revolute", "continuous", "prismatic"})
+"""Joints whose transforms follow joint states; robot_state_publisher treats all others as fixed."""
+
+
+@dataclass(frozen=True, slots=True)
+class RobotSeen:
+    """A robot as a topic describes it.
+
+    Attributes:
+        topic: the topic.
+        sender: full name of the node that published the description.
+        model: the description, read.
+        prefix: what stands before the links' names in the frames' (``frame_prefix``).
+    """
+
+    topic: str
+    sender: str
+    model: Robot
+    prefix: str = ""
+
+    @property
+    def root(self) -> str:
+        """The link without a joint above it."""
+        return self.model.root
+
+    @property
+    def joints(self) -> Sequence[Joint]:
+        """All joints."""
+        return list(self.model.joints.values())
+
+    @property
+    def joint_names(self) -> frozenset[str]:
+        """The names of all joints."""
+        return frozenset(self.model.joints)
+
+    def frame(self, link: str) -> str:
+        """The frame of a link."""
+        return f"{self.prefix}{link}"
+
+    def leader(self, joint: Joint) -> str:
+        """The name of the joint whose state places a joint: its own, or of the one it follows."""
+        followed: set[str] = set()
+        while joint.mimic is not None and joint.name not in followed and joint.mimic.joint in self.model.joints:
+            followed.add(joint.name)
+            joint = self.model.joints[joint.mimic.joint]
+        return joint.name
+
+
+def robots_in(seen: Observation) -> tuple[list[RobotSeen], list[Diagnostic]]:
+    """The robots that can be read from the descriptions, and what is wrong with the others."""
+    robots: dict[tuple[str, str], RobotSeen] = {}
+    found = []
+    for each in seen.descriptions:
+        reading = DescriptionLibrary().read(each.text)
+        if reading.robot is not None:
+            prefix = _prefix(reading.robot, seen)
+            robots[each.topic, each.text] = RobotSeen(each.topic, each.sender, reading.robot, prefix)
+            continue
+        first = reading.diagnostics[0].message if reading.diagnostics else phrase("it is empty")
+        found.append(
+            Diagnostic(
+                "DOC501",
+                phrase(
+                    "the description that '{sender}' publishes on '{topic}' is no URDF: {first}",
+                    sender=each.sender,
+                    topic=each.topic,
+                    first=foreign(first),
+                ),
+                hint=phrase("it must be the text of the description, as `xacro FILE` prints it, not a file's name"),
+            )
+        )
+    return list(robots.values()), found
+
+
+def _prefix(robot: Robot, seen: Observation) -> str:
+    """What stands before the names of most links in the frames that were seen; nothing where none does."""
+    frames = {name for each in seen.transforms for name in (each.parent, each.child)}
+    if any(link in frames for link in robot.links):
+        return ""
+    prefixes = {frame.removesuffix(robot.root) for frame in frames if frame.endswith(robot.root)}
+    return max(prefixes, key=lambda prefix: sum(prefix + link in frames for link in robot.links), default="")
+
+
+def examine_robots(seen: Observation, robots: Sequence[RobotSeen]) -> Iterator[Diagnostic]:
+    """What is wrong with descriptions and joint states."""
+    yield from _several_descriptions(seen)
+    yield from _contradictions(seen)
+    if len(robots) == 1:
+        yield from _unknown_joints(seen, robots[0])
+
+
+def _several_descriptions(seen: Observation) -> Iterator[Diagnostic]:
+    by_topic: dict[str, dict[str, str]] = {}
+    for each in seen.descriptions:
+        by_topic.setdefault(each.topic, {})[each.sender] = each.text
+    for topic, texts in sorted(by_topic.items()):
+        if len(texts) < 2:
+            continue
+        differ = len(set(texts.values())) > 1
+        yield Diagnostic(
+            "DOC502",
+            phrase(
+                "{count} nodes publish '{topic}': {texts}", count=len(texts), topic=topic, texts=listed(sorted(texts))
+            ),
+            severity=Severity.ERROR if differ else Severity.WARNING,
+            notes=(
+                Note(
+                    phrase("the descriptions differ; who listens shows the last one")
+                    if differ
+                    else phrase("they are the same")
+                ),
+            ),
+            hint=phrase("end one of them, or give each robot a namespace of its own"),
+        )
+
+
+def _contradictions(seen: Observation) -> Iterator[Diagnostic]:
+    shared: dict[tuple[tuple[str, ...], tuple[str, ...]], list[str]] = {}
+    for joint in seen.joints:
+        if len(joint.senders) > 1 and len(joint.topics) == 1:
+            shared.setdefault((joint.senders, joint.topics), []).append(joint.name)
+    for (senders, topics), names in sorted(shared.items()):
+        yield Diagnostic(
+            "DOC404",
+            phrase(
+                "{count} nodes publish the state of joint {names} on {topics}: {senders}",
+                count=len(senders),
+                names=listed(names),
+                topics=listed(topics),
+                senders=listed(senders),
+            ),
+            severity=Severity.WARNING,
+            notes=(Note(phrase("the robot jumps between what they say")),),
+            hint=phrase(
+                "end one of them: joint_state_publisher_gui is for descriptions without a robot; beside a driver, "
+                "have it publish to a topic of its own"
+            ),
+        )
+
+
+def _unknown_joints(seen: Observation, robot: RobotSeen) -> Iterator[Diagnostic]:
+    stated = {each.name for each in seen.joints}
+    unstated = [joint.name for joint in robot.joints if joint.type in MOVING and joint.name not in stated]
+    for joint in seen.joints:
+        if joint.name in robot.joint_names:
+            continue
+        near = did_you_mean(joint.name, unstated) or did_you_mean(joint.name, robot.joint_names)
+        yield Diagnostic(
+            "DOC405",
+            phrase(
+                "{senders} publishes joint '{name}', which robot '{model_name}' does not have",
+                senders=listed(joint.senders),
+                name=joint.name,
+                model_name=robot.model.name,
+            ),
+            severity=Severity.WARNING,
+            hint=near or phrase("its joints are {joint_names}", joint_names=listed(sorted(robot.joint_names))),
+        )

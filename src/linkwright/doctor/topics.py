@@ -1,0 +1,261 @@
+"""Problems of nodes, topics and services: names, types, quality of service, managed nodes that are not active."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+
+from linkwright.diagnostics import Diagnostic, Note, Phrase, Severity, nearest, phrase
+from linkwright.doctor.record import Observation, listed, node_of, nodes_of
+from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
+from linkwright.graph.qos.compatibility import incompatible_policies
+from linkwright.graph.qos.profile import QoSPolicyKind
+
+_TWIST, _TWIST_STAMPED = "geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"
+_EVERYWHERE = frozenset({"/parameter_events", "/rosout", "/clock"})
+"""Topics that nodes subscribe to whether or not somebody publishes them."""
+_MOST_DIFFERENT = 3
+"""By how many letters two names may differ in length, to be one misspelt."""
+
+
+def examine_topics(seen: Observation) -> Iterator[Diagnostic]:
+    """What is wrong with nodes, topics and services."""
+    yield from _same_names(seen)
+    yield from _types(seen)
+    yield from _qos(seen)
+    yield from _unpublished(seen)
+    yield from _unserved(seen)
+
+
+def _same_names(seen: Observation) -> Iterator[Diagnostic]:
+    for name, count in sorted(Counter(seen.nodes).items()):
+        if count > 1:
+            yield Diagnostic(
+                "DOC101",
+                phrase("{count} nodes have the name '{name}'", count=count, name=name),
+                severity=Severity.WARNING,
+                notes=(
+                    Note(phrase("their parameter services answer in turn, and commands reach one of them by chance")),
+                ),
+                hint=phrase("end the one that was left running, or rename one: --ros-args -r __node:=OTHER"),
+            )
+
+
+def _types(seen: Observation) -> Iterator[Diagnostic]:
+    by_topic: dict[str, dict[str, list[EndpointInfo]]] = {}
+    for endpoint in (*seen.of_kind(EndpointKind.PUBLISHER), *seen.of_kind(EndpointKind.SUBSCRIPTION)):
+        by_topic.setdefault(endpoint.name, {}).setdefault(endpoint.type_name, []).append(endpoint)
+    for topic, types in sorted(by_topic.items()):
+        if len(types) < 2:
+            continue
+        notes = tuple(note for name, endpoints in sorted(types.items()) for note in _who(endpoints, name))
+        if set(types) == {_TWIST, _TWIST_STAMPED}:
+            yield Diagnostic(
+                "DOC202",
+                phrase(
+                    "topic '{topic}' carries Twist for some nodes and TwistStamped for others, so nothing moves",
+                    topic=topic,
+                ),
+                notes=notes,
+                hint=phrase(
+                    "make both sides the same: many controllers have a parameter for it (use_stamped_vel, "
+                    "enable_stamped_cmd_vel, stamped), teleop_twist_keyboard has stamped:=true"
+                ),
+            )
+        else:
+            yield Diagnostic(
+                "DOC201",
+                phrase(
+                    "topic '{topic}' has {count} types; nodes of different types do not hear each other",
+                    topic=topic,
+                    count=len(types),
+                ),
+                notes=notes,
+                hint=phrase("give one of them another topic: --ros-args -r OLD:=NEW"),
+            )
+
+
+def _who(endpoints: list[EndpointInfo], type_name: str) -> Iterator[Note]:
+    publishers = nodes_of(endpoint for endpoint in endpoints if endpoint.kind is EndpointKind.PUBLISHER)
+    if publishers:
+        yield Note(
+            phrase("{type_name} is published by {publishers}", type_name=type_name, publishers=listed(publishers))
+        )
+    subscribers = nodes_of(endpoint for endpoint in endpoints if endpoint.kind is EndpointKind.SUBSCRIPTION)
+    if subscribers:
+        yield Note(
+            phrase(
+                "{type_name} is subscribed to by {subscribers}", type_name=type_name, subscribers=listed(subscribers)
+            )
+        )
+
+
+def _qos(seen: Observation) -> Iterator[Diagnostic]:
+    publishers = seen.of_kind(EndpointKind.PUBLISHER)
+    said = set()
+    for subscription in seen.of_kind(EndpointKind.SUBSCRIPTION):
+        for publisher in publishers:
+            if publisher.name != subscription.name or publisher.type_name != subscription.type_name:
+                continue
+            policies = tuple(incompatible_policies(publisher.qos, subscription.qos))
+            key = (publisher.name, node_of(publisher), node_of(subscription), policies)
+            if policies and key not in said:
+                said.add(key)
+                yield _mismatch(publisher, subscription, policies)
+
+
+def _mismatch(publisher: EndpointInfo, subscription: EndpointInfo, policies: tuple[QoSPolicyKind, ...]) -> Diagnostic:
+    sender, receiver = node_of(publisher), node_of(subscription)
+    notes = []
+    for policy in policies:
+        name = policy.name.lower()
+        offered, requested = _terms(publisher, policy), _terms(subscription, policy)
+        notes.append(
+            Note(
+                phrase(
+                    "{name}: '{sender}' offers {offered}, '{receiver}' requests {requested}",
+                    name=name,
+                    sender=sender,
+                    offered=offered,
+                    receiver=receiver,
+                    requested=requested,
+                )
+            )
+        )
+    return Diagnostic(
+        "DOC203",
+        phrase(
+            "'{receiver}' gets nothing from '{sender}' on topic '{name}': their quality of service differs",
+            receiver=receiver,
+            sender=sender,
+            name=publisher.name,
+        ),
+        notes=tuple(notes),
+        hint=_remedy(policies[0]),
+    )
+
+
+def _remedy(policy: QoSPolicyKind) -> Phrase:
+    if policy is QoSPolicyKind.RELIABILITY:
+        return phrase(
+            "have the publisher send reliably, or the subscription take best effort (in RViz: the display's "
+            "Reliability Policy)"
+        )
+    if policy is QoSPolicyKind.DURABILITY:
+        return phrase(
+            "have the publisher keep messages (transient local), or the subscription be volatile (in RViz: the "
+            "display's Durability Policy)"
+        )
+    return phrase("have the publisher promise more, or the subscription ask for less")
+
+
+def _terms(endpoint: EndpointInfo, policy: QoSPolicyKind) -> str:
+    """What an endpoint says of a policy, in the names that code and command lines have for it."""
+    value = getattr(endpoint.qos, policy.name.lower())
+    if policy is QoSPolicyKind.LIVELINESS:
+        return f"{value.name} ({endpoint.qos.liveliness_lease_duration})"
+    return str(getattr(value, "name", value))
+
+
+def _unpublished(seen: Observation) -> Iterator[Diagnostic]:
+    published: dict[str, set[str]] = {}
+    for endpoint in seen.of_kind(EndpointKind.PUBLISHER):
+        published.setdefault(endpoint.name, set()).add(endpoint.type_name)
+    wanting: dict[tuple[str, str], list[EndpointInfo]] = {}
+    for endpoint in seen.of_kind(EndpointKind.SUBSCRIPTION):
+        if endpoint.name not in published and endpoint.name not in _EVERYWHERE and "/_action/" not in endpoint.name:
+            wanting.setdefault((endpoint.name, endpoint.type_name), []).append(endpoint)
+    heard = {endpoint.name for endpoint in seen.of_kind(EndpointKind.SUBSCRIPTION)}
+    for (topic, type_name), endpoints in sorted(wanting.items()):
+        # What somebody hears already is probably meant for them.
+        unheard = [name for name, types in published.items() if type_name in types and name not in heard]
+        like = _alike(topic, unheard)
+        if like is None:
+            continue
+        senders = nodes_of(seen.publishers_of(like))
+        yield Diagnostic(
+            "DOC204",
+            phrase(
+                "nobody publishes topic '{topic}', which {nodes_of} subscribes to, but '{like}' is published",
+                topic=topic,
+                nodes_of=listed(nodes_of(endpoints)),
+                like=like,
+            ),
+            severity=Severity.WARNING,
+            notes=(
+                Note(
+                    phrase(
+                        "'{like}' has the same type, {type_name}, and is published by {senders}",
+                        like=like,
+                        type_name=type_name,
+                        senders=listed(senders),
+                    )
+                ),
+            ),
+            hint=phrase(
+                "if they are meant to meet, remap one of them: --ros-args -r {topic}:={like}", topic=topic, like=like
+            ),
+        )
+
+
+def _alike(name: str, candidates: list[str]) -> str | None:
+    """The candidate that is probably meant: one with the same last part in another namespace, or a near spelling."""
+    last = name.rpartition("/")[2]
+    same_end = [each for each in candidates if each.rpartition("/")[2] == last]
+    near = nearest(name, [each for each in candidates if abs(len(each) - len(name)) <= _MOST_DIFFERENT])
+    return next(iter((*same_end, *near)), None)
+
+
+def _unserved(seen: Observation) -> Iterator[Diagnostic]:
+    served = {endpoint.name: endpoint.type_name for endpoint in seen.of_kind(EndpointKind.SERVICE)}
+    wanting: dict[tuple[str, str], list[EndpointInfo]] = {}
+    for endpoint in seen.of_kind(EndpointKind.CLIENT):
+        if served.get(endpoint.name) != endpoint.type_name and "/_action/" not in endpoint.name:
+            wanting.setdefault((endpoint.name, endpoint.type_name), []).append(endpoint)
+    for (name, type_name), clients in sorted(wanting.items()):
+        callers = listed(nodes_of(clients))
+        if name in served:
+            yield Diagnostic(
+                "DOC205",
+                phrase(
+                    "service '{name}' is called by {callers} as {type_name}, but served as {served}",
+                    name=name,
+                    callers=callers,
+                    type_name=type_name,
+                    served=served[name],
+                ),
+                hint=phrase("client and server must have the same type"),
+            )
+            continue
+        same_type = [each for each, kind in served.items() if kind == type_name]
+        last = name.rpartition("/")[2]
+        near = [each for each in same_type if each.rpartition("/")[2] == last] or nearest(name, same_type)
+        yield Diagnostic(
+            "DOC206",
+            phrase("nobody serves '{name}', which {callers} calls", name=name, callers=callers),
+            severity=Severity.WARNING,
+            notes=(Note(phrase("it is of type {type_name}", type_name=type_name)),),
+            hint=phrase(
+                "'{near}' is served with that type; remap one of them: --ros-args -r {name}:={near}",
+                near=near[0],
+                name=name,
+            )
+            if near
+            else phrase("start the node that serves it, or look at its name and namespace"),
+        )
+
+
+def examine_lifecycle(seen: Observation) -> Iterator[Diagnostic]:
+    """Managed nodes that do nothing yet."""
+    waiting: dict[str, list[str]] = {}
+    for node, state in seen.lifecycle.items():
+        if state in ("unconfigured", "inactive"):
+            waiting.setdefault(state, []).append(node)
+    for state, nodes in sorted(waiting.items()):
+        next_one = "configure" if state == "unconfigured" else "activate"
+        yield Diagnostic(
+            "DOC701",
+            phrase("managed node {nodes} is {state}, so it does nothing yet", nodes=listed(sorted(nodes)), state=state),
+            severity=Severity.WARNING,
+            hint=phrase("bring it up: ros2 lifecycle set {node} {transition}", node=min(nodes), transition=next_one),
+        )

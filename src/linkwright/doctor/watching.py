@@ -1,0 +1,322 @@
+"""Observes a running graph for some seconds."""
+
+from __future__ import annotations
+
+import asyncio
+import math
+import os
+import struct
+import time
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from linkwright.doctor.record import (
+    UNKNOWN_NODE,
+    ClockSeen,
+    DescriptionSeen,
+    FixedFrame,
+    JointSeen,
+    Observation,
+    StampSeen,
+    TransformSeen,
+    node_of,
+)
+from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind, MessageInfo
+from linkwright.graph.names.rules import join
+from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+
+if TYPE_CHECKING:
+    from linkwright.graph.computation_graph import Graph
+    from linkwright.graph.loop.future import Future
+    from linkwright.graph.node import Node
+
+_TF, _JOINT_STATE = "tf2_msgs/msg/TFMessage", "sensor_msgs/msg/JointState"
+_STRING, _CLOCK = "std_msgs/msg/String", "rosgraph_msgs/msg/Clock"
+_ENVIRONMENT = (
+    "ROS_DOMAIN_ID",
+    "ROS_LOCALHOST_ONLY",
+    "ROS_AUTOMATIC_DISCOVERY_RANGE",
+    "ROS_STATIC_PEERS",
+    "CYCLONEDDS_URI",
+    "RMW_IMPLEMENTATION",
+)
+_ANSWER_WITHIN = 1.0
+"""Seconds for a node to answer what is asked of it; one that hangs is passed over."""
+_NAMED_WITHIN = 1.0
+"""Seconds for a process to tell whose its endpoints are; those of no ROS node never are anybody's."""
+_FIXED_FRAME = "fixed_frame"
+_LOOK_AGAIN = 0.01
+_LENGTH_TOLERANCE = 1e-3
+_SECOND = 1_000_000_000
+_STAMP = {0: struct.Struct(">iI"), 1: struct.Struct("<iI")}
+"""The stamp of a header that comes first, by the second byte of the CDR header, which tells the order of bytes."""
+_CDR_HEADER = 4
+
+
+async def observe(
+    graph: Graph,
+    node: Node,
+    seconds: float,
+    *,
+    fixed_frames: Sequence[FixedFrame] = (),
+    environment: Mapping[str, str] | None = None,
+) -> Observation:
+    """What is seen of a graph.
+
+    Args:
+        graph: joined with what runs outside; on the running event loop.
+        node: of this graph; its own part in it is left out of what is seen.
+        seconds: for how long to look.
+        fixed_frames: what is known of viewers, beside those that tell their Fixed Frame in a parameter.
+        environment: this process's when left out.
+    """
+    watcher = _Watcher(graph, node)
+    end = time.monotonic() + seconds
+    while True:
+        watcher.subscribe()
+        left = end - time.monotonic()
+        if left <= 0:
+            break
+        await asyncio.sleep(min(left, 0.25))
+    sim_time, lifecycle, shown_in = await asyncio.gather(
+        watcher.sim_time(), watcher.lifecycle(), watcher.fixed_frames()
+    )
+    await watcher.until_named()
+    variables = os.environ if environment is None else environment
+    return Observation(
+        seconds=seconds,
+        nodes=tuple(watcher.nodes()),
+        endpoints=tuple(watcher.endpoints()),
+        transforms=watcher.transforms(),
+        joints=watcher.joints(),
+        descriptions=tuple(watcher.descriptions.values()),
+        stamps=watcher.stamps_seen(sim_time),
+        clock=watcher.clock,
+        sim_time=sim_time,
+        lifecycle=lifecycle,
+        fixed_frames=(*fixed_frames, *shown_in),
+        environment={name: variables[name] for name in _ENVIRONMENT if name in variables},
+    )
+
+
+class _Watcher:
+    """Subscribes to what can be told something from, and takes notes."""
+
+    def __init__(self, graph: Graph, node: Node) -> None:
+        self._graph = graph
+        self._node = node
+        self._subscribed: set[tuple[str, str]] = set()
+        self._transforms: dict[tuple[str, str], tuple[set[str], bool, bool]] = {}
+        self._joints: dict[str, tuple[set[str], set[str]]] = {}
+        self._stamps: dict[tuple[str, str], tuple[int, int]] = {}
+        self.descriptions: dict[tuple[str, str], DescriptionSeen] = {}
+        self.clock: ClockSeen | None = None
+
+    def nodes(self) -> list[str]:
+        """Full names of the nodes but for the watcher's own and other tools' hidden ones."""
+        names = (join(each.namespace, each.name) for each in self._graph.identities())
+        return sorted(name for name in names if not _is_tool(name) and name != self._own)
+
+    def endpoints(self) -> list[EndpointInfo]:
+        """The endpoints of those nodes."""
+        return [each for each in self._graph.endpoints() if not _is_tool(node_of(each)) and node_of(each) != self._own]
+
+    async def until_named(self) -> None:
+        """Wait until it is known of every endpoint whose it is: of one just made that is told a moment after it.
+
+        Another command's endpoints would be taken for a part of what runs until then.
+        """
+        end = time.monotonic() + _NAMED_WITHIN
+        while time.monotonic() < end:
+            if all(each.node is not None for each in self._graph.endpoints()):
+                break
+            await asyncio.sleep(_LOOK_AGAIN)
+
+    @property
+    def _own(self) -> str:
+        return self._node.get_fully_qualified_name()
+
+    def subscribe(self) -> None:
+        """Subscribe to topics of interest that were not there before."""
+        for endpoint in self.endpoints():
+            key = (endpoint.name, endpoint.type_name)
+            if endpoint.kind is EndpointKind.PUBLISHER and key not in self._subscribed:
+                self._subscribed.add(key)
+                self._subscribe(endpoint)
+
+    def _subscribe(self, endpoint: EndpointInfo) -> None:
+        topic, kind = endpoint.name, endpoint.type_name
+        last = topic.rpartition("/")[2]
+        if kind == _TF:
+            is_static = "static" in last
+            self._listen(endpoint, lambda message, info: self._on_transforms(topic, is_static, message, info))
+        elif kind == _JOINT_STATE:
+            self._listen(endpoint, lambda message, info: self._on_joints(topic, message, info))
+        elif kind == _STRING and last == "robot_description":
+            self._listen(endpoint, lambda message, info: self._on_description(topic, message, info))
+        elif kind == _CLOCK and topic == "/clock":
+            self._listen(endpoint, lambda message, _info: self._on_clock(message))
+        elif _begins_with_header(kind):
+            self._listen(endpoint, lambda data, info: self._on_stamped(topic, data, info), raw=True)
+
+    def _listen(self, endpoint: EndpointInfo, callback: Any, *, raw: bool = False) -> None:
+        """Subscribe so that every publisher matches; latched ones are asked for what they keep."""
+        of_topic = [each for each in self.endpoints() if each.name == endpoint.name]
+        offers = [each.qos for each in of_topic if each.kind is EndpointKind.PUBLISHER]
+        latched = all(offer.durability is DurabilityPolicy.TRANSIENT_LOCAL for offer in offers)
+        reliable = all(offer.reliability is ReliabilityPolicy.RELIABLE for offer in offers)
+        qos = QoSProfile(
+            100,
+            ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
+            DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE,
+        )
+
+        def listen(message: Any, info: MessageInfo) -> None:
+            callback(message, info)
+
+        self._node.create_subscription(endpoint.type_name, endpoint.name, listen, qos, raw=raw)
+
+    def _sender(self, topic: str, info: MessageInfo) -> str:
+        publishers = [each for each in self._graph.endpoints() if each.name == topic]
+        publishers = [each for each in publishers if each.kind is EndpointKind.PUBLISHER]
+        for each in publishers:
+            if each.gid == info.publisher_gid:
+                return node_of(each)
+        return node_of(publishers[0]) if len(publishers) == 1 else UNKNOWN_NODE
+
+    # --- what is heard -----------------------------------------------------------------------------------------------
+
+    def _on_transforms(self, topic: str, is_static: bool, message: Any, info: MessageInfo) -> None:
+        sender = self._sender(topic, info)
+        for each in message.transforms:
+            key = (each.header.frame_id.lstrip("/"), each.child_frame_id.lstrip("/"))
+            senders, _, valid = self._transforms.get(key, (set(), is_static, True))
+            senders.add(sender)
+            self._transforms[key] = (senders, is_static, valid and _is_transform(each.transform))
+            if not is_static:
+                self._note_stamp(topic, sender, each.header.stamp.sec, each.header.stamp.nanosec)
+
+    def _on_joints(self, topic: str, message: Any, info: MessageInfo) -> None:
+        sender = self._sender(topic, info)
+        self._note_stamp(topic, sender, message.header.stamp.sec, message.header.stamp.nanosec)
+        for name in message.name if len(message.position) else ():
+            senders, topics = self._joints.setdefault(name, (set(), set()))
+            senders.add(sender)
+            topics.add(topic)
+
+    def _on_description(self, topic: str, message: Any, info: MessageInfo) -> None:
+        sender = self._sender(topic, info)
+        self.descriptions[topic, sender] = DescriptionSeen(topic, sender, message.data)
+
+    def _on_clock(self, message: Any) -> None:
+        now_ns = message.clock.sec * _SECOND + message.clock.nanosec
+        before = self.clock
+        self.clock = (
+            ClockSeen(1, now_ns, now_ns) if before is None else ClockSeen(before.ticks + 1, before.first_ns, now_ns)
+        )
+
+    def _on_stamped(self, topic: str, data: bytes, info: MessageInfo) -> None:
+        seconds, nanoseconds = _STAMP[data[1] & 1].unpack_from(data, _CDR_HEADER)
+        self._note_stamp(topic, self._sender(topic, info), seconds, nanoseconds)
+
+    def _note_stamp(self, topic: str, sender: str, seconds: int, nanoseconds: int) -> None:
+        self._stamps[topic, sender] = (seconds * _SECOND + nanoseconds, time.time_ns())
+
+    # --- what is made of it ------------------------------------------------------------------------------------------
+
+    def transforms(self) -> tuple[TransformSeen, ...]:
+        """The transforms, by parent and child."""
+        return tuple(
+            TransformSeen(parent, child, tuple(sorted(senders)), is_static, valid)
+            for (parent, child), (senders, is_static, valid) in sorted(self._transforms.items())
+        )
+
+    def joints(self) -> tuple[JointSeen, ...]:
+        """The joints, by name."""
+        return tuple(
+            JointSeen(name, tuple(sorted(senders)), tuple(sorted(topics)))
+            for name, (senders, topics) in sorted(self._joints.items())
+        )
+
+    def stamps_seen(self, sim_time: Mapping[str, bool]) -> tuple[StampSeen, ...]:
+        """The stamps against the clock that their sender goes by: simulated time, where it follows that."""
+        found = []
+        for (topic, sender), (stamp_ns, now_ns) in sorted(self._stamps.items()):
+            if sim_time.get(sender):
+                if self.clock is None:
+                    continue
+                now_ns = self.clock.last_ns
+            found.append(StampSeen(topic, sender, now_ns - stamp_ns, zero=stamp_ns == 0))
+        return tuple(found)
+
+    # --- what is asked -----------------------------------------------------------------------------------------------
+
+    async def sim_time(self) -> dict[str, bool]:
+        """``use_sim_time`` of each node that answers."""
+        kind = "rcl_interfaces/srv/GetParameters"
+        answers = await self._ask_all(kind, "get_parameters", names=["use_sim_time"])
+        return {node: bool(answer.values[0].bool_value) for node, answer in answers.items() if answer.values}
+
+    async def lifecycle(self) -> dict[str, str]:
+        """The state of each managed node that answers."""
+        answers = await self._ask_all("lifecycle_msgs/srv/GetState", "get_state")
+        return {node: answer.current_state.label for node, answer in answers.items()}
+
+    async def fixed_frames(self) -> list[FixedFrame]:
+        """The Fixed Frame of each viewer that has it as a parameter, as Linkwright's has."""
+        subscriptions = [each for each in self.endpoints() if each.kind is EndpointKind.SUBSCRIPTION]
+        viewers = {node_of(each) for each in subscriptions if each.type_name == _TF}
+        package = "rcl_interfaces/srv"
+        listed = await self._ask_all(f"{package}/ListParameters", "list_parameters", viewers, prefixes=[_FIXED_FRAME])
+        # A node that has no such parameter would complain when asked for it.
+        telling = {node for node, answer in listed.items() if _FIXED_FRAME in answer.result.names}
+        answers = await self._ask_all(f"{package}/GetParameters", "get_parameters", telling, names=[_FIXED_FRAME])
+        return [FixedFrame(answer.values[0].string_value, f"'{node}'") for node, answer in sorted(answers.items())]
+
+    async def _ask_all(self, kind: str, service: str, among: set[str] | None = None, **fields: Any) -> dict[str, Any]:
+        """The answers of the nodes that serve something and answer in time, by their full names."""
+        from linkwright.messages import get_service
+
+        served = {
+            each.name for each in self.endpoints() if each.kind is EndpointKind.SERVICE and each.type_name == kind
+        }
+        nodes = [node for node in dict.fromkeys(self.nodes()) if f"{node}/{service}" in served]
+        if among is not None:
+            nodes = [node for node in nodes if node in among]
+        clients = {node: self._node.create_client(kind, f"{node}/{service}") for node in nodes}
+        request = get_service(kind).Request(**fields)
+        futures = {node: client.call_async(request) for node, client in clients.items()}
+        tasks = {node: asyncio.ensure_future(_result(future)) for node, future in futures.items()}
+        if tasks:
+            await asyncio.wait(tasks.values(), timeout=_ANSWER_WITHIN)
+        for node, client in clients.items():
+            tasks[node].cancel()
+            client.remove_pending_request(futures[node])
+            self._node.destroy_client(client)
+        return {node: future.result() for node, future in futures.items() if future.done()}
+
+
+async def _result(future: Future[Any]) -> Any:
+    return await future
+
+
+def _is_tool(full_name: str) -> bool:
+    """Whether a node is one of a command that looks at the graph, which is no part of what runs."""
+    return full_name.rpartition("/")[2].startswith("_ros2cli")
+
+
+def _begins_with_header(type_name: str) -> bool:
+    from linkwright.diagnostics import LinkwrightError
+    from linkwright.messages import get_message
+
+    try:
+        fields = get_message(type_name).get_fields_and_field_types()
+    except LinkwrightError:  # a type of a package that is not here
+        return False
+    return next(iter(fields.items()), None) == ("header", "std_msgs/Header")
+
+
+def _is_transform(transform: Any) -> bool:
+    turn, shift = transform.rotation, transform.translation
+    numbers = (turn.x, turn.y, turn.z, turn.w, shift.x, shift.y, shift.z)
+    return all(map(math.isfinite, numbers)) and math.hypot(turn.x, turn.y, turn.z, turn.w) > _LENGTH_TOLERANCE

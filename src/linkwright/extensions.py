@@ -1,0 +1,107 @@
+"""What packages bring to Linkwright, found through their entry points; what comes with us is declared the same way.
+
+A group is read by the room that it is for: ``linkwright.displays``, ``linkwright.page_features`` and others. The entry
+points of all installed packages are read once, and nothing is imported before somebody loads it.
+
+They are read from where their specification puts them (PyPA, "Entry points specification"), ``*.dist-info`` in the
+folders of the search path. `importlib.metadata` finds them in archives too, but loading it takes as long as all else
+that ``linkwright check`` has to import before it reads a file.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cache
+from importlib import import_module
+from operator import attrgetter
+from typing import Any
+
+_OURS = "linkwright."
+_READ = (_OURS, "launch_ros.")
+"""How the groups begin that anybody asks for: ours, and those of launch_ros, which its users' packages extend too."""
+
+
+@dataclass(frozen=True, slots=True)
+class EntryPoint:
+    """An object of an installed package that is to be used by its name.
+
+    Attributes:
+        name: unique within the group.
+        value: ``module`` or ``module:attribute``.
+        distribution: the package that was installed.
+    """
+
+    name: str
+    value: str
+    distribution: str
+
+    def load(self) -> Any:
+        """The object.
+
+        Raises:
+            Exception: whatever its module raises when it is imported, or AttributeError.
+        """
+        module, _, attribute = self.value.partition(":")
+        found = import_module(module.strip())
+        attribute = attribute.partition("[")[0].strip()  # extras, which the specification lets stand here
+        return attrgetter(attribute)(found) if attribute else found
+
+
+def extensions(group: str) -> Mapping[str, EntryPoint]:
+    """The entry points of a group by name: ours first, then those of other packages, each in the order of names.
+
+    In which order a package declares them does not reach its metadata: some build tools sort them, others do not. A
+    name that two packages bring means the one that was found first; ours cannot be replaced.
+
+    Raises:
+        RuntimeError: a group of ours is not there, because the installation's metadata is older than its code.
+    """
+    found = _all_groups()
+    if group.startswith(_OURS) and group not in found:
+        raise RuntimeError(f"Linkwright's metadata lacks the entry points '{group}': install it anew")
+    return found.get(group, {})
+
+
+@cache
+def _all_groups() -> Mapping[str, Mapping[str, EntryPoint]]:
+    groups: dict[str, dict[str, EntryPoint]] = {}
+    found = [each for distribution, text in _declarations() for each in _declared(distribution, text)]
+    for group, entry in sorted(found, key=lambda each: (not each[1].value.startswith(_OURS), each[1].name)):
+        groups.setdefault(group, {}).setdefault(entry.name, entry)
+    return groups
+
+
+def _declarations() -> Iterator[tuple[str, str]]:
+    """Each installed distribution that declares entry points, by name, with the text; the first of a name counts."""
+    seen = set()
+    for folder in sys.path:
+        try:
+            entries = sorted(entry.name for entry in os.scandir(folder or "."))
+        except OSError:
+            continue  # an archive, or not there
+        for entry in entries:
+            if not entry.endswith((".dist-info", ".egg-info")):
+                continue
+            distribution = entry.rpartition(".")[0].partition("-")[0]
+            try:
+                with open(os.path.join(folder, entry, "entry_points.txt"), encoding="utf-8") as file:  # noqa: PTH118, PTH123 - pathlib takes long to import
+                    text = file.read()
+            except (OSError, UnicodeDecodeError):
+                continue
+            if distribution not in seen:
+                seen.add(distribution)
+                yield distribution, text
+
+
+def _declared(distribution: str, text: str) -> Iterator[tuple[str, EntryPoint]]:
+    """Group and entry point of each line of an ``entry_points.txt`` that somebody here asks for."""
+    group = ""
+    for line in map(str.strip, text.splitlines()):
+        if line.startswith("["):
+            group = line.strip("[]").strip()
+        elif group.startswith(_READ) and line and not line.startswith(("#", ";")):
+            name, _, value = line.partition("=")
+            yield group, EntryPoint(name.strip(), value.strip(), distribution)

@@ -1,0 +1,213 @@
+"""Rotations and poses in arrays, vectorised over leading axes, which broadcast.
+
+Everywhere a quaternion is x, y, z, w in the last axis, as in ROS messages, and of unit length unless said otherwise.
+A rotation is active: it turns vectors of the child frame into the parent frame. Roll, pitch and yaw are angles in
+radians about the fixed axes x, y, z in this order, R = Rz(yaw) Ry(pitch) Rx(roll) (REP 103). A pose is that
+of a child frame in its parent frame as a row x, y, z, qx, qy, qz, qw: metres and a unit quaternion.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from linkwright.geometry.single import Pose
+
+Array = NDArray[np.float64]
+
+IDENTITY: Array = np.array((0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0))
+IDENTITY.flags.writeable = False
+"""The pose of a frame in itself; shape (7,)."""
+
+_PARALLEL = 0.9995
+"""Quaternions whose dot product is larger than this are mixed in a straight line."""
+
+
+def last_axis(values: ArrayLike, length: int, what: str) -> Array:
+    """The values as a float64 array whose last axis has a certain length.
+
+    Raises:
+        ValueError: it has another length.
+    """
+    array = np.asarray(values, dtype=np.float64)
+    if array.ndim == 0 or array.shape[-1] != length:
+        raise ValueError(f"{what} of shape {array.shape}; (..., {length}) is expected")
+    return array
+
+
+def quaternion_from_rpy(rpy: ArrayLike) -> Array:
+    """The rotation by roll, pitch and yaw.
+
+    Args:
+        rpy: shape (..., 3), radians.
+
+    Returns:
+        Shape (..., 4).
+    """
+    half = last_axis(rpy, 3, "roll, pitch and yaw") / 2
+    sin_roll, sin_pitch, sin_yaw = np.moveaxis(np.sin(half), -1, 0)
+    cos_roll, cos_pitch, cos_yaw = np.moveaxis(np.cos(half), -1, 0)
+    return np.stack(
+        (
+            sin_roll * cos_pitch * cos_yaw - cos_roll * sin_pitch * sin_yaw,
+            cos_roll * sin_pitch * cos_yaw + sin_roll * cos_pitch * sin_yaw,
+            cos_roll * cos_pitch * sin_yaw - sin_roll * sin_pitch * cos_yaw,
+            cos_roll * cos_pitch * cos_yaw + sin_roll * sin_pitch * sin_yaw,
+        ),
+        axis=-1,
+    )
+
+
+def quaternion_multiply(first: ArrayLike, second: ArrayLike) -> Array:
+    """The rotation that does `second`, then `first`: the product first * second.
+
+    Args:
+        first: shape (..., 4).
+        second: shape (..., 4), broadcast against `first`.
+
+    Returns:
+        Shape (..., 4).
+    """
+    a, b = last_axis(first, 4, "a quaternion"), last_axis(second, 4, "a quaternion")
+    ax, ay, az, aw = a[..., 0], a[..., 1], a[..., 2], a[..., 3]
+    bx, by, bz, bw = b[..., 0], b[..., 1], b[..., 2], b[..., 3]
+    product = np.empty(np.broadcast_shapes(a.shape, b.shape))
+    product[..., 0] = aw * bx + ax * bw + ay * bz - az * by
+    product[..., 1] = aw * by - ax * bz + ay * bw + az * bx
+    product[..., 2] = aw * bz + ax * by - ay * bx + az * bw
+    product[..., 3] = aw * bw - ax * bx - ay * by - az * bz
+    return product
+
+
+def quaternion_inverse(quaternion: ArrayLike) -> Array:
+    """The rotation back; shape (..., 4) to (..., 4)."""
+    inverse: Array = last_axis(quaternion, 4, "a quaternion") * np.array((-1.0, -1.0, -1.0, 1.0))
+    return inverse
+
+
+def rotate(quaternion: ArrayLike, vector: ArrayLike) -> Array:
+    """Vectors of the child frame in the parent frame.
+
+    Args:
+        quaternion: shape (..., 4).
+        vector: shape (..., 3), broadcast against it.
+
+    Returns:
+        Shape (..., 3).
+    """
+    q, v = last_axis(quaternion, 4, "a quaternion"), last_axis(vector, 3, "a vector")
+    x, y, z, w = q[..., 0], q[..., 1], q[..., 2], q[..., 3]
+    vx, vy, vz = v[..., 0], v[..., 1], v[..., 2]
+    # v + 2 w (u x v) + 2 u x (u x v), with u the vector part.
+    tx, ty, tz = 2 * (y * vz - z * vy), 2 * (z * vx - x * vz), 2 * (x * vy - y * vx)
+    rotated = np.empty((*np.broadcast_shapes(q.shape[:-1], v.shape[:-1]), 3))
+    rotated[..., 0] = vx + w * tx + y * tz - z * ty
+    rotated[..., 1] = vy + w * ty + z * tx - x * tz
+    rotated[..., 2] = vz + w * tz + x * ty - y * tx
+    return rotated
+
+
+def slerp(first: ArrayLike, last: ArrayLike, ratios: ArrayLike) -> Array:
+    """Rotations on the shorter arc from one to another, at constant speed.
+
+    Args:
+        first: where it begins, shape (4,).
+        last: where it ends, shape (4,).
+        ratios: of the way, 0 to 1, shape (n,).
+
+    Returns:
+        Shape (n, 4).
+    """
+    begin, end = last_axis(first, 4, "a quaternion"), last_axis(last, 4, "a quaternion")
+    parts = np.asarray(ratios)[:, np.newaxis]
+    dot = float(np.dot(begin, end))
+    if dot < 0.0:
+        end, dot = -end, -dot
+    if dot > _PARALLEL:
+        mixed = begin + parts * (end - begin)
+    else:
+        angle = np.arccos(dot)
+        mixed = (np.sin((1.0 - parts) * angle) * begin + np.sin(parts * angle) * end) / np.sin(angle)
+    unit: Array = mixed / np.linalg.norm(mixed, axis=1, keepdims=True)
+    return unit
+
+
+def rotation_matrix(quaternion: ArrayLike) -> Array:
+    """The rotation as a matrix; shape (..., 4) to (..., 3, 3)."""
+    x, y, z, w = np.moveaxis(last_axis(quaternion, 4, "a quaternion"), -1, 0)
+    matrix = np.empty((*x.shape, 3, 3))
+    matrix[..., 0, 0] = 1 - 2 * (y * y + z * z)
+    matrix[..., 0, 1] = 2 * (x * y - w * z)
+    matrix[..., 0, 2] = 2 * (x * z + w * y)
+    matrix[..., 1, 0] = 2 * (x * y + w * z)
+    matrix[..., 1, 1] = 1 - 2 * (x * x + z * z)
+    matrix[..., 1, 2] = 2 * (y * z - w * x)
+    matrix[..., 2, 0] = 2 * (x * z - w * y)
+    matrix[..., 2, 1] = 2 * (y * z + w * x)
+    matrix[..., 2, 2] = 1 - 2 * (x * x + y * y)
+    return matrix
+
+
+def quaternion_from_matrix(matrix: ArrayLike) -> Array:
+    """The rotation of a rotation matrix, with w >= 0; shape (..., 3, 3) to (..., 4)."""
+    m = np.asarray(matrix, dtype=np.float64)
+    if m.shape[-2:] != (3, 3):
+        raise ValueError(f"a rotation matrix of shape {m.shape}; (..., 3, 3) is expected")
+    xx, yy, zz = m[..., 0, 0], m[..., 1, 1], m[..., 2, 2]
+    # The products of every two components, times four; the row with the largest square is the best conditioned one.
+    products = np.empty((*xx.shape, 4, 4))
+    products[..., 0, 0] = 1 + xx - yy - zz
+    products[..., 1, 1] = 1 - xx + yy - zz
+    products[..., 2, 2] = 1 - xx - yy + zz
+    products[..., 3, 3] = 1 + xx + yy + zz
+    products[..., 0, 1] = products[..., 1, 0] = m[..., 0, 1] + m[..., 1, 0]
+    products[..., 0, 2] = products[..., 2, 0] = m[..., 0, 2] + m[..., 2, 0]
+    products[..., 1, 2] = products[..., 2, 1] = m[..., 1, 2] + m[..., 2, 1]
+    products[..., 0, 3] = products[..., 3, 0] = m[..., 2, 1] - m[..., 1, 2]
+    products[..., 1, 3] = products[..., 3, 1] = m[..., 0, 2] - m[..., 2, 0]
+    products[..., 2, 3] = products[..., 3, 2] = m[..., 1, 0] - m[..., 0, 1]
+    best = np.argmax(np.diagonal(products, axis1=-2, axis2=-1), axis=-1)
+    row = np.take_along_axis(products, best[..., None, None], axis=-2)[..., 0, :]
+    row = row / np.linalg.norm(row, axis=-1, keepdims=True)
+    quaternion: Array = np.where(row[..., 3:] < 0, -row, row)
+    return quaternion
+
+
+def compose(b_in_a: ArrayLike, c_in_b: ArrayLike) -> Array:
+    """The poses of frame C in frame A.
+
+    Args:
+        b_in_a: shape (..., 7).
+        c_in_b: shape (..., 7), broadcast against it.
+
+    Returns:
+        Shape (..., 7).
+    """
+    a, b = last_axis(b_in_a, 7, "a pose"), last_axis(c_in_b, 7, "a pose")
+    pose = np.empty(np.broadcast_shapes(a.shape, b.shape))
+    pose[..., :3] = a[..., :3] + rotate(a[..., 3:], b[..., :3])
+    pose[..., 3:] = quaternion_multiply(a[..., 3:], b[..., 3:])
+    return pose
+
+
+def invert(b_in_a: ArrayLike) -> Array:
+    """The poses of frame A in frame B; shape (..., 7) to (..., 7)."""
+    given = last_axis(b_in_a, 7, "a pose")
+    back = quaternion_inverse(given[..., 3:])
+    return np.concatenate((-rotate(back, given[..., :3]), back), axis=-1)
+
+
+def row_from_pose(pose: Pose) -> Array:
+    """A pose of a description as a row; shape (7,)."""
+    quaternion = quaternion_from_rpy(pose.rpy) if pose.quaternion is None else np.array(pose.quaternion)
+    return np.concatenate((pose.xyz, quaternion))
+
+
+def matrix_from_pose(pose: ArrayLike) -> Array:
+    """Homogeneous matrices; shape (..., 7) to (..., 4, 4)."""
+    given = last_axis(pose, 7, "a pose")
+    matrix = np.zeros((*given.shape[:-1], 4, 4))
+    matrix[..., :3, :3] = rotation_matrix(given[..., 3:])
+    matrix[..., :3, 3] = given[..., :3]
+    matrix[..., 3, 3] = 1.0
+    return matrix

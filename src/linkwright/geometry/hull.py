@@ -1,0 +1,150 @@
+"""The convex hull of points in space, by the quickhull algorithm.
+
+Source: Barber, Dobkin, Huhdanpaa: *The Quickhull Algorithm for Convex Hulls*, ACM TOMS 22, 1996. It starts from a
+tetrahedron; while a face has points outside it, the farthest of them replaces the faces that it sees.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.geometry.arrays import Array
+from linkwright.geometry.polyhedron import Faces
+
+_NEAR = 1e-9
+"""Points nearer to a face than this part of the whole size lie on it."""
+
+Indices = NDArray[np.int64]
+Triangle = tuple[int, int, int]
+
+
+def convex_hull(points: Array) -> Faces | None:
+    """The triangles of the convex hull, turning outwards.
+
+    Args:
+        points: shape (points, 3).
+
+    Returns:
+        Indices into the points, shape (faces, 3); None when the points lie in a plane and there is no volume.
+    """
+    if len(points) < 4:
+        return None
+    size = float(np.ptp(points, axis=0).max())
+    if not (size > 0 and np.isfinite(size)):
+        return None
+    start = _tetrahedron(points, _NEAR * size)
+    return None if start is None else _Hull(points, start, _NEAR * size).grown()
+
+
+class _Hull:
+    """A hull on its way from the first tetrahedron to the last face.
+
+    Attributes:
+        edges: start and end of each directed edge -> the face it belongs to. The edge the other way is a neighbour's.
+        outside: face -> the points that lie outside it, each with one face only.
+    """
+
+    def __init__(self, points: Array, start: tuple[int, int, int, int], near: float) -> None:
+        self.points = points
+        self.near = near
+        self.faces: dict[int, Triangle] = {}
+        self.planes: dict[int, tuple[Array, float]] = {}
+        self.edges: dict[tuple[int, int], int] = {}
+        self.outside: dict[int, Indices] = {}
+        self._next = 0
+        a, b, c, d = start
+        self._add([(a, b, c), (a, d, b), (b, d, c), (c, d, a)], np.arange(len(points), dtype=np.int64))
+
+    def grown(self) -> Faces:
+        """Take in points until none is outside."""
+        while self.outside:
+            face, candidates = self.outside.popitem()
+            normal, level = self.planes[face]
+            apex = int(candidates[np.argmax(self.points[candidates] @ normal - level)])
+            self.outside[face] = candidates
+            self._take_in(face, apex)
+        return np.array(list(self.faces.values()), dtype=np.int64)
+
+    def _take_in(self, face: int, apex: int) -> None:
+        seen, rim = self._seen_from(face, self.points[apex])
+        loose = [self._remove(each) for each in seen]
+        left = np.concatenate(loose)
+        self._add([(a, b, apex) for a, b in rim], left[left != apex])
+
+    def _seen_from(self, face: int, point: Array) -> tuple[set[int], list[tuple[int, int]]]:
+        """The faces that a point sees, found from one of them, and the edges around them."""
+        seen, hidden = {face}, set()
+        waiting = [face]
+        rim = []
+        while waiting:
+            for edge in _edges(self.faces[waiting.pop()]):
+                neighbour = self.edges[edge[1], edge[0]]
+                if neighbour in seen:
+                    continue
+                if neighbour not in hidden:
+                    normal, level = self.planes[neighbour]
+                    if float(point @ normal) - level > self.near:
+                        seen.add(neighbour)
+                        waiting.append(neighbour)
+                        continue
+                    hidden.add(neighbour)
+                rim.append(edge)
+        return seen, rim
+
+    def _remove(self, face: int) -> Indices:
+        for edge in _edges(self.faces.pop(face)):
+            if self.edges.get(edge) == face:
+                del self.edges[edge]
+        del self.planes[face]
+        return self.outside.pop(face, _NONE)
+
+    def _add(self, triangles: list[Triangle], loose: Indices) -> None:
+        """Add faces, and give each loose point to the face that it is farthest outside of, if there is one."""
+        corners = self.points[np.array(triangles, dtype=np.int64)]
+        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+        normals = np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0)
+        levels = np.einsum("ij,ij->i", normals, corners[:, 0])
+        names = range(self._next, self._next + len(triangles))
+        self._next += len(triangles)
+        for name, triangle, normal, level in zip(names, triangles, normals, levels, strict=True):
+            self.faces[name] = triangle
+            self.planes[name] = (normal, float(level))
+            for edge in _edges(triangle):
+                self.edges[edge] = name
+        if len(loose):
+            heights = self.points[loose] @ normals.T - levels
+            best = heights.argmax(axis=1)
+            out = heights[np.arange(len(loose)), best] > self.near
+            loose, best = loose[out], best[out]
+            for place in np.unique(best):
+                self.outside[names[int(place)]] = loose[best == place]
+
+
+_NONE: Indices = np.empty(0, dtype=np.int64)
+
+
+def _edges(triangle: Triangle) -> Iterable[tuple[int, int]]:
+    a, b, c = triangle
+    return (a, b), (b, c), (c, a)
+
+
+def _tetrahedron(points: Array, near: float) -> tuple[int, int, int, int] | None:
+    """Four points far apart, the fourth below the plane of the others; None when all lie in a plane."""
+    axis = int(np.ptp(points, axis=0).argmax())
+    a, b = int(points[:, axis].argmin()), int(points[:, axis].argmax())
+    along = (points[b] - points[a]) / np.linalg.norm(points[b] - points[a])
+    arms = points - points[a]
+    distances = np.linalg.norm(arms - np.outer(arms @ along, along), axis=1)
+    c = int(distances.argmax())
+    if distances[c] <= near:
+        return None
+    normal = np.cross(points[b] - points[a], points[c] - points[a])
+    heights = arms @ (normal / np.linalg.norm(normal))
+    d = int(np.abs(heights).argmax())
+    if abs(heights[d]) <= near:
+        return None
+    return (a, b, c, d) if heights[d] < 0 else (a, c, b, d)

@@ -1,0 +1,105 @@
+"""Mass, centre of mass and inertia tensor of a rigid body, and what can be worked out from them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from linkwright.geometry.arrays import Array, rotation_matrix, row_from_pose
+from linkwright.geometry.single import Pose
+
+FARTHEST = 1e9
+"""Lengths in m beyond this are mistakes; nothing is computed from them, so that nothing overflows."""
+
+LEAST_MASS = 1e-30
+"""A mass in kg below this, some electrons, is none."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PrincipalAxes:
+    """The frame in which the inertia tensor is diagonal.
+
+    Attributes:
+        moments: the principal moments in kg m2, smallest first; shape (3,).
+        axes: the axes as columns, a right-handed rotation matrix; shape (3, 3).
+    """
+
+    moments: Array
+    axes: Array
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MassProperties:
+    """What dynamics knows of a rigid body, in some frame, for links the link's.
+
+    Attributes:
+        mass: in kg.
+        center: centre of mass in m; shape (3,).
+        inertia: inertia tensor about the centre of mass in kg m2, in the axes of the frame; shape (3, 3). Products of
+            inertia have the sign of the tensor's entries, as URDF and Gazebo take them: ``ixy = -integral(x y dm)``.
+    """
+
+    mass: float
+    center: Array = field(default_factory=lambda: np.zeros(3))
+    inertia: Array = field(default_factory=lambda: np.zeros((3, 3)))
+
+    def times(self, factor: float) -> MassProperties:
+        """The same body with its density multiplied."""
+        return MassProperties(self.mass * factor, self.center, self.inertia * factor)
+
+    def with_mass(self, mass: float) -> MassProperties:
+        """The same body with the density that gives it this mass in kg.
+
+        Raises:
+            ValueError: the body has no mass that could be multiplied.
+        """
+        if not self.mass > LEAST_MASS:
+            raise ValueError("a body without mass has no shape to spread another mass over")
+        return self.times(mass / self.mass)
+
+    def moved(self, pose: Pose) -> MassProperties:
+        """The same body seen from a parent frame, in which its own frame has this pose."""
+        rotation = rotation_matrix(row_from_pose(pose)[3:])
+        center = rotation @ self.center + np.asarray(pose.xyz)
+        return MassProperties(self.mass, center, rotation @ self.inertia @ rotation.T)
+
+    def inertia_about(self, point: ArrayLike) -> Array:
+        """The tensor about another point of the frame, by the parallel axis theorem (Steiner); shape (3, 3)."""
+        arm = self.center - np.asarray(point, dtype=np.float64)
+        return self.inertia + self.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+
+    def principal(self) -> PrincipalAxes:
+        """The principal moments and axes."""
+        moments, axes = np.linalg.eigh(self.inertia)
+        if np.linalg.det(axes) < 0:
+            axes[:, 0] = -axes[:, 0]
+        return PrincipalAxes(moments, axes)
+
+    def equivalent_box(self) -> Array | None:
+        """Edge lengths in m, along the principal axes, of the uniform box of this mass and these moments; shape (3,).
+
+        A box of edges a, b, c has ``I1 = m (b2 + c2) / 12`` and so on, which is solved for the edges. None for a tensor
+        that no body can have, and without mass.
+        """
+        if not self.mass > LEAST_MASS:
+            return None
+        moments = self.principal().moments
+        squares = 6.0 / self.mass * (moments.sum() - 2.0 * moments)
+        if np.any(squares < -1e-6 * np.abs(squares).max(initial=0.0)):
+            return None
+        edges: Array = np.sqrt(np.maximum(squares, 0.0))
+        return edges
+
+
+def combine(parts: Iterable[MassProperties]) -> MassProperties:
+    """The body made of several, all in one frame; where they overlap, their masses add up."""
+    bodies = list(parts)
+    mass = sum(body.mass for body in bodies)
+    if not mass > 0:
+        return MassProperties(0.0)
+    center = np.sum([body.mass * body.center for body in bodies], axis=0) / mass
+    inertia = np.sum([body.inertia_about(center) for body in bodies], axis=0)
+    return MassProperties(mass, center, inertia)

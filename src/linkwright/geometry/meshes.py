@@ -1,0 +1,148 @@
+"""Reading mesh files: their triangles, in metres and in the frame that RViz shows them in."""
+
+from __future__ import annotations
+
+import warnings
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from linkwright.diagnostics import (
+    Diagnostic,
+    LinkwrightError,
+    display_path,
+    joined,
+    missing_extra,
+    missing_file_hint,
+    phrase,
+)
+from linkwright.geometry.arrays import Array
+from linkwright.geometry.hull import convex_hull
+from linkwright.geometry.mass import FARTHEST, MassProperties
+from linkwright.geometry.mesh_files import MESH_ENDINGS, beside, placed_meshes
+from linkwright.geometry.polyhedron import Faces, is_closed, merged, polyhedron_properties
+from linkwright.geometry.vectors import Vector3
+
+LARGEST_FILE = 1 << 29
+"""A mesh file of more bytes is not read."""
+
+
+class TriangleMesh:
+    """The triangles of a mesh file.
+
+    Attributes:
+        vertices: corners in m, in the frame of the file, unscaled; shape (vertices, 3).
+        faces: indices of corners; shape (faces, 3).
+    """
+
+    def __init__(self, vertices: Array, faces: Faces) -> None:
+        self.vertices = vertices
+        self.faces = faces
+
+    @cached_property
+    def bounds(self) -> tuple[Array, Array]:
+        """The lowest and highest corner of the box around the mesh, in m; each of shape (3,)."""
+        used = self.vertices[np.unique(self.faces)] if len(self.faces) else np.zeros((1, 3))
+        return used.min(axis=0), used.max(axis=0)
+
+    @cached_property
+    def is_watertight(self) -> bool:
+        """Whether the triangles bound a volume, without holes and all turned the same way."""
+        return is_closed(self._merged[1])
+
+    @cached_property
+    def solid(self) -> MassProperties:
+        """Mass properties for a density of 1 kg/m3: of the mesh if it is watertight, else of its convex hull.
+
+        Without mass when all triangles lie in one plane.
+        """
+        vertices, faces = self._merged
+        if self.is_watertight:
+            inside = polyhedron_properties(vertices, faces)
+            if inside.mass > 0:
+                return inside
+        hull = convex_hull(vertices)
+        return MassProperties(0.0) if hull is None else polyhedron_properties(vertices, hull)
+
+    def scaled(self, scale: Vector3) -> TriangleMesh:
+        """The mesh scaled along its axes, as the ``scale`` of a URDF mesh does; a negative factor mirrors it."""
+        return self if scale == (1.0, 1.0, 1.0) else TriangleMesh(self.vertices * np.asarray(scale), self.faces)
+
+    @cached_property
+    def _merged(self) -> tuple[Array, Faces]:
+        return merged(self.vertices, self.faces)
+
+
+def read_mesh(path: Path) -> TriangleMesh:
+    """The triangles of an STL, COLLADA, OBJ or glTF file.
+
+    STL and OBJ say nothing of their unit; URDF takes their numbers as metres. The unit of COLLADA is applied, its up
+    axis is not, as in RViz. Materials and textures are not read, and of other files only
+    what a glTF keeps beside itself.
+
+    Raises:
+        LinkwrightError: INR101 there is no such file, INR102 its ending is not known, INR103 it cannot be read,
+            INR104 trimesh is not installed.
+    """
+    kind = path.suffix.lower()
+    if kind not in MESH_ENDINGS:
+        message = phrase("'{path}' is not a mesh of a format that is read", path=display_path(path))
+        raise LinkwrightError(
+            Diagnostic("INR102", message, hint=phrase("use {mesh_endings}", mesh_endings=joined(MESH_ENDINGS)))
+        )
+    try:
+        if path.stat().st_size > LARGEST_FILE:
+            raise unreadable(path, phrase("it is larger than {largest_file} MiB", largest_file=LARGEST_FILE >> 20))
+        data = path.read_bytes()
+    except FileNotFoundError:
+        message = phrase("there is no mesh file '{path}'", path=display_path(path))
+        raise LinkwrightError(Diagnostic("INR101", message, hint=missing_file_hint(path))) from None
+    except OSError as error:
+        raise unreadable(path, error.strerror or str(error)) from None
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            mesh = _parse(data, kind[1:], path)
+    except ModuleNotFoundError as error:
+        raise missing_extra("INR104", error) from None
+    except Exception as error:  # noqa: BLE001 - a parser of foreign bytes may raise anything
+        raise unreadable(path, _first_line(error)) from None
+    if not len(mesh.faces):
+        raise unreadable(path, phrase("it has no triangles"))
+    if not np.abs(mesh.vertices).max() <= FARTHEST:
+        raise unreadable(path, phrase("a coordinate is beyond all bounds"))
+    return mesh
+
+
+def _parse(data: bytes, kind: str, path: Path) -> TriangleMesh:
+    options: dict[str, Any] = {}
+    if kind in ("obj", "glb", "gltf"):
+        options["skip_materials"] = True
+    if kind in ("glb", "gltf"):
+        options["resolver"] = beside(str(path))
+    vertices: list[Array] = [np.zeros((0, 3))]
+    faces: list[Faces] = [np.zeros((0, 3), dtype=np.int64)]
+    count = 0
+    for placed in placed_meshes(data, kind, **options):
+        corners = np.asarray(placed.mesh.vertices, dtype=np.float64)
+        vertices.append((corners @ placed.matrix[:3, :3].T + placed.matrix[:3, 3]) * placed.unit)
+        faces.append(placed.faces + count)
+        count += len(corners)
+    return TriangleMesh(np.concatenate(vertices), np.concatenate(faces))
+
+
+def unreadable(path: Path, why: str) -> LinkwrightError:
+    """The error for a mesh that cannot be used (INR103)."""
+    hint = phrase("export it again, or leave the link out")
+    return LinkwrightError(
+        Diagnostic(
+            "INR103", phrase("cannot read the mesh '{path}': {why}", path=display_path(path), why=why), hint=hint
+        )
+    )
+
+
+def _first_line(error: Exception) -> str:
+    lines = str(error).strip().splitlines()
+    return lines[0] if lines else type(error).__name__

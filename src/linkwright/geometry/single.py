@@ -1,0 +1,169 @@
+"""One rotation or pose in plain floats, where an array would cost more than it computes.
+
+Quaternions are x, y, z, w; lengths are metres and angles radians. Functions are named as those for many in
+`linkwright.geometry.arrays`; this module keeps readers of descriptions free of numpy.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import acos, asin, atan2, cos, pi, sin, sqrt
+
+from linkwright.geometry.vectors import Vector3
+
+Quaternion = tuple[float, float, float, float]
+"""x, y, z, w, of unit length."""
+
+Transform = tuple[float, float, float, float, float, float, float]
+"""The pose of a child frame in its parent: x, y, z, qx, qy, qz, qw."""
+
+IDENTITY: Transform = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
+
+_GIMBAL_LOCK = 0.99999
+
+
+@dataclass(frozen=True, slots=True)
+class Pose:
+    """A child frame in its parent frame, as descriptions write it.
+
+    Attributes:
+        xyz: translation in metres.
+        rpy: roll, pitch, yaw in radians about the fixed axes x, y, z: R = Rz(yaw) Ry(pitch) Rx(roll) (REP 103).
+        quaternion: set only where the file gave ``quat_xyzw`` (URDF 1.1); then `rpy` is derived from it.
+    """
+
+    xyz: Vector3 = (0.0, 0.0, 0.0)
+    rpy: Vector3 = (0.0, 0.0, 0.0)
+    quaternion: Quaternion | None = None
+
+
+IDENTITY_POSE = Pose()
+
+
+def quaternion_of(pose: Pose) -> Quaternion:
+    """The rotation of a pose, from the child's axes to the parent's."""
+    return pose.quaternion or quaternion_from_rpy(pose.rpy)
+
+
+def quaternion_from_rpy(rpy: Vector3) -> Quaternion:
+    """The rotation Rz(yaw) Ry(pitch) Rx(roll), to the last bit as urdfdom computes it."""
+    roll, pitch, yaw = (angle / 2.0 for angle in rpy)
+    sin_roll, cos_roll = sin(roll), cos(roll)
+    sin_pitch, cos_pitch = sin(pitch), cos(pitch)
+    sin_yaw, cos_yaw = sin(yaw), cos(yaw)
+    x = sin_roll * cos_pitch * cos_yaw - cos_roll * sin_pitch * sin_yaw
+    y = cos_roll * sin_pitch * cos_yaw + sin_roll * cos_pitch * sin_yaw
+    z = cos_roll * cos_pitch * sin_yaw - sin_roll * sin_pitch * cos_yaw
+    w = cos_roll * cos_pitch * cos_yaw + sin_roll * sin_pitch * sin_yaw
+    norm = sqrt(x * x + y * y + z * z + w * w)
+    return x / norm, y / norm, z / norm, w / norm
+
+
+def rpy_from_quaternion(quaternion: Quaternion) -> Vector3:
+    """Roll, pitch, yaw as urdfdom gives them; within 0.26 degrees of pitch = +-90 degrees roll is 0."""
+    x, y, z, w = quaternion
+    sin_pitch = -2 * (x * z - w * y)
+    if sin_pitch <= -_GIMBAL_LOCK:
+        return 0.0, -pi / 2, 2 * atan2(x, -y)
+    if sin_pitch >= _GIMBAL_LOCK:
+        return 0.0, pi / 2, 2 * atan2(-x, y)
+    xx, yy, zz, ww = x * x, y * y, z * z, w * w
+    roll = atan2(2 * (y * z + w * x), ww - xx - yy + zz)
+    yaw = atan2(2 * (x * y + w * z), ww + xx - yy - zz)
+    return roll, asin(sin_pitch), yaw
+
+
+def normalized(x: float, y: float, z: float, w: float, *, least: float = 0.0) -> Quaternion:
+    """A quaternion with length 1; one whose squared length is 0, or less than `least`, stands for no rotation."""
+    squared = x * x + y * y + z * z + w * w
+    if squared == 0.0 or squared < least:
+        return 0.0, 0.0, 0.0, 1.0
+    norm = sqrt(squared)
+    return x / norm, y / norm, z / norm, w / norm
+
+
+def axis_and_angle(quaternion: Quaternion) -> tuple[Vector3, float]:
+    """The axis, of length 1, and the angle from 0 to 2 pi that a rotation turns by about it; x where it does not."""
+    x, y, z, w = quaternion
+    angle = 2.0 * acos(max(-1.0, min(1.0, w)))
+    squared = 1.0 - w * w
+    if squared < 1e-12:
+        return (1.0, 0.0, 0.0), angle
+    scale = 1.0 / sqrt(squared)
+    return (x * scale, y * scale, z * scale), angle
+
+
+def rotation_from_z(axis: Vector3) -> Quaternion:
+    """The shortest rotation that turns z to an axis of any length; about x where it turns it round."""
+    x, y, z = axis
+    norm = sqrt(x * x + y * y + z * z)
+    if norm == 0.0:
+        return 0.0, 0.0, 0.0, 1.0
+    x, y, z = x / norm, y / norm, z / norm
+    if z < -1.0 + 1e-9:
+        return 1.0, 0.0, 0.0, 0.0
+    w = sqrt((1.0 + z) / 2.0)
+    return -y / (2.0 * w), x / (2.0 * w), 0.0, w
+
+
+def rotate(quaternion: Quaternion, vector: Vector3) -> Vector3:
+    """A vector of the child frame in the parent frame."""
+    qx, qy, qz, qw = quaternion
+    x, y, z = vector
+    # v + 2 w (u x v) + 2 u x (u x v), with u the vector part
+    tx, ty, tz = 2.0 * (qy * z - qz * y), 2.0 * (qz * x - qx * z), 2.0 * (qx * y - qy * x)
+    return (
+        x + qw * tx + qy * tz - qz * ty,
+        y + qw * ty + qz * tx - qx * tz,
+        z + qw * tz + qx * ty - qy * tx,
+    )
+
+
+def quaternion_multiply(first: Quaternion, second: Quaternion) -> Quaternion:
+    """The rotation that applies `second`, then `first`: the product first * second."""
+    ax, ay, az, aw = first
+    bx, by, bz, bw = second
+    return (
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
+        aw * bw - ax * bx - ay * by - az * bz,
+    )
+
+
+def quaternion_inverse(quaternion: Quaternion) -> Quaternion:
+    """The rotation back."""
+    x, y, z, w = quaternion
+    return -x, -y, -z, w
+
+
+def compose(b_in_a: Transform, c_in_b: Transform) -> Transform:
+    """The pose of frame C in frame A."""
+    x, y, z = rotate(b_in_a[3:], c_in_b[:3])
+    return (b_in_a[0] + x, b_in_a[1] + y, b_in_a[2] + z, *quaternion_multiply(b_in_a[3:], c_in_b[3:]))
+
+
+def invert(b_in_a: Transform) -> Transform:
+    """The pose of frame A in frame B."""
+    x, y, z, qx, qy, qz, qw = b_in_a
+    inverse = (-qx, -qy, -qz, qw)  # not by a call: lookups of transforms count
+    return (*rotate(inverse, (-x, -y, -z)), *inverse)
+
+
+def interpolate(first: Transform, second: Transform, ratio: float) -> Transform:
+    """The pose part of the way from one to another: positions on a line, rotations on the shorter arc, as in tf2."""
+    rest = 1.0 - ratio
+    x, y, z = (rest * a + ratio * b for a, b in zip(first[:3], second[:3], strict=True))
+    return (x, y, z, *_slerp(first[3:], second[3:], ratio))
+
+
+def _slerp(first: Quaternion, second: Quaternion, ratio: float) -> Quaternion:
+    dot = sum(a * b for a, b in zip(first, second, strict=True))
+    sign = -1.0 if dot < 0.0 else 1.0
+    angle = acos(min(1.0, abs(dot)))
+    whole = sin(angle)
+    if whole == 0.0:
+        return first
+    a, b = sin((1.0 - ratio) * angle) / whole, sign * sin(ratio * angle) / whole
+    x, y, z, w = (a * p + b * q for p, q in zip(first, second, strict=True))
+    return x, y, z, w

@@ -1,0 +1,94 @@
+"""Mass properties of the simple shapes, in closed form, and the space they take.
+
+The formulae are those of any table of moments of inertia of homogeneous bodies, for instance Beer, Johnston: *Vector
+Mechanics for Engineers: Dynamics*, inside back cover. All are about the centre of mass and the shape's own axes.
+"""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+
+from linkwright.geometry.arrays import Array
+from linkwright.geometry.mass import MassProperties
+from linkwright.geometry.shapes import Box, Capsule, Cylinder, SimpleShape, Sphere
+
+
+def shape_properties(shape: SimpleShape, density: float = 1.0) -> MassProperties:
+    """Mass properties of a solid shape of uniform density, in its own frame.
+
+    Args:
+        shape: its lengths in m; a size of zero or less gives a body without mass.
+        density: in kg/m3; with 1 the mass is the volume in m3.
+    """
+    if isinstance(shape, Box):
+        return _box(shape, density)
+    if isinstance(shape, Sphere):
+        return _sphere(shape, density)
+    if isinstance(shape, Capsule):
+        return _capsule(shape, density)
+    return _cylinder(shape, density)
+
+
+def half_extents(shape: SimpleShape) -> Array:
+    """Half the edges, in m, of the box around a shape along its own axes; shape (3,)."""
+    if isinstance(shape, Box):
+        half = np.array(shape.size, dtype=np.float64) / 2.0
+    elif isinstance(shape, Sphere):
+        half = np.full(3, shape.radius)
+    else:
+        above = shape.length / 2.0 + (shape.radius if isinstance(shape, Capsule) else 0.0)
+        half = np.array((shape.radius, shape.radius, above), dtype=np.float64)
+    extents: Array = np.abs(half)
+    return extents
+
+
+def _box(box: Box, density: float) -> MassProperties:
+    """``m = rho a b c``; ``Ixx = m (b2 + c2) / 12`` and so on."""
+    if min(box.size) <= 0:
+        return MassProperties(0.0)
+    a, b, c = box.size
+    mass = density * a * b * c
+    return _diagonal(mass, mass * (b * b + c * c) / 12, mass * (a * a + c * c) / 12, mass * (a * a + b * b) / 12)
+
+
+def _cylinder(cylinder: Cylinder, density: float) -> MassProperties:
+    """``m = rho pi r2 l``; ``Ixx = Iyy = m (3 r2 + l2) / 12``; ``Izz = m r2 / 2``."""
+    r, length = cylinder.radius, cylinder.length
+    if min(r, length) <= 0:
+        return MassProperties(0.0)
+    mass = density * pi * r * r * length
+    across = mass * (3 * r * r + length * length) / 12
+    return _diagonal(mass, across, across, mass * r * r / 2)
+
+
+def _sphere(sphere: Sphere, density: float) -> MassProperties:
+    """``m = rho 4/3 pi r3``; ``I = 2/5 m r2`` about every axis."""
+    r = sphere.radius
+    if r <= 0:
+        return MassProperties(0.0)
+    mass = density * 4 / 3 * pi * r * r * r
+    moment = 2 / 5 * mass * r * r
+    return _diagonal(mass, moment, moment, moment)
+
+
+def _capsule(capsule: Capsule, density: float) -> MassProperties:
+    """A cylinder and the two halves of a sphere.
+
+    A half sphere has its centre of mass 3/8 r above its flat side and ``83/320 m r2`` about it, across its axis; moved
+    to the middle of the capsule that makes ``2/5 r2 + l2/4 + 3/8 l r`` for each unit of its mass.
+    """
+    r, length = capsule.radius, capsule.length
+    if r <= 0 or length < 0:
+        return MassProperties(0.0)
+    middle = density * pi * r * r * length
+    ends = density * 4 / 3 * pi * r * r * r
+    across = middle * (3 * r * r + length * length) / 12
+    across += ends * (2 / 5 * r * r + length * length / 4 + 3 / 8 * length * r)
+    along = middle * r * r / 2 + ends * 2 / 5 * r * r
+    return _diagonal(middle + ends, across, across, along)
+
+
+def _diagonal(mass: float, ixx: float, iyy: float, izz: float) -> MassProperties:
+    return MassProperties(mass, np.zeros(3), np.diag((ixx, iyy, izz)))

@@ -1,0 +1,108 @@
+"""Whether an inertia tensor, a mass and a shape can belong to one body.
+
+A rigid body's tensor is symmetric and positive definite, and its principal moments obey the triangle inequality: none
+is larger than the sum of the other two, for ``I1 + I2 - I3 = 2 integral(z2 dm) >= 0``. Source: Traversaro, Brossette,
+Escande, Nori: *Identification of fully physical consistent inertial parameters using optimization on manifolds*, 2016.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+
+import numpy as np
+
+from linkwright.geometry.arrays import Array
+from linkwright.geometry.mass import MassProperties
+
+HEAVIEST_DENSITY = 22_600.0
+"""Osmium in kg/m3: no solid is denser."""
+
+LIGHTEST_DENSITY = 1.2
+"""Air at sea level in kg/m3: a body that weighs less would float."""
+
+TOLERANCE = 1e-3
+"""Part of the largest moment by which rounding in a file may break a rule."""
+
+
+ROUNDING = 1e-9
+"""Part of the largest moment by which numbers that were computed, not rounded for a file, may be off."""
+
+
+def relative_moments(tensor: Array) -> Array:
+    """The principal moments in units of the tensor's largest entry, smallest first; shape (3,). Nothing overflows."""
+    largest = float(np.abs(tensor).max())
+    if not largest > 0:
+        return np.zeros(3)
+    return np.asarray(np.linalg.eigvalsh(tensor / largest), dtype=np.float64)
+
+
+def is_positive_definite(tensor: Array) -> bool:
+    """Whether every principal moment is positive; `tensor` is symmetric, of shape (3, 3)."""
+    return bool(relative_moments(tensor)[0] > 0)
+
+
+def is_indefinite(tensor: Array) -> bool:
+    """Whether a principal moment is negative by more than what computing it in doubles loses."""
+    return bool(relative_moments(tensor)[0] < -ROUNDING)
+
+
+def triangle_excess(tensor: Array) -> float:
+    """By how much the largest principal moment is more than the sum of the others, as a part of it.
+
+    0 or less for a body that can be; 0 for a flat one. The tensor's axes do not matter.
+    """
+    small, middle, large = relative_moments(tensor)
+    return float((large - small - middle) / large) if large > 0 else 0.0
+
+
+def excessive_products(tensor: Array, tolerance: float = TOLERANCE) -> list[tuple[str, float]]:
+    """Products of inertia that are larger than the moments on the diagonal allow, with the largest allowed.
+
+    ``ab <= (a2 + b2) / 2`` under the integral gives ``|Ixy| <= Izz / 2`` and so on, and a positive definite tensor has
+    ``Ixy2 < Ixx Iyy``.
+
+    Returns:
+        Pairs of name (``ixy``, ``ixz``, ``iyz``) and limit in kg m2.
+    """
+    found = []
+    for name, i, j, k in (("ixy", 0, 1, 2), ("ixz", 0, 2, 1), ("iyz", 1, 2, 0)):
+        first, second, third = (float(tensor[axis, axis]) for axis in (i, j, k))
+        if min(first, second, third) <= 0:
+            continue
+        limit = min(third / 2, sqrt(first * second))
+        if abs(float(tensor[i, j])) > limit * (1 + tolerance):
+            found.append((name, limit))
+    return found
+
+
+def largest_moment_within(center: Array, low: Array, high: Array, mass: float) -> float:
+    """The largest moment about a centre of mass that a body inside a box can have, in kg m2.
+
+    A body's points are nowhere farther than the farthest corner, and a moment about an axis through the centre of mass
+    is at most that of the whole mass at the farthest distance.
+
+    Args:
+        center: the centre of mass in m; shape (3,).
+        low: the box's lowest corner; shape (3,).
+        high: its highest corner; shape (3,).
+        mass: in kg.
+    """
+    farthest = np.maximum(np.abs(low - center), np.abs(high - center))
+    return mass * float(farthest @ farthest)
+
+
+def distance_outside(point: Array, low: Array, high: Array) -> float:
+    """How far a point lies outside a box, in m; 0 inside."""
+    return float(np.linalg.norm(np.maximum(0.0, np.maximum(low - point, point - high))))
+
+
+def problems(properties: MassProperties) -> list[str]:
+    """What keeps mass properties from being those of a body, in words; empty when they can be."""
+    found = []
+    if not properties.mass > 0:
+        found.append("the mass is not positive")
+    if not is_positive_definite(properties.inertia):
+        found.append("the inertia tensor is not positive definite")
+    elif triangle_excess(properties.inertia) > TOLERANCE:
+        found.append("one principal moment of inertia is larger than the sum of the other two")
+    return found

@@ -1,0 +1,41 @@
+"""Vectors of three plain floats."""
+
+from __future__ import annotations
+
+from math import sqrt
+
+Vector3 = tuple[float, float, float]
+
+
+def added(first: Vector3, second: Vector3) -> Vector3:
+    """The sum."""
+    return first[0] + second[0], first[1] + second[1], first[2] + second[2]
+
+
+def subtracted(first: Vector3, second: Vector3) -> Vector3:
+    """The first vector less the second."""
+    return first[0] - second[0], first[1] - second[1], first[2] - second[2]
+
+
+def scaled(vector: Vector3, factor: float) -> Vector3:
+    """The vector times a factor."""
+    return vector[0] * factor, vector[1] * factor, vector[2] * factor
+
+
+def dot(first: Vector3, second: Vector3) -> float:
+    """The scalar product."""
+    return first[0] * second[0] + first[1] * second[1] + first[2] * second[2]
+
+
+def cross(first: Vector3, second: Vector3) -> Vector3:
+    """The vector product."""
+    return (
+        first[1] * second[2] - first[2] * second[1],
+        first[2] * second[0] - first[0] * second[2],
+        first[0] * second[1] - first[1] * second[0],
+    )
+
+
+def length(vector: Vector3) -> float:
+    """How long a vector is."""
+    return sqrt(dot(vector, vector))

@@ -1,0 +1,61 @@
+"""What action servers and action clients share: a name, a type, and their end."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from types import GenericAlias
+from typing import TYPE_CHECKING, Any
+
+from linkwright.graph.loop.node_handle import NodeHandle
+from linkwright.graph.node import Node
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
+
+
+class ActionEndpoint(ABC):
+    """One side of an action; at the end of a ``with`` block it is destroyed.
+
+    Args:
+        node: whose it is.
+        action_type: the class of the action, or its name.
+        action_name: relative, absolute or private name.
+
+    Raises:
+        InvalidServiceNameError: the name is not valid.
+    """
+
+    __class_getitem__: Any = classmethod(GenericAlias)  # annotations name the type of the action, as in rclpy
+
+    def __init__(self, node: Node, action_type: Any, action_name: str) -> None:
+        from linkwright.messages import get_action
+
+        self._node = node
+        self._handle: NodeHandle = node.handle
+        self._action_type = get_action(action_type) if isinstance(action_type, str) else action_type
+        self._action_name = node.resolve_service_name(action_name)
+        self._destroyed = False
+
+    @property
+    def action_type(self) -> Any:
+        """The class of the action."""
+        return self._action_type
+
+    @property
+    def action_name(self) -> str:
+        """The action's absolute name."""
+        return self._action_name
+
+    @abstractmethod
+    def destroy(self) -> None:
+        """Leave the graph. A second call does nothing."""
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.destroy()
+
+    def _below(self, name: str) -> str:
+        """The name of one of the services and topics that the action consists of."""
+        return f"{self._action_name}/_action/{name}"

@@ -1,0 +1,66 @@
+"""The logging of a process as its ROS arguments configure it: levels, console, log file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from linkwright.graph.command_line.ros_arguments import RosArguments
+from linkwright.graph.log.console import print_to_console
+from linkwright.graph.log.file import LogFile
+from linkwright.graph.log.levels import LogLevels
+from linkwright.graph.log.record import LogRecord, LogSink
+
+
+@dataclass(slots=True)
+class Logging:
+    """The logging of a process.
+
+    Attributes:
+        sink: what its graph gives records to.
+        levels: the levels of its loggers.
+        rosout: whether nodes publish what they log.
+        file: its log file; None where there is none.
+    """
+
+    sink: LogSink
+    levels: LogLevels = field(default_factory=LogLevels)
+    rosout: bool = True
+    file: LogFile | None = None
+
+    def close(self) -> None:
+        """Write out what is buffered."""
+        if self.file is not None:
+            self.file.close()
+
+
+def set_levels(levels: LogLevels, arguments: RosArguments) -> None:
+    """Give loggers the levels that ``--log-level`` says."""
+    if arguments.log_level is not None:
+        levels.set("", arguments.log_level)
+    for name, level in arguments.log_levels.items():
+        levels.set(name, level)
+
+
+def set_up(arguments: RosArguments, executable: str, levels: LogLevels | None = None) -> Logging:
+    """The logging of a process.
+
+    Args:
+        arguments: its ROS arguments.
+        executable: the program's name, after which its log file is named.
+        levels: what takes the levels; new ones when left out.
+    """
+    levels = levels or LogLevels()
+    set_levels(levels, arguments)
+    file = None if arguments.external_lib_logs is False else LogFile(executable)
+    sinks: list[Callable[[LogRecord], None]] = []
+    if arguments.stdout_logs is not False:
+        sinks.append(print_to_console)
+    if file is not None:
+        sinks.append(file.write)
+
+    def sink(record: LogRecord) -> None:
+        for each in sinks:
+            each(record)
+
+    return Logging(sink, levels, rosout=arguments.rosout_logs is not False, file=file)

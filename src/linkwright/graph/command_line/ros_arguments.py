@@ -1,0 +1,229 @@
+"""ROS arguments: what stands between ``--ros-args`` and ``--`` on a command line, in the forms of rcl."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, joined, phrase
+from linkwright.graph.log.levels import LogLevel, level_named
+from linkwright.graph.parameters.files import parse_value, read_parameter_file
+from linkwright.graph.parameters.rules import ANY_NODE, ParameterRules
+
+BEGIN = "--ros-args"
+END = "--"
+_NODE_PREFIX = re.compile(r"(?!ros(?:topic|service)://)(/?[A-Za-z_*][\w/*]*):(.+)", re.DOTALL)
+
+
+@dataclass(frozen=True, slots=True)
+class RemapRule:
+    """One remapping.
+
+    Attributes:
+        node: the node that it is for; None for every node.
+        source: what is renamed: a name (``rostopic://`` or ``rosservice://`` before it tells its kind), ``__node``
+            (or ``__name``), or ``__ns``.
+        target: what it is named instead.
+    """
+
+    node: str | None
+    source: str
+    target: str
+
+
+@dataclass(slots=True)
+class RosArguments:
+    """What the ROS arguments of a command line say.
+
+    Attributes:
+        remap_rules: remappings, in order.
+        parameters: parameter values, from files and from the command line, in order.
+        log_level: the least severity to log; None when it is not given.
+        log_levels: the same for loggers by name.
+        log_config_file: the file that configures the log files, as it is given.
+        rosout_logs: whether what is logged goes to ``/rosout``; None when it is not said.
+        stdout_logs: whether it goes to the console; None when it is not said.
+        external_lib_logs: whether it goes to a log file; None when it is not said.
+        enclave: the security enclave.
+        others: the arguments that are not ROS arguments.
+    """
+
+    remap_rules: list[RemapRule] = field(default_factory=list)
+    parameters: ParameterRules = field(default_factory=ParameterRules)
+    log_level: LogLevel | None = None
+    log_levels: dict[str, LogLevel] = field(default_factory=dict)
+    log_config_file: str | None = None
+    rosout_logs: bool | None = None
+    stdout_logs: bool | None = None
+    external_lib_logs: bool | None = None
+    enclave: str | None = None
+    others: list[str] = field(default_factory=list)
+
+    def remappings_for(self, node_name: str) -> list[tuple[str, str]]:
+        """The remappings ``(from, to)`` of a node, which are those of every node and its own, in order.
+
+        Args:
+            node_name: the name that its code gives it.
+        """
+        return [(rule.source, rule.target) for rule in self.remap_rules if rule.node in (None, node_name)]
+
+    def parameters_for(self, full_name: str) -> dict[str, Any]:
+        """The parameter values of a node by parameter name.
+
+        Args:
+            full_name: the namespace and name that the node really has.
+        """
+        return self.parameters.for_node(full_name)
+
+
+def parse(arguments: Sequence[str]) -> RosArguments:
+    """Read a command line, without the program's name.
+
+    Raises:
+        LinkwrightError: GRAPH221, a ROS argument is unknown, lacks its value or has a malformed one; what is wrong
+            with a parameter file.
+    """
+    ros = RosArguments()
+    inside = False
+    waiting = iter(arguments)
+    for argument in waiting:
+        if argument == BEGIN:
+            inside = True
+        elif not inside:
+            ros.others.append(argument)
+        elif argument == END:
+            inside = False
+        elif argument in _FLAGS:
+            setattr(ros, *_FLAGS[argument])
+        elif argument in _OPTIONS:
+            value = next(waiting, None)
+            if value is None or value in (BEGIN, END):
+                raise _error(
+                    phrase("ROS argument '{argument}' needs a value", argument=argument),
+                    phrase("write {argument} {form}", argument=argument, form=_FORMS[argument]),
+                )
+            _OPTIONS[argument](ros, value)
+        else:
+            raise _unknown(argument)
+    return ros
+
+
+def remove_ros_arguments(arguments: Sequence[str]) -> list[str]:
+    """The arguments of a command line that are not ROS arguments, whatever those say."""
+    others: list[str] = []
+    inside = False
+    for argument in arguments:
+        if argument == BEGIN:
+            inside = True
+        elif inside:
+            inside = argument != END
+        else:
+            others.append(argument)
+    return others
+
+
+def _read_remapping(ros: RosArguments, rule: str) -> None:
+    source, target = _assignment(rule, phrase("a remapping rule"), phrase("from:=to"))
+    node = None
+    match = _NODE_PREFIX.fullmatch(source)
+    if match:
+        node, source = match[1], match[2]
+    ros.remap_rules.append(RemapRule(node, source, target))
+
+
+def _read_parameter(ros: RosArguments, rule: str) -> None:
+    name, text = _assignment(rule, phrase("a parameter"), phrase("name:=value"))
+    pattern = ANY_NODE
+    match = _NODE_PREFIX.fullmatch(name)
+    if match:
+        pattern, name = match[1], match[2]
+    ros.parameters.set(pattern, name, parse_value(text, name))
+
+
+def _read_parameter_file(ros: RosArguments, path: str) -> None:
+    ros.parameters.add(read_parameter_file(Path(path)))
+
+
+def _read_log_level(ros: RosArguments, rule: str) -> None:
+    name, separator, word = rule.rpartition(":=")
+    level = level_named(word)
+    if level is None or (separator and not name):
+        levels = [each.name.lower() for each in LogLevel]
+        raise _error(
+            phrase("unknown log level '{word}'", word=word),
+            did_you_mean(word.lower(), levels) or phrase("the levels are {levels}", levels=joined(levels)),
+        )
+    if separator:
+        ros.log_levels[name] = level
+    else:
+        ros.log_level = level
+
+
+def _read_log_config_file(ros: RosArguments, path: str) -> None:
+    ros.log_config_file = path
+
+
+def _read_enclave(ros: RosArguments, enclave: str) -> None:
+    if not re.fullmatch(r"(/|(/[A-Za-z_]\w*)+)", enclave):
+        raise _error(
+            phrase("'{enclave}' is not an enclave", enclave=enclave),
+            phrase("write a name that begins with a slash, such as /robot/talker"),
+        )
+    ros.enclave = enclave
+
+
+_OPTIONS: dict[str, Callable[[RosArguments, str], None]] = {
+    "-r": _read_remapping,
+    "--remap": _read_remapping,
+    "-p": _read_parameter,
+    "--param": _read_parameter,
+    "--params-file": _read_parameter_file,
+    "--log-level": _read_log_level,
+    "--log-config-file": _read_log_config_file,
+    "--log-file-name": lambda _ros, _name: None,
+    "-e": _read_enclave,
+    "--enclave": _read_enclave,
+}
+_FORMS = {
+    "-r": phrase("from:=to"),
+    "--remap": phrase("from:=to"),
+    "-p": phrase("name:=value"),
+    "--param": phrase("name:=value"),
+    "--params-file": phrase("FILE.yaml"),
+    "--log-level": phrase("LEVEL or LOGGER:=LEVEL"),
+    "--log-config-file": phrase("FILE"),
+    "--log-file-name": phrase("NAME"),
+    "-e": "/ENCLAVE",
+    "--enclave": "/ENCLAVE",
+}
+_FLAGS = {
+    f"--{word}-{what}-logs": (f"{what.replace('-', '_')}_logs", word == "enable")
+    for word in ("enable", "disable")
+    for what in ("rosout", "stdout", "external-lib")
+}
+
+
+def _assignment(rule: str, what: Phrase, form: Phrase) -> tuple[str, str]:
+    left, separator, right = rule.partition(":=")
+    if not separator or not left:
+        raise _error(phrase("'{rule}' is not {what}", rule=rule, what=what), phrase("write {form}", form=form))
+    return left, right
+
+
+def _unknown(argument: str) -> LinkwrightError:
+    hint = did_you_mean(argument, (*_OPTIONS, *_FLAGS))
+    if hint is None and ":=" in argument:
+        option = "-r" if argument.startswith("__") else "-p"
+        hint = (
+            phrase("write {option} {argument}", option=option, argument=argument)
+            if option == "-r"
+            else phrase("write -p {argument} or -r {argument}", argument=argument)
+        )
+    return _error(phrase("unknown ROS argument '{argument}'", argument=argument), hint)
+
+
+def _error(message: Phrase, hint: Phrase | None = None) -> LinkwrightError:
+    return LinkwrightError(Diagnostic("GRAPH221", message, hint=hint))

@@ -1,0 +1,153 @@
+"""What publishers, subscriptions, services and clients share: a name, a type, a quality of service."""
+
+from __future__ import annotations
+
+import itertools
+import os
+from collections.abc import Callable
+from typing import Any, Generic, Protocol, TypeVar
+
+from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
+from linkwright.graph.endpoints.type_support import check_is_valid_msg_type, check_is_valid_srv_type
+from linkwright.graph.loop.callback_groups import CallbackGroup
+from linkwright.graph.loop.node_handle import NodeHandle, Part
+from linkwright.graph.qos.compatibility import resolved
+from linkwright.graph.qos.profile import QoSProfile
+
+M = TypeVar("M")
+
+_GID_START = os.urandom(10)
+_gid_numbers = itertools.count(1)
+
+
+class Endpoint(Part):
+    """One side of a topic or a service.
+
+    Attributes:
+        name: the absolute name of the topic or service.
+        type_name: such as ``sensor_msgs/msg/JointState``.
+        qos_profile: what is offered or asked for.
+    """
+
+    kind: EndpointKind
+    _check_interface: Callable[[Any], None]
+    """Raises unless a class is that of an interface which the endpoint can carry."""
+
+    def _describe(self, node: NodeHandle, interface: Any, name: str, qos_profile: QoSProfile) -> None:
+        self.node = node
+        self.name = name
+        if not isinstance(interface, str):
+            self._check_interface(interface)
+        self.type_name: str = interface if isinstance(interface, str) else interface.TYPE_NAME
+        self.qos_profile = qos_profile
+        self._interface: Any = None if isinstance(interface, str) else interface
+        self._gid = b""
+
+    @property
+    def interface(self) -> Any:
+        """The class of the type; made when it is first asked for."""
+        if self._interface is None:
+            from linkwright.messages import get_interface
+
+            self._interface = get_interface(self.type_name)
+        return self._interface
+
+    @property
+    def gid(self) -> bytes:
+        """The endpoint's identity, 16 bytes; a transport may set it before it is asked for."""
+        if not self._gid:
+            self._gid = _GID_START + next(_gid_numbers).to_bytes(6, "big")
+        return self._gid
+
+    @gid.setter
+    def gid(self, gid: bytes) -> None:
+        self._gid = gid
+
+    @property
+    def node_name(self) -> str:
+        """The full name of the node it belongs to."""
+        return self.node.identity.full_name
+
+    @property
+    def logger_name(self) -> str:
+        """The name of the logger of the node it belongs to."""
+        return self.node.logger.name
+
+    def info(self) -> EndpointInfo:
+        """What tools report of it."""
+        return EndpointInfo(
+            self.kind, self.node.identity, self.name, self.type_name, resolved(self.qos_profile), self.gid, local=True
+        )
+
+    def begin(self) -> None:
+        """Join the topic or service."""
+        super().begin()
+        self.node.graph.add(self)
+
+    def retire(self) -> None:
+        """Leave the topic or service."""
+        self.node.graph.remove(self)
+        super().retire()
+
+
+class MatchListener(Protocol):
+    """Is called when endpoints match."""
+
+    def matched(self, change: int) -> None:
+        """The number of matching endpoints changed; negative when some left."""
+
+
+class TopicEndpoint(Endpoint, Generic[M]):
+    """A publisher or a subscription.
+
+    Attributes:
+        callback_group: which entities may run beside its callbacks.
+        events: what is told of quality of service; None when its user wants to hear nothing.
+    """
+
+    callback_group: CallbackGroup
+    events: MatchListener | None
+    _check_interface = staticmethod(check_is_valid_msg_type)
+    _outside_count = 0
+
+    @property
+    def topic_name(self) -> str:
+        """The topic's absolute name."""
+        return self.name
+
+    @property
+    def topic(self) -> str:
+        """The topic's absolute name."""
+        return self.name
+
+    @property
+    def msg_type(self) -> type[M]:
+        """The message class."""
+        return self.interface  # type: ignore[no-any-return]  # made from the name of a type
+
+    def set_outside_count(self, count: int) -> None:
+        """For the transport: how many endpoints of the other side match outside of the process."""
+        before, self._outside_count = self._outside_count, count
+        if self.events is not None and count != before:
+            self.events.matched(count - before)
+
+
+class ServiceEndpoint(Endpoint):
+    """A client or a service."""
+
+    _check_interface = staticmethod(check_is_valid_srv_type)
+
+    @property
+    def srv_name(self) -> str:
+        """The service's absolute name."""
+        return self.name
+
+    @property
+    def service_name(self) -> str:
+        """The service's absolute name."""
+        return self.name
+
+    @property
+    def srv_type(self) -> Any:
+        """The class of the service."""
+        return self.interface

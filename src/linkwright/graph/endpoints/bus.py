@@ -1,0 +1,105 @@
+"""The in-process bus: connects the publishers, subscriptions, services and clients of one process."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterator
+from typing import Any, Generic, TypeVar
+
+from linkwright.graph.endpoints.base import Endpoint
+from linkwright.graph.endpoints.client import Client
+from linkwright.graph.endpoints.matching import match
+from linkwright.graph.endpoints.publisher import Publisher
+from linkwright.graph.endpoints.service import Service
+from linkwright.graph.endpoints.subscription import Subscription
+
+E = TypeVar("E", bound=Endpoint)
+
+
+class _Directory(Generic[E]):
+    """Endpoints of one kind by name, each name's in order of creation."""
+
+    def __init__(self) -> None:
+        self._by_name: dict[str, dict[E, None]] = {}
+
+    def add(self, endpoint: E) -> None:
+        self._by_name.setdefault(endpoint.name, {})[endpoint] = None
+
+    def remove(self, endpoint: E) -> bool:
+        of_name = self._by_name.get(endpoint.name, {})
+        if endpoint not in of_name:
+            return False
+        del of_name[endpoint]
+        if not of_name:
+            del self._by_name[endpoint.name]
+        return True
+
+    def of(self, name: str) -> tuple[E, ...]:
+        return tuple(self._by_name.get(name, ()))
+
+    def __iter__(self) -> Iterator[E]:
+        return (endpoint for of_name in tuple(self._by_name.values()) for endpoint in tuple(of_name))
+
+
+class Bus:
+    """Knows every endpoint of the process and brings those that match together. It may be used from any thread."""
+
+    def __init__(self) -> None:
+        self._lock = threading.RLock()
+        self._publishers: _Directory[Publisher[Any]] = _Directory()
+        self._subscriptions: _Directory[Subscription[Any]] = _Directory()
+        self._services: _Directory[Service[Any, Any]] = _Directory()
+        self._clients: _Directory[Client[Any, Any]] = _Directory()
+
+    def add(self, endpoint: Endpoint) -> None:
+        """Connect a new endpoint to those of its name."""
+        with self._lock:
+            if isinstance(endpoint, Publisher):
+                self._publishers.add(endpoint)
+                for subscription in self._subscriptions.of(endpoint.name):
+                    match(endpoint, subscription)
+            elif isinstance(endpoint, Subscription):
+                self._subscriptions.add(endpoint)
+                for publisher in self._publishers.of(endpoint.name):
+                    match(publisher, endpoint)
+            elif isinstance(endpoint, Service):
+                self._services.add(endpoint)
+                self._find_servers(endpoint.name)
+            elif isinstance(endpoint, Client):
+                self._clients.add(endpoint)
+                self._find_servers(endpoint.name)
+
+    def remove(self, endpoint: Endpoint) -> None:
+        """Take an endpoint away; what a publisher sent is still delivered, what waits for a subscription is dropped."""
+        with self._lock:
+            if isinstance(endpoint, Publisher):
+                self._publishers.remove(endpoint)
+            elif isinstance(endpoint, Subscription):
+                self._subscriptions.remove(endpoint)
+                for publisher in self._publishers.of(endpoint.name):
+                    publisher.disconnect(endpoint)
+            elif isinstance(endpoint, Service):
+                self._services.remove(endpoint)
+                self._find_servers(endpoint.name)
+            elif isinstance(endpoint, Client):
+                self._clients.remove(endpoint)
+
+    def publishers(self, topic: str | None = None) -> tuple[Publisher[Any], ...]:
+        """The publishers of a topic, or all of them."""
+        with self._lock:
+            return tuple(self._publishers) if topic is None else self._publishers.of(topic)
+
+    def subscriptions(self, topic: str | None = None) -> tuple[Subscription[Any], ...]:
+        """The subscriptions to a topic, or all of them."""
+        with self._lock:
+            return tuple(self._subscriptions) if topic is None else self._subscriptions.of(topic)
+
+    def endpoints(self) -> tuple[Endpoint, ...]:
+        """All endpoints."""
+        with self._lock:
+            return (*self._publishers, *self._subscriptions, *self._services, *self._clients)
+
+    def _find_servers(self, name: str) -> None:
+        servers = self._services.of(name)
+        for client in self._clients.of(name):
+            client.set_server(next((each for each in servers if each.type_name == client.type_name), None))

@@ -1,0 +1,248 @@
+"""Service clients."""
+
+from __future__ import annotations
+
+import itertools
+import threading
+from collections import deque
+from collections.abc import Callable
+from functools import partial
+from typing import Any, Generic, Protocol, TypeVar
+
+from linkwright.graph.endpoints.copies import copy_of
+from linkwright.graph.endpoints.info import EndpointKind
+from linkwright.graph.endpoints.service import Service
+from linkwright.graph.endpoints.service_introspection import EventType, IntrospectedEndpoint, RequestId
+from linkwright.graph.loop.callback_groups import CallbackGroup
+from linkwright.graph.loop.entity import Entity
+from linkwright.graph.loop.future import Future
+from linkwright.graph.loop.node_handle import NodeHandle
+from linkwright.graph.qos.profile import QoSProfile
+
+Request = TypeVar("Request")
+Response = TypeVar("Response")
+
+
+class OutsideService(Protocol):
+    """A server outside of the process, as a client of it sees it."""
+
+    def send(self, request: Any, answer: Callable[[Any], None], number: int) -> Callable[[], None]:
+        """Ask it.
+
+        Args:
+            request: the request.
+            answer: called with the response, from any thread, at most once.
+            number: of the request, another one for each of a client's.
+
+        Returns:
+            What forgets the request.
+        """
+
+
+class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
+    """Asks a service; made by ``Node.create_client``.
+
+    A request that is made while no server is there waits for one, up to the depth of the quality of service. Where
+    several servers have the name, the one of this process that is there longest is asked, else one outside.
+    """
+
+    kind = EndpointKind.CLIENT
+    unblockable = True
+
+    def __init__(
+        self,
+        node: NodeHandle,
+        srv_type: Any,
+        srv_name: str,
+        qos_profile: QoSProfile,
+        callback_group: CallbackGroup | None = None,
+    ) -> None:
+        Entity.__init__(self, node, callback_group)
+        self._describe(node, srv_type, srv_name, qos_profile)
+        self.outside: OutsideService | None = None
+        """What takes requests out of the process, while a server there matches; see `set_outside`."""
+        self.unreachable = ""
+        """Why no server can be asked though there are some outside; empty otherwise. See `set_unreachable`."""
+        self._has_told_unreachable = False
+        self._server: Service[Request, Response] | None = None
+        self._numbers = itertools.count(1)
+        self._lock = threading.RLock()
+        self._unsent: deque[tuple[Future[Response], Request]] = deque(maxlen=qos_profile.queue_length)
+        self._pending: dict[Future[Response], Callable[[], None]] = {}
+        self._answers: deque[tuple[Future[Response], Response, RequestId]] = deque()
+
+    @property
+    def what(self) -> str:
+        """What it is called in messages."""
+        return f"client of service '{self.name}'"
+
+    def service_is_ready(self) -> bool:
+        """Whether a server is there.
+
+        Raises:
+            InvalidHandleError: the client was destroyed.
+        """
+        self.check_alive()
+        return self._server is not None or self.outside is not None
+
+    def wait_for_service(self, timeout_sec: float | None = None) -> bool:
+        """Block the calling thread until a server is there.
+
+        Args:
+            timeout_sec: seconds to wait at most; None for any time.
+
+        Returns:
+            Whether one is there. False also when the graph is closed meanwhile.
+        """
+        is_there = self.node.graph.wait_until(self.service_is_ready, timeout_sec)
+        if not is_there:
+            self._tell_unreachable()
+        return is_there
+
+    def call_async(self, request: Request) -> Future[Response]:
+        """Ask; the future gets the response.
+
+        Raises:
+            TypeError: the request is not of the service's type.
+            InvalidHandleError: the client was destroyed.
+        """
+        self.check_alive()
+        if not isinstance(request, self.srv_type.Request):
+            raise TypeError(f"Expected {self.srv_type.Request}, got {type(request)}: the request of '{self.name}'")
+        if self.node.copies_messages:
+            request = copy_of(request)
+        future: Future[Response] = Future()
+        self._pending[future] = _nothing
+        if not self._send(future, request):
+            with self._lock:
+                self._unsent.append((future, request))
+            self._send_waiting()
+            self._tell_unreachable()
+        return future
+
+    def call(self, request: Request, timeout_sec: float | None = None) -> Response | None:
+        """Ask, and block the calling thread until the response is there. Another thread must run the node's callbacks.
+
+        Args:
+            request: the request.
+            timeout_sec: seconds to wait at most; None for any time.
+
+        Returns:
+            The response; None, as in Jazzy, if none came in time.
+
+        Raises:
+            TypeError: the request is not of the service's type.
+            RuntimeError: the calling thread is the one that would have to receive the response.
+        """
+        is_own_thread = getattr(self.dispatcher, "is_own_thread", None)
+        if is_own_thread is not None and is_own_thread():
+            raise RuntimeError(
+                f"call() of service '{self.name}' would block the event loop that receives the response; "
+                "await call_async() instead"
+            )
+        future = self.call_async(request)
+        if not future.wait(timeout_sec):
+            self.remove_pending_request(future)
+            return None
+        return future.result()
+
+    def remove_pending_request(self, future: Future[Any]) -> None:
+        """Give a request up: its future gets no response any more."""
+        with self._lock:
+            forget = self._pending.pop(future, None)
+            self._unsent = deque((each for each in self._unsent if each[0] is not future), maxlen=self._unsent.maxlen)
+        if forget is not None:
+            forget()
+
+    # --- for dispatchers ---------------------------------------------------------------------------------------------
+
+    def has_work(self) -> bool:
+        """Whether responses wait."""
+        return bool(self._answers)
+
+    def take(self) -> Callable[[], object] | None:
+        """The handing over of the response that waits longest."""
+        answer = self._next_of(self._answers)
+        return None if answer is None else partial(self._hand_over, *answer)
+
+    def retire(self) -> None:
+        """Ask no more, and take no more answers."""
+        with self._lock:
+            pending, self._pending = self._pending, {}
+            self._unsent.clear()
+        for forget in pending.values():
+            forget()
+        super().retire()
+        self._answers.clear()
+        self._server = None
+        self.outside = None
+        self.end_introspection()
+
+    # --- for the bus and the transport ---------------------------------------------------------------------------
+
+    def set_server(self, server: Service[Request, Response] | None) -> None:
+        """Ask a service of this process from now on, or none."""
+        self._server = server
+        self._send_waiting()
+
+    def set_outside(self, outside: OutsideService | None) -> None:
+        """For the transport: ask a server outside, where this process has none, or none."""
+        self.outside = outside
+        self._send_waiting()
+        self.node.graph.notify_change()
+
+    def set_unreachable(self, reason: str) -> None:
+        """For the transport: say why the servers outside cannot be asked; empty when there are none, or they can.
+
+        It is logged, once, when a request waits or somebody has waited for a server in vain.
+        """
+        self.unreachable = reason
+        if self._unsent:
+            self._tell_unreachable()
+        self.node.graph.notify_change()
+
+    def _tell_unreachable(self) -> None:
+        has_server = self._server is not None or self.outside is not None
+        if self.unreachable and not self._has_told_unreachable and not has_server:
+            self._has_told_unreachable = True
+            self.node.logger.warning(self.unreachable)
+
+    def _send_waiting(self) -> None:
+        while self._server is not None or self.outside is not None:
+            with self._lock:
+                if not self._unsent:
+                    return
+                future, request = self._unsent.popleft()
+            if not self._send(future, request):
+                with self._lock:
+                    self._unsent.appendleft((future, request))
+
+    def _send(self, future: Future[Response], request: Request) -> bool:
+        server, outside = self._server, self.outside
+        if server is None and outside is None:
+            return False
+        request_id = RequestId(self.gid, next(self._numbers))
+        answer = partial(self._receive, future, request_id)
+        if self.service_events is not None:
+            self.service_events.tell(EventType.REQUEST_SENT, request_id, request=request)
+        if server is not None:
+            server.receive(request, answer, request_id)
+        elif outside is not None:
+            forget = outside.send(request, answer, request_id.number)
+            if future in self._pending:
+                self._pending[future] = forget
+        return True
+
+    def _receive(self, future: Future[Response], request_id: RequestId, response: Response) -> None:
+        if self._pending.pop(future, None) is not None:
+            self._answers.append((future, response, request_id))
+            self.announce()
+
+    def _hand_over(self, future: Future[Response], response: Response, request_id: RequestId) -> None:
+        if self.service_events is not None:
+            self.service_events.tell(EventType.RESPONSE_RECEIVED, request_id, response=response)
+        future.hand_over(response, self.dispatcher)
+
+
+def _nothing() -> None:
+    """What forgets a request of this process."""

@@ -1,0 +1,253 @@
+"""Which messages of a topic are wanted, by a condition on their fields: the SQL subset of DDS (OMG DDS 1.4, annex B).
+
+``temperature > 20 AND frame_id LIKE 'base%'``, with ``%0``, ``%1``, ... for parameters. Fields of fields have dots
+between (``header.frame_id``), elements of arrays a number in brackets (``position[0]``).
+"""
+
+from __future__ import annotations
+
+import operator
+import re
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from linkwright.diagnostics import phrase
+
+Condition = Callable[[Any], bool]
+_Value = Callable[[Any], Any]
+
+_TOKEN = re.compile(
+    r"""\s*(?:(?P<number>[-+]?(?:0[xX][0-9a-fA-F]+|(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?))"""
+    r"""|(?P<text>['`](?:[^'])*')"""
+    r"""|(?P<parameter>%\d+)"""
+    r"""|(?P<name>[A-Za-z_]\w*(?:\[\d+\])*(?:\.[A-Za-z_]\w*(?:\[\d+\])*)*)"""
+    r"""|(?P<sign><>|!=|<=|>=|=|<|>|\(|\)))"""
+)
+_RELATIONS: dict[str, Callable[[Any, Any], Any]] = {
+    "=": operator.eq,
+    "<>": operator.ne,
+    "!=": operator.ne,
+    "<": operator.lt,
+    "<=": operator.le,
+    ">": operator.gt,
+    ">=": operator.ge,
+}
+_WORDS = frozenset({"AND", "OR", "NOT", "BETWEEN", "LIKE", "MATCH", "TRUE", "FALSE"})
+_WILD = {"%": ".*", "*": ".*", "_": ".", "?": "."}
+_MOST_PARAMETERS = 100
+_PART = re.compile(r"(\w+)|\[(\d+)\]")
+
+
+class ContentFilterError(ValueError):
+    """A condition that cannot be understood, or that names fields that a message has not."""
+
+
+class ContentFilterOptions(NamedTuple):
+    """Which messages of a topic are wanted (rclpy ``ContentFilterOptions``).
+
+    Attributes:
+        filter_expression: the condition; empty for none.
+        expression_parameters: what stands for ``%0``, ``%1``, ... in it; texts in single quotes or without.
+    """
+
+    filter_expression: str
+    expression_parameters: Sequence[str] = ()
+
+
+class ContentFilter:
+    """A condition on the messages of one type.
+
+    Args:
+        options: the condition and its parameters.
+        message_class: of the messages.
+
+    Raises:
+        ContentFilterError: it cannot be understood, or a field or parameter is not there.
+    """
+
+    def __init__(self, options: ContentFilterOptions, message_class: Any) -> None:
+        self.options = options
+        if len(options.expression_parameters) > _MOST_PARAMETERS:
+            raise ContentFilterError(f"a content filter takes at most {_MOST_PARAMETERS} parameters")
+        self._condition = _Parser(options, message_class).parse()
+
+    def accepts(self, message: Any) -> bool:
+        """Whether a message is wanted."""
+        return self._condition(message)
+
+
+@dataclass(frozen=True, slots=True)
+class _Token:
+    kind: str
+    text: str
+
+    @property
+    def word(self) -> str:
+        """A key word, in capitals; empty for anything else."""
+        return self.text.upper() if self.kind == "name" and self.text.upper() in _WORDS else ""
+
+
+_END = _Token("end", "")
+
+
+class _Parser:
+    """Makes a condition out of an expression, by recursive descent."""
+
+    def __init__(self, options: ContentFilterOptions, message_class: Any) -> None:
+        self._text = options.filter_expression
+        self._parameters = options.expression_parameters
+        self._class = message_class
+        self._tokens = self._divided()
+
+    def parse(self) -> Condition:
+        condition = self._any_of()
+        if self._tokens[0] is not _END:
+            raise self._error(f"'{self._tokens[0].text}' is one too many")
+        return condition
+
+    def _divided(self) -> list[_Token]:
+        tokens: list[_Token] = []
+        at = 0
+        while self._text[at:].strip():
+            match = _TOKEN.match(self._text, at)
+            if match is None or match.lastgroup is None:
+                raise self._error(f"'{self._text[at:].strip()[:10]}' cannot be understood")
+            tokens.append(_Token(match.lastgroup, match[match.lastgroup]))
+            at = match.end()
+        return [*tokens, _END]
+
+    def _error(self, problem: str) -> ContentFilterError:
+        return ContentFilterError(f"content filter '{self._text}': {problem}")
+
+    def _next(self) -> _Token:
+        return self._tokens.pop(0) if self._tokens[0] is not _END else _END
+
+    def _took(self, word: str) -> bool:
+        token = self._tokens[0]
+        if word in (token.word, token.text if token.kind == "sign" else None):
+            self._next()
+            return True
+        return False
+
+    def _need(self, word: str) -> None:
+        if not self._took(word):
+            raise self._error(f"'{word}' is missing before '{self._tokens[0].text or 'its end'}'")
+
+    # --- the grammar ---------------------------------------------------------------------------------------------
+
+    def _any_of(self) -> Condition:
+        conditions = [self._all_of()]
+        while self._took("OR"):
+            conditions.append(self._all_of())
+        return conditions[0] if len(conditions) == 1 else lambda message: any(each(message) for each in conditions)
+
+    def _all_of(self) -> Condition:
+        conditions = [self._one()]
+        while self._took("AND"):
+            conditions.append(self._one())
+        return conditions[0] if len(conditions) == 1 else lambda message: all(each(message) for each in conditions)
+
+    def _one(self) -> Condition:
+        if self._took("NOT"):
+            condition = self._one()
+            return lambda message: not condition(message)
+        if self._took("("):
+            condition = self._any_of()
+            self._need(")")
+            return condition
+        return self._predicate()
+
+    def _predicate(self) -> Condition:
+        left = self._value()
+        if self._took("NOT"):
+            self._need("BETWEEN")
+            between = self._between(left)
+            return lambda message: not between(message)
+        if self._took("BETWEEN"):
+            return self._between(left)
+        token = self._next()
+        if token.word in ("LIKE", "MATCH"):
+            return self._like(left, regular=token.word == "MATCH")
+        relation = _RELATIONS.get(token.text)
+        if relation is None:
+            raise self._error(f"a comparison is missing before '{token.text or 'its end'}'")
+        return _compared(left, relation, self._value())
+
+    def _between(self, value: _Value) -> Condition:
+        low = _compared(value, operator.ge, self._value())
+        self._need("AND")
+        high = _compared(value, operator.le, self._value())
+        return lambda message: low(message) and high(message)
+
+    def _like(self, value: _Value, *, regular: bool) -> Condition:
+        pattern = str(self._value()(None))
+        try:
+            wanted = re.compile(pattern if regular else "".join(_WILD.get(each, re.escape(each)) for each in pattern))
+        except re.error as error:
+            raise self._error(f"'{pattern}' is no regular expression: {error}") from error
+        return lambda message: isinstance(text := value(message), str) and wanted.fullmatch(text) is not None
+
+    def _value(self) -> _Value:
+        token = self._next()
+        if token.kind == "parameter":
+            number = int(token.text[1:])
+            if number >= len(self._parameters):
+                raise self._error(f"there is no parameter {token.text}")
+            return _constant(_literal(self._parameters[number]))
+        if token.kind in ("number", "text") or token.word in ("TRUE", "FALSE"):
+            return _constant(_literal(token.text))
+        if token.kind == "name" and not token.word:
+            return self._field(token.text)
+        raise self._error(f"a field or value is missing before '{token.text or 'its end'}'")
+
+    def _field(self, path: str) -> _Value:
+        steps: list[str | int] = [int(index) if index else name for name, index in _PART.findall(path)]
+        try:
+            _reached(self._class(), steps)
+        except AttributeError:
+            raise self._error(
+                phrase("{type_name} has no field '{path}'", type_name=self._class.TYPE_NAME, path=path)
+            ) from None
+        except (IndexError, TypeError):
+            pass  # of a sequence, which may be longer in a message
+        return lambda message: _reached(message, steps)
+
+
+def _reached(message: Any, steps: Sequence[str | int]) -> Any:
+    value = message
+    for step in steps:
+        value = value[step] if isinstance(step, int) else getattr(value, step)
+    return value[0] if isinstance(value, bytes) and len(value) == 1 else value
+
+
+def _compared(left: _Value, relation: Callable[[Any, Any], Any], right: _Value) -> Condition:
+    def holds(message: Any) -> bool:
+        try:
+            one, other = left(message), right(message)
+            if isinstance(one, str) != isinstance(other, str):  # a text beside a parameter that looks like a number
+                one, other = str(one), str(other)
+            return bool(relation(one, other))
+        except (IndexError, TypeError):  # a sequence that is too short, or something that has no order
+            return False
+
+    return holds
+
+
+def _constant(value: Any) -> _Value:
+    return lambda _message: value
+
+
+def _literal(text: str) -> Any:
+    """The value of a number, a text in quotes or without, or a truth value."""
+    text = text.strip()
+    if len(text) > 1 and text[0] in "'`" and text[-1] == "'":
+        return text[1:-1]
+    if text.upper() in ("TRUE", "FALSE"):
+        return text.upper() == "TRUE"
+    if re.fullmatch(r"[-+]?(0[xX][0-9a-fA-F]+|\d+)", text):
+        return int(text, 16 if "x" in text.lower() else 10)
+    with suppress(ValueError):
+        return float(text)
+    return text

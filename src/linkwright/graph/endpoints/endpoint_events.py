@@ -1,0 +1,235 @@
+"""The events of an endpoint: counted, timed, and queued for the callbacks of its user."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from linkwright.graph.endpoints.base import TopicEndpoint
+from linkwright.graph.endpoints.event_types import (
+    EndpointEventCallbacks,
+    EventCallback,
+    EventCount,
+    PublisherEventCallbacks,
+    QoSLivelinessChangedInfo,
+    QoSLivelinessLostInfo,
+    QoSMatchedInfo,
+    QoSMessageLostInfo,
+    QoSOfferedDeadlineMissedInfo,
+    QoSRequestedDeadlineMissedInfo,
+    QoSRequestedIncompatibleQoSInfo,
+    SubscriptionEventCallbacks,
+)
+from linkwright.graph.loop.entity import Entity
+from linkwright.graph.loop.node_handle import Dispatcher
+from linkwright.graph.qos.compatibility import limit_ns
+from linkwright.graph.qos.profile import LivelinessPolicy, QoSPolicyKind
+from linkwright.graph.time.timebase import Alarm
+
+
+class _Watch:
+    """Calls something whenever a span of time passes without a sign."""
+
+    def __init__(self, owner: EndpointEvents, limit: int, missed: Callable[[], None]) -> None:
+        self._owner = owner
+        self._limit_ns = limit
+        self._missed = missed
+        self._last_ns = 0
+        self._alarm: Alarm | None = None
+
+    def sign(self) -> None:
+        """There is one: the time counts from now."""
+        self._last_ns = self._owner.node.timebase.steady_ns()
+        if self._alarm is None:
+            self._arm()
+
+    def stop(self) -> None:
+        """Watch no longer; the next sign begins anew."""
+        if self._alarm is not None:
+            self._alarm.cancel()
+            self._alarm = None
+
+    def _arm(self) -> None:
+        dispatcher = self._owner.dispatcher
+        if dispatcher is not None:
+            self._alarm = dispatcher.call_at(self._last_ns + self._limit_ns, self._look)
+
+    def _look(self) -> None:
+        self._alarm = None
+        now_ns = self._owner.node.timebase.steady_ns()
+        if now_ns >= self._last_ns + self._limit_ns:
+            self._last_ns = now_ns
+            self._missed()
+        self._arm()
+
+
+class EndpointEvents(Entity):
+    """The events of one endpoint, which wait for their callbacks as messages do."""
+
+    _deadline_info: type[EventCount]
+
+    def __init__(self, endpoint: TopicEndpoint[Any], callbacks: EndpointEventCallbacks) -> None:
+        super().__init__(endpoint.node, endpoint.callback_group)
+        self._name = endpoint.name
+        self._callbacks = callbacks
+        self._waiting: deque[Callable[[], object]] = deque()
+        self._totals: dict[str, int] = {}
+        self._current = 0
+        self._watches: list[_Watch] = []
+        self._deadline: _Watch | None = None
+        deadline_ns = limit_ns(endpoint.qos_profile.deadline)
+        if deadline_ns is not None and callbacks.deadline is not None:
+            self._deadline = self._watch(deadline_ns, self._deadline_missed)
+
+    @property
+    def what(self) -> str:
+        """What it is called in messages."""
+        return f"event callback of topic '{self._name}'"
+
+    def matched(self, change: int) -> None:
+        """Endpoints of the other side came or went."""
+        self._current += change
+        total = self._count("matched", max(change, 0))
+        self._tell(self._callbacks.matched, QoSMatchedInfo(total, max(change, 0), self._current, change))
+
+    def incompatible(self, policy: str) -> bool:
+        """An endpoint of the other side is incompatible with this one.
+
+        Returns:
+            Whether nothing else has to be said about it.
+        """
+        total = self._count("incompatible", 1)
+        if self._callbacks.incompatible_qos is None:
+            return not self._callbacks.use_default_callbacks
+        kind = QoSPolicyKind[policy.removesuffix("_QOS_POLICY")]
+        self._tell(self._callbacks.incompatible_qos, QoSRequestedIncompatibleQoSInfo(total, 1, kind))
+        return True
+
+    def has_work(self) -> bool:
+        """Whether events wait."""
+        return bool(self._waiting)
+
+    def take(self) -> Callable[[], object] | None:
+        """The callback of the event that waits longest."""
+        return self._next_of(self._waiting)
+
+    def retire(self) -> None:
+        """Never call back again."""
+        for watch in self._watches:
+            watch.stop()
+        super().retire()
+        self._waiting.clear()
+
+    def set_dispatcher(self, dispatcher: Dispatcher | None) -> None:
+        """Have the callbacks run, and time watched, by a dispatcher."""
+        for watch in self._watches:
+            watch.stop()
+        super().set_dispatcher(dispatcher)
+        for watch in self._watches:
+            watch.sign()
+
+    def _count(self, what: str, change: int) -> int:
+        self._totals[what] = total = self._totals.get(what, 0) + change
+        return total
+
+    def _watch(self, limit: int, missed: Callable[[], None]) -> _Watch:
+        watch = _Watch(self, limit, missed)
+        self._watches.append(watch)
+        return watch
+
+    def _deadline_missed(self) -> None:
+        self._tell(self._callbacks.deadline, self._deadline_info(self._count("deadline", 1), 1))
+
+    def _tell(self, callback: EventCallback | None, info: object) -> None:
+        if callback is not None and not self.destroyed:
+            self._waiting.append(partial(callback, info))
+            self.announce()
+
+
+class SubscriptionEvents(EndpointEvents):
+    """The events of a subscription."""
+
+    _deadline_info = QoSRequestedDeadlineMissedInfo
+
+    def __init__(self, subscription: TopicEndpoint[Any], callbacks: SubscriptionEventCallbacks) -> None:
+        super().__init__(subscription, callbacks)
+        self._message_lost = callbacks.message_lost
+        self._alive = 0
+        self._not_alive = 0
+
+    def received(self, full: bool) -> None:
+        """A message came; `full` says that another one had to make room for it."""
+        if self._deadline is not None:
+            self._deadline.sign()
+        if full:
+            self.lost(1)
+
+    def lost(self, count: int) -> None:
+        """Messages were lost."""
+        self._tell(self._message_lost, QoSMessageLostInfo(self._count("lost", count), count))
+
+    def matched(self, change: int) -> None:
+        """Publishers came or went; those that are there live until they are said not to."""
+        super().matched(change)
+        self.liveliness(change, 0)
+
+    def liveliness(self, alive_change: int, not_alive_change: int) -> None:
+        """Publishers began or ceased to show that they live."""
+        self._alive += alive_change
+        self._not_alive += not_alive_change
+        info = QoSLivelinessChangedInfo(self._alive, self._not_alive, alive_change, not_alive_change)
+        self._tell(self._callbacks.liveliness, info)
+
+
+class PublisherEvents(EndpointEvents):
+    """The events of a publisher.
+
+    Args:
+        publisher: the publisher.
+        callbacks: the user's.
+        liveliness_changed: called with 1 when the publisher shows again that it lives, with -1 when it did not in time.
+    """
+
+    _deadline_info = QoSOfferedDeadlineMissedInfo
+
+    def __init__(
+        self,
+        publisher: TopicEndpoint[Any],
+        callbacks: PublisherEventCallbacks,
+        liveliness_changed: Callable[[int], None],
+    ) -> None:
+        super().__init__(publisher, callbacks)
+        self._liveliness_changed = liveliness_changed
+        self._lease: _Watch | None = None
+        self._is_alive = True
+        qos = publisher.qos_profile
+        lease_ns = limit_ns(qos.liveliness_lease_duration)
+        if qos.liveliness is LivelinessPolicy.MANUAL_BY_TOPIC and lease_ns is not None:
+            self._lease = self._watch(lease_ns, self._liveliness_lost)
+
+    @property
+    def wants_messages(self) -> bool:
+        """Whether it has to be told of every message."""
+        return bool(self._watches)
+
+    def published(self) -> None:
+        """A message was published."""
+        if self._deadline is not None:
+            self._deadline.sign()
+        self.assert_liveliness()
+
+    def assert_liveliness(self) -> None:
+        """The publisher showed that it lives."""
+        if self._lease is not None:
+            self._lease.sign()
+            if not self._is_alive:
+                self._is_alive = True
+                self._liveliness_changed(1)
+
+    def _liveliness_lost(self) -> None:
+        if self._is_alive:
+            self._is_alive = False
+            self._liveliness_changed(-1)
+            self._tell(self._callbacks.liveliness, QoSLivelinessLostInfo(self._count("liveliness", 1), 1))

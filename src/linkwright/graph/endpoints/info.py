@@ -1,0 +1,80 @@
+"""What is known about endpoints and messages, of this process and of others."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, fields
+from enum import Enum
+from typing import Any
+
+from linkwright.graph.names.identity import NodeIdentity
+from linkwright.graph.qos.profile import QoSProfile
+
+
+class EndpointKind(Enum):
+    """What an endpoint of the graph is."""
+
+    PUBLISHER = "publisher"
+    SUBSCRIPTION = "subscription"
+    SERVICE = "service"
+    CLIENT = "client"
+
+
+@dataclass(frozen=True, slots=True)
+class EndpointInfo:
+    """One publisher, subscription, service or client, of this process or of another.
+
+    Attributes:
+        kind: which of the four.
+        node: whose it is; None while discovery has not told yet.
+        name: the topic's or service's absolute ROS name.
+        type_name: such as ``sensor_msgs/msg/JointState``.
+        qos: what is offered or asked for.
+        gid: the endpoint's identity, 16 bytes.
+        type_hash: ``RIHS01_...``; empty where it is not known (Humble does not send it).
+        local: whether it belongs to this process.
+    """
+
+    kind: EndpointKind
+    node: NodeIdentity | None
+    name: str
+    type_name: str
+    qos: QoSProfile
+    gid: bytes
+    type_hash: str = ""
+    local: bool = False
+
+
+@dataclass(slots=True)
+class MessageInfo(Mapping[str, Any]):
+    """What is known of a message beside its content; its values are found as attributes and, as in rclpy, by name.
+
+    Attributes:
+        source_timestamp: when it was published, nanoseconds since the epoch.
+        received_timestamp: when it was received, nanoseconds since the epoch.
+        publisher_gid: who sent it, 16 bytes.
+        from_outside: whether it came from another process.
+        publication_sequence_number: its number among the publisher's, where the sender tells.
+        reception_sequence_number: its number among those received, where it is counted.
+    """
+
+    source_timestamp: int
+    received_timestamp: int
+    publisher_gid: bytes = bytes(16)
+    from_outside: bool = False
+    publication_sequence_number: int | None = None
+    reception_sequence_number: int | None = None
+
+    def __getitem__(self, name: str) -> Any:
+        if name not in _INFO_NAMES:
+            raise KeyError(name)
+        return getattr(self, name)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(_INFO_NAMES)
+
+    def __len__(self) -> int:
+        return len(_INFO_NAMES)
+
+
+_INFO_NAMES = tuple(field.name for field in fields(MessageInfo))

@@ -1,0 +1,249 @@
+"""Publishers."""
+
+from __future__ import annotations
+
+import threading
+from collections import deque
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+from linkwright.graph.endpoints.base import TopicEndpoint
+from linkwright.graph.endpoints.endpoint_events import PublisherEvents
+from linkwright.graph.endpoints.event_types import EventHandler, PublisherEventCallbacks
+from linkwright.graph.endpoints.info import EndpointKind
+from linkwright.graph.endpoints.subscription import Subscription
+from linkwright.graph.loop.callback_groups import CallbackGroup
+from linkwright.graph.loop.node_handle import NodeHandle
+from linkwright.graph.qos.compatibility import limit_ns
+from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile
+from linkwright.graph.time.values import Duration
+from linkwright.messages import serialize
+
+M = TypeVar("M")
+
+
+class Publisher(TopicEndpoint[M]):
+    """Sends messages to a topic; made by ``Node.create_publisher``. It may publish from any thread.
+
+    In the process a message is handed over as it is: who publishes one does not change it afterwards, nor does who
+    receives it. Nodes whose handle says `copies_messages` may: what they publish is written at once, and read by each
+    receiver.
+    """
+
+    kind = EndpointKind.PUBLISHER
+    goes_last = True
+
+    def __init__(
+        self,
+        node: NodeHandle,
+        msg_type: type[M] | str,
+        topic_name: str,
+        qos_profile: QoSProfile,
+        callback_group: CallbackGroup | None = None,
+        *,
+        event_callbacks: PublisherEventCallbacks | None = None,
+    ) -> None:
+        self._describe(node, msg_type, topic_name, qos_profile)
+        self.callback_group = node.default_callback_group if callback_group is None else callback_group
+        self.event_callbacks = event_callbacks
+        self.events: PublisherEvents | None = None
+        self.outside: Callable[[Any], None] | None = None
+        """What takes messages out of the process, while somebody there matches; see `set_outside`."""
+        self.assert_outside: Callable[[], None] | None = None
+        """For the transport: shows outside of the process that the publisher lives."""
+        self.lifespan_ns = limit_ns(qos_profile.lifespan)
+        self._acknowledged: Callable[[float | None], bool] | None = None
+        self._accepted: Any = None
+        self._matched: dict[Subscription[Any], Callable[[Any], None]] = {}
+        self._receivers: tuple[Callable[[Any], None], ...] = ()
+        self._lock = threading.RLock()
+        keeps = qos_profile.durability is DurabilityPolicy.TRANSIENT_LOCAL
+        self._kept: deque[tuple[int, Any]] | None = deque(maxlen=qos_profile.queue_length) if keeps else None
+        self._held: deque[Any] | None = None
+        self._sent: Callable[[float | None], bool] = lambda _: True
+        self._copies = node.copies_messages
+        self._is_plain = not keeps and not self._copies
+        if event_callbacks is not None:
+            self.events = PublisherEvents(self, event_callbacks, self._liveliness_changed)
+            self._is_plain = self._is_plain and not self.events.wants_messages
+
+    def publish(self, msg: M | bytes) -> None:
+        """Send a message to every matching subscription, in their order of creation; callbacks run later.
+
+        Args:
+            msg: the message, or its CDR bytes with their header.
+
+        Raises:
+            TypeError: the message is not of the publisher's type.
+            InvalidHandleError: the publisher was destroyed.
+        """
+        if type(msg) is not self._accepted:
+            self._check(msg)
+        if self._is_plain:
+            for receive in self._receivers:
+                receive(msg)
+            outside = self.outside
+            if outside is not None:
+                outside(msg)
+        else:
+            self._publish_watched(msg)
+
+    @property
+    def event_handlers(self) -> list[EventHandler]:
+        """The handlers of its events: those with a callback, and those that only log."""
+        return (self.event_callbacks or PublisherEventCallbacks()).handlers()
+
+    def get_subscription_count(self) -> int:
+        """How many subscriptions receive what is published, inside the process and outside."""
+        return len(self._matched) + self._outside_count
+
+    def assert_liveliness(self) -> None:
+        """Show that the publisher lives, where liveliness is MANUAL_BY_TOPIC.
+
+        Raises:
+            InvalidHandleError: the publisher was destroyed.
+        """
+        self.check_alive()
+        if self.events is not None:
+            self.events.assert_liveliness()
+        if self.assert_outside is not None:
+            self.assert_outside()
+
+    def wait_for_all_acked(self, timeout: Duration | None = None) -> bool:
+        """Block until everybody outside has what was sent reliably; in the process that is at once.
+
+        Args:
+            timeout: how long at most; negative or None for as long as it takes.
+
+        Returns:
+            Whether they have.
+        """
+        seconds = None if timeout is None or timeout.nanoseconds < 0 else timeout.nanoseconds / 1e9
+        if self._held and not self._sent(seconds):
+            return False
+        return self._acknowledged is None or self._acknowledged(seconds)
+
+    # --- for the bus and the transport ----------------------------------------------------------------------------
+
+    def connect(self, subscription: Subscription[Any]) -> None:
+        """Send to a subscription from now on, and what was kept for late joiners, if it wants that, first."""
+        receive = subscription.receiver(self, self.lifespan_ns)
+        with self._lock:
+            if self._kept and subscription.qos_profile.durability is DurabilityPolicy.TRANSIENT_LOCAL:
+                for message in self._still_valid():
+                    receive(message)
+            self._matched[subscription] = receive
+            self._receivers = tuple(self._matched.values())
+        subscription.connected(self)
+        if self.events is not None:
+            self.events.matched(1)
+
+    def disconnect(self, subscription: Subscription[Any]) -> None:
+        """Send to a subscription no longer."""
+        with self._lock:
+            if self._matched.pop(subscription, None) is None:
+                return
+            self._receivers = tuple(self._matched.values())
+        subscription.disconnected(self)
+        if self.events is not None:
+            self.events.matched(-1)
+
+    def begin(self) -> None:
+        """Join the topic."""
+        if self.events is not None:
+            self.node.add(self.events)
+        super().begin()
+
+    def retire(self) -> None:
+        """Send to nobody any longer."""
+        if self.events is not None:
+            self.node.remove(self.events)
+        super().retire()
+        self._accepted = None
+        for subscription in tuple(self._matched):
+            self.disconnect(subscription)
+        self.outside = None
+
+    def matched(self) -> tuple[Subscription[Any], ...]:
+        """The subscriptions of this process that receive what is published."""
+        return tuple(self._matched)
+
+    def hold_for_outside(self, sent: Callable[[float | None], bool]) -> None:
+        """For the transport, which will call `set_outside` soon: keep what is published until then.
+
+        A writer takes a moment to be made. Who listens outside may be known already, and gets under ROS what is
+        published as soon as there is a publisher.
+
+        Args:
+            sent: waits, for so many seconds at most (None for any time), until that was called; whether it was.
+        """
+        with self._lock:
+            if self._kept is None and self.outside is None:
+                self._sent = sent
+                self._held = deque(maxlen=self.qos_profile.queue_length)
+                self.outside = self._held.append
+
+    def set_outside(
+        self,
+        send: Callable[[Any], None] | None,
+        acknowledged: Callable[[float | None], bool] | None = None,
+    ) -> None:
+        """For the transport: have messages taken out of the process, or no longer.
+
+        What is held, or kept for late joiners, is sent first, so that nothing is lost and nothing comes twice.
+
+        Args:
+            send: called with each message, or with its CDR bytes where it was published so, in the thread that
+                publishes.
+            acknowledged: waits, for so many seconds at most (None for any time), until everybody has what was sent,
+                and says whether they have.
+        """
+        with self._lock:
+            held, self._held = self._held, None
+            if send is not None and (self.outside is None or held is not None):
+                for message in self._still_valid() if held is None else held:
+                    send(message)
+            self.outside = send
+            self._acknowledged = acknowledged if send is not None else None
+
+    def _publish_watched(self, message: Any) -> None:
+        if self._copies and type(message) is not bytes:
+            if not self._receivers and self._kept is None and self.outside is None and self.events is None:
+                return
+            message = bytes(message) if isinstance(message, bytearray) else serialize(message)
+        with self._lock:
+            if self._kept is not None:
+                self._kept.append((self.node.timebase.steady_ns(), message))
+            if self.events is not None:
+                self.events.published()
+            for receive in self._receivers:
+                receive(message)
+            if self.outside is not None:
+                self.outside(message)
+
+    def _liveliness_changed(self, change: int) -> None:
+        for subscription in self.matched():
+            if subscription.events is not None:
+                subscription.events.liveliness(change, -change)
+
+    def _still_valid(self) -> list[Any]:
+        """What is kept for late joiners, without what has outlived its lifespan."""
+        if not self._kept:
+            return []
+        if self.lifespan_ns is not None:
+            oldest_ns = self.node.timebase.steady_ns() - self.lifespan_ns
+            while self._kept and self._kept[0][0] < oldest_ns:
+                self._kept.popleft()
+        return [message for _, message in self._kept]
+
+    def _check(self, message: Any) -> None:
+        self.check_alive()
+        if isinstance(message, (bytes, bytearray)):
+            return
+        if isinstance(message, self.msg_type) or getattr(message, "TYPE_NAME", None) == self.type_name:
+            self._accepted = type(message)
+            return
+        raise TypeError(
+            f"Expected {self.msg_type}, got {type(message)}: topic '{self.name}' carries {self.type_name}, "
+            f"not {type(message).__name__}"
+        )

@@ -1,0 +1,119 @@
+"""Service servers."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Awaitable, Callable
+from functools import partial
+from inspect import isawaitable
+from typing import Any, Generic, TypeVar
+
+from linkwright.graph.endpoints.copies import copy_of
+from linkwright.graph.endpoints.info import EndpointKind
+from linkwright.graph.endpoints.service_introspection import NO_REQUEST_ID, EventType, IntrospectedEndpoint, RequestId
+from linkwright.graph.loop.callback_groups import CallbackGroup
+from linkwright.graph.loop.entity import Entity
+from linkwright.graph.loop.node_handle import NodeHandle
+from linkwright.graph.qos.profile import QoSProfile
+
+Request = TypeVar("Request")
+Response = TypeVar("Response")
+
+Reply = Callable[[Any], None]
+"""Sends a response to whoever asked; from any thread, once."""
+
+
+class Service(IntrospectedEndpoint, Entity, Generic[Request, Response]):
+    """Answers the requests to a service; made by ``Node.create_service``.
+
+    Args:
+        callback: called with a request and an empty response, and gives the response; it may be a coroutine function.
+        replying: whether the callback is given, in place of the empty response, what sends the response, whenever
+            that may be.
+    """
+
+    kind = EndpointKind.SERVICE
+
+    def __init__(
+        self,
+        node: NodeHandle,
+        srv_type: Any,
+        srv_name: str,
+        qos_profile: QoSProfile,
+        callback: Callable[[Request, Response], Response | Awaitable[Response]],
+        callback_group: CallbackGroup | None = None,
+        *,
+        replying: bool = False,
+    ) -> None:
+        Entity.__init__(self, node, callback_group)
+        self._describe(node, srv_type, srv_name, qos_profile)
+        self.callback: Callable[[Any, Any], Any] = callback
+        self._replying = replying
+        self._waiting: deque[tuple[Request, Reply, RequestId]] = deque(maxlen=qos_profile.queue_length)
+
+    @property
+    def what(self) -> str:
+        """What it is called in messages."""
+        return f"callback of service '{self.name}'"
+
+    def receive(self, request: Request, reply: Reply, request_id: RequestId = NO_REQUEST_ID) -> None:
+        """Have a request answered, from any thread.
+
+        Args:
+            request: the request.
+            reply: called with the response, from any thread, or never.
+            request_id: whose request it is, for who watches.
+        """
+        self._waiting.append((request, reply, request_id))
+        self.announce()
+
+    def has_work(self) -> bool:
+        """Whether requests wait."""
+        return bool(self._waiting)
+
+    def take(self) -> Callable[[], object] | None:
+        """The answering of the request that waits longest."""
+        waiting = self._next_of(self._waiting)
+        return None if waiting is None else partial(self._answer, *waiting)
+
+    def send_response(self, response: Response, header: Reply) -> None:
+        """Send a response.
+
+        Args:
+            response: the response.
+            header: what came with the request.
+
+        Raises:
+            TypeError: the response is not of the service's type.
+        """
+        if not isinstance(response, self.srv_type.Response):
+            raise TypeError(f"Expected {self.srv_type.Response}, got {type(response)}: the response of '{self.name}'")
+        header(copy_of(response) if self.node.copies_messages else response)
+
+    def retire(self) -> None:
+        """Answer no more."""
+        super().retire()
+        self._waiting.clear()
+        self.end_introspection()
+
+    def _answer(self, request: Request, reply: Reply, request_id: RequestId) -> object:
+        events = self.service_events
+        if events is not None:
+            events.tell(EventType.REQUEST_RECEIVED, request_id, request=request)
+            reply = partial(self._reply_watched, reply, request_id)
+        if self._replying:
+            return self.callback(request, partial(self.send_response, header=reply))
+        response = self.callback(request, self.srv_type.Response())
+        if isawaitable(response):
+            return self._answer_later(response, reply)
+        self.send_response(response, reply)
+        return None
+
+    async def _answer_later(self, response: Awaitable[Response], reply: Reply) -> None:
+        self.send_response(await response, reply)
+
+    def _reply_watched(self, reply: Reply, request_id: RequestId, response: Response) -> None:
+        reply(response)
+        events = self.service_events
+        if events is not None:
+            events.tell(EventType.RESPONSE_SENT, request_id, response=response)

@@ -1,0 +1,128 @@
+"""Service introspection: the requests and responses of a service, published on a topic beside it (REP 2012)."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+from typing import Any, NamedTuple
+
+from linkwright.graph.endpoints.base import ServiceEndpoint
+from linkwright.graph.endpoints.publisher import Publisher
+from linkwright.graph.qos.compatibility import best_available
+from linkwright.graph.qos.profile import QoSProfile
+from linkwright.graph.time.clock import Clock
+from linkwright.messages import get_message
+
+EVENT_TOPIC_SUFFIX = "/_service_event"
+"""Behind the name of a service, the topic that its events are told on."""
+
+
+class ServiceIntrospectionState(IntEnum):
+    """How much is published; numbers and names are rclpy's."""
+
+    OFF = 0
+    METADATA = 1
+    CONTENTS = 2
+
+
+class EventType(IntEnum):
+    """What happened (``service_msgs/msg/ServiceEventInfo``)."""
+
+    REQUEST_SENT = 0
+    REQUEST_RECEIVED = 1
+    RESPONSE_SENT = 2
+    RESPONSE_RECEIVED = 3
+
+
+class RequestId(NamedTuple):
+    """Which request of which client.
+
+    Attributes:
+        client_gid: the client's identity, 16 bytes.
+        number: counted by the client, from 1.
+    """
+
+    client_gid: bytes
+    number: int
+
+
+NO_REQUEST_ID = RequestId(bytes(16), 0)
+
+
+class ServiceEvents:
+    """Publishes what happens to the requests of one client or service.
+
+    Args:
+        endpoint: the client or service; the publisher becomes its node's.
+        clock: what the events are stamped with.
+        qos_profile: how they are published.
+        contents: whether requests and responses are told too.
+    """
+
+    def __init__(self, endpoint: ServiceEndpoint, clock: Clock, qos_profile: QoSProfile, *, contents: bool) -> None:
+        self.clock = clock
+        self.contents = contents
+        self._event_class: Any = endpoint.interface.Event
+        self._info_class: Any = get_message("service_msgs/msg/ServiceEventInfo")
+        node = endpoint.node
+        name = node.resolve_topic_name(endpoint.name + EVENT_TOPIC_SUFFIX)
+        qos = best_available(QoSProfile.of(qos_profile), (), publisher=True)
+        self._publisher: Publisher[Any] = node.add(Publisher(node, self._event_class, name, qos))
+
+    def tell(self, event_type: EventType, request_id: RequestId, *, request: Any = None, response: Any = None) -> None:
+        """Publish an event, with its request or response."""
+        info = self._info_class(
+            event_type=int(event_type),
+            stamp=self.clock.now().to_msg(),
+            client_gid=list(request_id.client_gid),
+            sequence_number=request_id.number,
+        )
+        event = self._event_class(info=info)
+        if self.contents:
+            event.request = [] if request is None else [request]
+            event.response = [] if response is None else [response]
+        self._publisher.publish(event)
+
+    def close(self) -> None:
+        """Take the topic back."""
+        self._publisher.destroy()
+
+
+class IntrospectedEndpoint(ServiceEndpoint):
+    """A client or service whose requests can be watched.
+
+    Attributes:
+        service_events: publishes them; None while that is off, which is the default.
+    """
+
+    service_events: ServiceEvents | None = None
+
+    def configure_introspection(
+        self, clock: Clock, service_event_qos_profile: QoSProfile, introspection_state: ServiceIntrospectionState
+    ) -> None:
+        """Tell on the topic ``SERVICE/_service_event`` what happens to requests, or no longer.
+
+        Args:
+            clock: what the events are stamped with.
+            service_event_qos_profile: how they are published; while they are already published, it stays as it is.
+            introspection_state: whether they are published, and whether with the requests and responses.
+
+        Raises:
+            InvalidHandleError: the client or service was destroyed.
+        """
+        self.check_alive()
+        state = ServiceIntrospectionState(introspection_state)
+        events = self.service_events
+        if state is ServiceIntrospectionState.OFF:
+            self.end_introspection()
+        elif events is None:
+            contents = state is ServiceIntrospectionState.CONTENTS
+            self.service_events = ServiceEvents(self, clock, service_event_qos_profile, contents=contents)
+        else:
+            events.clock = clock
+            events.contents = state is ServiceIntrospectionState.CONTENTS
+
+    def end_introspection(self) -> None:
+        """Tell nothing any longer."""
+        events, self.service_events = self.service_events, None
+        if events is not None:
+            events.close()

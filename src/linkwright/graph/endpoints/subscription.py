@@ -1,0 +1,288 @@
+"""Subscriptions."""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from enum import Enum
+from functools import partial
+from typing import Any, TypeVar
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph.endpoints.base import TopicEndpoint
+from linkwright.graph.endpoints.content_filter import ContentFilter, ContentFilterOptions
+from linkwright.graph.endpoints.endpoint_events import SubscriptionEvents
+from linkwright.graph.endpoints.event_types import EventHandler, SubscriptionEventCallbacks
+from linkwright.graph.endpoints.info import EndpointKind, MessageInfo
+from linkwright.graph.loop.callback_groups import CallbackGroup
+from linkwright.graph.loop.entity import Entity
+from linkwright.graph.loop.node_handle import Dispatcher, NodeHandle
+from linkwright.graph.loop.signatures import accepts
+from linkwright.graph.qos.profile import QoSProfile
+from linkwright.messages import deserialize, serialize
+
+M = TypeVar("M")
+
+
+@dataclass(slots=True)
+class Detailed:
+    """A message in the queue, with its metadata.
+
+    Attributes:
+        message: the message, or its CDR bytes.
+        info: where and when it came from.
+        expires_ns: when its lifespan ends, by the graph's steady count; None for never.
+    """
+
+    message: Any
+    info: MessageInfo | None = None
+    expires_ns: int | None = None
+
+
+class CallbackType(Enum):
+    """What a callback takes (rclpy ``Subscription.CallbackType``)."""
+
+    MessageOnly = 0
+    WithMessageInfo = 1
+
+
+class Subscription(TopicEndpoint[M], Entity):
+    """Receives the messages of a topic; made by ``Node.create_subscription``.
+
+    Messages wait in a queue as long as the quality of service says; when one comes that is too many, the oldest is
+    dropped.
+    """
+
+    kind = EndpointKind.SUBSCRIPTION
+    CallbackType = CallbackType
+
+    def __init__(
+        self,
+        node: NodeHandle,
+        msg_type: type[M] | str,
+        topic_name: str,
+        qos_profile: QoSProfile,
+        callback: Callable[..., object],
+        callback_group: CallbackGroup | None = None,
+        *,
+        raw: bool = False,
+        event_callbacks: SubscriptionEventCallbacks | None = None,
+    ) -> None:
+        Entity.__init__(self, node, callback_group)
+        self._describe(node, msg_type, topic_name, qos_profile)
+        self.raw = raw
+        self.malformed = 0
+        """How many messages from outside could not be read."""
+        self._waiting: deque[Any] = deque(maxlen=qos_profile.queue_length)
+        self._as_it_is: type | None = None
+        self._wants_info = False
+        self.callback = callback
+        self.event_callbacks = event_callbacks
+        self.events: SubscriptionEvents | None = None
+        if event_callbacks is not None:
+            self.events = SubscriptionEvents(self, event_callbacks)
+        self._publishers: dict[TopicEndpoint[Any], None] = {}
+        self._filter: ContentFilter | None = None
+
+    @property
+    def what(self) -> str:
+        """What it is called in messages."""
+        return f"callback of topic '{self.name}'"
+
+    @property
+    def callback(self) -> Callable[..., object]:
+        """What is called: with the message, or, when it takes two arguments, with the message and a `MessageInfo`.
+
+        Raises:
+            RuntimeError: what is assigned takes neither one argument nor two.
+        """
+        return self._callback
+
+    @callback.setter
+    def callback(self, callback: Callable[..., object]) -> None:
+        if accepts(callback, 1, unknown=True):
+            self._wants_info = False
+        elif accepts(callback, 2, unknown=False):
+            self._wants_info = True
+        else:
+            raise RuntimeError(
+                "Subscription.__init__(): callback should be either be callable with one argument (to get only the "
+                "message) or two (to get message and message info)"
+            )
+        self._callback = callback
+        self._as_it_is = None
+
+    @property
+    def _callback_type(self) -> Enum:
+        return CallbackType.WithMessageInfo if self._wants_info else CallbackType.MessageOnly
+
+    @property
+    def event_handlers(self) -> list[EventHandler]:
+        """The handlers of its events: those with a callback, and those that only log."""
+        return (self.event_callbacks or SubscriptionEventCallbacks()).handlers()
+
+    def get_publisher_count(self) -> int:
+        """How many publishers it receives from."""
+        return len(self._publishers) + self._outside_count
+
+    @property
+    def is_cft_enabled(self) -> bool:
+        """Whether a content filter is in force."""
+        return self._filter is not None
+
+    def get_content_filter(self) -> ContentFilterOptions:
+        """The content filter in force; an empty one where there is none."""
+        return ContentFilterOptions("") if self._filter is None else self._filter.options
+
+    def set_content_filter(self, filter_expression: str, expression_parameters: Sequence[str] = ()) -> None:
+        """Take only messages for which a condition holds, from now on.
+
+        Args:
+            filter_expression: the condition, see `ContentFilter`; an empty one lets every message in again.
+            expression_parameters: what stands for ``%0``, ``%1``, ... in it.
+
+        Raises:
+            ContentFilterError: it cannot be understood, or a field or parameter is not there.
+        """
+        options = ContentFilterOptions(filter_expression, list(expression_parameters))
+        self._filter = ContentFilter(options, self.msg_type) if filter_expression.strip() else None
+
+    def lost_outside(self, count: int) -> None:
+        """For the transport: messages from outside were lost."""
+        if self.events is not None:
+            self.events.lost(count)
+
+    def receive(self, message: M | bytes | Detailed, info: MessageInfo | None = None) -> None:
+        """Have the callback called with a message, from any thread.
+
+        Args:
+            message: the message, or its CDR bytes, which are read when the callback's turn comes.
+            info: where it comes from; needed where that is another process.
+        """
+        if self._filter is not None and not self._is_wanted(message, self._filter):
+            return
+        self._waiting.append(message if info is None else Detailed(message, info))
+        if not self._announced:
+            dispatcher = self.dispatcher
+            if dispatcher is not None:
+                self._announced = True
+                dispatcher.ready(self)
+
+    def receiver(self, publisher: TopicEndpoint[Any], lifespan_ns: int | None) -> Callable[[Any], None]:
+        """What a publisher of this process calls with each message.
+
+        Args:
+            publisher: the publisher.
+            lifespan_ns: the lifespan of its messages, nanoseconds; None for ever.
+        """
+        if not self._wants_info and lifespan_ns is None and self.events is None:
+            return self.receive
+
+        def receive(message: Any) -> None:
+            info = None
+            if self._wants_info:
+                now_ns = self.node.timebase.now_ns()
+                info = MessageInfo(now_ns, now_ns, publisher.gid)
+            expires_ns = None if lifespan_ns is None else self.node.timebase.steady_ns() + lifespan_ns
+            if self.events is not None:
+                self.events.received(len(self._waiting) == self._waiting.maxlen)
+            self.receive(Detailed(message, info, expires_ns))
+
+        return receive
+
+    def connected(self, publisher: TopicEndpoint[Any]) -> None:
+        """Take note of a publisher of this process that sends here."""
+        self._publishers[publisher] = None
+        if self.events is not None:
+            self.events.matched(1)
+
+    def disconnected(self, publisher: TopicEndpoint[Any]) -> None:
+        """Take note that a publisher sends here no longer."""
+        if self._publishers.pop(publisher, self) is None and self.events is not None:
+            self.events.matched(-1)
+
+    def has_work(self) -> bool:
+        """Whether messages wait."""
+        return bool(self._waiting)
+
+    def take(self) -> Callable[[], object] | None:
+        """The callback with the message that waits longest."""
+        self._announced = False
+        waiting = self._waiting
+        try:
+            message = waiting.popleft()
+        except IndexError:
+            return None
+        if waiting:
+            self.announce()
+        if type(message) is self._as_it_is:
+            return partial(self._callback, message)
+        return self._prepared(message)
+
+    def set_dispatcher(self, dispatcher: Dispatcher | None) -> None:
+        """Have the calls run by a dispatcher from now on."""
+        super().set_dispatcher(dispatcher)
+        if self.events is not None:
+            self.events.set_dispatcher(dispatcher)
+
+    def discard(self) -> None:
+        """Drop what waits."""
+        self._waiting.clear()
+
+    def retire(self) -> None:
+        """Never call back again."""
+        super().retire()
+        self.discard()
+        if self.events is not None:
+            self.events.retire()
+
+    def _prepared(self, item: Any) -> Callable[[], object] | None:
+        """The call for something that is not simply a message of the type."""
+        if type(item) is bytes and not self._wants_info and not self.raw:
+            message = self._read(item)
+            return None if message is None else partial(self._callback, message)
+        detailed = item if type(item) is Detailed else Detailed(item)
+        if detailed.expires_ns is not None and self.node.timebase.steady_ns() > detailed.expires_ns:
+            return None
+        message = detailed.message
+        if self.raw:
+            message = self._as_bytes(message)
+        elif isinstance(message, (bytes, bytearray, memoryview)):
+            message = self._read(message)
+            if message is None:
+                return None
+        elif item is message and not self._wants_info:
+            self._as_it_is = type(message)
+        if self._wants_info:
+            return partial(self._callback, message, detailed.info or MessageInfo(time.time_ns(), time.time_ns()))
+        return partial(self._callback, message)
+
+    def _as_bytes(self, message: Any) -> bytes:
+        if isinstance(message, bytes):
+            return message
+        return serialize(message)
+
+    def _is_wanted(self, message: Any, content_filter: ContentFilter) -> bool:
+        """Whether the content filter lets a message in; one that cannot be decoded passes, and is reported later."""
+        inner = message.message if type(message) is Detailed else message
+        if isinstance(inner, (bytes, bytearray, memoryview)):
+            try:
+                inner = deserialize(inner, self.msg_type)
+            except LinkwrightError:
+                return True
+        return content_filter.accepts(inner)
+
+    def _read(self, data: bytes | bytearray | memoryview) -> Any:
+        """The decoded message; None, which is logged once, when the bytes cannot be decoded."""
+        try:
+            return deserialize(data, self.msg_type)
+        except LinkwrightError as error:
+            self._refuse(error)
+            return None
+
+    def _refuse(self, error: LinkwrightError) -> None:
+        self.malformed += 1
+        if self.malformed == 1:
+            self.node.logger.warning(f"Dropped a malformed message of topic '{self.name}': {error}")

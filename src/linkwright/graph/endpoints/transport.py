@@ -1,0 +1,73 @@
+"""The interface of transports, which carry the traffic of a graph to other processes.
+
+In the process a message is handed over as an object. A transport mirrors the endpoints of the process on a network; it
+is called only for what somebody outside listens to. Transports are in the room `linkwright.wire`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any, Protocol
+
+from linkwright.graph.endpoints.client import Client
+from linkwright.graph.endpoints.info import EndpointInfo
+from linkwright.graph.endpoints.publisher import Publisher
+from linkwright.graph.endpoints.service import Service
+from linkwright.graph.endpoints.subscription import Subscription
+from linkwright.graph.names.identity import NodeIdentity
+
+
+class Transport(Protocol):
+    """Mirrors the endpoints of one graph outside of the process.
+
+    ``open_*`` is called for each endpoint when it is made, ``close_*`` when it is destroyed; neither may block. What
+    comes in is given to ``Subscription.receive(message, info)`` and ``Service.receive(request, reply, request_id)``,
+    from any thread. What goes out is asked for with ``Publisher.set_outside`` and ``Client.set_outside`` while somebody
+    outside matches, and no longer when nobody does; a transient local publisher's is set from the start, so that who
+    comes late is served. How many match is told with ``set_outside_count``.
+    """
+
+    def open_node(self, node: NodeIdentity) -> None:
+        """Make a node known."""
+
+    def close_node(self, node: NodeIdentity) -> None:
+        """Take a node back."""
+
+    def open_publisher(self, publisher: Publisher[Any]) -> None:
+        """Mirror a publisher."""
+
+    def close_publisher(self, publisher: Publisher[Any]) -> None:
+        """Take a publisher back once what it sent reliably has been acknowledged, or nobody is there to do so."""
+
+    def open_subscription(self, subscription: Subscription[Any]) -> None:
+        """Mirror a subscription."""
+
+    def close_subscription(self, subscription: Subscription[Any]) -> None:
+        """Take a subscription back."""
+
+    def open_service(self, service: Service[Any, Any]) -> None:
+        """Mirror a service."""
+
+    def close_service(self, service: Service[Any, Any]) -> None:
+        """Take a service back."""
+
+    def open_client(self, client: Client[Any, Any]) -> None:
+        """Mirror a client."""
+
+    def close_client(self, client: Client[Any, Any]) -> None:
+        """Take a client back."""
+
+    def remote_nodes(self) -> Sequence[NodeIdentity]:
+        """The nodes of other processes, as far as discovery has come."""
+
+    def remote_endpoints(self) -> Sequence[EndpointInfo]:
+        """The endpoints of other processes, as far as discovery has come.
+
+        Actions are the services and topics they are made of.
+        """
+
+    def watch(self, changed: Callable[[], None]) -> None:
+        """Have something called, from any thread, whenever nodes or endpoints outside come or go."""
+
+    def close(self) -> None:
+        """Leave the network; nothing of the transport (no thread, no socket) outlives this."""

@@ -1,0 +1,405 @@
+"""What all executors share: nodes, ready work, tasks and shutdown (rclpy ``executors.Executor``)."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Coroutine, Iterator, Sequence
+from contextlib import suppress
+from functools import partial
+from types import CoroutineType, TracebackType
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar, overload
+
+from linkwright.graph.executors.task import Task
+from linkwright.graph.executors.work import ScheduledCall, WorkQueue
+from linkwright.graph.faults import (
+    ConditionReachedException,
+    ExternalShutdownException,
+    ShutdownException,
+    TimeoutException,
+)
+from linkwright.graph.loop.entity import Entity
+from linkwright.graph.loop.future import Future
+from linkwright.graph.loop.node_handle import NodeHandle
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
+
+
+T = TypeVar("T")
+
+_NANOSECONDS_PER_SECOND = 1_000_000_000
+_POSTPONED_AT_MOST = 2
+
+
+class Context(Protocol):
+    """What says whether the program is to go on (rclpy ``Context``)."""
+
+    def ok(self) -> bool:
+        """Whether it is."""
+
+    def on_shutdown(self, callback: Callable[[], None]) -> None:
+        """Have something called at the end."""
+
+
+class SpunNode(Protocol):
+    """A node, as an executor sees it."""
+
+    @property
+    def handle(self) -> NodeHandle:
+        """What the graph knows of it."""
+
+
+def deadline_after(timeout_sec: float | None) -> int | None:
+    """The count of ``time.monotonic_ns`` at which a timeout in seconds is over; None and negative numbers have none."""
+    if timeout_sec is None or timeout_sec < 0:
+        return None
+    return time.monotonic_ns() + int(timeout_sec * _NANOSECONDS_PER_SECOND)
+
+
+class Executor:
+    """Runs the callbacks of nodes in the threads of its choice; a base class for users' own executors.
+
+    A user's own defines `spin_once`, and gets its work from `wait_for_ready_callbacks`.
+
+    Args:
+        context: when this is no longer ok, spinning ends; None for an executor without one.
+    """
+
+    def __init__(self, *, context: Context | None = None) -> None:
+        super().__init__()
+        self._context = context
+        self._work = WorkQueue()
+        self._nodes: dict[NodeHandle, SpunNode] = {}
+        self._nodes_lock = threading.RLock()
+        self._blocked: deque[Entity] = deque()
+        self._is_shutdown = False
+        self._spinners: list[int] = []
+        self._spinners_changed = threading.Condition(threading.RLock())
+        if context is not None:
+            context.on_shutdown(self.wake)
+
+    @property
+    def context(self) -> Any:
+        """The context that the executor belongs to."""
+        return self._context
+
+    @property
+    def is_spinning(self) -> bool:
+        """Whether a thread spins."""
+        return bool(self._spinners)
+
+    def add_node(self, node: SpunNode) -> bool:
+        """Run the callbacks of a node from now on. False when the executor does so already, or was shut down."""
+        with self._nodes_lock:
+            if self._is_shutdown or node.handle in self._nodes:
+                return False
+            handle = node.handle
+            self._nodes[handle] = node
+        if isinstance(handle.dispatcher, Executor):
+            handle.dispatcher.remove_node(node)
+        handle.set_dispatcher(self)
+        self.wake()
+        return True
+
+    def remove_node(self, node: SpunNode) -> None:
+        """Run the callbacks of a node no longer; what is due by then waits for its next executor."""
+        with self._nodes_lock:
+            if self._nodes.pop(node.handle, None) is None:
+                return
+        node.handle.set_dispatcher(None)
+        self.wake()
+
+    def get_nodes(self) -> list[Any]:
+        """The nodes that were added."""
+        with self._nodes_lock:
+            return list(self._nodes.values())
+
+    def wake(self) -> None:
+        """End the wait for work, to look at everything anew."""
+        self._release_blocked()
+        self._work.wake()
+
+    @overload
+    def create_task(self, callback: Callable[..., Coroutine[Any, Any, T]], *args: Any, **kwargs: Any) -> Task[T]: ...
+
+    @overload
+    def create_task(self, callback: Callable[..., T], *args: Any, **kwargs: Any) -> Task[T]: ...
+
+    @overload
+    def create_task(self, callback: Coroutine[Any, Any, T], *args: Any, **kwargs: Any) -> Task[T]: ...
+
+    def create_task(self, callback: Any, *args: Any, **kwargs: Any) -> Task[Any]:
+        """Run a callable or a coroutine while the executor spins, after what is ready by now.
+
+        Args:
+            callback: a callable, a coroutine function or a coroutine.
+            args: positional arguments for it.
+            kwargs: keyword arguments for it.
+        """
+        task: Task[Any] = Task(callback, args, kwargs, executor=self)
+        self._work.add(task)
+        return task
+
+    def create_future(self) -> Future[Any]:
+        """A future whose done callbacks are run by this executor."""
+        return Future(executor=self)
+
+    def spin(self) -> None:
+        """Run callbacks until the executor or the context is shut down."""
+        while not self._is_shutdown and self._context_ok():
+            self.spin_once()
+
+    def spin_once(self, timeout_sec: float | None = None) -> None:
+        """Wait for one callback and run it.
+
+        Args:
+            timeout_sec: the longest wait, in seconds; none at 0, no limit when None or negative.
+        """
+        raise NotImplementedError
+
+    def spin_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
+        """Run callbacks until a future is done or cancelled, or `timeout_sec` seconds have passed (None: no limit)."""
+        future.add_waiter(self.wake)
+        deadline_ns = deadline_after(timeout_sec)
+        while not (future.ended() or self._is_shutdown) and self._context_ok():
+            if deadline_ns is None:
+                self.spin_once_until_future_complete(future)
+                continue
+            left_sec = max(deadline_ns - time.monotonic_ns(), 0) / _NANOSECONDS_PER_SECOND
+            self.spin_once_until_future_complete(future, left_sec)
+            if time.monotonic_ns() >= deadline_ns:
+                return
+
+    def spin_once_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
+        """As `spin_once`, but the wait ends when the future is done, too."""
+        future.add_waiter(self.wake)
+        self.spin_once(timeout_sec)
+
+    def shutdown(self, timeout_sec: float | None = None) -> bool:
+        """Run no further callbacks, and wait for those that run in other threads.
+
+        Args:
+            timeout_sec: the longest wait, in seconds; no limit when None or negative.
+
+        Returns:
+            Whether all have ended.
+        """
+        self._is_shutdown = True
+        self._work.wake()
+        if not self._wait_for_spinners(deadline_after(timeout_sec)):
+            return False
+        for node in self.get_nodes():
+            self.remove_node(node)
+        self._work.clear()
+        self._blocked.clear()
+        return True
+
+    def can_execute(self, entity: Any) -> bool:
+        """Whether the callback group of something lets it run now."""
+        return bool(entity.unblockable or entity.callback_group.can_execute(entity))
+
+    def wait_for_ready_callbacks(
+        self,
+        timeout_sec: float | None = None,
+        nodes: Sequence[SpunNode] | None = None,
+        condition: Callable[[], bool] | None = None,
+    ) -> tuple[Task[Any], Any, Any]:
+        """Wait for something to do.
+
+        Args:
+            timeout_sec: the longest wait, in seconds; none at 0, no limit when None or negative.
+            nodes: whose callbacks to wait for; those of all nodes when None.
+            condition: ends the wait when it gives True after a `wake`.
+
+        Returns:
+            A task to be called, whose ``exception()`` tells of a fault then; what it is of (None for a task that was
+            made by `create_task`); and its node.
+
+        Raises:
+            TimeoutException: nothing came in time.
+            ShutdownException: the executor was shut down.
+            ExternalShutdownException: the context was shut down.
+            ConditionReachedException: the condition has come true.
+        """
+        return next(self._wait_for_ready_callbacks(timeout_sec, nodes, condition))
+
+    def ready(self, entity: Entity) -> None:
+        """See ``Dispatcher.ready``."""
+        self._work.add(entity)
+
+    def call_at(self, steady_ns: int, callback: Callable[[], None]) -> ScheduledCall:
+        """See ``Dispatcher.call_at``; the count is that of ``time.monotonic_ns``."""
+        return self._work.call_at(steady_ns, callback)
+
+    def run_again(self, task: Task[Any]) -> None:
+        """Give a task its next turn."""
+        self._work.add(task)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        self.shutdown()
+
+    def _context_ok(self) -> bool:
+        return self._context is None or self._context.ok()
+
+    def _wait_for_ready_callbacks(
+        self,
+        timeout_sec: float | None = None,
+        nodes: Sequence[SpunNode] | None = None,
+        condition: Callable[[], bool] | None = None,
+    ) -> Iterator[tuple[Task[Any], Any, Any]]:
+        """Give one thing to do after another; see `wait_for_ready_callbacks`."""
+        wanted = None if nodes is None else {node.handle for node in nodes}
+        while True:
+            deadline_ns = deadline_after(timeout_sec)
+            set_aside: list[Any] = []
+            try:
+                item = self._next(deadline_ns, condition, begin=False)
+                while wanted is not None and isinstance(item, Entity) and item.node not in wanted:
+                    set_aside.append(item)
+                    item = self._next(deadline_ns, condition, begin=False)
+            finally:
+                self._work.add_first(set_aside)
+            if isinstance(item, Task):
+                yield item, None, None
+            else:
+                yield self._handler(item), item, self._nodes.get(item.node)
+
+    def _next(self, deadline_ns: int | None, condition: Callable[[], bool] | None, *, begin: bool = True) -> Any:
+        """The next task to run, or entity whose group lets it run and, if `begin`, was told that it does.
+
+        Raises as `wait_for_ready_callbacks` does.
+        """
+        while True:
+            if self._is_shutdown:
+                raise ShutdownException
+            if not self._context_ok():
+                raise ExternalShutdownException
+            if condition is not None and condition():
+                raise ConditionReachedException
+            item = self._work.take()
+            if item is None:
+                if deadline_ns is not None and time.monotonic_ns() >= deadline_ns:
+                    raise TimeoutException
+                self._work.wait(deadline_ns)
+            elif self._admit(item, begin=begin):
+                return item
+
+    def _admit(self, item: Any, *, begin: bool = True) -> bool:
+        """Whether something that was taken out of the queue can run now; an entity that may not yet is put aside."""
+        if isinstance(item, Task):
+            return not item.ended()
+        if item.dispatcher is not self:
+            return False
+        if item.unblockable:
+            return not self._postpone(item)
+        group = item.callback_group
+        if group.can_execute(item) and (not begin or group.beginning_execution(item)):
+            return True
+        self._block(item)
+        return False
+
+    def _postpone(self, answer: Entity) -> bool:
+        """Put the answer that a client got behind what else is ready, and behind what that makes ready.
+
+        rclpy runs tasks and messages first: whoever waits for an action's answer to a goal has its feedback by then,
+        if the goal was executed meanwhile.
+        """
+        if answer.postponed >= _POSTPONED_AT_MOST or not self._work.has_ready():
+            answer.postponed = 0
+            return False
+        answer.postponed += 1
+        self._work.add(answer)
+        return True
+
+    def _execute(self, item: Any) -> None:
+        """Run a task up to its next await, or the next call of an entity whose group knows that it begins.
+
+        Exceptions of the user's code propagate.
+        """
+        if isinstance(item, Task):
+            item()
+            _raise_fault(item)
+            return
+        result = None
+        try:
+            call = item.take()
+            if call is not None:
+                result = call()
+        finally:
+            if type(result) is not CoroutineType:
+                self._end(item)
+        if type(result) is CoroutineType:
+            task: Task[Any] = Task(result, executor=self, ended=partial(self._end, item))
+            task()
+            _raise_fault(task)
+
+    def _handler(self, entity: Entity) -> Task[Any]:
+        begun = False
+
+        def run() -> object:
+            nonlocal begun
+            if not (entity.unblockable or entity.callback_group.beginning_execution(entity)):
+                self._block(entity)
+                return None
+            begun = True
+            call = entity.take()
+            return None if call is None else call()
+
+        def ended() -> None:
+            if begun:
+                self._end(entity)
+
+        return Task(run, executor=self, ended=ended)
+
+    def _end(self, entity: Entity) -> None:
+        if not entity.unblockable:
+            entity.callback_group.ending_execution(entity)
+        if self._blocked:
+            self._release_blocked()
+
+    def _block(self, entity: Entity) -> None:
+        self._blocked.append(entity)
+        if entity.callback_group.can_execute(entity):  # the one it waited for has ended meanwhile
+            self._release_blocked()
+
+    def _release_blocked(self) -> None:
+        released = []
+        while self._blocked:
+            with suppress(IndexError):  # another thread was quicker
+                released.append(self._blocked.popleft())
+        if released:
+            self._work.add_first(released)
+
+    def _spinner_begins(self) -> None:
+        self._spinners.append(threading.get_ident())
+
+    def _spinner_ends(self) -> None:
+        with self._spinners_changed:
+            self._spinners.remove(threading.get_ident())
+            if self._is_shutdown:
+                self._spinners_changed.notify_all()
+
+    def _wait_for_spinners(self, deadline_ns: int | None) -> bool:
+        own = threading.get_ident()
+        with self._spinners_changed:
+            while any(spinner != own for spinner in self._spinners):
+                self._work.wake()
+                left = None if deadline_ns is None else (deadline_ns - time.monotonic_ns()) / _NANOSECONDS_PER_SECOND
+                if left is not None and left <= 0:
+                    return False
+                self._spinners_changed.wait(left)
+        return True
+
+
+def _raise_fault(task: Task[Any]) -> None:
+    if task.done():
+        fault = task.exception()
+        if fault is not None:
+            raise fault

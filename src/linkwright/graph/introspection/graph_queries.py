@@ -1,0 +1,222 @@
+"""Questions to a graph: the nodes and endpoints of this process, and those that discovery found."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import replace
+
+from linkwright.graph.endpoints.bus import Bus
+from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
+from linkwright.graph.endpoints.transport import Transport
+from linkwright.graph.faults import NodeNotFoundError
+from linkwright.graph.introspection.answers import (
+    NamesAndTypes,
+    TopicEndpointInfo,
+    action_names_and_types,
+    names_and_types,
+)
+from linkwright.graph.loop.node_handle import NodeHandle
+from linkwright.graph.names.identity import NodeIdentity
+from linkwright.graph.names.rules import split
+
+_PUBLISHER, _SUBSCRIPTION = EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION
+_SERVICE, _CLIENT = EndpointKind.SERVICE, EndpointKind.CLIENT
+
+
+class GraphQueries:
+    """The questions to a graph, with rclpy's names; `Graph` derives from it."""
+
+    bus: Bus
+    _nodes: dict[NodeHandle, None]
+    _transport: Transport | None
+    _changed: threading.Condition
+    _watchers: dict[Callable[[], object], None]
+    _closed: bool
+
+    def identities(self) -> list[NodeIdentity]:
+        """The nodes of this process and, as far as discovery has come, of others."""
+        outside = self._transport.remote_nodes() if self._transport is not None else ()
+        return [*(node.identity for node in tuple(self._nodes)), *outside]
+
+    def endpoints(self) -> list[EndpointInfo]:
+        """The endpoints of this process and, as far as discovery has come, of others."""
+        outside = self._transport.remote_endpoints() if self._transport is not None else ()
+        return [*(endpoint.info() for endpoint in self.bus.endpoints()), *outside]
+
+    def node_names(self) -> list[str]:
+        """Full names of the nodes of this process, sorted."""
+        return sorted(node.identity.full_name for node in tuple(self._nodes))
+
+    def topics(self) -> dict[str, list[str]]:
+        """Topic names, sorted, each with the names of the message types in use on it."""
+        return dict(self.get_topic_names_and_types())
+
+    def get_node_names_and_namespaces(self) -> list[tuple[str, str]]:
+        """Name and namespace of each node."""
+        return [(node.name, node.namespace) for node in self.identities()]
+
+    def get_node_names_and_namespaces_with_enclaves(self) -> list[tuple[str, str, str]]:
+        """Name, namespace and enclave of each node."""
+        return [(node.name, node.namespace, node.enclave) for node in self.identities()]
+
+    def get_topic_names_and_types(self, no_demangle: bool = False) -> NamesAndTypes:
+        """Names of topics, sorted, each with the names of its types.
+
+        Args:
+            no_demangle: whether names and types are given as they are on the wire.
+        """
+        return _mangled(names_and_types(self.endpoints(), _PUBLISHER, _SUBSCRIPTION), no_demangle)
+
+    def get_service_names_and_types(self) -> NamesAndTypes:
+        """Names of services, sorted, each with the names of its types."""
+        return names_and_types(self.endpoints(), _SERVICE, _CLIENT)
+
+    def get_action_names_and_types(self) -> NamesAndTypes:
+        """Names of actions, sorted, each with the names of its types."""
+        return action_names_and_types(self.endpoints(), _PUBLISHER, _SUBSCRIPTION)
+
+    def get_action_server_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
+        """The actions that a node serves; see `get_publisher_names_and_types_by_node`."""
+        return action_names_and_types(self._of_node(node_name, node_namespace), _PUBLISHER)
+
+    def get_action_client_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
+        """The actions that a node has clients of; see `get_publisher_names_and_types_by_node`."""
+        return action_names_and_types(self._of_node(node_name, node_namespace), _SUBSCRIPTION)
+
+    def get_publisher_names_and_types_by_node(
+        self, node_name: str, node_namespace: str, no_demangle: bool = False
+    ) -> NamesAndTypes:
+        """The topics that a node publishes.
+
+        Args:
+            node_name: the node's name.
+            node_namespace: its namespace.
+            no_demangle: whether names and types are given as they are on the wire.
+
+        Raises:
+            NodeNotFoundError: there is no such node.
+        """
+        return _mangled(names_and_types(self._of_node(node_name, node_namespace), _PUBLISHER), no_demangle)
+
+    def get_subscriber_names_and_types_by_node(
+        self, node_name: str, node_namespace: str, no_demangle: bool = False
+    ) -> NamesAndTypes:
+        """The topics that a node subscribes to; see `get_publisher_names_and_types_by_node`."""
+        return _mangled(names_and_types(self._of_node(node_name, node_namespace), _SUBSCRIPTION), no_demangle)
+
+    def get_service_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
+        """The services of a node; see `get_publisher_names_and_types_by_node`."""
+        return names_and_types(self._of_node(node_name, node_namespace), _SERVICE)
+
+    def get_client_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
+        """The services that a node has clients of; see `get_publisher_names_and_types_by_node`."""
+        return names_and_types(self._of_node(node_name, node_namespace), _CLIENT)
+
+    def get_publishers_info_by_topic(self, topic: str) -> list[TopicEndpointInfo]:
+        """The publishers of a topic; absolute name."""
+        return [TopicEndpointInfo.of(_hashed(each)) for each in self._of_name(topic, _PUBLISHER)]
+
+    def get_subscriptions_info_by_topic(self, topic: str) -> list[TopicEndpointInfo]:
+        """The subscriptions to a topic; absolute name."""
+        return [TopicEndpointInfo.of(_hashed(each)) for each in self._of_name(topic, _SUBSCRIPTION)]
+
+    def count_publishers(self, topic: str) -> int:
+        """How many publishers a topic has; absolute name."""
+        return len(self._of_name(topic, _PUBLISHER))
+
+    def count_subscribers(self, topic: str) -> int:
+        """How many subscriptions a topic has; absolute name."""
+        return len(self._of_name(topic, _SUBSCRIPTION))
+
+    def count_services(self, service: str) -> int:
+        """How many servers a service has; absolute name."""
+        return len(self._of_name(service, _SERVICE))
+
+    def count_clients(self, service: str) -> int:
+        """How many clients a service has; absolute name."""
+        return len(self._of_name(service, _CLIENT))
+
+    # --- waiting -----------------------------------------------------------------------------------------------------
+
+    def notify_change(self) -> None:
+        """Have those who wait in `wait_until` check their condition again; from any thread."""
+        with self._changed:
+            self._changed.notify_all()
+        for changed in tuple(self._watchers):
+            changed()
+
+    def watch(self, changed: Callable[[], object]) -> None:
+        """Have something called whenever nodes or endpoints come or go, in whatever thread that happens."""
+        self._watchers[changed] = None
+
+    def unwatch(self, changed: Callable[[], object]) -> None:
+        """Do not have it called any longer."""
+        self._watchers.pop(changed, None)
+
+    def wait_until(self, holds: Callable[[], bool], timeout_sec: float | None = None) -> bool:
+        """Block the calling thread until something of the graph holds.
+
+        Args:
+            holds: what is asked whenever nodes or endpoints come or go.
+            timeout_sec: seconds to wait at most; None or a negative number for any time.
+
+        Returns:
+            Whether it holds. Also the end of the graph ends the wait.
+        """
+        deadline = None if timeout_sec is None or timeout_sec < 0 else time.monotonic() + timeout_sec
+        while True:
+            if holds():
+                return True
+            left = None if deadline is None else deadline - time.monotonic()
+            if self._closed or (left is not None and left <= 0):
+                return False
+            with self._changed:
+                # Discovery may tell of a change between the question and the wait, so none is long.
+                self._changed.wait(_LONGEST_WAIT_S if left is None else min(left, _LONGEST_WAIT_S))
+
+    def wait_for_node(self, fully_qualified_node_name: str, timeout: float | None = None) -> bool:
+        """Block the calling thread until a node is there; whether it is.
+
+        Args:
+            fully_qualified_node_name: its name, with or without the slash in front.
+            timeout: seconds to wait at most; None or a negative number for any time.
+        """
+        wanted = "/" + fully_qualified_node_name.removeprefix("/")
+        return self.wait_until(lambda: any(each.full_name == wanted for each in self.identities()), timeout)
+
+    def _of_node(self, name: str, namespace: str) -> list[EndpointInfo]:
+        if not any((each.name, each.namespace) == (name, namespace) for each in self.identities()):
+            raise NodeNotFoundError(name, namespace)
+        return [
+            endpoint
+            for endpoint in self.endpoints()
+            if endpoint.node is not None and (endpoint.node.name, endpoint.node.namespace) == (name, namespace)
+        ]
+
+    def _of_name(self, name: str, kind: EndpointKind) -> list[EndpointInfo]:
+        return [endpoint for endpoint in self.endpoints() if endpoint.kind is kind and endpoint.name == name]
+
+
+_LONGEST_WAIT_S = 0.1
+
+
+def _hashed(endpoint: EndpointInfo) -> EndpointInfo:
+    """The endpoint with the hash of its type, which is worked out only when it is asked for."""
+    if endpoint.type_hash or not endpoint.local:
+        return endpoint
+    from linkwright.messages import get_interface, type_hash
+
+    return replace(endpoint, type_hash=type_hash(get_interface(endpoint.type_name)))
+
+
+def _mangled(found: NamesAndTypes, no_demangle: bool) -> NamesAndTypes:
+    if not no_demangle:
+        return found
+    return [(f"rt{name}", [_wire_type(each) for each in types]) for name, types in found]
+
+
+def _wire_type(type_name: str) -> str:
+    namespace, name = split(type_name)
+    return f"{namespace.replace('/', '::')}::dds_::{name}_"

@@ -1,0 +1,46 @@
+"""Nodes of other processes that share the name of one of ours, as a second launch of a robot's would."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Collection
+
+from linkwright.graph.loop.node_handle import NodeHandle
+from linkwright.graph.names.identity import NodeIdentity
+
+OnNamesakes = Callable[[frozenset[str]], object]
+"""Takes the full names of all nodes of ours whose names are shared now; from any thread, one call after another."""
+
+
+class Namesakes:
+    """Which names are shared, and who is told when that changes.
+
+    Args:
+        tell: what is told. When left out, each name is logged once by its node, as long as it is shared.
+    """
+
+    def __init__(self, tell: OnNamesakes | None = None) -> None:
+        self._tell = tell
+        self._shared: frozenset[str] = frozenset()
+        self._lock = threading.RLock()
+
+    def review(self, ours: Collection[NodeHandle], outside: Collection[NodeIdentity]) -> None:
+        """Look which names are shared now."""
+        if not outside and not self._shared:
+            return
+        with self._lock:
+            there = {each.full_name for each in outside}
+            before = self._shared
+            self._shared = frozenset(node.identity.full_name for node in ours) & there
+            if self._shared == before:
+                return
+            if self._tell is not None:
+                self._tell(self._shared)
+                return
+            for node in ours:
+                name = node.identity.full_name
+                if name in self._shared and name not in before:
+                    node.logger.warning(
+                        f"Another process has a node of the exact name '{name}' too: this can have unintended side "
+                        "effects. If it belongs to another robot or program, give one of them another ROS_DOMAIN_ID"
+                    )

@@ -1,0 +1,272 @@
+"""Managed nodes: nodes with a life cycle that others can drive, as ``rclpy.lifecycle`` has them."""
+
+from __future__ import annotations
+
+import traceback
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, joined, phrase
+from linkwright.graph.faults import RclError
+from linkwright.graph.lifecycle.entities import LifecyclePublisher, ManagedEntity
+from linkwright.graph.lifecycle.states import (
+    ACTIVATING,
+    CLEANINGUP,
+    CONFIGURING,
+    DEACTIVATING,
+    ERRORPROCESSING,
+    SHUTTINGDOWN,
+    STATES,
+    TRANSITIONS,
+    LifecycleState,
+    StateMachine,
+    Transition,
+    TransitionCallbackReturn,
+)
+
+if TYPE_CHECKING:
+    from linkwright.graph.loop.callback_groups import CallbackGroup
+
+_CALLBACKS = {
+    CONFIGURING: "on_configure",
+    CLEANINGUP: "on_cleanup",
+    SHUTTINGDOWN: "on_shutdown",
+    ACTIVATING: "on_activate",
+    DEACTIVATING: "on_deactivate",
+    ERRORPROCESSING: "on_error",
+}
+
+
+class LifecycleTransitionError(LinkwrightError, RclError):
+    """A transition is asked for that does not begin where the node stands; rcl's two texts about it are its message."""
+
+    def __init__(self, asked: object, state: LifecycleState, available: Iterable[str]) -> None:
+        names = list(dict.fromkeys(available))
+        hint = did_you_mean(str(asked), names) or (phrase("from here: {names}", names=joined(names)) if names else None)
+        text = phrase(
+            "Transition is not registered: No transition matching {asked} found for current state {label}",
+            asked=asked,
+            label=state.label,
+        )
+        super().__init__(Diagnostic("GRAPH231", text, hint=hint))
+
+
+class LifecycleNodeMixin(ManagedEntity):
+    """What makes a node a managed one; to be mixed with a class of nodes, and initialised after it.
+
+    The callbacks ``on_configure``, ``on_activate``, ``on_deactivate``, ``on_cleanup``, ``on_shutdown`` and
+    ``on_error`` get the state that the transition begins in and give a `TransitionCallbackReturn`; unless overridden
+    they ask the managed entities in turn.
+
+    Args:
+        enable_communication_interface: whether others can drive the node, through services, and hear of it.
+        callback_group: that of the services.
+    """
+
+    def __init__(
+        self, *, enable_communication_interface: bool = True, callback_group: CallbackGroup | None = None
+    ) -> None:
+        self._state_machine = StateMachine()
+        self._managed_entities: list[ManagedEntity] = []
+        self._transition_events: Any = None
+        if not enable_communication_interface:
+            return
+        node: Any = self
+        name = node.get_name()
+        self._transition_events = node.create_publisher(_message("TransitionEvent"), f"{name}/transition_event", 10)
+        for service, type_name, callback in (
+            ("change_state", "ChangeState", self._on_change_state),
+            ("get_state", "GetState", self._on_get_state),
+            ("get_available_states", "GetAvailableStates", self._on_get_available_states),
+            ("get_available_transitions", "GetAvailableTransitions", self._on_get_available_transitions),
+            ("get_transition_graph", "GetAvailableTransitions", self._on_get_transition_graph),
+        ):
+            made = node.create_service(
+                _service(type_name), f"{name}/{service}", callback, callback_group=callback_group
+            )
+            setattr(self._state_machine, f"service_{service}", made)
+
+    @property
+    def lifecycle_state(self) -> LifecycleState:
+        """The state that the node is in."""
+        return self._state_machine.state
+
+    def trigger_configure(self) -> TransitionCallbackReturn:
+        """Configure the node.
+
+        Raises:
+            LifecycleTransitionError: the node is in a state where that cannot be.
+        """
+        return self._change_by_label("configure")
+
+    def trigger_cleanup(self) -> TransitionCallbackReturn:
+        """Clean the node up; see `trigger_configure`."""
+        return self._change_by_label("cleanup")
+
+    def trigger_activate(self) -> TransitionCallbackReturn:
+        """Activate the node; see `trigger_configure`."""
+        return self._change_by_label("activate")
+
+    def trigger_deactivate(self) -> TransitionCallbackReturn:
+        """Deactivate the node; see `trigger_configure`."""
+        return self._change_by_label("deactivate")
+
+    def trigger_shutdown(self) -> TransitionCallbackReturn:
+        """Shut the node down; see `trigger_configure`."""
+        return self._change_by_label("shutdown")
+
+    def add_managed_entity(self, entity: ManagedEntity) -> None:
+        """Notify an entity of the node's transitions."""
+        if entity not in self._managed_entities:
+            self._managed_entities.append(entity)
+
+    def create_lifecycle_publisher(self, *args: Any, **kwargs: Any) -> Any:
+        """A publisher that is silent unless the node is active; arguments are those of ``create_publisher``.
+
+        Raises:
+            TypeError: ``publisher_class`` is given.
+        """
+        if "publisher_class" in kwargs:
+            raise TypeError("create_publisher() got an unexpected keyword argument 'publisher_class'")
+        node: Any = self
+        publisher = node.create_publisher(*args, **kwargs, publisher_class=LifecyclePublisher)
+        self.add_managed_entity(publisher)
+        return publisher
+
+    def destroy_lifecycle_publisher(self, publisher: LifecyclePublisher) -> Any:
+        """Take such a publisher away."""
+        if publisher in self._managed_entities:
+            self._managed_entities.remove(publisher)
+        node: Any = self
+        return node.destroy_publisher(publisher)
+
+    def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """The node is being configured."""
+        return self._ask_entities(lambda entity: entity.on_configure(state))
+
+    def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """The node is being cleaned up."""
+        return self._ask_entities(lambda entity: entity.on_cleanup(state))
+
+    def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """The node is being shut down."""
+        return self._ask_entities(lambda entity: entity.on_shutdown(state))
+
+    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """The node is being activated."""
+        return self._ask_entities(lambda entity: entity.on_activate(state))
+
+    def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """The node is being deactivated."""
+        return self._ask_entities(lambda entity: entity.on_deactivate(state))
+
+    def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """A transition went wrong: success leads back to the beginning, anything else ends the node's life."""
+        return self._ask_entities(lambda entity: entity.on_error(state))
+
+    def _ask_entities(self, ask: Callable[[ManagedEntity], TransitionCallbackReturn]) -> TransitionCallbackReturn:
+        for entity in tuple(self._managed_entities):
+            verdict = ask(entity)
+            if verdict != TransitionCallbackReturn.SUCCESS:
+                return verdict
+        return TransitionCallbackReturn.SUCCESS
+
+    def _change_by_label(self, label: str) -> TransitionCallbackReturn:
+        transition = self._state_machine.by_label(label)
+        if transition is None:
+            available = [each.label for each in self._state_machine.available()]
+            raise LifecycleTransitionError(label, self._state_machine.state, available)
+        return self._change(transition)
+
+    def _change(self, transition: Transition) -> TransitionCallbackReturn:
+        """Go through a transition, its callback and its ending, and the processing of an error if there is one."""
+        initial = self._state_machine.state
+        self._enter(transition)
+        verdict = self._call(initial)
+        self._end(verdict)
+        if verdict == TransitionCallbackReturn.ERROR:
+            self._end(self._call(initial))
+        return verdict
+
+    def _end(self, verdict: TransitionCallbackReturn) -> None:
+        ending = self._state_machine.by_label(verdict.to_label())
+        assert ending is not None
+        self._enter(ending)
+
+    def _call(self, initial: LifecycleState) -> TransitionCallbackReturn:
+        node: Any = self
+        name = _CALLBACKS[self._state_machine.state]
+        try:
+            verdict = getattr(self, name)(initial)
+        except Exception:  # noqa: BLE001  # a fault of the user's callback is what the error state is for
+            node.get_logger().error(f"{name} failed:\n{traceback.format_exc().rstrip()}")
+            return TransitionCallbackReturn.ERROR
+        if isinstance(verdict, TransitionCallbackReturn):
+            return verdict
+        node.get_logger().error(
+            f"{name} returned {verdict!r}; it must return TransitionCallbackReturn.SUCCESS, FAILURE or ERROR"
+        )
+        return TransitionCallbackReturn.ERROR
+
+    def _enter(self, transition: Transition) -> None:
+        self._state_machine.state = transition.goal
+        if self._transition_events is None:
+            return
+        node: Any = self
+        event = self._transition_events.msg_type()
+        event.timestamp = max(0, node.get_clock().now().nanoseconds)
+        event.transition.id, event.transition.label = transition.transition_id, transition.label
+        event.start_state.label, event.start_state.id = transition.start
+        event.goal_state.label, event.goal_state.id = transition.goal
+        self._transition_events.publish(event)
+
+    def _on_change_state(self, request: Any, response: Any) -> Any:
+        asked = request.transition
+        machine = self._state_machine
+        transition = machine.by_label(asked.label) if asked.label else machine.by_id(asked.id)
+        if transition is None or transition.start.state_id >= CONFIGURING.state_id:
+            node: Any = self
+            available = [each.label for each in machine.available()]
+            error = LifecycleTransitionError(asked.label or asked.id, machine.state, available)
+            node.get_logger().warning(str(error))
+            response.success = False
+            return response
+        response.success = self._change(transition) == TransitionCallbackReturn.SUCCESS
+        return response
+
+    def _on_get_state(self, _request: Any, response: Any) -> Any:
+        response.current_state.label, response.current_state.id = self._state_machine.state
+        return response
+
+    def _on_get_available_states(self, _request: Any, response: Any) -> Any:
+        state_class = _message("State")
+        response.available_states = [state_class(id=state.state_id, label=state.label) for state in STATES]
+        return response
+
+    def _on_get_available_transitions(self, _request: Any, response: Any) -> Any:
+        response.available_transitions = [_description(each) for each in self._state_machine.available()]
+        return response
+
+    def _on_get_transition_graph(self, _request: Any, response: Any) -> Any:
+        response.available_transitions = [_description(each) for each in TRANSITIONS]
+        return response
+
+
+def _description(transition: Transition) -> Any:
+    message = _message("TransitionDescription")()
+    message.transition.id, message.transition.label = transition.transition_id, transition.label
+    message.start_state.label, message.start_state.id = transition.start
+    message.goal_state.label, message.goal_state.id = transition.goal
+    return message
+
+
+def _message(name: str) -> Any:
+    from linkwright.messages import get_message
+
+    return get_message(f"lifecycle_msgs/msg/{name}")
+
+
+def _service(name: str) -> Any:
+    from linkwright.messages import get_service
+
+    return get_service(f"lifecycle_msgs/srv/{name}")

@@ -1,0 +1,260 @@
+"""What the nodes of a process share: the bus, the transport to other processes, time and logging."""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+from collections import Counter
+from collections.abc import Callable
+
+from linkwright.graph.endpoints.base import Endpoint
+from linkwright.graph.endpoints.bus import Bus
+from linkwright.graph.endpoints.client import Client
+from linkwright.graph.endpoints.publisher import Publisher
+from linkwright.graph.endpoints.service import Service
+from linkwright.graph.endpoints.subscription import Subscription
+from linkwright.graph.endpoints.transport import Transport
+from linkwright.graph.faults import InvalidHandleError
+from linkwright.graph.introspection.graph_queries import GraphQueries
+from linkwright.graph.introspection.namesakes import Namesakes, OnNamesakes
+from linkwright.graph.log.console import print_to_console
+from linkwright.graph.log.levels import LogLevels
+from linkwright.graph.log.logger import Logger
+from linkwright.graph.log.record import LogSink
+from linkwright.graph.loop.dispatcher import LoopDispatcher
+from linkwright.graph.loop.future import Future
+from linkwright.graph.loop.node_handle import NodeHandle
+from linkwright.graph.names.identity import NodeIdentity
+from linkwright.graph.names.remapping import Remappings
+from linkwright.graph.time.timebase import SystemClock, Timebase
+
+
+class LocalGraph(GraphQueries):
+    """The graph as nodes know it; `Graph` makes the nodes.
+
+    All methods may be called from any thread but for `settle` and `close`, which are the loop's.
+
+    Args:
+        clock: what stamps messages and wakes timers; the system's when left out.
+        on_log: what takes log records; standard error in ROS 2's console format when left out.
+        threads: whether callbacks are not for the running event loop.
+        levels: the levels of the graph's loggers; new ones when left out.
+        on_namesakes: what is told which nodes have namesakes in other processes; a warning is logged when left out.
+    """
+
+    def __init__(
+        self,
+        *,
+        clock: Timebase | None = None,
+        on_log: LogSink | None = None,
+        threads: bool = False,
+        levels: LogLevels | None = None,
+        on_namesakes: OnNamesakes | None = None,
+    ) -> None:
+        self.timebase: Timebase = clock or SystemClock()
+        self.bus = Bus()
+        self.levels = levels or LogLevels()
+        self._sink = on_log or print_to_console
+        self._nodes: dict[NodeHandle, None] = {}
+        self._taken_names: Counter[str] = Counter()
+        self._transport: Transport | None = None
+        self._lock = threading.RLock()
+        self._changed = threading.Condition()
+        self._watchers: dict[Callable[[], object], None] = {}
+        self._namesakes = Namesakes(on_namesakes)
+        self._closed = False
+        loop = None if threads else asyncio._get_running_loop()
+        self._dispatcher = None if loop is None else LoopDispatcher(self.timebase, loop)
+
+    @property
+    def clock(self) -> Timebase:
+        """What the graph's time is made of."""
+        return self.timebase
+
+    @property
+    def dispatcher(self) -> LoopDispatcher | None:
+        """What runs the callbacks of nodes that get no other; None without an event loop."""
+        return self._dispatcher
+
+    @property
+    def transport(self) -> Transport | None:
+        """What carries the graph's traffic out of the process; None where nothing does."""
+        return self._transport
+
+    @property
+    def closed(self) -> bool:
+        """Whether the graph has ended."""
+        return self._closed
+
+    def open_node(self, identity: NodeIdentity, remappings: Remappings, *, copies_messages: bool = False) -> NodeHandle:
+        """Begin a node; a warning is logged when another one of this process has its name.
+
+        Args:
+            identity: its name.
+            remappings: its rules for names of topics and services.
+            copies_messages: whether what it sends is copied, for its sender to change it then.
+
+        Raises:
+            InvalidHandleError: the graph is closed.
+        """
+        full_name = identity.full_name
+        logger = self.get_logger(full_name[1:].replace("/", "."))
+        with self._lock:
+            if self._closed:
+                raise InvalidHandleError("the graph is closed")
+            if full_name in self._taken_names:
+                logger.warning(
+                    f"There are nodes in the graph that share the exact name '{full_name}': "
+                    "this can have unintended side effects"
+                )
+            node = NodeHandle(
+                self,
+                identity,
+                remappings=remappings,
+                logger=logger,
+                dispatcher=self._dispatcher,
+                copies_messages=copies_messages,
+            )
+            self._nodes[node] = None
+            self._taken_names[full_name] += 1
+            if self._transport is not None:
+                self._transport.open_node(identity)
+        self._outside_changed()
+        return node
+
+    def get_logger(self, name: str) -> Logger:
+        """A new logger of any name, for what speaks outside of a node."""
+        return Logger(name, self._sink, self.timebase.now_ns, self.levels, self.timebase.steady_ns)
+
+    def nodes(self) -> tuple[NodeHandle, ...]:
+        """The nodes of this process, in order of creation."""
+        return tuple(self._nodes)
+
+    # --- the transport -----------------------------------------------------------------------------------------------
+
+    def attach(self, transport: Transport) -> None:
+        """Have a transport mirror the graph outside of the process: what there is now, and what comes.
+
+        Raises:
+            RuntimeError: the graph has one already, or is closed.
+        """
+        with self._lock:
+            if self._transport is not None or self._closed:
+                raise RuntimeError("the graph has a transport already, or is closed")
+            self._transport = transport
+            for node in self._nodes:
+                transport.open_node(node.identity)
+            for endpoint in self.bus.endpoints():
+                _open(transport, endpoint)
+        transport.watch(self._outside_changed)
+        self._outside_changed()
+
+    def detach(self) -> None:
+        """Close the transport, if there is one; the graph goes on inside the process."""
+        with self._lock:
+            transport, self._transport = self._transport, None
+        if transport is not None:
+            transport.close()
+            self.notify_change()
+
+    # --- for nodes ---------------------------------------------------------------------------------------------------
+
+    def add(self, endpoint: Endpoint) -> None:
+        """Bring a new endpoint together with those of its name, here and outside."""
+        with self._lock:
+            self.bus.add(endpoint)
+            if self._transport is not None:
+                _open(self._transport, endpoint)
+        self.notify_change()
+
+    def remove(self, endpoint: Endpoint) -> None:
+        """Take an endpoint away."""
+        with self._lock:
+            self.bus.remove(endpoint)
+            if self._transport is not None:
+                _close(self._transport, endpoint)
+        self.notify_change()
+
+    def forget(self, node: NodeHandle) -> None:
+        """Take a node away that is destroyed."""
+        with self._lock:
+            if node not in self._nodes:
+                return
+            del self._nodes[node]
+            self._taken_names -= Counter([node.identity.full_name])
+            if self._transport is not None:
+                self._transport.close_node(node.identity)
+        if self._dispatcher is not None:
+            self._dispatcher.forget(node)
+        self.notify_change()
+
+    # --- the end -----------------------------------------------------------------------------------------------------
+
+    async def settle(self) -> None:
+        """Wait until every message published so far is delivered, and those that callbacks published, and so on."""
+        if self._dispatcher is not None:
+            await self._dispatcher.settle()
+
+    async def close(self) -> None:
+        """Destroy every node and forget what was not delivered yet. Nothing of the graph runs after this."""
+        transport = self._end()
+        if transport is not None:
+            left: Future[None] = Future()
+            thread = threading.Thread(target=_close_transport, args=(transport, left), name="linkwright-graph-close")
+            thread.start()
+            await left
+            thread.join()
+        if self._dispatcher is not None:
+            await self._dispatcher.join()
+
+    def close_now(self) -> None:
+        """Destroy every node, from any thread but that of an event loop; see `close`."""
+        transport = self._end()
+        if transport is not None:
+            transport.close()
+
+    def _outside_changed(self) -> None:
+        transport = self._transport
+        if transport is not None:
+            self._namesakes.review(self.nodes(), transport.remote_nodes())
+        self.notify_change()
+
+    def _end(self) -> Transport | None:
+        for node in tuple(self._nodes):
+            node.destroy()
+        with self._lock:
+            self._closed = True
+            transport, self._transport = self._transport, None
+        if self._dispatcher is not None:
+            self._dispatcher.close()
+        self.notify_change()
+        return transport
+
+
+def _close_transport(transport: Transport, left: Future[None]) -> None:
+    try:
+        transport.close()
+    finally:
+        left.set_result(None)
+
+
+def _open(transport: Transport, endpoint: Endpoint) -> None:
+    if isinstance(endpoint, Publisher):
+        transport.open_publisher(endpoint)
+    elif isinstance(endpoint, Subscription):
+        transport.open_subscription(endpoint)
+    elif isinstance(endpoint, Service):
+        transport.open_service(endpoint)
+    elif isinstance(endpoint, Client):
+        transport.open_client(endpoint)
+
+
+def _close(transport: Transport, endpoint: Endpoint) -> None:
+    if isinstance(endpoint, Publisher):
+        transport.close_publisher(endpoint)
+    elif isinstance(endpoint, Subscription):
+        transport.close_subscription(endpoint)
+    elif isinstance(endpoint, Service):
+        transport.close_service(endpoint)
+    elif isinstance(endpoint, Client):
+        transport.close_client(endpoint)

@@ -1,0 +1,35 @@
+"""Log records: a message with its level, time and place in the code."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from linkwright.graph.log.levels import LogLevel
+
+
+@dataclass(frozen=True, slots=True)
+class LogRecord:
+    """One message of a logger.
+
+    Attributes:
+        node: the logger's name: the node's name with its namespace before it, joined by dots.
+        level: how bad it is.
+        stamp_ns: when, nanoseconds since the epoch by the graph's clock.
+        text: what was said; it may have several lines.
+        file: path of the source file that said it; empty where that is not known.
+        function: the function in it.
+        line: the line in it.
+    """
+
+    node: str
+    level: LogLevel
+    stamp_ns: int
+    text: str
+    file: str = field(default="", compare=False)
+    function: str = field(default="", compare=False)
+    line: int = field(default=0, compare=False)
+
+
+LogSink = Callable[[LogRecord], None]
+"""What takes records: the console, a file, ``/rosout``."""

@@ -1,0 +1,55 @@
+"""The services through which others read and set the levels of a node's loggers (``enable_logger_service``)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from linkwright.graph.log.levels import LogLevel
+from linkwright.graph.node import Node
+from linkwright.graph.qos.profile import SERVICES_QOS
+
+if TYPE_CHECKING:
+    from linkwright.graph.log.levels import LogLevels
+
+
+class LoggerServices:
+    """``~/get_logger_levels`` and ``~/set_logger_levels`` of rcl_interfaces (Jazzy and newer).
+
+    Args:
+        node: the node.
+        levels: the levels of its graph.
+    """
+
+    def __init__(self, node: Node, levels: LogLevels) -> None:
+        self._levels = levels
+        name = node.get_name()
+        for service, type_name, callback in (
+            ("get_logger_levels", "GetLoggerLevels", self._get),
+            ("set_logger_levels", "SetLoggerLevels", self._set),
+        ):
+            node.create_service(
+                f"rcl_interfaces/srv/{type_name}", f"{name}/{service}", callback, qos_profile=SERVICES_QOS
+            )
+
+    def _get(self, request: Any, response: Any) -> Any:
+        from linkwright.graph.parameters.messages import interface
+
+        level_class = interface("LoggerLevel")
+        response.levels = [level_class(name=name, level=int(self._levels.own(name))) for name in request.names]
+        return response
+
+    def _set(self, request: Any, response: Any) -> Any:
+        from linkwright.graph.parameters.messages import interface
+
+        result_class = interface("SetLoggerLevelsResult")
+        results = [self._set_one(each.name, each.level) for each in request.levels]
+        response.results = [result_class(successful=not reason, reason=reason) for reason in results]
+        return response
+
+    def _set_one(self, name: str, level: int) -> str:
+        """Set one level; gives why it cannot be, or nothing."""
+        try:
+            self._levels.set(name, LogLevel(level))
+        except ValueError:
+            return f"{level} is no log level; they are {', '.join(str(int(each)) for each in LogLevel)}"
+        return ""

@@ -1,0 +1,244 @@
+"""The dispatcher of an event loop: runs callbacks in the order in which they became ready."""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Coroutine
+from dataclasses import dataclass, field
+from functools import partial
+from types import CoroutineType
+from typing import Any
+
+from linkwright.graph.loop.callback_groups import CallbackGroup
+from linkwright.graph.loop.entity import Entity
+from linkwright.graph.loop.node_handle import NodeHandle
+from linkwright.graph.time.timebase import Alarm, Timebase
+
+_CALLS_A_TURN = 256
+_SECONDS_A_TURN = 0.002
+_MOST_TURNS = 1000
+"""How many turns without a call `settle` waits for coroutines to come to rest."""
+
+
+class LoopDispatcher:
+    """A dispatcher on the event loop of the thread that makes it.
+
+    Entities take turns: one that has more to do after its call goes to the end of the queue, so that a flood of
+    messages on one topic starves nobody. A turn of the loop runs what is ready for a moment, and then lets the loop
+    serve sockets and timers. What is made ready while a callback runs comes after it, never inside it. Callbacks that
+    are coroutines run as tasks of the loop, which end with their node.
+    """
+
+    def __init__(self, timebase: Timebase, loop: asyncio.AbstractEventLoop) -> None:
+        self._timebase = timebase
+        self._loop = loop
+        self._thread = threading.get_ident()
+        self._ready: deque[Entity] = deque()
+        self._is_scheduled = False
+        self._waking = False
+        self._closed = False
+        self.on_error: Callable[[Entity, Exception], None] = Entity.report
+        """What is done with the error of a callback; it is logged unless this is changed."""
+        self._tasks: dict[asyncio.Task[None], NodeHandle] = {}
+        self._held: dict[CallbackGroup, _Hold] = {}
+        timebase.attach(self)
+
+    @property
+    def loop(self) -> asyncio.AbstractEventLoop:
+        """The event loop it runs on."""
+        return self._loop
+
+    def is_own_thread(self) -> bool:
+        """Whether this is asked from the loop's thread."""
+        return threading.get_ident() == self._thread
+
+    def ready(self, entity: Entity) -> None:
+        """Run the entity's next call soon. It may be asked from any thread."""
+        self._ready.append(entity)
+        if self._is_scheduled:
+            return
+        if threading.get_ident() == self._thread:
+            self._schedule()
+        elif not self._waking:
+            self._waking = True
+            self._call_threadsafe(self._wake)
+
+    def call_at(self, steady_ns: int, callback: Callable[[], None]) -> Alarm:
+        """Call something once at a count of the timebase."""
+        if threading.get_ident() == self._thread:
+            return self._timebase.call_at(self._loop, steady_ns, partial(self._alarmed, callback))
+        return _AlarmFromElsewhere(self, steady_ns, callback)
+
+    def call_threadsafe(self, callback: Callable[[], None]) -> None:
+        """Call something soon on the loop, from any thread; nothing happens when the loop has ended."""
+        self._call_threadsafe(callback)
+
+    def forget(self, node: NodeHandle) -> None:
+        """Cancel the coroutines of a node."""
+        for task, owner in tuple(self._tasks.items()):
+            if owner is node:
+                task.cancel()
+
+    async def settle(self) -> None:
+        """Wait until nothing is ready any more, including the calls that other calls make ready.
+
+        Other coroutines on the loop are given turns until they wait for something; there is a limit for one that never
+        does.
+        """
+        await asyncio.sleep(0)
+        turns = 0
+        while self._ready or (self._others_are_ready() and turns < _MOST_TURNS):
+            turns = 0 if self._ready else turns + 1
+            await asyncio.sleep(0)
+
+    def _others_are_ready(self) -> bool:
+        # asyncio's own loop keeps its queue here; a loop without one is taken to be idle.
+        return bool(getattr(self._loop, "_ready", ()))
+
+    def close(self) -> None:
+        """Forget all work, and cancel what runs."""
+        self._closed = True
+        self._ready.clear()
+        self._held.clear()
+        for task in tuple(self._tasks):
+            task.cancel()
+
+    async def join(self) -> None:
+        """Wait for the coroutines that were cancelled."""
+        tasks = [task for task in self._tasks if task is not asyncio.current_task()]
+        if tasks:
+            await asyncio.gather(*tasks, return_exceptions=True)
+            await asyncio.sleep(0)  # lets the loop forget them, too
+
+    def _call_threadsafe(self, callback: Callable[[], None]) -> None:
+        try:
+            self._loop.call_soon_threadsafe(callback)
+        except RuntimeError:  # the loop is closed
+            self._waking = False
+
+    def _wake(self) -> None:
+        self._waking = False
+        if self._ready and not self._is_scheduled:
+            self._schedule()
+
+    def _alarmed(self, callback: Callable[[], None]) -> None:
+        """Run an alarm and, in the same turn of the loop, the calls that it makes ready."""
+        if self._is_scheduled:
+            callback()
+            return
+        self._is_scheduled = True
+        try:
+            callback()
+        finally:
+            self._run_turn()
+
+    def _schedule(self) -> None:
+        if not self._closed:
+            self._is_scheduled = True
+            self._loop.call_soon(self._run_turn)
+
+    def _run_turn(self) -> None:
+        ready = self._ready
+        now = time.perf_counter
+        end = now() + _SECONDS_A_TURN
+        try:
+            for _ in range(_CALLS_A_TURN):
+                if not ready:
+                    break
+                entity = ready.popleft()
+                if entity.dispatcher is not self or (self._held and self._must_wait(entity)):
+                    continue
+                call = entity.take()
+                if call is None:
+                    continue
+                try:
+                    outcome = call()
+                except Exception as error:  # noqa: BLE001  # one callback must not take other nodes with it
+                    self.on_error(entity, error)
+                else:
+                    if outcome is not None and isinstance(outcome, CoroutineType):
+                        self._start(entity, outcome)
+                if now() > end:
+                    break
+        finally:
+            self._is_scheduled = False
+            if ready:
+                self._schedule()
+
+    # --- coroutines ----------------------------------------------------------------------------------------------
+
+    def _must_wait(self, entity: Entity) -> bool:
+        group = entity.callback_group
+        hold = self._held.get(group)
+        if hold is None or entity.unblockable or group.can_execute(entity):
+            return False
+        hold.waiting.append(entity)
+        return True
+
+    def _start(self, entity: Entity, coroutine: Coroutine[Any, Any, object]) -> None:
+        group = entity.callback_group
+        group.beginning_execution(entity)
+        self._held.setdefault(group, _Hold()).coroutines += 1
+        task = self._loop.create_task(self._run(entity, coroutine))
+        self._tasks[task] = entity.node
+
+        def ended(task: asyncio.Task[None]) -> None:
+            self._tasks.pop(task, None)
+            coroutine.close()
+            self._release(group, entity)
+
+        task.add_done_callback(ended)
+
+    async def _run(self, entity: Entity, coroutine: Coroutine[Any, Any, object]) -> None:
+        try:
+            await coroutine
+        except Exception as error:  # noqa: BLE001  # as for callbacks that are no coroutines
+            self.on_error(entity, error)
+
+    def _release(self, group: CallbackGroup, entity: Entity) -> None:
+        group.ending_execution(entity)
+        hold = self._held.get(group)
+        if hold is None:
+            return
+        hold.coroutines -= 1
+        waiting, hold.waiting = hold.waiting, []
+        if not hold.coroutines:
+            del self._held[group]
+        for each in waiting:
+            self.ready(each)
+
+
+@dataclass(slots=True)
+class _Hold:
+    """The running coroutines of a callback group, and the entities that wait for them to end."""
+
+    coroutines: int = 0
+    waiting: list[Entity] = field(default_factory=list)
+
+
+class _AlarmFromElsewhere:
+    """An alarm that was set by a thread other than the loop's."""
+
+    __slots__ = ("_alarm", "_cancelled", "_dispatcher")
+
+    def __init__(self, dispatcher: LoopDispatcher, steady_ns: int, callback: Callable[[], None]) -> None:
+        self._dispatcher = dispatcher
+        self._alarm: Alarm | None = None
+        self._cancelled = False
+
+        def set_up() -> None:
+            if not self._cancelled:
+                self._alarm = dispatcher.call_at(steady_ns, callback)
+
+        dispatcher.call_threadsafe(set_up)
+
+    def cancel(self) -> None:
+        self._cancelled = True
+        self._dispatcher.call_threadsafe(self._cancel)
+
+    def _cancel(self) -> None:
+        if self._alarm is not None:
+            self._alarm.cancel()

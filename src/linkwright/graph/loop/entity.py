@@ -1,0 +1,137 @@
+"""Entities: the parts of a node that call back; guard conditions, the simplest of them.
+
+An entity (a subscription, a timer, a service, ...) tells the dispatcher of its node that it has something to do; the
+dispatcher decides when, and in which thread, it takes that from the entity and does it. The event loop of the launcher
+is one dispatcher (`linkwright.graph.loop.dispatcher`), the executors of rclpy are others
+(`linkwright.graph.executors`).
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections import deque
+from collections.abc import Callable
+from typing import TypeVar
+
+from linkwright.graph.log.logger import log_failure
+from linkwright.graph.loop.callback_groups import CallbackGroup
+from linkwright.graph.loop.node_handle import Dispatcher, NodeHandle, Part
+
+T = TypeVar("T")
+
+
+class Entity(Part, ABC):
+    """What a dispatcher takes calls from.
+
+    Attributes:
+        callback_group: which entities may run beside it; the node's default group unless another one is given.
+        dispatcher: what runs its calls; None while the node has none, and after it was destroyed.
+    """
+
+    unblockable = False
+    """Whether its calls run none of the user's callbacks, so that no group needs to hold them back."""
+
+    postponed = 0
+    """How often an executor has let others run first; see ``Executor._postpone``."""
+
+    def __init__(self, node: NodeHandle, callback_group: CallbackGroup | None = None) -> None:
+        self.node = node
+        self.callback_group = node.default_callback_group if callback_group is None else callback_group
+        self.dispatcher: Dispatcher | None = None
+        self._announced = False
+        # A user's own group need not derive from rclpy's.
+        add_entity = getattr(self.callback_group, "add_entity", None)
+        if add_entity is not None:
+            add_entity(self)
+
+    @abstractmethod
+    def take(self) -> Callable[[], object] | None:
+        """The next call that is due, taken out of the entity's queue; None when there is none any more.
+
+        What the call raises is the user's; it may give a coroutine, which the dispatcher runs to its end.
+        """
+
+    @abstractmethod
+    def has_work(self) -> bool:
+        """Whether `take` would give a call."""
+
+    @property
+    @abstractmethod
+    def what(self) -> str:
+        """What it is, for messages about a failed call."""
+
+    def set_dispatcher(self, dispatcher: Dispatcher | None) -> None:
+        """Have the calls run by a dispatcher from now on; what is pending is announced to it."""
+        self.dispatcher = dispatcher
+        self._announced = False
+        if dispatcher is not None and self.has_work():
+            self.announce()
+
+    def announce(self) -> None:
+        """Tell the dispatcher that there is something to take, unless it knows."""
+        if not self._announced:
+            dispatcher = self.dispatcher
+            if dispatcher is not None:
+                self._announced = True
+                dispatcher.ready(self)
+
+    def _next_of(self, queue: deque[T]) -> T | None:
+        """What waits longest, taken out of the queue that the entity's calls come from; None when there is nothing.
+
+        What waits behind it is announced.
+        """
+        self._announced = False
+        try:
+            item = queue.popleft()
+        except IndexError:
+            return None
+        if queue:
+            self.announce()
+        return item
+
+    def begin(self) -> None:
+        """Be run by the node's dispatcher."""
+        self.set_dispatcher(self.node.dispatcher)
+
+    def retire(self) -> None:
+        """Never call back again."""
+        self.dispatcher = None
+        super().retire()
+
+    def report(self, error: BaseException) -> None:
+        """Say in the node's log that a call failed."""
+        log_failure(self.node.logger, self.what, error)
+
+
+class GuardCondition(Entity):
+    """Calls back soon after it was triggered: once, however often it was triggered in between."""
+
+    def __init__(
+        self, node: NodeHandle, callback: Callable[[], object] | None, callback_group: CallbackGroup | None = None
+    ) -> None:
+        super().__init__(node, callback_group)
+        self.callback = callback
+        self._triggered = False
+
+    @property
+    def what(self) -> str:
+        """What it is called in messages."""
+        return "guard condition callback"
+
+    def trigger(self) -> None:
+        """Have the callback called."""
+        if not self.destroyed:
+            self._triggered = True
+            self.announce()
+
+    def has_work(self) -> bool:
+        """Whether it was triggered."""
+        return self._triggered
+
+    def take(self) -> Callable[[], object] | None:
+        """The callback, if it was triggered."""
+        self._announced = False
+        if not self._triggered or self.destroyed:
+            return None
+        self._triggered = False
+        return self.callback

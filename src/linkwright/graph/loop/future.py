@@ -1,0 +1,207 @@
+"""Futures for callbacks, coroutines and threads (rclpy ``Future``)."""
+
+from __future__ import annotations
+
+import asyncio
+import sys
+import threading
+from collections.abc import Callable, Generator
+from contextlib import suppress
+from typing import Any, Generic, TypeVar
+
+T = TypeVar("T")
+
+_driver = threading.local()
+
+
+def is_stepped_by_executor() -> bool:
+    """Whether this thread is inside of `StepsByExecutor`."""
+    return bool(getattr(_driver, "depth", 0))
+
+
+class StepsByExecutor:
+    """While this is entered, coroutines are stepped in this thread by an executor of rclpy, not by asyncio.
+
+    A future that is awaited then gives itself to whoever steps, even inside a running event loop.
+    """
+
+    def __enter__(self) -> None:
+        _driver.depth = getattr(_driver, "depth", 0) + 1
+
+    def __exit__(self, *_: object) -> None:
+        _driver.depth -= 1
+
+
+class Future(Generic[T]):
+    """A result to come. It can be awaited in a coroutine that asyncio runs and in one that an executor runs.
+
+    Args:
+        executor: what runs the done callbacks (its ``create_task(callback, future)``); without one they are called at
+            once by whoever completes the future.
+    """
+
+    def __init__(self, *, executor: Any = None) -> None:
+        self._done = False
+        self._cancelled = False
+        self._result: T | None = None
+        self._exception: BaseException | None = None
+        self._exception_fetched = False
+        self._callbacks: list[Callable[[Any], object]] = []
+        self._waiters: list[Callable[[], object]] = []
+        self._executor = executor
+        self._lock = threading.Lock()
+
+    def __del__(self) -> None:
+        if self._exception is not None and not self._exception_fetched:
+            print(f"The following exception was never retrieved: {self._exception}", file=sys.stderr)
+
+    def done(self) -> bool:
+        """Whether it has a result or an exception; one that was cancelled has not, as in rclpy."""
+        return self._done
+
+    def ended(self) -> bool:
+        """Whether there is nothing more to wait for: it is done or cancelled."""
+        return self._done or self._cancelled
+
+    def cancelled(self) -> bool:
+        """Whether it was cancelled."""
+        return self._cancelled
+
+    def cancel(self) -> None:
+        """Give up: callbacks are told, and nobody waits any longer. Does nothing to a future that is done."""
+        with self._lock:
+            if self._done or self._cancelled:
+                return
+            self._cancelled = True
+        self._tell()
+
+    def result(self) -> T | None:
+        """The result; None while there is none.
+
+        Raises:
+            Exception: the one that the future ended with.
+        """
+        if self._exception is not None:
+            self._exception_fetched = True
+            raise self._exception
+        return self._result
+
+    def exception(self) -> BaseException | None:
+        """The exception that the future ended with; None when there is none."""
+        self._exception_fetched = True
+        return self._exception
+
+    def set_result(self, result: T) -> None:
+        """End with a result."""
+        with self._lock:
+            self._result = result
+            self._done = True
+            self._cancelled = False
+        self._tell()
+
+    def set_exception(self, exception: BaseException) -> None:
+        """End with an exception."""
+        with self._lock:
+            self._exception = exception
+            self._exception_fetched = False
+            self._done = True
+            self._cancelled = False
+        self._tell()
+
+    def add_done_callback(self, callback: Callable[[Any], object]) -> None:
+        """Call something with this future when it is done; at once if it is."""
+        with self._lock:
+            if not self.ended():
+                self._callbacks.append(callback)
+                return
+        self._call(callback)
+
+    def remove_done_callback(self, callback: Callable[[Any], object]) -> int:
+        """Take a callback back; how many times it was there."""
+        with self._lock:
+            kept = [each for each in self._callbacks if each != callback]
+            removed = len(self._callbacks) - len(kept)
+            self._callbacks = kept
+        return removed
+
+    def set_executor(self, executor: Any) -> None:
+        """Have an executor run the done callbacks."""
+        self._executor = executor
+
+    def hand_over(self, result: T, dispatcher: Any) -> None:
+        """End with a result, unless it has ended.
+
+        Args:
+            result: the result.
+            dispatcher: of the node that waits for it; has the done callbacks run, where it is an executor.
+        """
+        if not self.ended():
+            if hasattr(dispatcher, "create_task"):
+                self.set_executor(dispatcher)
+            self.set_result(result)
+
+    def add_waiter(self, callback: Callable[[], object]) -> None:
+        """For what runs coroutines: call something at once, in whatever thread, when the future is done or cancelled.
+
+        A callback that is there already is not added again.
+        """
+        with self._lock:
+            if not self.ended():
+                if callback not in self._waiters:
+                    self._waiters.append(callback)
+                return
+        callback()
+
+    def remove_waiter(self, callback: Callable[[], object]) -> None:
+        """Take a waiter back."""
+        with self._lock, suppress(ValueError):
+            self._waiters.remove(callback)
+
+    def wait(self, timeout_sec: float | None = None) -> bool:
+        """Block the calling thread until it is done or cancelled; whether it is."""
+        event = threading.Event()
+        self.add_waiter(event.set)
+        event.wait(timeout_sec)
+        self.remove_waiter(event.set)
+        return self.ended()
+
+    def __await__(self) -> Generator[Any, None, T | None]:
+        loop = None if getattr(_driver, "depth", 0) else asyncio._get_running_loop()
+        if loop is None:
+            while not self.ended():
+                yield self
+        elif not self.ended():
+            yield from self._wait_on(loop)
+        return self.result()
+
+    def _wait_on(self, loop: asyncio.AbstractEventLoop) -> Generator[Any, None, None]:
+        ready = loop.create_future()
+
+        def set_ready() -> None:
+            if not ready.done():
+                ready.set_result(None)
+
+        def wake() -> None:
+            with suppress(RuntimeError):  # the loop is closed
+                loop.call_soon_threadsafe(set_ready)
+
+        self.add_waiter(wake)
+        try:
+            yield from ready.__await__()
+        finally:
+            self.remove_waiter(wake)
+
+    def _tell(self) -> None:
+        with self._lock:
+            waiters, self._waiters = self._waiters, []
+            callbacks, self._callbacks = self._callbacks, []
+        for waiter in waiters:
+            waiter()
+        for callback in callbacks:
+            self._call(callback)
+
+    def _call(self, callback: Callable[[Any], object]) -> None:
+        if self._executor is not None:
+            self._executor.create_task(callback, self)
+        else:
+            callback(self)

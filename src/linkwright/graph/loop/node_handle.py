@@ -1,0 +1,266 @@
+"""A node as the graph knows it: its name, its parts and its dispatcher, behind the API that users see.
+
+rcl has such an object too (``rcl_node_t``), and rclpy's nodes give theirs as ``node.handle``. Publishers, timers and
+the other parts of a node know this, not the node: so a user's class may have any attributes and override any method.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+
+from linkwright.graph.faults import InvalidHandleError
+from linkwright.graph.log.logger import Logger
+from linkwright.graph.loop.callback_groups import CallbackGroup, MutuallyExclusiveCallbackGroup
+from linkwright.graph.names.identity import NodeIdentity
+from linkwright.graph.names.remapping import Remappings
+from linkwright.graph.names.rules import expand_service_name, expand_topic_name
+from linkwright.graph.time.timebase import AlarmSetter, Timebase
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
+
+
+import weakref
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
+
+
+class Handle:
+    """Entered while what it belongs to is used (rclpy ``handle``).
+
+    Args:
+        is_destroyed: whether that was destroyed.
+    """
+
+    def __init__(self, is_destroyed: Callable[[], bool]) -> None:
+        self._is_destroyed = is_destroyed
+        self._users = 0
+
+    @property
+    def pointer(self) -> int:
+        """A number that tells it from others."""
+        return id(self)
+
+    def __enter__(self) -> Self:
+        if not self._users and self._is_destroyed():
+            raise InvalidHandleError
+        self._users += 1
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._users -= 1
+
+
+class Handled:
+    """Something with a `handle`, and with an attribute ``destroyed``."""
+
+    __slots__ = ()
+
+    destroyed: bool
+
+    @property
+    def handle(self) -> Handle:
+        """To be entered while this is used; raises InvalidHandleError then, if it was destroyed."""
+        found = _handles.get(self)
+        if found is None:
+            owner = weakref.ref(self)
+            found = _handles[self] = Handle(lambda: getattr(owner(), "destroyed", True))
+        return found
+
+
+_handles: weakref.WeakKeyDictionary[Handled, Handle] = weakref.WeakKeyDictionary()
+
+
+P = TypeVar("P", bound="Part")
+
+
+class Dispatcher(AlarmSetter, Protocol):
+    """Runs what entities have to do: an event loop, or an executor. All methods may be called from any thread."""
+
+    def ready(self, entity: Any) -> None:
+        """Take note that an `Entity` has at least one call to be taken.
+
+        An entity says so when its queue was empty before, and again from within `Entity.take` while more remain; so
+        nothing piles up here when messages flood in. An entity whose ``dispatcher`` is another one by then is skipped.
+        """
+
+
+class HomeGraph(Protocol):
+    """A graph, as its nodes and their parts use it."""
+
+    timebase: Timebase
+
+    def add(self, endpoint: Any) -> None:
+        """Bring a new endpoint together with those of its name."""
+
+    def remove(self, endpoint: Any) -> None:
+        """Take an endpoint away."""
+
+    def forget(self, node: NodeHandle) -> None:
+        """Take a node away that is destroyed."""
+
+    def notify_change(self) -> None:
+        """Have those who wait in `wait_until` check their condition again."""
+
+    def wait_until(self, holds: Callable[[], bool], timeout_sec: float | None = None) -> bool:
+        """Block the calling thread until something of the graph holds; whether it does."""
+
+
+class Part(Handled):
+    """What a node owns: an endpoint, a timer, ...; at the end of a ``with`` block it is destroyed.
+
+    Attributes:
+        node: whose it is.
+        destroyed: whether it was taken out of the node.
+    """
+
+    node: NodeHandle
+    destroyed = False
+
+    goes_last = False
+    """Whether it outlives the other parts of a node that is destroyed, which may use it."""
+
+    def begin(self) -> None:
+        """The node has it from now on."""
+
+    def retire(self) -> None:
+        """The node has it no longer."""
+        self.destroyed = True
+
+    def set_dispatcher(self, dispatcher: Dispatcher | None) -> None:
+        """Have what it calls back run by a dispatcher from now on."""
+
+    def destroy(self) -> None:
+        """Take it out of the graph and the node; nothing is called back any more."""
+        self.node.remove(self)
+
+    def check_alive(self) -> None:
+        """Raise InvalidHandleError when it was destroyed."""
+        if self.destroyed:
+            raise InvalidHandleError
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.destroy()
+
+
+class NodeHandle(Handle):
+    """A node of a graph: what it is called, what it owns, and what runs its callbacks.
+
+    Args:
+        graph: the graph it lives in.
+        identity: its name.
+        remappings: its rules for names of topics and services.
+        logger: what it logs with.
+        dispatcher: what runs its callbacks; None while nothing does.
+        copies_messages: whether what it sends is copied, for its sender to change it then.
+
+    Attributes:
+        timebase: what the graph's time is made of.
+        default_callback_group: the group of entities that are in no other.
+    """
+
+    def __init__(
+        self,
+        graph: HomeGraph,
+        identity: NodeIdentity,
+        *,
+        remappings: Remappings,
+        logger: Logger,
+        dispatcher: Dispatcher | None,
+        copies_messages: bool = False,
+    ) -> None:
+        super().__init__(lambda: self.is_destroyed)
+        self.graph = graph
+        self.identity = identity
+        self.remappings = remappings
+        self.logger = logger
+        self.dispatcher = dispatcher
+        self.copies_messages = copies_messages
+        self.timebase = graph.timebase
+        self.default_callback_group: CallbackGroup = MutuallyExclusiveCallbackGroup()
+        self.is_destroyed = False
+        self._parts: dict[Part, None] = {}
+        self._cleanups: dict[Callable[[], object], None] = {}
+
+    def check_alive(self) -> None:
+        """Raise InvalidHandleError when the node was destroyed."""
+        if self.is_destroyed:
+            raise InvalidHandleError
+
+    def set_dispatcher(self, dispatcher: Dispatcher | None) -> None:
+        """Have the node's callbacks run by a dispatcher from now on, or by none.
+
+        What falls due while there is none waits as the quality of service says, and is announced to the next one.
+        """
+        self.dispatcher = dispatcher
+        for part in tuple(self._parts):
+            part.set_dispatcher(dispatcher)
+
+    def add(self, part: P) -> P:
+        """Take a part into the node, and give it back: its calls are run with the node's.
+
+        Raises:
+            InvalidHandleError: the node was destroyed.
+        """
+        self.check_alive()
+        self._parts[part] = None
+        part.begin()
+        return part
+
+    def remove(self, part: Part) -> bool:
+        """Take a part out of the node for good. Whether it was this node's."""
+        if part not in self._parts:
+            return False
+        del self._parts[part]
+        part.retire()
+        return True
+
+    def parts(self, kind: type[P]) -> tuple[P, ...]:
+        """The parts of a kind, in the order in which they were made."""
+        return tuple(part for part in tuple(self._parts) if isinstance(part, kind))
+
+    def resolve_topic_name(self, topic: str, *, only_expand: bool = False) -> str:
+        """The absolute name of a topic as the node names it, expanded and, unless `only_expand`, remapped.
+
+        Raises:
+            InvalidTopicNameError: it is not valid.
+        """
+        name, namespace = self.identity.name, self.identity.namespace
+        full_name = expand_topic_name(topic, name, namespace)
+        return full_name if only_expand else self.remappings.topic(full_name, name, namespace)
+
+    def resolve_service_name(self, service: str, *, only_expand: bool = False) -> str:
+        """The absolute name of a service or action as the node names it, expanded and, unless `only_expand`, remapped.
+
+        Raises:
+            InvalidServiceNameError: it is not valid.
+        """
+        name, namespace = self.identity.name, self.identity.namespace
+        full_name = expand_service_name(service, name, namespace)
+        return full_name if only_expand else self.remappings.service(full_name, name, namespace)
+
+    def add_cleanup(self, callback: Callable[[], object]) -> None:
+        """Have something called when the node is destroyed, before its parts are; the one added last comes first."""
+        self._cleanups[callback] = None
+
+    def remove_cleanup(self, callback: Callable[[], object]) -> None:
+        """Do not have it called."""
+        self._cleanups.pop(callback, None)
+
+    def destroy(self) -> bool:
+        """Take the node and all it owns out of the graph. A second call does nothing. Whether this was the first."""
+        if self.is_destroyed:
+            return False
+        self.is_destroyed = True
+        for cleanup in tuple(reversed(self._cleanups)):
+            cleanup()
+        for part in sorted(self._parts, key=lambda part: part.goes_last):
+            self.remove(part)
+        self.graph.forget(self)
+        return True

@@ -1,0 +1,233 @@
+"""Timers: callbacks at a fixed period."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+from linkwright.graph.loop.callback_groups import CallbackGroup
+from linkwright.graph.loop.entity import Entity
+from linkwright.graph.loop.node_handle import Dispatcher, NodeHandle
+from linkwright.graph.loop.signatures import accepts
+from linkwright.graph.time.clock import Clock
+from linkwright.graph.time.timebase import Alarm
+from linkwright.graph.time.values import ClockType, Time
+
+
+@dataclass(frozen=True, init=False)
+class TimerInfo:
+    """When a timer's call was due and when it came (rclpy ``TimerInfo``).
+
+    Args:
+        expected_call_time: nanoseconds, or a point in time.
+        actual_call_time: nanoseconds, or a point in time.
+        clock_type: of the clock that nanoseconds are counted on.
+    """
+
+    expected_call_time: Time
+    actual_call_time: Time
+
+    def __init__(
+        self,
+        *,
+        expected_call_time: Time | int = 0,
+        actual_call_time: Time | int = 0,
+        clock_type: ClockType = ClockType.SYSTEM_TIME,
+    ) -> None:
+        def point(when: Time | int) -> Time:
+            return when if isinstance(when, Time) else Time(nanoseconds=when, clock_type=clock_type)
+
+        object.__setattr__(self, "expected_call_time", point(expected_call_time))
+        object.__setattr__(self, "actual_call_time", point(actual_call_time))
+
+
+class Timer(Entity):
+    """Calls back at a fixed period, counted from its start: a late call does not shift the next.
+
+    Calls that were missed altogether are left out, as rcl does. The period is counted on the timer's clock: on
+    simulated time when that is a ROS clock under simulation.
+
+    Args:
+        node: whose it is.
+        callback: called without arguments, or with a `TimerInfo` when it takes one.
+        period_ns: the period; 0 calls whenever there is nothing else to do.
+        clock: what the period is counted on.
+        callback_group: which entities may run beside it.
+        autostart: whether it runs from the start; else `reset` starts it.
+
+    Raises:
+        ValueError: the period is negative.
+    """
+
+    def __init__(
+        self,
+        node: NodeHandle,
+        callback: Callable[..., object] | None,
+        period_ns: int,
+        clock: Clock,
+        callback_group: CallbackGroup | None = None,
+        *,
+        autostart: bool = True,
+    ) -> None:
+        _check_period(period_ns)
+        super().__init__(node, callback_group)
+        self.callback = callback
+        self.clock = clock
+        self._period_ns = int(period_ns)
+        self._alarm: Alarm | None = None
+        self._due = False
+        self._running = autostart
+        self._last_ns = clock.timer_ns()
+        self._due_ns = self._last_ns + self._period_ns
+        self._rest_ns = 0
+        clock.add_timer(self)
+
+    @property
+    def timer_period_ns(self) -> int:
+        """The period in nanoseconds; a new one holds from the next `reset` or call on."""
+        return self._period_ns
+
+    @timer_period_ns.setter
+    def timer_period_ns(self, period_ns: int) -> None:
+        _check_period(period_ns)
+        self._period_ns = int(period_ns)
+
+    @property
+    def callback(self) -> Callable[..., object] | None:
+        """What is called; None for a timer that calls nothing."""
+        return self._callback
+
+    @callback.setter
+    def callback(self, callback: Callable[..., object] | None) -> None:
+        self._callback = callback
+        self._wants_info = (
+            callback is not None and not accepts(callback, 0, unknown=True) and accepts(callback, 1, unknown=False)
+        )
+
+    @property
+    def what(self) -> str:
+        """What it is called in messages."""
+        return "timer callback"
+
+    def is_canceled(self) -> bool:
+        """Whether the timer is stopped."""
+        return not self._running
+
+    def is_ready(self) -> bool:
+        """Whether a call is due."""
+        return self._running and self.clock.timer_ns() >= self._due_ns
+
+    def cancel(self) -> None:
+        """Stop; `reset` starts it again."""
+        self._running = False
+        self._disarm()
+
+    def reset(self) -> None:
+        """Start anew: the next call comes one period from now.
+
+        Raises:
+            InvalidHandleError: the timer was destroyed.
+        """
+        self.check_alive()
+        self._disarm()
+        self._running = True
+        self._last_ns = self.clock.timer_ns()
+        self._due_ns = self._last_ns + self._period_ns
+        self._arm()
+
+    def time_since_last_call(self) -> int:
+        """Nanoseconds since the last call, or since the start when there was none."""
+        return self.clock.timer_ns() - self._last_ns
+
+    def time_until_next_call(self) -> int | None:
+        """Nanoseconds until the next call, negative when it is late; None for a timer that is stopped."""
+        return self._due_ns - self.clock.timer_ns() if self._running else None
+
+    def retire(self) -> None:
+        """Never call back again."""
+        super().retire()
+        self.cancel()
+        self.clock.remove_timer(self)
+
+    def set_dispatcher(self, dispatcher: Dispatcher | None) -> None:
+        """Have the calls run by a dispatcher; one that fell due while there was none is made once."""
+        self._disarm()
+        super().set_dispatcher(dispatcher)
+        if self._running:
+            self._arm()
+
+    def has_work(self) -> bool:
+        """Whether a call fell due and was not taken yet."""
+        return self._due
+
+    def take(self) -> Callable[[], object] | None:
+        """The call that is due."""
+        self._announced = False
+        if not self._due:
+            return None
+        self._due = False
+        now_ns = self.clock.timer_ns()
+        expected_ns = self._due_ns
+        self._last_ns = now_ns
+        period_ns = self._period_ns
+        self._due_ns += period_ns
+        if self._due_ns <= now_ns:
+            late_ns = now_ns - self._due_ns
+            self._due_ns = now_ns if period_ns == 0 else self._due_ns + (late_ns // period_ns + 1) * period_ns
+        self._arm()
+        callback = self._callback
+        if callback is None or not self._wants_info:
+            return callback
+        kind = self.clock.clock_type
+        return partial(
+            callback,
+            TimerInfo(expected_call_time=expected_ns, actual_call_time=now_ns, clock_type=kind),
+        )
+
+    def before_switch(self) -> None:
+        """Keep what is left of the period while the clock becomes another one."""
+        self._rest_ns = min(max(self._due_ns - self.clock.timer_ns(), 0), self._period_ns)
+        self._disarm_alarm()
+
+    def after_switch(self) -> None:
+        """Go on by the other clock."""
+        self._due_ns = self.clock.timer_ns() + self._rest_ns
+        self._last_ns = self._due_ns - self._period_ns
+        if self._running and not self._due:
+            self._arm()
+
+    def after_jump_back(self) -> None:
+        """Start the period anew when the clock went back behind the last call, or else wait for the same time."""
+        self._disarm_alarm()
+        now_ns = self.clock.timer_ns()
+        if now_ns < self._last_ns:
+            self._last_ns = now_ns
+            self._due_ns = now_ns + self._period_ns
+        if self._running and not self._due:
+            self._arm()
+
+    def _arm(self) -> None:
+        dispatcher = self.dispatcher
+        if dispatcher is not None:
+            self._alarm = self.clock.call_at(dispatcher, self._due_ns, self._fire)
+
+    def _disarm(self) -> None:
+        self._disarm_alarm()
+        self._due = False
+
+    def _disarm_alarm(self) -> None:
+        alarm, self._alarm = self._alarm, None
+        if alarm is not None:
+            alarm.cancel()
+
+    def _fire(self) -> None:
+        self._alarm = None
+        if self._running:
+            self._due = True
+            self.announce()
+
+
+def _check_period(period_ns: int) -> None:
+    if period_ns < 0:
+        raise ValueError(f"timer period must be non-negative, not {period_ns} ns")

@@ -1,0 +1,1 @@
+"""Names in the graph: validation, expansion, remapping, and expressions that find them."""

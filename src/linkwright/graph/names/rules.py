@@ -1,0 +1,231 @@
+"""Names in the graph: which are valid, and how they are expanded.
+
+The rules and the wording of the errors are those of rcl and rmw (``validate_topic_name``, ``expand_topic_name``).
+"""
+
+from __future__ import annotations
+
+import re
+from functools import lru_cache
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase, term
+
+_SUBSTITUTION = re.compile(r"\{([^{}]*)\}")
+_MAX_NODE_NAME_LENGTH = 255
+_MAX_NAMESPACE_LENGTH = 245
+
+Problem = tuple[str, int]
+"""What is wrong with a name, and the index of the character where it is."""
+
+
+class InvalidNameError(LinkwrightError, ValueError):
+    """A node name, namespace, topic or service name that ROS does not allow (rclpy ``NameValidationException``).
+
+    Args:
+        kind: ``node name``, ``namespace``, ``topic name`` or ``service name``.
+        name: the name as it was given.
+        error_msg: what is wrong with it.
+        invalid_index: at which character.
+
+    Attributes:
+        name: the name as it was given.
+        error_msg: what is wrong with it.
+        invalid_index: at which character.
+    """
+
+    def __init__(self, kind: str, name: str, error_msg: str, invalid_index: int = 0) -> None:
+        super().__init__(
+            Diagnostic(
+                "GRAPH101",
+                phrase("'{name}' is not a valid {kind}: {error_msg}", name=name, kind=term(kind), error_msg=error_msg),
+            )
+        )
+        self.kind = kind
+        self.name = name
+        self.error_msg = error_msg
+        self.invalid_index = invalid_index
+
+
+class InvalidNodeNameError(InvalidNameError):
+    """The name of a node is not valid."""
+
+    def __init__(self, name: str, error_msg: str, invalid_index: int = 0) -> None:
+        super().__init__(phrase("node name"), name, error_msg, invalid_index)
+
+
+class InvalidNamespaceError(InvalidNameError):
+    """A namespace is not valid."""
+
+    def __init__(self, name: str, error_msg: str, invalid_index: int = 0) -> None:
+        super().__init__("namespace", name, error_msg, invalid_index)
+
+
+class InvalidTopicNameError(InvalidNameError):
+    """The name of a topic is not valid."""
+
+    def __init__(self, name: str, error_msg: str, invalid_index: int = 0) -> None:
+        super().__init__(phrase("topic name"), name, error_msg, invalid_index)
+
+
+class InvalidServiceNameError(InvalidNameError):
+    """The name of a service or an action is not valid."""
+
+    def __init__(self, name: str, error_msg: str, invalid_index: int = 0) -> None:
+        super().__init__(phrase("service name"), name, error_msg, invalid_index)
+
+
+def node_name_problem(name: str) -> Problem | None:
+    """Why no node may bear the name; None when one may."""
+    if not name:
+        return phrase("node name must not be empty"), 0
+    if odd := re.search(r"[^A-Za-z0-9_]", name):
+        return phrase("node name must not contain characters other than alphanumerics or '_'"), odd.start()
+    if name[0].isdigit():
+        return phrase("node name must not start with a number"), 0
+    if len(name) > _MAX_NODE_NAME_LENGTH:
+        return phrase(
+            "node name length should not exceed '{max_node_name_length}'", max_node_name_length=_MAX_NODE_NAME_LENGTH
+        ), _MAX_NODE_NAME_LENGTH
+    return None
+
+
+def check_node_name(name: str) -> None:
+    """Raise InvalidNodeNameError unless a node may bear the name."""
+    problem = node_name_problem(name)
+    if problem is not None:
+        raise InvalidNodeNameError(name, *problem)
+
+
+def namespace_problem(namespace: str) -> Problem | None:
+    """Why an absolute namespace is not valid; None when it is."""
+    if not namespace:
+        return phrase("namespace must not be empty"), 0
+    if not namespace.startswith("/"):
+        return phrase("namespace must be absolute, it must lead with a '/'"), 0
+    if namespace == "/":
+        return None
+    if namespace.endswith("/"):
+        return phrase("namespace must not end with a '/'"), len(namespace) - 1
+    if odd := re.search(r"[^A-Za-z0-9_/]", namespace):
+        return phrase("namespace must not contain characters other than alphanumerics, '_', or '/'"), odd.start()
+    if (at := namespace.find("//")) >= 0:
+        return phrase("namespace must not contain repeated '/'"), at + 1
+    if digit := re.search(r"/\d", namespace):
+        return phrase("namespace must not have a token that starts with a number"), digit.start() + 1
+    if len(namespace) > _MAX_NAMESPACE_LENGTH:
+        return phrase(
+            "namespace should not exceed '{max_namespace_length}'", max_namespace_length=_MAX_NAMESPACE_LENGTH
+        ), _MAX_NAMESPACE_LENGTH
+    return None
+
+
+def absolute_namespace(namespace: str) -> str:
+    """The namespace with its leading slash, which may be left out; ``/`` for an empty one.
+
+    Raises:
+        InvalidNamespaceError: it is not valid.
+    """
+    absolute = namespace if namespace.startswith("/") else f"/{namespace}"
+    problem = namespace_problem(absolute)
+    if problem is not None:
+        raise InvalidNamespaceError(namespace, *problem)
+    return absolute
+
+
+def join(namespace: str, name: str) -> str:
+    """The full name of something in a namespace."""
+    return f"/{name}" if namespace == "/" else f"{namespace}/{name}"
+
+
+def split(full_name: str) -> tuple[str, str]:
+    """Namespace and name of a full name."""
+    namespace, _, name = full_name.rpartition("/")
+    return namespace or "/", name
+
+
+def is_hidden(name: str) -> bool:
+    """Whether tools leave a topic, service or node out unless they are asked: a part of it begins with ``_``."""
+    return any(part.startswith("_") for part in name.split("/"))
+
+
+@lru_cache(maxsize=4096)
+def topic_name_problem(name: str) -> Problem | None:
+    """Why a topic or service cannot be named so, before expansion; None when it can."""
+    bare = _SUBSTITUTION.sub(lambda match: "x" * len(match[0]), name) if "{" in name else name
+    if not name:
+        return phrase("topic name must not be empty string"), 0
+    if name.endswith("/"):
+        return phrase("topic name must not end with a forward slash"), len(name) - 1
+    if odd := re.search(r"[^A-Za-z0-9_/~{}]", name):
+        return phrase(
+            "topic name must not contain characters other than alphanumerics, '_', '~', '{', or '}'"
+        ), odd.start()
+    if odd := re.search(r"[{}]", bare):
+        return phrase("topic name must not have unmatched (unbalanced) curly braces '{}'"), odd.start()
+    if "~" in name[1:]:
+        return phrase("topic name must not have tilde '~' unless it is the first character"), name.index("~", 1)
+    if name.startswith("~") and name != "~" and name[1] != "/":
+        return phrase("topic name must not have a tilde '~' that is not followed by a forward slash '/'"), 1
+    if odd := re.search(r"\{[^{}]*[^A-Za-z0-9_{}][^{}]*\}", name):
+        return (
+            phrase("substitution name must not contain characters other than alphanumerics or '_'"),
+            odd.start(),
+        )
+    if odd := re.search(r"(^|/)\d", bare):
+        return phrase("topic name token must not start with a number"), odd.end() - 1
+    if (at := name.find("//")) >= 0:
+        return phrase("topic name must not contain repeated '/'"), at + 1
+    return None
+
+
+def expand_topic_name(name: str, node_name: str, namespace: str) -> str:
+    """The absolute name of a topic that a node names: relative, ``/absolute``, ``~/private``, ``{node}`` and ``{ns}``.
+
+    Args:
+        name: the name as the node's code gives it.
+        node_name: the node's name without its namespace.
+        namespace: the node's namespace, absolute.
+
+    Raises:
+        InvalidTopicNameError: it is not valid.
+    """
+    return _expand(name, node_name, namespace, InvalidTopicNameError)
+
+
+def expand_service_name(name: str, node_name: str, namespace: str) -> str:
+    """The absolute name of a service or action that a node names; see `expand_topic_name`.
+
+    Raises:
+        InvalidServiceNameError: it is not valid.
+    """
+    return _expand(name, node_name, namespace, InvalidServiceNameError)
+
+
+def _expand(
+    name: str, node_name: str, namespace: str, error: type[InvalidTopicNameError | InvalidServiceNameError]
+) -> str:
+    problem = topic_name_problem(name)
+    if problem is not None:
+        raise error(name, *problem)
+    expanded = _substituted(name, node_name, namespace, error) if "{" in name else name
+    if expanded.startswith("~"):
+        expanded = join(namespace, node_name) + expanded[1:]
+    elif not expanded.startswith("/"):
+        expanded = join(namespace, expanded)
+    if "//" in expanded:
+        raise error(name, phrase("topic name must not contain repeated '/'"), name.find("{"))
+    return expanded
+
+
+def _substituted(
+    name: str, node_name: str, namespace: str, error: type[InvalidTopicNameError | InvalidServiceNameError]
+) -> str:
+    substitutions = {"node": node_name, "ns": namespace, "namespace": namespace}
+
+    def substitute(match: re.Match[str]) -> str:
+        value = substitutions.get(match[1])
+        if value is None:
+            raise error(name, phrase("unknown substitution '{{{match}}}'", match=match[1]), match.start())
+        return value
+
+    return _SUBSTITUTION.sub(substitute, name)

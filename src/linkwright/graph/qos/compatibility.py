@@ -1,0 +1,214 @@
+"""Whether an offered quality of service satisfies a requested one (DDS "requested versus offered")."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from enum import IntEnum
+from typing import TypeVar
+
+from linkwright.graph.qos.profile import (
+    BEST_AVAILABLE_DURATION,
+    UNSPECIFIED,
+    DurabilityPolicy,
+    HistoryPolicy,
+    LivelinessPolicy,
+    QoSPolicyEnum,
+    QoSPolicyKind,
+    QoSProfile,
+    ReliabilityPolicy,
+)
+from linkwright.graph.time.values import INFINITE, Duration
+
+V = TypeVar("V", bound=QoSPolicyEnum)
+
+
+class QoSCompatibility(IntEnum):
+    """Whether two profiles go together (rmw ``rmw_qos_compatibility_type_t``)."""
+
+    OK = 0
+    WARNING = 1
+    ERROR = 2
+
+
+def limit_ns(duration: Duration) -> int | None:
+    """A deadline, lifespan or lease in nanoseconds; None where it is no limit."""
+    nanoseconds = duration.nanoseconds
+    return None if nanoseconds <= 0 or nanoseconds >= BEST_AVAILABLE_DURATION.nanoseconds else nanoseconds
+
+
+def resolved(qos: QoSProfile) -> QoSProfile:
+    """The profile with what the middleware chooses for values left to it (Cyclone DDS' choices), no limits infinite."""
+    return QoSProfile(
+        depth=max(qos.depth, 1),
+        history=_known(qos.history, HistoryPolicy.KEEP_LAST),
+        reliability=_known(qos.reliability, ReliabilityPolicy.RELIABLE),
+        durability=_known(qos.durability, DurabilityPolicy.VOLATILE),
+        lifespan=_or_infinite(qos.lifespan),
+        deadline=_or_infinite(qos.deadline),
+        liveliness=_known(qos.liveliness, LivelinessPolicy.AUTOMATIC),
+        liveliness_lease_duration=_or_infinite(qos.liveliness_lease_duration),
+        avoid_ros_namespace_conventions=qos.avoid_ros_namespace_conventions,
+    )
+
+
+def _known(value: V, otherwise: V) -> V:
+    return otherwise if value.name in ("SYSTEM_DEFAULT", "UNKNOWN", "BEST_AVAILABLE") else value
+
+
+def _or_infinite(duration: Duration) -> Duration:
+    return INFINITE if limit_ns(duration) is None else duration
+
+
+def incompatible_policies(offered: QoSProfile, requested: QoSProfile) -> list[QoSPolicyKind]:
+    """The policies in which a subscription asks for more than a publisher offers; none when they match.
+
+    A reliable subscription needs a reliable publisher, a transient local one a transient local publisher, one with
+    a deadline a publisher that promises one as short, and so on.
+    """
+    policies = []
+    if requested.reliability is ReliabilityPolicy.RELIABLE and offered.reliability is ReliabilityPolicy.BEST_EFFORT:
+        policies.append(QoSPolicyKind.RELIABILITY)
+    if requested.durability is DurabilityPolicy.TRANSIENT_LOCAL and not _is_transient_local(offered):
+        policies.append(QoSPolicyKind.DURABILITY)
+    if _is_stricter(requested.deadline, offered.deadline):
+        policies.append(QoSPolicyKind.DEADLINE)
+    by_hand = LivelinessPolicy.MANUAL_BY_TOPIC
+    lacks_signs = requested.liveliness is by_hand and offered.liveliness is not by_hand
+    if lacks_signs or _is_stricter(requested.liveliness_lease_duration, offered.liveliness_lease_duration):
+        policies.append(QoSPolicyKind.LIVELINESS)
+    return policies
+
+
+def _is_transient_local(qos: QoSProfile) -> bool:
+    return qos.durability is DurabilityPolicy.TRANSIENT_LOCAL
+
+
+def _is_stricter(requested: Duration, offered: Duration) -> bool:
+    wanted, given = limit_ns(requested), limit_ns(offered)
+    return wanted is not None and (given is None or wanted < given)
+
+
+def best_available(qos: QoSProfile, others: Iterable[QoSProfile], *, publisher: bool) -> QoSProfile:
+    """A profile whose BEST_AVAILABLE values are chosen to go together with the endpoints that are there.
+
+    Args:
+        qos: the profile; returned as it is when nothing in it is BEST_AVAILABLE.
+        others: the profiles of the topic's subscriptions for a publisher, of its publishers for a subscription.
+        publisher: whether the profile is for a publisher, which offers all it can.
+    """
+    if not _leaves_a_choice(qos):
+        return qos
+    there = list(others)
+    reliability, durability, liveliness = qos.reliability, qos.durability, qos.liveliness
+    if reliability is ReliabilityPolicy.BEST_AVAILABLE:
+        strict = publisher or all(each.reliability is ReliabilityPolicy.RELIABLE for each in there)
+        reliability = ReliabilityPolicy.RELIABLE if strict else ReliabilityPolicy.BEST_EFFORT
+    if durability is DurabilityPolicy.BEST_AVAILABLE:
+        strict = publisher or all(_is_transient_local(each) for each in there)
+        durability = DurabilityPolicy.TRANSIENT_LOCAL if strict else DurabilityPolicy.VOLATILE
+    by_hand = LivelinessPolicy.MANUAL_BY_TOPIC
+    if liveliness is LivelinessPolicy.BEST_AVAILABLE:
+        kinds = [each.liveliness is by_hand for each in there]
+        strict = any(kinds) if publisher else bool(kinds) and all(kinds)
+        liveliness = by_hand if strict else LivelinessPolicy.AUTOMATIC
+    choose = min if publisher else max
+
+    def chosen(mine: Duration, theirs: Iterable[Duration]) -> Duration:
+        if mine != BEST_AVAILABLE_DURATION:
+            return mine
+        limited = [each for each in theirs if limit_ns(each) is not None]
+        return choose(limited) if limited else UNSPECIFIED
+
+    return QoSProfile(
+        depth=qos.depth,
+        history=qos.history,
+        reliability=reliability,
+        durability=durability,
+        lifespan=qos.lifespan,
+        deadline=chosen(qos.deadline, (each.deadline for each in there)),
+        liveliness=liveliness,
+        liveliness_lease_duration=chosen(
+            qos.liveliness_lease_duration, (each.liveliness_lease_duration for each in there)
+        ),
+        avoid_ros_namespace_conventions=qos.avoid_ros_namespace_conventions,
+    )
+
+
+def _leaves_a_choice(qos: QoSProfile) -> bool:
+    return (
+        qos.reliability is ReliabilityPolicy.BEST_AVAILABLE
+        or qos.durability is DurabilityPolicy.BEST_AVAILABLE
+        or qos.liveliness is LivelinessPolicy.BEST_AVAILABLE
+        or BEST_AVAILABLE_DURATION in (qos.deadline, qos.liveliness_lease_duration)
+    )
+
+
+def qos_check_compatible(publisher_qos: QoSProfile, subscription_qos: QoSProfile) -> tuple[QoSCompatibility, str]:
+    """Whether a publisher and a subscription with these profiles go together, and the reasons why not.
+
+    Where a profile leaves a policy to the middleware the answer may be a warning (rmw
+    ``rmw_qos_profile_check_compatible``, whose reasons these are).
+    """
+    errors = "".join(f"ERROR: {reason};" for reason in _errors(publisher_qos, subscription_qos))
+    if errors:
+        return QoSCompatibility.ERROR, errors
+    warnings = "".join(f"WARNING: {reason};" for reason in _warnings(publisher_qos, subscription_qos))
+    return (QoSCompatibility.WARNING, warnings) if warnings else (QoSCompatibility.OK, "")
+
+
+def _errors(publisher: QoSProfile, subscription: QoSProfile) -> Iterable[str]:
+    if (
+        publisher.reliability is ReliabilityPolicy.BEST_EFFORT
+        and subscription.reliability is ReliabilityPolicy.RELIABLE
+    ):
+        yield "Best effort publisher and reliable subscription"
+    if publisher.durability is DurabilityPolicy.VOLATILE and _is_transient_local(subscription):
+        yield "Volatile publisher and transient local subscription"
+    offered, requested = limit_ns(publisher.deadline), limit_ns(subscription.deadline)
+    if requested is not None and offered is None:
+        yield "Subscription has a deadline, but publisher does not"
+    elif requested is not None and offered is not None and requested < offered:
+        yield "Subscription deadline is less than publisher deadline"
+    if (
+        publisher.liveliness is LivelinessPolicy.AUTOMATIC
+        and subscription.liveliness is LivelinessPolicy.MANUAL_BY_TOPIC
+    ):
+        yield "Publisher's liveliness is automatic and subscription's is manual by topic"
+    offered = limit_ns(publisher.liveliness_lease_duration)
+    requested = limit_ns(subscription.liveliness_lease_duration)
+    if requested is not None and offered is None:
+        yield "Subscription has a liveliness lease duration, but publisher does not"
+    elif requested is not None and offered is not None and requested < offered:
+        yield "Subscription liveliness lease duration is less than publisher"
+
+
+def _warnings(publisher: QoSProfile, subscription: QoSProfile) -> Iterable[str]:
+    offered, requested = publisher.reliability, subscription.reliability
+    if _is_unknown(offered) and _is_unknown(requested):
+        yield f"Publisher reliability is {_word(offered)} and subscription reliability is {_word(requested)}"
+    elif _is_unknown(offered) and requested is ReliabilityPolicy.RELIABLE:
+        yield f"Reliable subscription, but publisher is {_word(offered)}"
+    elif offered is ReliabilityPolicy.BEST_EFFORT and _is_unknown(requested):
+        yield f"Best effort publisher, but subscription is {_word(requested)}"
+    keeps, wants = publisher.durability, subscription.durability
+    if _is_unknown(keeps) and _is_unknown(wants):
+        yield f"Publisher durabilty is {_word(keeps)} and subscription durability is {_word(wants)}"
+    elif _is_unknown(keeps) and wants is DurabilityPolicy.TRANSIENT_LOCAL:
+        yield f"Transient local subscription, but publisher is {_word(keeps)}"
+    elif keeps is DurabilityPolicy.VOLATILE and _is_unknown(wants):
+        yield f"Volatile publisher, but subscription is {_word(wants)}"
+    shows, expects = publisher.liveliness, subscription.liveliness
+    if _is_unknown(shows) and _is_unknown(expects):
+        yield f"Publisher liveliness is {_word(shows)} and subscription liveliness is {_word(expects)}"
+    elif _is_unknown(shows) and expects is LivelinessPolicy.MANUAL_BY_TOPIC:
+        yield f"Subscription's liveliness is manual by topic, but publisher's is {_word(shows)}"
+    elif shows is LivelinessPolicy.AUTOMATIC and _is_unknown(expects):
+        yield f"Publisher's liveliness is automatic, but subscription's is {_word(expects)}"
+
+
+def _is_unknown(value: QoSPolicyEnum) -> bool:
+    return value.name in ("SYSTEM_DEFAULT", "UNKNOWN")
+
+
+def _word(value: QoSPolicyEnum) -> str:
+    return "system_default" if value.name == "SYSTEM_DEFAULT" else "unknown"

@@ -1,0 +1,407 @@
+"""Quality of service: what publishers offer and what subscriptions ask for. Names and values are rclpy's."""
+
+from __future__ import annotations
+
+import warnings
+from enum import Enum, IntEnum
+from typing import Any, TypeVar
+
+from linkwright.graph.time.values import INFINITE, Duration
+
+P = TypeVar("P", bound="QoSPolicyEnum")
+
+
+class QoSPolicyKind(IntEnum):
+    """The policies, as events number them (rmw ``rmw_qos_policy_kind_t``)."""
+
+    INVALID = 1
+    DURABILITY = 2
+    DEADLINE = 4
+    LIVELINESS = 8
+    RELIABILITY = 16
+    HISTORY = 32
+    LIFESPAN = 64
+    DEPTH = 128
+    LIVELINESS_LEASE_DURATION = 256
+    AVOID_ROS_NAMESPACE_CONVENTIONS = 512
+
+
+def qos_policy_name_from_kind(policy_kind: QoSPolicyKind | int) -> str:
+    """The name of a policy."""
+    return QoSPolicyKind(policy_kind).name
+
+
+class InvalidQoSProfileError(Exception):
+    """A profile is made without what it needs (rclpy ``InvalidQoSProfileException``)."""
+
+    def __init__(self, *reasons: object) -> None:
+        super().__init__("Invalid QoSProfile", *reasons)
+
+
+class QoSPolicyEnum(IntEnum):
+    """What the values of a policy have in common."""
+
+    @classmethod
+    def short_keys(cls) -> list[str]:
+        """The values' names as command lines spell them."""
+        return [name.lower() for name in cls.__members__]
+
+    @classmethod
+    def get_from_short_key(cls, name: str) -> int:
+        """The number of a value by its name, in any case.
+
+        Raises:
+            KeyError: there is none of that name.
+        """
+        return cls[name.upper()].value
+
+    @property
+    def short_key(self) -> str:
+        """The name as command lines spell it."""
+        return self.name.lower()
+
+    def __str__(self) -> str:
+        return f"{type(self).__name__}.{self.name}"
+
+
+class HistoryPolicy(QoSPolicyEnum):
+    """Whether only the last `depth` messages wait, or all."""
+
+    SYSTEM_DEFAULT = 0
+    KEEP_LAST = 1
+    KEEP_ALL = 2
+    UNKNOWN = 3
+
+
+class ReliabilityPolicy(QoSPolicyEnum):
+    """Whether every message arrives."""
+
+    SYSTEM_DEFAULT = 0
+    RELIABLE = 1
+    BEST_EFFORT = 2
+    UNKNOWN = 3
+    BEST_AVAILABLE = 4
+
+
+class DurabilityPolicy(QoSPolicyEnum):
+    """Whether subscriptions that come late get what was published before."""
+
+    SYSTEM_DEFAULT = 0
+    TRANSIENT_LOCAL = 1
+    VOLATILE = 2
+    UNKNOWN = 3
+    BEST_AVAILABLE = 4
+
+
+class LivelinessPolicy(QoSPolicyEnum):
+    """How a publisher shows that it lives."""
+
+    SYSTEM_DEFAULT = 0
+    AUTOMATIC = 1
+    MANUAL_BY_TOPIC = 3
+    UNKNOWN = 4
+    BEST_AVAILABLE = 5
+
+
+UNSPECIFIED = Duration()
+"""No limit given: for deadline, lifespan and lease it means the same as an infinite one."""
+
+BEST_AVAILABLE_DURATION = Duration(nanoseconds=INFINITE.nanoseconds - 1)
+"""As strict as the other side allows (rmw ``RMW_QOS_DEADLINE_BEST_AVAILABLE``)."""
+
+_DEFAULT_DEPTH = 10
+
+
+class QoSProfile:
+    """The policies of a publisher, subscription, service or client (rclpy ``QoSProfile``).
+
+    Args:
+        depth: how many messages wait for a callback, and how many a transient local publisher keeps for late joiners.
+            It means nothing with KEEP_ALL.
+        reliability: RELIABLE or BEST_EFFORT.
+        durability: TRANSIENT_LOCAL or VOLATILE.
+        history: KEEP_LAST or KEEP_ALL.
+        lifespan: how long a message is worth delivering.
+        deadline: the longest time that may pass between two messages.
+        liveliness: how the publisher shows that it lives.
+        liveliness_lease_duration: how long it counts as alive after it last showed that.
+        avoid_ros_namespace_conventions: use the topic's name on the wire as it is.
+
+    Raises:
+        InvalidQoSProfileError: neither history nor depth is given, or KEEP_LAST without depth.
+    """
+
+    __slots__ = (
+        "_avoid_ros_namespace_conventions",
+        "_deadline",
+        "_depth",
+        "_durability",
+        "_history",
+        "_lifespan",
+        "_liveliness",
+        "_liveliness_lease_duration",
+        "_reliability",
+    )
+
+    def __init__(
+        self,
+        depth: int | None = None,
+        reliability: ReliabilityPolicy = ReliabilityPolicy.RELIABLE,
+        durability: DurabilityPolicy = DurabilityPolicy.VOLATILE,
+        history: HistoryPolicy | None = None,
+        *,
+        lifespan: Duration = UNSPECIFIED,
+        deadline: Duration = UNSPECIFIED,
+        liveliness: LivelinessPolicy = LivelinessPolicy.SYSTEM_DEFAULT,
+        liveliness_lease_duration: Duration = UNSPECIFIED,
+        avoid_ros_namespace_conventions: bool = False,
+    ) -> None:
+        if history is None:
+            if depth is None:
+                raise InvalidQoSProfileError("History and/or depth settings are required.")
+            history = HistoryPolicy.KEEP_LAST
+        self.history = history
+        if self._history is HistoryPolicy.KEEP_LAST and depth is None:
+            raise InvalidQoSProfileError("History set to KEEP_LAST without a depth setting.")
+        self.depth = _DEFAULT_DEPTH if depth is None else depth
+        self.reliability = reliability
+        self.durability = durability
+        self.lifespan = lifespan
+        self.deadline = deadline
+        self.liveliness = liveliness
+        self.liveliness_lease_duration = liveliness_lease_duration
+        self.avoid_ros_namespace_conventions = avoid_ros_namespace_conventions
+
+    @classmethod
+    def of(cls, qos: QoSProfile | int) -> QoSProfile:
+        """A profile as it is; a number means the default profile with that depth, as in rclpy.
+
+        Raises:
+            ValueError: the number is negative.
+            TypeError: it is neither.
+        """
+        if isinstance(qos, QoSProfile):
+            return qos
+        if isinstance(qos, int):
+            return cls(qos)
+        raise TypeError(f"Expected QoSProfile or int, but received {qos!r}")
+
+    @property
+    def queue_length(self) -> int | None:
+        """How many messages may wait; None for any number. A depth of nothing counts as one, as Cyclone does."""
+        return None if self._history is HistoryPolicy.KEEP_ALL else max(self._depth, 1)
+
+    @property
+    def history(self) -> HistoryPolicy:
+        """Whether only the last messages wait, or all."""
+        return self._history
+
+    @history.setter
+    def history(self, value: HistoryPolicy | int) -> None:
+        self._history: HistoryPolicy = _policy(HistoryPolicy, value)
+
+    @property
+    def depth(self) -> int:
+        """How many messages wait with KEEP_LAST."""
+        return self._depth
+
+    @depth.setter
+    def depth(self, value: int) -> None:
+        assert isinstance(value, int)
+        if value < 0:
+            raise ValueError("depth must be greater than or equal to zero")
+        if value == 0 and self._history is HistoryPolicy.KEEP_LAST:
+            warnings.warn(
+                "A zero depth with KEEP_LAST doesn't make sense; no data could be stored. "
+                "This will be interpreted as SYSTEM_DEFAULT",
+                stacklevel=3,
+            )
+        self._depth: int = value
+
+    @property
+    def reliability(self) -> ReliabilityPolicy:
+        """Whether every message arrives."""
+        return self._reliability
+
+    @reliability.setter
+    def reliability(self, value: ReliabilityPolicy | int) -> None:
+        self._reliability: ReliabilityPolicy = _policy(ReliabilityPolicy, value)
+
+    @property
+    def durability(self) -> DurabilityPolicy:
+        """Whether late joiners get what was published before."""
+        return self._durability
+
+    @durability.setter
+    def durability(self, value: DurabilityPolicy | int) -> None:
+        self._durability: DurabilityPolicy = _policy(DurabilityPolicy, value)
+
+    @property
+    def lifespan(self) -> Duration:
+        """How long a message is worth delivering."""
+        return self._lifespan
+
+    @lifespan.setter
+    def lifespan(self, value: Duration) -> None:
+        assert isinstance(value, Duration)
+        self._lifespan: Duration = value
+
+    @property
+    def deadline(self) -> Duration:
+        """The longest time that may pass between two messages."""
+        return self._deadline
+
+    @deadline.setter
+    def deadline(self, value: Duration) -> None:
+        assert isinstance(value, Duration)
+        self._deadline: Duration = value
+
+    @property
+    def liveliness(self) -> LivelinessPolicy:
+        """How the publisher shows that it lives."""
+        return self._liveliness
+
+    @liveliness.setter
+    def liveliness(self, value: LivelinessPolicy | int) -> None:
+        self._liveliness: LivelinessPolicy = _policy(LivelinessPolicy, value)
+
+    @property
+    def liveliness_lease_duration(self) -> Duration:
+        """How long the publisher counts as alive after it last showed that."""
+        return self._liveliness_lease_duration
+
+    @liveliness_lease_duration.setter
+    def liveliness_lease_duration(self, value: Duration) -> None:
+        assert isinstance(value, Duration)
+        self._liveliness_lease_duration: Duration = value
+
+    @property
+    def avoid_ros_namespace_conventions(self) -> bool:
+        """Whether the topic's name is used on the wire as it is."""
+        return self._avoid_ros_namespace_conventions
+
+    @avoid_ros_namespace_conventions.setter
+    def avoid_ros_namespace_conventions(self, value: bool) -> None:
+        assert isinstance(value, bool)
+        self._avoid_ros_namespace_conventions: bool = value
+
+    def policies(self) -> dict[str, Any]:
+        """The policies by name, in rclpy's order."""
+        return {name: getattr(self, name) for name in _ORDER}
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, QoSProfile):
+            return NotImplemented
+        return self.policies() == other.policies()
+
+    __hash__ = None  # type: ignore[assignment]  # a profile can be changed
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({', '.join(f'{name}={value!s}' for name, value in self.policies().items())})"
+
+
+_ORDER = (
+    "history",
+    "depth",
+    "reliability",
+    "durability",
+    "lifespan",
+    "deadline",
+    "liveliness",
+    "liveliness_lease_duration",
+    "avoid_ros_namespace_conventions",
+)
+
+
+def _policy(kind: type[P], value: object) -> P:
+    assert isinstance(value, int)
+    return kind(value)
+
+
+DEFAULT_QOS = QoSProfile(depth=10)
+"""ROS 2's default: reliable, volatile, the last 10."""
+
+SYSTEM_DEFAULT_QOS = QoSProfile(
+    0, ReliabilityPolicy.SYSTEM_DEFAULT, DurabilityPolicy.SYSTEM_DEFAULT, HistoryPolicy.SYSTEM_DEFAULT
+)
+"""Whatever the middleware does by itself."""
+
+UNKNOWN_QOS = QoSProfile(
+    0,
+    ReliabilityPolicy.UNKNOWN,
+    DurabilityPolicy.UNKNOWN,
+    HistoryPolicy.UNKNOWN,
+    liveliness=LivelinessPolicy.UNKNOWN,
+)
+"""Not known."""
+
+BEST_AVAILABLE_QOS = QoSProfile(
+    10,
+    ReliabilityPolicy.BEST_AVAILABLE,
+    DurabilityPolicy.BEST_AVAILABLE,
+    deadline=BEST_AVAILABLE_DURATION,
+    liveliness=LivelinessPolicy.BEST_AVAILABLE,
+    liveliness_lease_duration=BEST_AVAILABLE_DURATION,
+)
+"""As much as the endpoints that are there when this one is made go together with."""
+
+SENSOR_DATA_QOS = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
+"""Best effort, the last 5; robot_state_publisher subscribes to joint states with it."""
+
+SERVICES_QOS = QoSProfile(depth=10)
+"""For services and clients."""
+
+PARAMETERS_QOS = QoSProfile(depth=1000)
+"""For the parameter services."""
+
+PARAMETER_EVENTS_QOS = QoSProfile(depth=1000)
+"""For ``/parameter_events``."""
+
+CLOCK_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+"""For subscriptions to ``/clock`` (rclcpp ``ClockQoS``)."""
+
+ROSOUT_QOS = QoSProfile(depth=1000, durability=DurabilityPolicy.TRANSIENT_LOCAL, lifespan=Duration(seconds=10))
+"""For ``/rosout`` (rcl ``rcl_qos_profile_rosout_default``)."""
+
+ACTION_STATUS_QOS = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+"""For the status topic of actions, both sides."""
+
+TF_QOS = QoSProfile(depth=100)
+"""For ``/tf``, both sides (tf2_ros DynamicBroadcasterQoS, DynamicListenerQoS)."""
+
+STATIC_TF_PUBLISHER_QOS = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+"""For publishers of ``/tf_static`` (tf2_ros StaticBroadcasterQoS)."""
+
+STATIC_TF_SUBSCRIPTION_QOS = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+"""For subscriptions to ``/tf_static`` (tf2_ros StaticListenerQoS)."""
+
+DESCRIPTION_QOS = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+"""For ``robot_description``, both sides."""
+
+
+class QoSPresetProfiles(Enum):
+    """rclpy's profiles by name."""
+
+    UNKNOWN = UNKNOWN_QOS
+    DEFAULT = DEFAULT_QOS
+    SYSTEM_DEFAULT = SYSTEM_DEFAULT_QOS
+    SENSOR_DATA = SENSOR_DATA_QOS
+    SERVICES_DEFAULT = SERVICES_QOS
+    PARAMETERS = PARAMETERS_QOS
+    PARAMETER_EVENTS = PARAMETER_EVENTS_QOS
+    ACTION_STATUS_DEFAULT = ACTION_STATUS_QOS
+    BEST_AVAILABLE = BEST_AVAILABLE_QOS
+
+    @classmethod
+    def short_keys(cls) -> list[str]:
+        """The names as command lines spell them."""
+        return [name.lower() for name in cls.__members__]
+
+    @classmethod
+    def get_from_short_key(cls, name: str) -> QoSProfile:
+        """A profile by its name, in any case.
+
+        Raises:
+            KeyError: there is none of that name.
+        """
+        return cls[name.upper()].value

@@ -1,0 +1,90 @@
+"""Simulated time: a node whose parameter ``use_sim_time`` is true follows the topic ``/clock``."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from linkwright.graph.endpoints.subscription import Detailed, Subscription
+from linkwright.graph.loop.node_handle import Dispatcher, NodeHandle
+from linkwright.graph.parameters.node_parameters import NodeParameters
+from linkwright.graph.parameters.parameter import SetParametersResult
+from linkwright.graph.qos.profile import CLOCK_QOS
+from linkwright.graph.time.clock import ROSClock
+from linkwright.graph.time.values import NANOSECONDS_PER_SECOND
+
+PARAMETER = "use_sim_time"
+
+
+class SimulatedTime:
+    """Keeps a node's clock by ``/clock`` while its parameter ``use_sim_time`` is true (rclpy ``TimeSource``).
+
+    The clock is moved in the thread in which a message of ``/clock`` arrives, not in a callback of the node: so time
+    goes on while the node's own thread sleeps.
+
+    Args:
+        handle: subscribes.
+        parameters: those of the node.
+        clock: its clock.
+    """
+
+    def __init__(self, handle: NodeHandle, parameters: NodeParameters, clock: ROSClock) -> None:
+        self._handle = handle
+        self._clock = clock
+        self._subscription: _ClockSubscription | None = None
+        if not parameters.has_parameter(PARAMETER):
+            parameters.declare_parameter(PARAMETER, False)
+        value = parameters.get_parameter(PARAMETER).value
+        if isinstance(value, bool):
+            self._follow(value)
+        else:
+            handle.logger.error(f"Invalid type for parameter '{PARAMETER}' {value!r} should be bool")
+        parameters.add_on_set_parameters_callback(self._check)
+        parameters.add_post_set_parameters_callback(self._changed)
+
+    def _check(self, parameters: list[Any]) -> Any:
+        for parameter in parameters:
+            if parameter.name == PARAMETER and not isinstance(parameter.value, bool):
+                return SetParametersResult(
+                    successful=False, reason="use_sim_time parameter set to something besides a bool"
+                )
+        return SetParametersResult(successful=True)
+
+    def _changed(self, parameters: list[Any]) -> None:
+        for parameter in parameters:
+            if parameter.name == PARAMETER:
+                self._follow(parameter.value)
+
+    def _follow(self, simulated: bool) -> None:
+        if simulated == (self._subscription is not None):
+            return
+        if simulated:
+            self._subscription = _ClockSubscription(self._handle, self._clock)
+            self._clock.set_ros_time_is_active(True)
+            self._handle.add(self._subscription)
+        elif self._subscription is not None:
+            self._subscription.destroy()
+            self._subscription = None
+            self._clock.set_ros_time_is_active(False)
+
+
+class _ClockSubscription(Subscription[Any]):
+    """Moves a clock by the messages of ``/clock``, in whatever thread they come."""
+
+    def __init__(self, node: NodeHandle, clock: ROSClock) -> None:
+        super().__init__(node, "rosgraph_msgs/msg/Clock", node.resolve_topic_name("/clock"), CLOCK_QOS, self._move)
+        self._ros_clock = clock
+
+    def receive(self, message: Any, info: Any = None) -> None:  # noqa: ARG002  # a subscription's signature
+        """Set the clock."""
+        call = self._prepared(message)
+        if call is not None:
+            call()
+
+    def set_dispatcher(self, dispatcher: Dispatcher | None) -> None:
+        """It needs none."""
+
+    def _move(self, message: Any) -> None:
+        if isinstance(message, Detailed):
+            message = message.message
+        stamp = message.clock
+        self._ros_clock.override(stamp.sec * NANOSECONDS_PER_SECOND + stamp.nanosec)

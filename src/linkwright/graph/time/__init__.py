@@ -1,0 +1,1 @@
+"""Time: points and durations, clocks, and alarms."""

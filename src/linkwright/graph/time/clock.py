@@ -1,0 +1,381 @@
+"""Clocks as rclpy has them: the system's, the steady one, and ROS time, which a simulation may override."""
+
+from __future__ import annotations
+
+import heapq
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from enum import IntEnum
+from itertools import count
+from typing import TYPE_CHECKING, Any, Protocol
+
+from linkwright.graph.faults import NotInitializedError
+from linkwright.graph.time.timebase import Alarm, AlarmSetter, SystemClock, Timebase
+from linkwright.graph.time.values import ClockType, Duration, Time
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from typing_extensions import Self
+
+_SYSTEM = SystemClock()
+_LONGEST_WAIT_S = 0.1
+"""How long a sleep by ROS time waits at most before it looks whether it was interrupted."""
+
+
+class ClockChange(IntEnum):
+    """What a jump of a clock came from; numbers as in rcl."""
+
+    ROS_TIME_NO_CHANGE = 1
+    ROS_TIME_ACTIVATED = 2
+    ROS_TIME_DEACTIVATED = 3
+    SYSTEM_TIME_NO_CHANGE = 4
+
+
+class JumpThreshold:
+    """Which jumps of a clock a callback wants to hear of (rclpy ``JumpThreshold``).
+
+    Args:
+        min_forward: the least jump forward, more than zero; None for no jump forward.
+        min_backward: the least jump backward, less than zero; None for no jump backward.
+        on_clock_change: whether to hear of ROS time becoming simulated or not.
+
+    Raises:
+        ValueError: a threshold has the wrong sign, or there is none.
+    """
+
+    def __init__(
+        self, *, min_forward: Duration | None, min_backward: Duration | None, on_clock_change: bool = True
+    ) -> None:
+        if min_forward is not None and min_forward.nanoseconds <= 0:
+            raise ValueError("min_forward must be a positive non-zero duration")
+        if min_backward is not None and min_backward.nanoseconds >= 0:
+            raise ValueError("min_backward must be a negative non-zero duration")
+        if min_forward is None and min_backward is None and not on_clock_change:
+            raise ValueError("At least one jump threshold must be enabled")
+        self.min_forward = min_forward
+        self.min_backward = min_backward
+        self.on_clock_change = on_clock_change
+
+    def is_exceeded(self, jump: TimeJump) -> bool:
+        """Whether a jump is to be told."""
+        if jump.clock_change in (ClockChange.ROS_TIME_ACTIVATED, ClockChange.ROS_TIME_DEACTIVATED):
+            return self.on_clock_change
+        forward, backward = self.min_forward, self.min_backward
+        return (forward is not None and jump.delta >= forward) or (backward is not None and jump.delta <= backward)
+
+
+@dataclass(frozen=True, slots=True)
+class TimeJump:
+    """A jump of a clock: what changed, and by how much its time went forward (or, negative, back)."""
+
+    clock_change: ClockChange
+    delta: Duration
+
+
+class JumpHandle:
+    """A pair of callbacks that hear of the jumps of a clock; made by `Clock.create_jump_callback`."""
+
+    def __init__(
+        self,
+        *,
+        clock: Clock,
+        threshold: JumpThreshold,
+        pre_callback: Callable[[], object] | None,
+        post_callback: Callable[[TimeJump], object] | None,
+    ) -> None:
+        if pre_callback is None and post_callback is None:
+            raise ValueError("One of pre_callback or post_callback must be callable")
+        if pre_callback is not None and not callable(pre_callback):
+            raise ValueError("pre_callback must be callable if given")
+        if post_callback is not None and not callable(post_callback):
+            raise ValueError("post_callback must be callable if given")
+        self.threshold = threshold
+        self.pre_callback = pre_callback
+        self.post_callback = post_callback
+        self._clock: Clock | None = clock
+
+    def unregister(self) -> None:
+        """Hear of no more jumps."""
+        if self._clock is not None:
+            self._clock.forget_jump_callback(self)
+            self._clock = None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.unregister()
+
+
+class Clock:
+    """A clock (rclpy ``Clock``). One of type ROS_TIME is a `ROSClock`.
+
+    Args:
+        clock_type: what it goes by.
+        timebase: what that is made of; the computer's when left out.
+
+    Raises:
+        TypeError: `clock_type` is not a ClockType.
+    """
+
+    def __new__(cls, *, clock_type: ClockType = ClockType.SYSTEM_TIME, timebase: Timebase | None = None) -> Self:  # noqa: ARG004
+        """A clock of the class that fits its type."""
+        if not isinstance(clock_type, ClockType):
+            raise TypeError("Clock type must be a ClockType enum")
+        wanted: Any = ROSClock if cls is Clock and clock_type is ClockType.ROS_TIME else cls
+        return object.__new__(wanted)  # type: ignore[no-any-return]  # a ROSClock is a Clock
+
+    context: Any = None
+    """What ends a sleep that is given no context of its own; None for nothing."""
+
+    def __init__(self, *, clock_type: ClockType = ClockType.SYSTEM_TIME, timebase: Timebase | None = None) -> None:
+        self.clock_type = clock_type
+        self.timebase: Timebase = timebase or _SYSTEM
+        self._jump_handles: list[JumpHandle] = []
+        self._changed = threading.Condition(threading.RLock())
+
+    def __repr__(self) -> str:
+        return f"Clock(clock_type={self.clock_type.name})"
+
+    def now(self) -> Time:
+        """The present as a point in time."""
+        return Time(nanoseconds=self.now_ns(), clock_type=self.clock_type)
+
+    def now_ns(self) -> int:
+        """Nanoseconds since the clock's epoch."""
+        return self.timebase.steady_ns() if self.clock_type is ClockType.STEADY_TIME else self.timebase.now_ns()
+
+    def create_jump_callback(
+        self,
+        threshold: JumpThreshold,
+        *,
+        pre_callback: Callable[[], object] | None = None,
+        post_callback: Callable[[TimeJump], object] | None = None,
+    ) -> JumpHandle:
+        """Hear of the jumps of this clock, before and after them. Only simulated time jumps, and what switches to it.
+
+        Raises:
+            ValueError: no callback, or something that is none.
+        """
+        handle = JumpHandle(clock=self, threshold=threshold, pre_callback=pre_callback, post_callback=post_callback)
+        with self._changed:
+            self._jump_handles.append(handle)
+        return handle
+
+    def forget_jump_callback(self, handle: JumpHandle) -> None:
+        """Take a handle away; see `JumpHandle.unregister`."""
+        with self._changed:
+            if handle in self._jump_handles:
+                self._jump_handles.remove(handle)
+
+    # --- timers ------------------------------------------------------------------------------------------------
+
+    def timer_ns(self) -> int:
+        """The count that timers on this clock go by, in nanoseconds: it never goes back but with simulated time."""
+        return self.timebase.steady_ns()
+
+    def call_at(self, dispatcher: AlarmSetter, timer_ns: int, callback: Callable[[], None]) -> Alarm:
+        """Call something once when `timer_ns` has come to a value; quick things only."""
+        return dispatcher.call_at(timer_ns, callback)
+
+    def add_timer(self, timer: FollowsClock) -> None:
+        """Tell a timer when the count it goes by changes otherwise than by the passing of time."""
+
+    def remove_timer(self, timer: FollowsClock) -> None:
+        """Tell it no longer."""
+
+    # --- sleeping ----------------------------------------------------------------------------------------------
+
+    def sleep_until(self, until: Time, context: Any = None) -> bool:
+        """Block the calling thread until a point in time.
+
+        Args:
+            until: when, by a clock of this type.
+            context: something with ``ok()``; the sleep ends early when that is no longer true. The clock's own when
+                None.
+
+        Returns:
+            Whether the time has come; False when the sleep ended early, because of the context or because the clock
+            became simulated or ceased to be.
+
+        Raises:
+            ValueError: the point belongs to another type of clock.
+            NotInitializedError: the context is not ok to begin with.
+        """
+        context = self.context if context is None else context
+        if context is not None and not context.ok():
+            raise NotInitializedError
+        if until.clock_type != self.clock_type:
+            raise ValueError("until's clock type does not match this clock's type")
+        with self._changed:
+            generation = self._generation()
+            while (left_ns := until.nanoseconds - self.now_ns()) > 0:
+                if context is not None and not context.ok():
+                    return False
+                self._changed.wait(self._longest_wait_s(left_ns))
+                if generation != self._generation():
+                    return False
+        return True
+
+    def sleep_for(self, rel_time: Duration, context: Any = None) -> bool:
+        """Block the calling thread for a span of time by this clock; see `sleep_until`."""
+        return self.sleep_until(self.now() + rel_time, context)
+
+    def _longest_wait_s(self, left_ns: int) -> float:
+        return min(left_ns / 1e9, _LONGEST_WAIT_S)
+
+    def _generation(self) -> int:
+        return 0
+
+    def _tell_before(self, handles: Iterable[JumpHandle]) -> None:
+        for handle in handles:
+            if handle.pre_callback is not None:
+                handle.pre_callback()
+
+    def _tell_after(self, handles: Iterable[JumpHandle], jump: TimeJump) -> None:
+        for handle in handles:
+            if handle.post_callback is not None:
+                handle.post_callback(jump)
+
+
+class FollowsClock(Protocol):
+    """A timer, as its clock knows it."""
+
+    def before_switch(self) -> None:
+        """The clock's count is about to become another one."""
+
+    def after_switch(self) -> None:
+        """The count is another one now."""
+
+    def after_jump_back(self) -> None:
+        """The count went back."""
+
+
+@dataclass(slots=True, order=True)
+class _SimulatedAlarm:
+    at_ns: int
+    number: int
+    callback: Callable[[], None] = field(compare=False)
+    cancelled: bool = field(default=False, compare=False)
+
+    def cancel(self) -> None:
+        self.cancelled = True
+
+
+class ROSClock(Clock):
+    """ROS time: the system's until a simulation takes over (rclpy ``ROSClock``).
+
+    While it is simulated (`ros_time_is_active`), time stands still but when `set_ros_time_override` moves it, forward
+    or back. Timers on it keep the rest of their period when it becomes simulated or ceases to be, and start their
+    period anew when it jumps back (rcl ``rcl_timer``).
+    """
+
+    def __init__(self, *, clock_type: ClockType = ClockType.ROS_TIME, timebase: Timebase | None = None) -> None:
+        super().__init__(clock_type=clock_type, timebase=timebase)
+        self._active = False
+        self._switches = 0
+        self._override_ns = 0
+        self._alarms: list[_SimulatedAlarm] = []
+        self._numbers = count()
+        self._timers: dict[FollowsClock, None] = {}
+
+    @property
+    def ros_time_is_active(self) -> bool:
+        """Whether time is simulated."""
+        return self._active
+
+    def now_ns(self) -> int:
+        """Nanoseconds since the epoch; 0 while simulated time has not begun."""
+        return self._override_ns if self._active else self.timebase.now_ns()
+
+    def timer_ns(self) -> int:
+        """Simulated time, or the steady count."""
+        return self._override_ns if self._active else self.timebase.steady_ns()
+
+    def call_at(self, dispatcher: AlarmSetter, timer_ns: int, callback: Callable[[], None]) -> Alarm:
+        """Call something once when `timer_ns` has come to a value."""
+        with self._changed:
+            if not self._active:
+                return dispatcher.call_at(timer_ns, callback)
+            alarm = _SimulatedAlarm(timer_ns, next(self._numbers), callback)
+            if timer_ns > self._override_ns:
+                heapq.heappush(self._alarms, alarm)
+                return alarm
+        return dispatcher.call_at(self.timebase.steady_ns(), callback)
+
+    def add_timer(self, timer: FollowsClock) -> None:
+        """Tell a timer of switches and of jumps back."""
+        self._timers[timer] = None
+
+    def remove_timer(self, timer: FollowsClock) -> None:
+        """Tell it no longer."""
+        self._timers.pop(timer, None)
+
+    def set_ros_time_is_active(self, enabled: bool) -> None:
+        """Begin or end simulated time."""
+        with self._changed:
+            if enabled == self._active:
+                return
+            handles = [handle for handle in self._jump_handles if handle.threshold.on_clock_change]
+            timers = tuple(self._timers)
+            self._tell_before(handles)
+            for timer in timers:
+                timer.before_switch()
+            before_ns = self.now_ns()
+            self._active = enabled
+            self._switches += 1
+            self._alarms.clear()
+            for timer in timers:
+                timer.after_switch()
+            change = ClockChange.ROS_TIME_ACTIVATED if enabled else ClockChange.ROS_TIME_DEACTIVATED
+            self._tell_after(handles, TimeJump(change, Duration(nanoseconds=self.now_ns() - before_ns)))
+            self._changed.notify_all()
+
+    _set_ros_time_is_active = set_ros_time_is_active
+    """As rclpy names it."""
+
+    def set_ros_time_override(self, time: Time) -> None:
+        """Set simulated time; it counts once simulated time is active.
+
+        Raises:
+            TypeError: `time` is not a Time.
+        """
+        if not isinstance(time, Time):
+            raise TypeError(f"Time must be specified as rclpy.time.Time. Received type: {type(time)}")
+        self.override(time.nanoseconds)
+
+    def override(self, now_ns: int) -> None:
+        """Set simulated time, nanoseconds since the epoch."""
+        with self._changed:
+            if not self._active:
+                self._override_ns = now_ns
+                return
+            jump = TimeJump(ClockChange.ROS_TIME_NO_CHANGE, Duration(nanoseconds=now_ns - self._override_ns))
+            handles = [handle for handle in self._jump_handles if handle.threshold.is_exceeded(jump)]
+            self._tell_before(handles)
+            self._override_ns = now_ns
+            if jump.delta.nanoseconds < 0:
+                self._alarms.clear()
+                for timer in tuple(self._timers):
+                    timer.after_jump_back()
+            self._tell_after(handles, jump)
+            self._changed.notify_all()
+            due = []
+            while self._alarms and self._alarms[0].at_ns <= now_ns:
+                due.append(heapq.heappop(self._alarms))
+        for alarm in due:
+            if not alarm.cancelled:
+                alarm.callback()
+
+    def interrupt(self) -> None:
+        """Let sleepers look at their contexts."""
+        with self._changed:
+            self._changed.notify_all()
+
+    def _longest_wait_s(self, left_ns: int) -> float:
+        return _LONGEST_WAIT_S if self._active else super()._longest_wait_s(left_ns)
+
+    def _generation(self) -> int:
+        return self._switches

@@ -1,0 +1,69 @@
+"""What a launch leaves out because something that it needs is not there."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Severity, counted, foreign, phrase
+
+if TYPE_CHECKING:
+    from linkwright.launch.log.launch_log import LaunchLog
+
+_MISSING = frozenset({"LAUNCH101", "LAUNCH124", "LAUNCH131", "LAUNCH142", "PKG101", "PKG102"})
+"""Codes of findings that something is not there."""
+
+_CONSEQUENCES = frozenset({"LAUNCH121", "LAUNCH123", "LAUNCH137"})
+"""Codes of findings that a value is not set, which may be because of what was left out before."""
+
+
+class Omissions:
+    """Decides what may be left out, and tells it.
+
+    Args:
+        log: of the launch.
+        wanted: whether what cannot run is to be left out.
+        command: the command that launches the same and leaves out what cannot run; None where there is none.
+    """
+
+    def __init__(self, log: LaunchLog, command: str | None, *, wanted: bool) -> None:
+        self._log = log
+        self._wanted = wanted
+        self._command = command
+        self._any = False
+        self._untold: list[Note] = []
+
+    def take(self, error: LinkwrightError) -> bool:
+        """Leave out what an error kept from running, if that is wanted and something is missing; whether it is."""
+        consequence = self._any and any(each.code in _CONSEQUENCES for each in error.diagnostics)
+        if not self._wanted or not (consequence or _is_missing(error)):
+            return False
+        self._any = True
+        self._untold += [Note(each.message, each.span) for each in error.diagnostics]
+        return True
+
+    def tell(self) -> None:
+        """Print what was left out since the last time."""
+        if not self._untold:
+            return
+        message = counted(
+            "one part of the launch is left out, the rest runs",
+            "{count} parts of the launch are left out, the rest runs",
+            len(self._untold),
+        )
+        self._log.diagnostics([Diagnostic("LAUNCH146", message, severity=Severity.WARNING, notes=tuple(self._untold))])
+        self._untold.clear()
+
+    def offered(self, error: LinkwrightError) -> tuple[Diagnostic, ...]:
+        """The findings of an error that ends the launch, with the command that would do without what is missing."""
+        *others, last = error.diagnostics
+        if self._command is None or not _is_missing(error):
+            return error.diagnostics
+        note = Note(phrase("to run what can run without it: {command}", command=foreign(self._command)))
+        return (*others, replace(last, notes=(*last.notes, note)))
+
+
+def _is_missing(error: LinkwrightError) -> bool:
+    if isinstance(error, (ModuleNotFoundError, FileNotFoundError)) or getattr(error, "missing", False):
+        return True
+    return any(each.code in _MISSING for each in error.diagnostics)

@@ -1,0 +1,155 @@
+"""Launching from a program of one's own (``launch.LaunchService``)."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import sys
+import threading
+from collections.abc import Coroutine, Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from linkwright.launch.model import events
+from linkwright.launch.model.context import LaunchContext
+from linkwright.launch.model.description import LaunchDescription
+from linkwright.launch.model.event_handlers import OnIncludeLaunchDescription
+
+if TYPE_CHECKING:
+    from linkwright.launch.engine.session import LaunchSession
+
+_DEFAULT_LOG = "launch.log"
+
+
+class LaunchService:
+    """Runs launch descriptions.
+
+    Args:
+        argv: kept in the context for the entities.
+        noninteractive: whether no terminal is there, so that Ctrl-C does not reach the processes by itself.
+        debug: whether details are logged.
+        log_file_name: of the log of this launch.
+
+    What is included and emitted before a run is handled when it begins; event handlers stay for the next run.
+    """
+
+    _isolates_nodes = False
+    """Whether nodes that come with Linkwright run as processes too, rather than in this one."""
+
+    def __init__(
+        self,
+        *,
+        argv: Iterable[str] | None = None,
+        noninteractive: bool = False,
+        debug: bool = False,
+        log_file_name: str = _DEFAULT_LOG,
+    ) -> None:
+        self._log_file_name = log_file_name if log_file_name.endswith(".log") else f"{log_file_name}.log"
+        self._logger_name = self._log_file_name.removesuffix(".log")
+        self._debug = debug
+        self.__context = LaunchContext(argv=argv, noninteractive=noninteractive)
+        self.__context.register_event_handler(OnIncludeLaunchDescription())
+        self.__session: LaunchSession | None = None
+        self.__task: asyncio.Task[Any] | None = None
+        self.__lock = threading.RLock()
+
+    @property
+    def context(self) -> LaunchContext:
+        """The context of the launch."""
+        return self.__context
+
+    @property
+    def event_loop(self) -> asyncio.AbstractEventLoop | None:
+        """The loop that the launch runs on, while it does."""
+        return None if self.__session is None else self.__session.loop
+
+    @property
+    def task(self) -> asyncio.Task[Any] | None:
+        """The task of the run, while there is one."""
+        return self.__task
+
+    def include_launch_description(self, launch_description: LaunchDescription) -> None:
+        """Have a description visited; may be called from any thread."""
+        self.emit_event(events.IncludeLaunchDescription(launch_description))
+
+    def emit_event(self, event: Any) -> None:
+        """Put an event into the queue; may be called from any thread, and before the run."""
+        with self.__lock:
+            loop = self.event_loop
+            if loop is None or threading.current_thread() is threading.main_thread():
+                self.__context.emit_event_sync(event)
+            else:
+                loop.call_soon_threadsafe(self.__context.emit_event_sync, event)
+
+    def shutdown(self, force_sync: bool = False) -> Coroutine[Any, Any, None] | None:
+        """End the launch; may be called from any thread.
+
+        Returns:
+            Something to be awaited where it is called on the launch's own loop, or while that stands still between
+            two runs of it, unless `force_sync` is given.
+        """
+        if self.__session is None:
+            return None
+        self.emit_event(events.Shutdown(reason="LaunchService.shutdown() called"))
+        return asyncio.sleep(0) if self.__is_thread_of_loop() and not force_sync else None
+
+    def __is_thread_of_loop(self) -> bool:
+        """Whether the caller is where the launch's loop runs, or will run again."""
+        try:
+            return asyncio.get_running_loop() is self.event_loop
+        except RuntimeError:
+            loop = self.event_loop
+            return loop is not None and not loop.is_running()
+
+    def run(self, *, shutdown_when_idle: bool = True) -> int:
+        """Run until nothing runs any more.
+
+        Args:
+            shutdown_when_idle: whether the launch ends then; otherwise only `shutdown` and signals end it.
+
+        Returns:
+            0, or 1 if something in the launch failed.
+
+        Raises:
+            RuntimeError: it runs already, or this is not the main thread.
+        """
+        return asyncio.run(self.run_async(shutdown_when_idle=shutdown_when_idle))
+
+    async def run_async(self, *, shutdown_when_idle: bool = True) -> int:
+        """The same as a coroutine, on the running loop."""
+        from linkwright.launch.engine.session import LaunchSession
+        from linkwright.launch.engine.signals import SignalWatch
+        from linkwright.launch.engine.supervisor import SessionOptions
+        from linkwright.launch.log.launch_log import LaunchLog
+        from linkwright.launch.model.descriptions import Descriptions, use_descriptions
+        from linkwright.packages import PackageFinder, use_finder
+
+        if threading.current_thread() is not threading.main_thread():
+            raise RuntimeError("LaunchService can only be run in the main thread.")
+        with self.__lock:
+            if self.__session is not None:
+                raise RuntimeError("LaunchService cannot be run multiple times concurrently.")
+            finder = PackageFinder(start=_starting_folders())
+            options = SessionOptions(
+                open_browser=False, isolate=self._isolates_nodes, shutdown_when_idle=shutdown_when_idle
+            )
+            session = LaunchSession(finder, options, LaunchLog(debug=self._debug), self.__context)
+            session.loop = asyncio.get_running_loop()
+            self.__session = session
+        self.__task = asyncio.current_task()
+        try:
+            with SignalWatch() as signals, use_finder(finder), use_descriptions(Descriptions(finder)):
+                signals.session = session
+                succeeded = await session.run(LaunchDescription())
+        finally:
+            with self.__lock:
+                self.__session = None
+                self.__task = None
+                self.__context.detach()
+        return 0 if succeeded else 1
+
+
+def _starting_folders() -> list[Path]:
+    """Where packages are looked for: from the program that runs, and from the current folder."""
+    program = Path(sys.argv[0]).absolute().parent if sys.argv and sys.argv[0] else Path.cwd()
+    return [program, Path(os.getcwd())]  # noqa: PTH109 - the folder may have gone

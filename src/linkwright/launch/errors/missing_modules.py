@@ -1,0 +1,105 @@
+"""Which ROS package or PyPI distribution a missing Python module comes from, for the hint of an import error."""
+
+from __future__ import annotations
+
+from linkwright.diagnostics import Phrase, phrase
+
+_ROS_PACKAGES = {
+    "as2_core": "Aerostack2",
+    "clearpath_config": "clearpath_config",
+    "clearpath_generator_common": "clearpath_common",
+    "crazyflie_py": "Crazyswarm2",
+    "diagnostic_updater": "diagnostics",
+    "interbotix_xs_modules": "interbotix_ros_toolboxes",
+    "irobot_create_common_bringup": "create3_sim",
+    "isaac_ros_launch_utils": "isaac_ros_common",
+    "launch_pal": "launch_pal",
+    "launch_testing_ros": "ros2/launch_ros",
+    "nav2_simple_commander": "navigation2",
+    "lbr_bringup": "lbr_fri_ros2_stack",
+    "ros2_benchmark": "ros2_benchmark",
+    "ros_gz_bridge": "ros_gz",
+    "ros_gz_sim": "ros_gz",
+    "scripts": "gazebo_ros_pkgs",
+    "py_trees_ros": "py_trees_ros",
+    "simple_launch": "simple_launch",
+    "spot_wrapper": "spot_ros2",
+    "tracetools_launch": "ros2_tracing",
+    "uf_ros_lib": "xarm_ros2",
+    "webots_ros2_core": "webots_ros2",
+    "webots_ros2_driver": "webots_ros2",
+}
+"""Module -> the repository that has the ROS package with it."""
+
+_COMPILED_PACKAGES = {
+    "PyKDL": "orocos_kdl",
+    "image_geometry": "vision_opencv",
+    "laser_geometry": "laser_geometry",
+    "moveit": "moveit2",
+    "pcl_ros": "perception_pcl",
+    "python_qt_binding": "rqt",
+    "rqt_gui_py": "rqt",
+}
+"""Module -> the repository that has the ROS package with it, parts of which are written in C++."""
+
+ROS_MODULES = (*_ROS_PACKAGES, *_COMPILED_PACKAGES)
+"""The modules of ROS packages that are not here, as far as it is known where they come from."""
+
+_DISTRIBUTIONS = {
+    "bosdyn": "bosdyn-client",
+    "cv2": "opencv-python",
+    "dotenv": "python-dotenv",
+    "em": "empy",
+    "git": "GitPython",
+    "pyrealsense2": "pyrealsense2",
+    "ruamel": "ruamel.yaml",
+    "serial": "pyserial",
+    "skimage": "scikit-image",
+    "usb": "pyusb",
+}
+"""Module -> what pip calls the package that has it, where that is another name."""
+
+_FROM_PYPI = frozenset({"flatten_dict", "jinja2", "numpy", "pandas", "psutil", "pydantic", "requests", "scipy", "toml"})
+
+_ENDINGS = (
+    "_bringup",
+    "_common",
+    "_config",
+    "_description",
+    "_driver",
+    "_interfaces",
+    "_launch",
+    "_msgs",
+    "_ros",
+    "_utils",
+)
+
+
+def provider_hint(module: str) -> Phrase:
+    """What to do so that a module can be imported."""
+    return known_provider_hint(module) or phrase(
+        "install the Python package that provides '{module}', or put the ROS package with it into the workspace",
+        module=module,
+    )
+
+
+def known_provider_hint(module: str) -> Phrase | None:
+    """As `provider_hint`; None for a module of which nothing is known."""
+    top = module.partition(".")[0]
+    project = _ROS_PACKAGES.get(top)
+    if project is not None:
+        return phrase(
+            "it comes with {project}: put the sources into the workspace's src folder, no build is needed",
+            project=project,
+        )
+    project = _COMPILED_PACKAGES.get(top)
+    if project is not None:
+        return phrase(
+            "it comes with {project}, which has to be compiled: source a ROS 2 installation that has it",
+            project=project,
+        )
+    if top in _DISTRIBUTIONS or top in _FROM_PYPI:
+        return phrase("install it: pip install {distributions}", distributions=_DISTRIBUTIONS.get(top, top))
+    if top.endswith(_ENDINGS) or top.startswith(("ros_", "ros2_")):
+        return phrase("put the ROS package '{top}' into the workspace's src folder, no build is needed", top=top)
+    return None

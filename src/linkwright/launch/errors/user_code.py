@@ -1,0 +1,193 @@
+"""Exceptions in a user's launch file as findings: what, where, and the nearest name, without a traceback."""
+
+from __future__ import annotations
+
+import inspect
+import re
+import sys
+import sysconfig
+from collections.abc import Iterable
+from traceback import walk_tb
+from types import FrameType, ModuleType, TracebackType
+from typing import Any
+
+from linkwright.diagnostics import (
+    Diagnostic,
+    LinkwrightError,
+    Note,
+    Phrase,
+    SourceText,
+    Span,
+    did_you_mean,
+    foreign,
+    nearest,
+    phrase,
+    quoted_names,
+)
+from linkwright.launch.errors.places import CodePlace, Place, is_ours, located, read_source
+from linkwright.launch.errors.ros_exceptions import as_ros_error
+
+_LIBRARY = tuple({sysconfig.get_path("stdlib"), sysconfig.get_path("purelib"), sysconfig.get_path("platlib")})
+_CANNOT_IMPORT = re.compile(r"cannot import name '([^']+)' from '([^']+)'")
+_PATH_OF_MODULE = re.compile(r" \((?:/|[A-Z]:|unknown location).*\)$")
+_MISSING_ARGUMENT = re.compile(r"\(\) missing \d+ required .*arguments?: (.*)$")
+_UNEXPECTED_ARGUMENT = re.compile(r"([\w.]+)\(\) got an unexpected keyword argument '([^']+)'")
+
+
+def explain(error: Exception, where: str, fallback: Place | None = None) -> LinkwrightError:
+    """An exception as an error with the user's own line.
+
+    Args:
+        error: what was raised.
+        where: what was running, such as "launch file 'x.launch.py'".
+        fallback: the place to name when no line of the user's was running.
+
+    Returns:
+        The error itself if it is a LinkwrightError, with a place where it had none; else a LAUNCH104.
+    """
+    trail = list(_user_places(error.__traceback__))
+    place = trail[-1] if trail else fallback
+    if isinstance(error, LinkwrightError):
+        return located(error, place)
+    kind = type(error).__name__
+    text = str(error.args[0]) if isinstance(error, KeyError) and error.args else str(error)
+    text = _PATH_OF_MODULE.sub("", (text.splitlines() or [""])[0]).rstrip(".")
+    message = (
+        phrase("{where} raised {kind}: {text}", where=where, kind=kind, text=foreign(text))
+        if text
+        else phrase("{where} raised {kind}", where=where, kind=kind)
+    )
+    source = place.source() if place else None
+    span = place.span(source) if place else None
+    notes = tuple(Note(phrase("called from here"), each.span(read_source(each.file))) for each in reversed(trail[:-1]))
+    diagnostic = Diagnostic("LAUNCH104", message, span, notes=notes, hint=_hint(error, source, span), source=source)
+    return as_ros_error(error, diagnostic)
+
+
+def _user_places(traceback: TracebackType | None) -> Iterable[Place]:
+    if traceback is None:
+        return
+    current: TracebackType | None = traceback
+    for frame, line in walk_tb(traceback):
+        assert current is not None
+        if is_users(frame.f_code.co_filename):
+            yield CodePlace(frame.f_code, current.tb_lasti, line)
+        current = current.tb_next
+
+
+def is_users(filename: str) -> bool:
+    """Whether a file of code is the user's own: neither Linkwright's nor of an installed library."""
+    if filename.startswith("<") or is_ours(filename):
+        return False
+    return not filename.startswith(tuple(folder for folder in _LIBRARY if folder))
+
+
+def _hint(error: Exception, source: SourceText | None, span: Span | None) -> Phrase | None:
+    """What the user may have meant."""
+    if isinstance(error, ImportError):
+        return _import_hint(error)
+    if isinstance(error, NameError):
+        frame = _innermost_frame(error)
+        known = {**frame.f_globals, **frame.f_locals} if frame else {}
+        name = getattr(error, "name", None)
+        return did_you_mean(name, known) if name else None
+    if isinstance(error, AttributeError):
+        name, owner = getattr(error, "name", None), getattr(error, "obj", None)
+        return did_you_mean(name, _offered(owner)) if name else None
+    if isinstance(error, TypeError):
+        return _keyword_hint(error) or _missing_hint(error, source, span)
+    return None
+
+
+def _offered(owner: object) -> list[str]:
+    """The public names of a module or object; not its submodules, which share their names with what they define."""
+    return [
+        name
+        for name in dir(owner)
+        if not name.startswith("_") and not isinstance(getattr(owner, name, None), ModuleType)
+    ]
+
+
+def _import_hint(error: ImportError) -> Phrase | None:
+    found = _CANNOT_IMPORT.search(str(error))
+    if found:
+        name, module = found.groups()
+        return where_it_is(error) or did_you_mean(name, _offered(sys.modules.get(module)))
+    missing = error.name or ""
+    parent, _, name = missing.rpartition(".")
+    if parent in sys.modules:
+        import pkgutil
+
+        siblings = [each.name for each in pkgutil.iter_modules(getattr(sys.modules[parent], "__path__", ()))]
+        return did_you_mean(name, siblings)
+    known = did_you_mean(missing, ("launch", "launch_ros", "ament_index_python"))
+    if known or not missing:
+        return known
+    from linkwright.launch.errors.missing_modules import provider_hint
+
+    return provider_hint(missing)
+
+
+def where_it_is(error: ImportError) -> Phrase | None:
+    """Which other module has the name that one lacks; None where that module knows of none, as real ones do."""
+    words = _CANNOT_IMPORT.search(str(error))
+    if words is None:
+        return None
+    name, module = words.groups()
+    homes = getattr(getattr(sys.modules.get(module), "__loader__", None), "homes", None)
+    found = homes(name) if homes else []
+    return phrase("it is in {modules}", modules=quoted_names(found, " or ")) if found else None
+
+
+def _keyword_hint(error: TypeError) -> Phrase | None:
+    """The nearest argument name for a call with one that does not exist."""
+    found = _UNEXPECTED_ARGUMENT.search(str(error))
+    frame = _innermost_frame(error, users_only=True)
+    if not found or frame is None:
+        return None
+    function, name = found.groups()
+    called = _called_objects(frame, function.partition(".")[0])
+    names = {parameter for each in called for parameter in _parameter_names(each)}
+    return did_you_mean(name, names)
+
+
+def _missing_hint(error: TypeError, source: SourceText | None, span: Span | None) -> Phrase | None:
+    """The misspelt argument name, in the text of the call, that was to be a required one."""
+    found = _MISSING_ARGUMENT.search(str(error))
+    if not found or source is None or span is None:
+        return None
+    call = source.text[source.offset(span.line, span.column) : source.offset(span.end_line, span.end_column)]
+    written = re.findall(r"\b(\w+)\s*=(?!=)", call)
+    for missing in re.findall(r"'(\w+)'", found.group(1)):
+        near = nearest(missing, (name for name in written if name != missing))
+        if near:
+            return phrase("'{missing}' is missing; it says {near}", missing=missing, near=quoted_names(near, " or "))
+    return None
+
+
+def _called_objects(frame: FrameType, class_name: str) -> list[Any]:
+    """Classes that the frame knows and that are, or derive from, the one whose constructor complained."""
+    known = [*frame.f_globals.values(), *frame.f_locals.values()]
+    return [
+        each
+        for each in known
+        if (inspect.isclass(each) and any(base.__name__ == class_name for base in each.__mro__))
+        or (inspect.isfunction(each) and each.__name__ == class_name)
+    ]
+
+
+def _parameter_names(called: Any) -> Iterable[str]:
+    functions = [vars(base).get("__init__") for base in called.__mro__] if inspect.isclass(called) else [called]
+    for function in functions:
+        if inspect.isfunction(function):
+            for parameter in inspect.signature(function).parameters.values():
+                if parameter.kind in (parameter.KEYWORD_ONLY, parameter.POSITIONAL_OR_KEYWORD):
+                    yield parameter.name
+
+
+def _innermost_frame(error: Exception, users_only: bool = False) -> FrameType | None:
+    frame = None
+    for each, _ in walk_tb(error.__traceback__):
+        if not users_only or is_users(each.f_code.co_filename):
+            frame = each
+    return frame

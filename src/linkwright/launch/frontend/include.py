@@ -1,0 +1,195 @@
+"""Including other launch files."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from linkwright.diagnostics import (
+    LinkwrightError,
+    Note,
+    Phrase,
+    display_path,
+    nearest,
+    phrase,
+    quoted_names,
+)
+from linkwright.launch.errors.places import MarkupPlace, error_at
+from linkwright.launch.frontend.sources import AnyLaunchDescriptionSource, LaunchDescriptionSource
+from linkwright.launch.model.action import Action
+from linkwright.launch.model.actions.configurations import (
+    PopLaunchConfigurations,
+    PushLaunchConfigurations,
+    SetLaunchConfiguration,
+)
+from linkwright.launch.model.actions.environment import PopEnvironment, PushEnvironment
+from linkwright.launch.model.actions.functions import OpaqueFunction
+from linkwright.launch.model.actions.named import Pairs, normalize_pairs
+from linkwright.launch.model.context import LaunchContext
+from linkwright.launch.model.entity import LaunchDescriptionEntity
+from linkwright.launch.model.markup.entity import Entity
+from linkwright.launch.model.markup.expose import expose_action
+from linkwright.launch.model.substitution import SomeSubstitutionsType, TextSubstitution, perform_substitutions
+
+if TYPE_CHECKING:
+    from linkwright.launch.model.markup.parser import Parser
+
+_FILE = "current_launch_file_path"
+_FOLDER = "current_launch_file_directory"
+
+
+@expose_action("include")
+class IncludeLaunchDescription(Action):
+    """Visits the description of another launch file.
+
+    As in ROS, launch configurations are shared with the including file, in both directions; a GroupAction
+    around it keeps them apart.
+
+    Args:
+        launch_description_source: where the description comes from; a path will do.
+        launch_arguments: pairs of name and value of the arguments given to it.
+    """
+
+    def __init__(
+        self,
+        launch_description_source: LaunchDescriptionSource | SomeSubstitutionsType | Path,
+        *,
+        launch_arguments: Iterable[tuple[SomeSubstitutionsType, SomeSubstitutionsType]] | None = None,
+        **kwargs: Any,
+    ) -> None:
+        super().__init__(**kwargs)
+        if not isinstance(launch_description_source, LaunchDescriptionSource):
+            launch_description_source = AnyLaunchDescriptionSource(launch_description_source)
+        self._source = launch_description_source
+        self._arguments = normalize_pairs(launch_arguments or ())
+
+    @classmethod
+    def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
+        """Reads ``file`` and the ``arg`` (or ``let``) inside."""
+        _, kwargs = super().parse(entity, parser)
+        kwargs["launch_description_source"] = parser.parse_substitution(entity.get_attr("file"))
+        arguments = []
+        for tag in ("arg", "let"):
+            for each in entity.get_attr(tag, data_type=list[Entity], optional=True) or ():
+                name, value = each.get_attr("name"), each.get_attr("value")
+                arguments.append((parser.parse_substitution(name), parser.parse_substitution(value)))
+                each.assert_entity_completely_parsed()
+        if arguments:
+            kwargs["launch_arguments"] = arguments
+        return cls, kwargs
+
+    @property
+    def launch_description_source(self) -> LaunchDescriptionSource:
+        """Where the description comes from."""
+        return self._source
+
+    @property
+    def launch_arguments(self) -> Pairs:
+        """Names and values of the arguments, as substitutions."""
+        return self._arguments
+
+    def describe(self) -> str:
+        """Where the description comes from."""
+        return f"{type(self).__name__}({self._source.location})"
+
+    def get_sub_entities(self) -> Sequence[LaunchDescriptionEntity]:
+        """The description, if it can be had before the launch runs."""
+        description = self._source.try_get_launch_description_without_context()
+        return [] if description is None else [description]
+
+    def hides_entities(self) -> bool:
+        """Whether only the running launch can tell which file is included."""
+        return self._source.try_get_launch_description_without_context() is None
+
+    def arguments_given_inside(self) -> tuple[str, ...]:
+        """The names of the arguments that are plain text."""
+        names = (name[0] for name, _ in self._arguments if len(name) == 1)
+        return tuple(name.text for name in names if isinstance(name, TextSubstitution))
+
+    def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
+        """The description, to be visited next with its arguments set.
+
+        Raises:
+            RuntimeError: LAUNCH114, an argument that it requires is not given.
+            LinkwrightError: what its source raises.
+        """
+        description = self._source.get_launch_description(context)
+        given = [perform_substitutions(context, name) for name, _ in self._arguments]
+        self._check_required(description.get_launch_arguments(), given)
+        outer = context.get_locals_as_dict()
+        before = {name: outer[name] for name in (_FILE, _FOLDER) if name in outer}
+        context.extend_locals(self._file_values())
+
+        def leave(context: LaunchContext) -> None:
+            context.remove_locals((_FILE, _FOLDER))
+            context.extend_locals(before)
+
+        return [
+            *(SetLaunchConfiguration(name, value) for name, value in self._arguments),
+            description,
+            OpaqueFunction(function=leave),
+        ]
+
+    def explain_inside(self, error: LinkwrightError) -> LinkwrightError:
+        """An error that happened in what is included, with a note about how it came to be included."""
+        if self.place is not None and self._source.location_path is not None:
+            note = Note(phrase("included from here"), self.place.span(self.place.source()))
+            error.diagnostics = tuple(replace(each, notes=(*each.notes, note)) for each in error.diagnostics)
+        return error
+
+    def _file_values(self) -> dict[str, str]:
+        """The values of the moment that tell which file is being visited."""
+        path = self._source.location_path
+        if path is None:
+            return {}
+        folder = str(path.parent) if path.exists() else self._source.location
+        return {_FILE: str(path), _FOLDER: folder}
+
+    def _check_required(self, declared: Sequence[Any], given: list[str]) -> None:
+        names = [argument.name for argument in declared]
+        for argument in declared:
+            if argument.default_value is not None or argument.conditionally_included or argument.name in given:
+                continue
+            unknown = [name for name in given if name not in names]
+            near = nearest(argument.name, unknown)
+            hint = (
+                phrase("it is given {near}: is that the one?", near=quoted_names(near, " or "))
+                if near
+                else self._how_to_give(argument.name)
+            )
+            path = self._source.location_path
+            if path is None:
+                message = phrase(
+                    "the included launch description requires argument '{name}', which is not given", name=argument.name
+                )
+            else:
+                file = display_path(path)
+                message = phrase(
+                    "the included launch file '{file}' requires argument '{name}', which is not given",
+                    file=file,
+                    name=argument.name,
+                )
+            text = (
+                f"Included launch description missing required argument '{argument.name}' "
+                f"(description: '{argument.description}'), given: [{', '.join(given)}]"
+            )
+            raise error_at(self.place, "LAUNCH114", message, hint, ros_error=RuntimeError(text))
+
+    def _how_to_give(self, name: str) -> Phrase:
+        """How an argument is given, in the language of the including file."""
+        if not isinstance(self.place, MarkupPlace):
+            return phrase("add ('{name}', VALUE) to launch_arguments", name=name)
+        if self.place.text.text.lstrip().startswith("<"):
+            return phrase('write <arg name="{name}" value="VALUE"/> inside <include>', name=name)
+        return phrase("write 'arg: [{{name: {name}, value: VALUE}}]' below 'include'", name=name)
+
+
+class IncludeScopedLaunchDescription(IncludeLaunchDescription):
+    """An `IncludeLaunchDescription` whose launch configurations and environment end with it."""
+
+    def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
+        """The description in a scope, to be visited next."""
+        opening: list[LaunchDescriptionEntity] = [PushLaunchConfigurations(), PushEnvironment()]
+        return [*opening, *super().execute(context), PopEnvironment(), PopLaunchConfigurations()]

@@ -1,0 +1,90 @@
+"""The action of a tag, and the substitution of ``$(name ...)``."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from linkwright.diagnostics import LinkwrightError, did_you_mean, foreign, phrase
+from linkwright.launch.errors.places import Place, error_at, located, reading
+from linkwright.launch.model.action import Action
+from linkwright.launch.model.markup.entity import Entity
+from linkwright.launch.model.markup.expose import action_parse_methods, substitution_parse_methods
+from linkwright.launch.model.substitution import Substitution
+
+if TYPE_CHECKING:
+    from linkwright.launch.model.markup.parser import Parser
+
+
+def _method(methods: dict[str, Any], name: str) -> Any:
+    """What reads a tag or substitution; when nobody knows it, those of packages that were not built are loaded."""
+    if name not in methods:
+        from linkwright.launch.frontend.workspace_extensions import load_workspace_extensions
+
+        load_workspace_extensions()
+    return methods.get(name)
+
+
+def instantiate_action(entity: Entity, parser: Parser) -> Action:
+    """The action of a tag.
+
+    Raises:
+        RuntimeError: LAUNCH115, the tag is not known.
+    """
+    method = _method(action_parse_methods, entity.type_name)
+    place = entity.place
+    if method is None:
+        raise error_at(
+            place,
+            "LAUNCH115",
+            phrase("there is no action '{type_name}'", type_name=entity.type_name),
+            did_you_mean(entity.type_name, action_parse_methods),
+            ros_error=RuntimeError(f"Unrecognized entity of the type: {entity.type_name}"),
+        )
+    with reading(place):
+        try:
+            action_type: type[Action]
+            action_type, kwargs = method(entity, parser)
+            return action_type(**kwargs)
+        except LinkwrightError as error:
+            raise located(error, place) from error
+        except (TypeError, ValueError) as error:
+            raise error_at(
+                place,
+                "LAUNCH118",
+                phrase("action '{type_name}': {error}", type_name=entity.type_name, error=foreign(error)),
+                ros_error=error,
+            ) from error
+
+
+def instantiate_substitution(
+    type_name: str, args: Sequence[Any] | None = None, place: Place | None = None
+) -> Substitution:
+    """The substitution of a name, with a list of substitutions for each argument.
+
+    Raises:
+        RuntimeError: LAUNCH119, the name is not known, or its arguments are wrong.
+    """
+    method = _method(substitution_parse_methods, type_name)
+    if method is None:
+        raise error_at(
+            place,
+            "LAUNCH119",
+            phrase("there is no substitution '{type_name}'", type_name=type_name),
+            did_you_mean(type_name, substitution_parse_methods),
+            ros_error=RuntimeError(f"Unknown substitution: {type_name}"),
+        )
+    with reading(place):
+        try:
+            substitution_type: type[Substitution]
+            substitution_type, kwargs = method([] if args is None else args)
+            return substitution_type(**kwargs)
+        except LinkwrightError as error:
+            raise located(error, place) from error
+        except (AttributeError, TypeError, ValueError, AssertionError) as error:
+            message = (
+                phrase("substitution '{type_name}': {error}", type_name=type_name, error=foreign(error))
+                if str(error)
+                else phrase("substitution '{type_name}' is wrong", type_name=type_name)
+            )
+            raise error_at(place, "LAUNCH119", message, ros_error=error) from error

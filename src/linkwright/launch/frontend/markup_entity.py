@@ -1,0 +1,92 @@
+"""What the entities of XML and YAML share: a record of which parts were read, and messages about the others."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable
+from typing import Any, NoReturn
+
+from linkwright.diagnostics import did_you_mean, nearest, phrase, quoted_names, term
+from linkwright.launch.errors.places import Place, error_at
+from linkwright.launch.model.markup.entity import Entity
+
+
+class MarkupEntity(Entity):
+    """An entity with named parts, which notes down what is asked for.
+
+    Args:
+        type_name: its tag.
+        place: where it stands.
+        parent: the entity around it.
+    """
+
+    def __init__(self, type_name: str, place: Place | None, parent: Entity | None) -> None:
+        self._type_name = type_name
+        self._place = place
+        self._parent = parent
+        self._asked: dict[str, None] = {}
+
+    @property
+    def type_name(self) -> str:
+        """The tag."""
+        return self._type_name
+
+    @property
+    def parent(self) -> Entity | None:
+        """The entity around it."""
+        return self._parent
+
+    @property
+    def place(self) -> Place | None:
+        """Where it stands."""
+        return self._place
+
+    def _check_all_asked(self, present: Iterable[str], what: str, ros_text: str) -> None:
+        """Report what is there and was not read.
+
+        Args:
+            present: names of what is there.
+            what: what it is called.
+            ros_text: ROS's own text about it, with the names to be put behind.
+        """
+        unknown = [name for name in present if name not in self._asked]
+        if not unknown:
+            return
+        name = unknown[0]
+        listed = ", ".join(repr(str(each)) for each in unknown)
+        known = [each for each in self._asked if each not in unknown]
+        hint = did_you_mean(name, known)
+        if hint is None and known:
+            hint = phrase("'{type_name}' takes {names}", type_name=self._type_name, names=quoted_names(sorted(known)))
+        raise error_at(
+            self._place_of_part(name),
+            "LAUNCH116",
+            phrase("'{type_name}' has no {what} '{name}'", type_name=self._type_name, what=term(what), name=name),
+            hint,
+            ros_error=ValueError(f"{ros_text} `{self._type_name}`: {{{listed}}}"),
+        )
+
+    def _place_of_part(self, name: str) -> Place | None:  # noqa: ARG002 - the interface
+        return self._place
+
+    def _missing(self, name: str, present: Collection[str], ros_error: str) -> NoReturn:
+        others = [each for each in present if each not in self._asked]
+        near = nearest(name, others)
+        hint = phrase("it has {names}: is that the one?", names=quoted_names(near, " or ")) if near else None
+        message = phrase("'{type_name}' needs an attribute '{name}'", type_name=self._type_name, name=name)
+        raise error_at(self._place, "LAUNCH117", message, hint, ros_error=AttributeError(ros_error))
+
+    def _wrong_type(self, name: str, value: Any, data_type: Any, ros_error: str) -> NoReturn:
+        message = phrase(
+            "attribute '{name}' of '{type_name}' is {value}, which is no {type_words}",
+            name=name,
+            type_name=self._type_name,
+            value=repr(value),
+            type_words=type_words(data_type),
+        )
+        raise error_at(self._place_of_part(name), "LAUNCH118", message, ros_error=TypeError(ros_error))
+
+
+def type_words(data_type: Any) -> str:
+    """A type in a user's words."""
+    words = {int: phrase("whole number"), float: "number", bool: phrase("truth value ('true' or 'false')"), str: "text"}
+    return words.get(data_type, "list of such values")

@@ -1,0 +1,149 @@
+"""Python launch files: reading them, running them, and saying what is wrong with them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import ModuleType
+
+from linkwright.diagnostics import (
+    Diagnostic,
+    LinkwrightError,
+    Phrase,
+    SourceText,
+    Span,
+    did_you_mean,
+    display_path,
+    foreign,
+    missing_file_hint,
+    phrase,
+)
+from linkwright.launch.errors.exceptions import InvalidPythonLaunchFileError
+from linkwright.launch.errors.places import error_at, not_reading
+from linkwright.launch.errors.ros_exceptions import as_ros_error
+from linkwright.launch.errors.user_code import explain
+from linkwright.launch.model.description import LaunchDescription
+
+_FUNCTION = "generate_launch_description"
+_MODULE_NAME = "python_launch_file"
+_ENDINGS = tuple(dot + "launch" + suffix for dot in "._" for suffix in (".py", ".xml", ".yaml", ".yml"))
+
+
+def load_python_launch_file(path: Path) -> LaunchDescription:
+    """Run a launch file and return the description that its ``generate_launch_description()`` makes.
+
+    Raises:
+        LinkwrightError: LAUNCH101 no such file, LAUNCH102 unreadable, LAUNCH103 a syntax error, LAUNCH104 an
+            exception inside it, LAUNCH105 no such function in it, LAUNCH106 no description returned.
+    """
+    with not_reading():
+        source = read_launch_file(path)
+        module = _run(source)
+        function = getattr(module, _FUNCTION, None)
+        if not callable(function):
+            hint = did_you_mean(_FUNCTION, vars(module)) or phrase("define {function}() in it", function=_FUNCTION)
+            message = phrase(
+                "launch file '{path}' has no function '{function}'", path=display_path(path), function=_FUNCTION
+            )
+            text = f"launch file at '{path}' does not contain the required function '{_FUNCTION}()'"
+            raise error_at(None, "LAUNCH105", message, hint, ros_error=InvalidPythonLaunchFileError(text))
+        try:
+            description = function()
+        except Exception as error:
+            raise explain(error, phrase("launch file '{path}'", path=display_path(path))) from error
+    if not isinstance(description, LaunchDescription):
+        line = function.__code__.co_firstlineno if hasattr(function, "__code__") else 1
+        start = source.offset(line, 1)
+        span = source.span(start, start + len(source.line(line)))
+        message = phrase(
+            "'{function}' returned {kind}, not a LaunchDescription", function=_FUNCTION, kind=_kind(description)
+        )
+        hint = phrase("end it with: return LaunchDescription([...])")
+        diagnostic = Diagnostic("LAUNCH106", message, span, hint=hint, source=source)
+        raise as_ros_error(InvalidPythonLaunchFileError(message), diagnostic)
+    return description
+
+
+def load_python_module(path: Path) -> ModuleType:
+    """Run a launch file and return it as a module.
+
+    Raises:
+        LinkwrightError: LAUNCH101 to LAUNCH104, see `load_python_launch_file`.
+    """
+    with not_reading():
+        return _run(read_launch_file(path))
+
+
+def _run(source: SourceText) -> ModuleType:
+    path = Path(source.name)
+    try:
+        code = compile(source.text, str(path), "exec", dont_inherit=True)
+    except SyntaxError as error:
+        raise as_ros_error(error, _syntax_diagnostic(error, source)) from error
+    except ValueError as error:  # a null byte, before Python 3.12
+        raise _error(
+            "LAUNCH103",
+            phrase("launch file '{path}' is not Python: {error}", path=display_path(path), error=foreign(error)),
+        ) from error
+    module = ModuleType(_MODULE_NAME)
+    module.__file__ = str(path)
+    try:
+        exec(code, module.__dict__)  # noqa: S102 - a launch file is a program that the user asks to run
+    except Exception as error:
+        raise explain(error, phrase("launch file '{path}'", path=display_path(path))) from error
+    return module
+
+
+def read_launch_file(path: Path) -> SourceText:
+    """The text of a launch file of any kind.
+
+    Raises:
+        LinkwrightError: LAUNCH101 no such file, LAUNCH102 unreadable.
+    """
+    shown = display_path(path)
+    try:
+        return SourceText(str(path), path.read_text(encoding="utf-8-sig"))
+    except FileNotFoundError as error:
+        hint = missing_file_hint(path, is_launch_file_name)
+        message = phrase("launch file '{shown}' does not exist", shown=shown)
+        raise error_at(None, "LAUNCH101", message, hint, ros_error=error) from error
+    except IsADirectoryError as error:
+        hint = missing_file_hint(path / "_", is_launch_file_name)
+        raise error_at(
+            None, "LAUNCH101", phrase("'{shown}' is a folder, not a launch file", shown=shown), hint, ros_error=error
+        ) from error
+    except OSError as error:
+        message = phrase(
+            "launch file '{shown}' cannot be read: {strerror}", shown=shown, strerror=foreign(error.strerror)
+        )
+        raise error_at(None, "LAUNCH102", message, ros_error=error) from error
+    except UnicodeDecodeError as error:
+        raise _error(
+            "LAUNCH102",
+            phrase("launch file '{shown}' is not UTF-8: {reason}", shown=shown, reason=foreign(error.reason)),
+        ) from error
+
+
+def is_launch_file_name(name: str) -> bool:
+    """Whether a file is called as launch files are."""
+    return name.endswith(_ENDINGS)
+
+
+def _syntax_diagnostic(error: SyntaxError, source: SourceText) -> Diagnostic:
+    line = error.lineno or 1
+    column = max(error.offset or 1, 1)
+    end_line = error.end_lineno or line
+    end_column = error.end_offset or column + 1
+    if end_line < line or (end_line == line and end_column <= column):
+        end_line, end_column = line, column + 1
+    span = Span(source.name, line, column, end_line, end_column)
+    return Diagnostic(
+        "LAUNCH103", phrase("syntax error in the launch file: {msg}", msg=foreign(error.msg)), span, source=source
+    )
+
+
+def _kind(value: object) -> Phrase:
+    return phrase("None") if value is None else phrase("a {type}", type=type(value).__name__)
+
+
+def _error(code: str, message: Phrase, hint: Phrase | None = None) -> LinkwrightError:
+    return LinkwrightError(Diagnostic(code, message, hint=hint))

@@ -1,0 +1,173 @@
+"""Where launch descriptions come from."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.launch.errors.places import Placed, located
+from linkwright.launch.frontend.launch_file import load_launch_file, load_markup_launch_file
+from linkwright.launch.frontend.python_file import load_python_launch_file
+from linkwright.launch.model.context import LaunchContext
+from linkwright.launch.model.description import LaunchDescription
+from linkwright.launch.model.substitution import (
+    SomeSubstitutionsType,
+    TextSubstitution,
+    normalize_to_list_of_substitutions,
+    perform_substitutions,
+)
+
+
+class LaunchDescriptionSource(Placed):
+    """A launch description, or the file to get it from.
+
+    Args:
+        launch_description: the description, if it is there already.
+        location: the path of the file otherwise.
+        method: how it comes to be, for those who read about it.
+    """
+
+    def __init__(
+        self,
+        launch_description: LaunchDescription | None = None,
+        location: SomeSubstitutionsType | Path = "",
+        method: str = "unspecified mechanism from a script",
+    ) -> None:
+        self._description = launch_description
+        self._location = normalize_to_list_of_substitutions(location)
+        self._method = method
+        self._known_location: str | None = None
+
+    @property
+    def location(self) -> str:
+        """The path as it was given; before it is known, the substitutions that give it."""
+        if self._known_location is not None:
+            return self._known_location
+        return " + ".join(map(repr, self._location))
+
+    @property
+    def location_path(self) -> Path | None:
+        """The path, once it is known; None for a description that comes from no file."""
+        return Path.cwd() / self._known_location if self._known_location else None
+
+    @property
+    def method(self) -> str:
+        """How the description is made."""
+        return self._method
+
+    def get_launch_description(self, context: LaunchContext) -> LaunchDescription:
+        """The description.
+
+        Raises:
+            LinkwrightError: what is wrong with the file.
+        """
+        if self._known_location is None:
+            self._known_location = perform_substitutions(context, self._location)
+        return self._get()
+
+    def try_get_launch_description_without_context(self) -> LaunchDescription | None:
+        """The description, if nothing but its text is needed to find it."""
+        if self._description is None and all(isinstance(part, TextSubstitution) for part in self._location):
+            self._known_location = "".join(part.text for part in self._location if isinstance(part, TextSubstitution))
+            return self._get()
+        return self._description
+
+    def _get(self) -> LaunchDescription:
+        assert self._known_location is not None
+        if self._description is None:
+            try:
+                self._description = self._get_launch_description(self._known_location)
+            except LinkwrightError as error:
+                raise located(error, self.place) from error
+        return self._description
+
+    def _get_launch_description(self, location: str) -> LaunchDescription:
+        """Read the file; classes of users override this by its name in ROS."""
+        raise NotImplementedError(f"{type(self).__name__} does not say how to read '{location}'")
+
+
+class PythonLaunchDescriptionSource(LaunchDescriptionSource):
+    """A Python launch file.
+
+    Args:
+        launch_file_path: its path; a list is joined as it stands, as in ROS.
+    """
+
+    def __init__(self, launch_file_path: SomeSubstitutionsType | Path) -> None:
+        super().__init__(None, launch_file_path, "interpreted python launch file")
+
+    def _get_launch_description(self, location: str) -> LaunchDescription:
+        return load_python_launch_file(Path.cwd() / location)
+
+
+class FrontendLaunchDescriptionSource(LaunchDescriptionSource):
+    """An XML or YAML launch file.
+
+    Args:
+        launch_file_path: its path.
+        method: how it is read, for those who read about it.
+        parser: what reads it, by default the one for its name.
+    """
+
+    def __init__(
+        self,
+        launch_file_path: SomeSubstitutionsType | Path,
+        *,
+        method: str = "interpreted frontend launch file",
+        parser: Any = None,
+    ) -> None:
+        super().__init__(None, launch_file_path, method)
+        self._parser = parser
+
+    def _get_launch_description(self, location: str) -> LaunchDescription:
+        path = Path.cwd() / location
+        if self._parser is None:
+            return load_markup_launch_file(path)
+        entity, parser = self._parser.load(path)
+        description: LaunchDescription = parser.parse_description(entity)
+        return description
+
+
+class XMLLaunchDescriptionSource(FrontendLaunchDescriptionSource):
+    """An XML launch file.
+
+    Args:
+        launch_file_path: its path.
+    """
+
+    def __init__(self, launch_file_path: SomeSubstitutionsType | Path) -> None:
+        super().__init__(launch_file_path, method="interpreted XML launch file")
+
+    def _get_launch_description(self, location: str) -> LaunchDescription:
+        from linkwright.launch.frontend.xml import Parser
+
+        entity, parser = Parser.load(Path.cwd() / location)
+        return parser.parse_description(entity)
+
+
+class YAMLLaunchDescriptionSource(FrontendLaunchDescriptionSource):
+    """A YAML launch file.
+
+    Args:
+        launch_file_path: its path.
+    """
+
+    def __init__(self, launch_file_path: SomeSubstitutionsType | Path) -> None:
+        super().__init__(launch_file_path, method="interpreted YAML launch file")
+
+    def _get_launch_description(self, location: str) -> LaunchDescription:
+        from linkwright.launch.frontend.yaml import Parser
+
+        entity, parser = Parser.load(Path.cwd() / location)
+        return parser.parse_description(entity)
+
+
+class AnyLaunchDescriptionSource(LaunchDescriptionSource):
+    """A launch file of any language, which its name tells."""
+
+    def __init__(self, launch_file_path: SomeSubstitutionsType | Path) -> None:
+        super().__init__(None, launch_file_path, "any launch file")
+
+    def _get_launch_description(self, location: str) -> LaunchDescription:
+        return load_launch_file(Path.cwd() / location)

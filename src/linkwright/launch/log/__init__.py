@@ -1,0 +1,1 @@
+"""The log of a launch: on the screen, in files, and through loggers of ``launch.logging``."""

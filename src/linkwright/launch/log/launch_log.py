@@ -1,0 +1,206 @@
+"""What the launcher prints: its own lines, those of processes and nodes, and diagnostics."""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
+from pathlib import Path
+from typing import IO, TYPE_CHECKING
+
+from linkwright.diagnostics import Diagnostic, Severity, foreign, phrase, print_diagnostics, wants_colour
+from linkwright.launch.log.folder import log_base, new_log_folder
+from linkwright.launch.log.format import FILE_FORMATS, FORMATS, line_format
+
+if TYPE_CHECKING:
+    from linkwright.graph import LogRecord
+
+SCREEN = "screen"
+LOG = "log"
+OWN_LOG = "own_log"
+SHARED_OWN_LOG = "own_log of both"
+"""The file of a process that both its streams go to, beside one for each."""
+
+LAUNCH_LOG = "launch.log"
+
+_LEVEL_COLOURS = {"DEBUG": "32", "WARNING": "33", "ERROR": "31"}
+_OWN = frozenset({OWN_LOG, SHARED_OWN_LOG})
+
+_OUTPUT_MODES: Mapping[str, tuple[frozenset[str], frozenset[str]]] = {
+    "screen": (frozenset({SCREEN}), frozenset({SCREEN})),
+    "log": (frozenset({LOG}), frozenset({LOG, SCREEN})),
+    "both": (frozenset({SCREEN, LOG}), frozenset({SCREEN, LOG})),
+    "own_log": (_OWN, _OWN),
+    "full": (_OWN | {SCREEN, LOG}, _OWN | {SCREEN, LOG}),
+}
+
+OUTPUT_MODES = tuple(_OUTPUT_MODES)
+
+
+def output_destinations(mode: str | Mapping[str, Iterable[str] | str]) -> dict[int, frozenset[str]]:
+    """Where stdout (1) and stderr (2) of a process go, by the ``output`` of its action.
+
+    Raises:
+        KeyError: with the mode, stream or destination that does not exist.
+    """
+    if isinstance(mode, str):
+        stdout, stderr = _OUTPUT_MODES[mode]
+        return {1: stdout, 2: stderr}
+    chosen: dict[int, frozenset[str]] = {1: frozenset(), 2: frozenset()}
+    for stream, destinations in mode.items():
+        names = frozenset([destinations] if isinstance(destinations, str) else destinations)
+        unknown = names - {SCREEN, LOG, OWN_LOG}
+        if unknown:
+            raise KeyError(min(unknown))
+        if stream == "both" and OWN_LOG in names:
+            names = names - {OWN_LOG} | {SHARED_OWN_LOG}
+        for number in {"stdout": (1,), "stderr": (2,), "both": (1, 2)}[stream]:
+            chosen[number] |= names
+    return chosen
+
+
+class LaunchLog:
+    """The log of one launch.
+
+    On the screen, lines of the launcher and of nodes go to stderr, what processes write to the stream they write it
+    to. In the folder of the launch, below the one that `log_folder.log_base` gives, ``launch.log`` has all of the
+    launcher and of what goes to the log; processes with a log of their own have theirs beside it. The variables
+    ``OVERRIDE_LAUNCH_SCREEN_FORMAT`` and ``OVERRIDE_LAUNCH_LOG_FORMAT`` change how lines look, as in ROS.
+
+    Args:
+        stdout: where the output of processes goes.
+        stderr: where all else goes.
+        debug: whether it logs in detail.
+    """
+
+    def __init__(self, stdout: IO[str] | None = None, stderr: IO[str] | None = None, *, debug: bool = False) -> None:
+        self._streams = {1: stdout or sys.stdout, 2: stderr or sys.stderr}
+        self._colour = wants_colour(self._streams[2])
+        self._debug = debug
+        self._files: dict[str, IO[str] | None] = {}
+        self._folder: Path | None = None
+        self._closed = False
+        self._screen_line = line_format(os.environ.get("OVERRIDE_LAUNCH_SCREEN_FORMAT"), FORMATS)
+        self._file_line = line_format(os.environ.get("OVERRIDE_LAUNCH_LOG_FORMAT"), FILE_FORMATS)
+
+    @property
+    def folder(self) -> Path:
+        """The folder for the log files of this launch; where it cannot be made, the one that all logs are in."""
+        if self._folder is None:
+            base = log_base()
+            try:
+                self._folder = new_log_folder(base)
+            except OSError as error:
+                self._folder = base
+                self._files[LAUNCH_LOG] = None
+                self._unwritable(base, error)
+        return self._folder
+
+    def begin(self) -> None:
+        """The first lines: where the files are, and the log level."""
+        self.say("launch", f"All log files can be found below {self.folder}")
+        self.say("launch", f"Default logging verbosity is set to {'DEBUG' if self._debug else 'INFO'}")
+
+    def detail(self, name: str, text: str) -> None:
+        """A line for those who look for a fault in a launch file."""
+        if self._debug:
+            self._own_line("DEBUG", name, text)
+
+    def say(self, name: str, text: str) -> None:
+        """A line that says what goes on."""
+        self._own_line("INFO", name, text)
+
+    def caution(self, name: str, text: str) -> None:
+        """A line that says what may be wrong."""
+        self._own_line("WARNING", name, text)
+
+    def complain(self, name: str, text: str) -> None:
+        """A line that says what is wrong."""
+        self._own_line("ERROR", name, text)
+
+    def announce(self, line: str) -> None:
+        """A line for programs that read our stdout; written at once."""
+        self._print(1, line)
+
+    def diagnostics(self, diagnostics: Iterable[Diagnostic]) -> None:
+        """Findings about the user's files."""
+        with suppress(OSError):
+            print_diagnostics(diagnostics, self._streams[2])
+
+    def node_record(self, process: str, record: LogRecord, destinations: frozenset[str]) -> None:
+        """What a node of this process logs, in rcutils' format behind the name of its process."""
+        from linkwright.graph import console_line
+
+        line = f"[{process}] {console_line(record)}"
+        if SCREEN in destinations:
+            colour = {"WARN": "33", "ERROR": "31", "FATAL": "31"}.get(record.level.name)
+            self._print(2, self._painted(line, colour))
+        self._file(process, 2, line, destinations)
+
+    def process_line(self, process: str, stream: int, line: str, destinations: frozenset[str]) -> None:
+        """A line that a process wrote.
+
+        Args:
+            process: its name, such as ``talker-1``.
+            stream: 1 for stdout, 2 for stderr.
+            line: the line as it is to be shown.
+            destinations: of `SCREEN`, `LOG` and `OWN_LOG`.
+        """
+        if SCREEN in destinations:
+            self._print(stream, line)
+        self._file(process, stream, line, destinations)
+
+    def close(self) -> None:
+        """Close the files."""
+        self._closed = True
+        for file in self._files.values():
+            if file is not None:
+                file.close()
+        self._files.clear()
+
+    def _own_line(self, level: str, name: str, text: str) -> None:
+        self._print(2, self._painted(self._screen_line(level, name, text), _LEVEL_COLOURS.get(level)))
+        self._write(LAUNCH_LOG, self._file_line(level, name, text))
+
+    def _file(self, process: str, stream: int, line: str, destinations: frozenset[str]) -> None:
+        if LOG in destinations:
+            self._write(LAUNCH_LOG, f"{time.time():.7f} {line}")
+        if OWN_LOG in destinations:
+            self._write(f"{process}-{'stdout' if stream == 1 else 'stderr'}.log", line)
+        if SHARED_OWN_LOG in destinations:
+            self._write(f"{process}.log", line)
+
+    def _print(self, stream: int, line: str) -> None:
+        with suppress(OSError):  # the reader, such as head, has gone, or its disk is full; the launch goes on
+            print(line, file=self._streams[stream], flush=True)
+
+    def _painted(self, line: str, colour: str | None) -> str:
+        return f"\x1b[{colour}m{line}\x1b[0m" if colour and self._colour else line
+
+    def _write(self, name: str, line: str) -> None:
+        if self._closed:
+            return
+        if name not in self._files:
+            folder = self.folder  # which may find that nothing can be written
+            if name not in self._files:
+                self._files[name] = self._open(folder / name)
+        file = self._files[name]
+        if file is not None:
+            try:
+                print(line, file=file, flush=True)
+            except OSError as error:  # a full disk must not end a launch
+                self._files[name] = None
+                self._unwritable(self.folder / name, error)
+
+    def _open(self, path: Path) -> IO[str] | None:
+        try:
+            return path.open("a", encoding="utf-8")
+        except OSError as error:
+            self._unwritable(path, error)
+            return None
+
+    def _unwritable(self, path: Path, error: OSError) -> None:
+        problem = phrase("log file '{path}' cannot be written: {strerror}", path=path, strerror=foreign(error.strerror))
+        self.diagnostics([Diagnostic("LAUNCH145", problem, severity=Severity.WARNING)])

@@ -1,0 +1,326 @@
+"""The logging that launch files ask ``launch.logging`` for: Python's own, in the form of launch lines.
+
+It is apart from what the launcher itself writes (`linkwright.launch.log.launch_log`), but looks alike and honours the
+same environment variables. A file is opened when the first line goes to it.
+"""
+
+from __future__ import annotations
+
+import logging
+import logging.handlers
+import os
+import sys
+import warnings
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from linkwright.launch.log.folder import log_base, new_log_folder
+from linkwright.launch.log.format import FILE_FORMATS, FORMATS
+
+MAIN_LOG = "launch.log"
+
+_SOURCES = ("stdout", "stderr", "both")
+_DESTINATIONS = frozenset({"screen", "log", "own_log"})
+_OUTPUTS: Mapping[str, Mapping[str, set[str]]] = {
+    "screen": {"both": {"screen"}},
+    "log": {"both": {"log"}, "stderr": {"screen"}},
+    "both": {"both": {"log", "screen"}},
+    "own_log": {"both": {"own_log"}, "stdout": {"own_log"}, "stderr": {"own_log"}},
+    "full": {"both": {"screen", "log", "own_log"}, "stdout": {"own_log"}, "stderr": {"own_log"}},
+}
+
+
+class ForEachLogger:
+    """A handler that formats the lines of some loggers in ways of their own."""
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        super().__init__(*args, **kwargs)
+        self._formatters: dict[str, logging.Formatter] = {}
+
+    def setFormatterFor(self, logger: logging.Logger, formatter: logging.Formatter) -> None:  # noqa: N802 - ROS's name
+        """Have the lines of a logger formatted by a formatter."""
+        self._formatters[logger.name] = formatter
+
+    def unsetFormatterFor(self, logger: logging.Logger) -> None:  # noqa: N802 - ROS's name
+        """Have the lines of a logger formatted as those of others."""
+        self._formatters.pop(logger.name, None)
+
+    def format(self, record: logging.LogRecord) -> str:
+        """A line."""
+        record.msg, record.args = record.getMessage(), None
+        formatter = self._formatters.get(record.name)
+        if formatter is not None:
+            return formatter.format(record)
+        return str(super().format(record))  # type: ignore[misc]
+
+
+class Handler(ForEachLogger, logging.Handler):
+    """A handler that users derive from."""
+
+
+class StreamHandler(ForEachLogger, logging.StreamHandler):  # type: ignore[type-arg]
+    """Writes lines to a stream."""
+
+
+class FileHandler(ForEachLogger, logging.FileHandler):
+    """Writes lines to a file."""
+
+
+class WatchedFileHandler(ForEachLogger, logging.handlers.WatchedFileHandler):
+    """Writes lines to a file that others may move away."""
+
+
+class _ScreenHandler(StreamHandler):
+    """Writes lines to what is stdout at the moment."""
+
+    @property
+    def stream(self) -> Any:
+        return sys.stdout
+
+    @stream.setter
+    def stream(self, _: Any) -> None:
+        pass
+
+
+class _MainFile(Handler):
+    """Writes lines to the main file, which is opened with the first of them."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Write a line."""
+        handler = launch_config.get_log_file_handler(launch_config.log_file_name)
+        if handler not in logging.getLogger(record.name).handlers:
+            handler.handle(record)
+
+
+def _get_logging_directory() -> str:
+    return os.path.normpath(log_base())
+
+
+def _make_unique_log_dir(*, base_path: str) -> str:
+    return str(new_log_folder(Path(base_path)))
+
+
+def _renew_latest_log_dir(*, log_dir: str) -> bool:  # noqa: ARG001 - the name and form that ROS's tests replace
+    return True  # the folder's maker has done it
+
+
+class LaunchConfig:
+    """How launch logs."""
+
+    def __init__(self) -> None:
+        self.reset()
+
+    def reset(self) -> None:
+        """Go back to the beginning."""
+        self._log_dir: str | None = None
+        self.log_file_name = MAIN_LOG
+        self.file_handlers: dict[str, logging.Handler] = {}
+        self.screen_handler: logging.Handler | None = None
+        self.main_file = _MainFile()
+        self.screen_formatter: logging.Formatter | None = None
+        self.file_formatter: logging.Formatter | None = None
+        self._log_handler_factory: Callable[..., logging.Handler] | None = None
+        self.level_chosen = False
+        self.set_screen_format("default")
+        self.set_log_format("default")
+
+    @property
+    def level(self) -> int:
+        """The least level that is logged."""
+        return logging.root.getEffectiveLevel()
+
+    @level.setter
+    def level(self, new_level: int) -> None:
+        logging.root.setLevel(new_level)
+        self.level_chosen = True
+
+    @property
+    def log_dir(self) -> str:
+        """The folder of this launch's files, made when it is asked for."""
+        if self._log_dir is None:
+            module = _public_module()
+            self._log_dir = module._make_unique_log_dir(base_path=_get_logging_directory())
+            module._renew_latest_log_dir(log_dir=self._log_dir)
+        assert self._log_dir is not None
+        return self._log_dir
+
+    @log_dir.setter
+    def log_dir(self, new_log_dir: str | None) -> None:
+        if new_log_dir is not None:
+            if self.file_handlers:
+                problem = (
+                    f"Loggers have been already configured to output to log files below {self._log_dir}. "
+                    "Proceed at your own risk."
+                )
+                warnings.warn(problem, stacklevel=2)
+            if not Path(new_log_dir).is_dir():
+                raise ValueError(f"{new_log_dir} is not a directory")
+        self._log_dir = None if new_log_dir is None else str(new_log_dir)
+
+    def share(self, folder: Path) -> None:
+        """Put the files beside those of the launch that runs, as long as there are none elsewhere."""
+        if not self.file_handlers:
+            self._log_dir = str(folder)
+
+    @property
+    def log_handler_factory(self) -> Callable[..., logging.Handler]:
+        """What makes the handler of a file, of its path and ``encoding``."""
+        return self._log_handler_factory or (FileHandler if os.name == "nt" else WatchedFileHandler)
+
+    @log_handler_factory.setter
+    def log_handler_factory(self, factory: Callable[..., logging.Handler]) -> None:
+        self._log_handler_factory = factory
+
+    def set_screen_format(self, screen_format: str | None, *, screen_style: Any = None) -> None:
+        """Choose how lines look on the screen: ``default``, ``default_with_timestamp``, or a format."""
+        override = os.environ.get("OVERRIDE_LAUNCH_SCREEN_FORMAT")
+        self.screen_formatter = _formatter(screen_format, screen_style, override, FORMATS, "screen")
+        if self.screen_handler is not None:
+            self.screen_handler.setFormatter(self.screen_formatter)
+
+    def set_log_format(self, log_format: str | None, *, log_style: Any = None) -> None:
+        """Choose how lines look in files: ``default``, or a format."""
+        override = os.environ.get("OVERRIDE_LAUNCH_LOG_FORMAT")
+        self.file_formatter = _formatter(log_format, log_style, override, FILE_FORMATS, "log")
+        for handler in self.file_handlers.values():
+            handler.setFormatter(self.file_formatter)
+
+    def get_screen_handler(self) -> logging.Handler:
+        """The handler for the screen."""
+        if self.screen_handler is None:
+            self.screen_handler = _ScreenHandler()
+            self.screen_handler.setFormatter(self.screen_formatter)
+        return self.screen_handler
+
+    def get_log_file_path(self, file_name: str = MAIN_LOG) -> str:
+        """The path of a file."""
+        return str(Path(self.log_dir) / file_name)
+
+    def get_log_file_handler(self, file_name: str = MAIN_LOG) -> logging.Handler:
+        """The handler for a file, the same each time."""
+        if file_name not in self.file_handlers:
+            handler = self.log_handler_factory(self.get_log_file_path(file_name), encoding="utf-8")
+            handler.setFormatter(self.file_formatter)
+            self.file_handlers[file_name] = handler
+        return self.file_handlers[file_name]
+
+
+def _formatter(
+    wanted: str | None, style: Any, override: str | None, named: Mapping[str, str], kind: str
+) -> logging.Formatter | None:
+    if override:
+        wanted, style = override.encode("latin1").decode("unicode_escape"), "{"
+    if wanted is None:
+        return None
+    if wanted in named:
+        if style is not None:
+            raise ValueError(f'Cannot set a custom format style for the "{wanted}" {kind} format.')
+        wanted = named[wanted]
+    return logging.Formatter(wanted, style=style or "{")
+
+
+def _public_module() -> Any:
+    """The module by whose name users, and ROS's tests, replace the functions that make folders."""
+    return sys.modules.get("launch.logging") or sys.modules[__name__]
+
+
+launch_config = LaunchConfig()
+
+
+def get_logger(name: str | None = None) -> logging.Logger:
+    """A logger whose lines look like those of the launcher, on the screen and in the main file."""
+    logger = logging.getLogger(name)
+    for handler in (launch_config.get_screen_handler(), launch_config.main_file):
+        if handler not in logger.handlers and not _shown_above(logger, handler):
+            logger.addHandler(handler)
+    if not launch_config.level_chosen and logger.getEffectiveLevel() > logging.INFO:
+        logger.setLevel(logging.INFO)  # Python's default would hide what the launcher shows
+    return logger
+
+
+def _shown_above(logger: logging.Logger, handler: logging.Handler) -> bool:
+    """Whether a logger above this one shows its lines already."""
+    above: logging.Logger | None = logger if logger.propagate else None
+    while above is not None and above.parent is not None:
+        above = above.parent
+        if handler in above.handlers:
+            return True
+    return False
+
+
+def log_launch_config(*, logger: logging.Logger = logging.root) -> None:
+    """Log where the files are, and the least level."""
+    if launch_config.file_handlers:
+        logger.info("All log files can be found below %s", launch_config.log_dir)
+    logger.info("Default logging verbosity is set to %s", logging.getLevelName(logging.root.getEffectiveLevel()))
+
+
+def get_output_loggers(process_name: str, output_config: Any) -> tuple[logging.Logger, logging.Logger]:
+    """The loggers for what a process writes to stdout and to stderr.
+
+    Args:
+        process_name: the process.
+        output_config: see ``output`` of `linkwright.launch.model.actions.ExecuteProcess`.
+
+    Raises:
+        ValueError: there is no such output.
+    """
+    config = _normalize_output_configuration(output_config)
+    loggers = []
+    for source in _SOURCES[:2]:
+        logger = logging.getLogger(f"{process_name}-{source}")
+        logger.propagate = False
+        logger.setLevel(logging.INFO)
+        plain = logging.Formatter("{msg}", style="{")
+        stamped = logging.Formatter("{created:.7f} {msg}", style="{")
+        wanted = config[source] | config["both"]
+        if "screen" in wanted:
+            _add(logger, launch_config.get_screen_handler(), plain)
+        if "log" in wanted:
+            _add(logger, launch_config.get_log_file_handler(), stamped)
+        if "own_log" in config[source]:
+            _add(logger, launch_config.get_log_file_handler(f"{process_name}-{source}.log"), plain)
+        if "own_log" in config["both"]:
+            _add(logger, launch_config.get_log_file_handler(f"{process_name}.log"), plain)
+        loggers.append(logger)
+    return loggers[0], loggers[1]
+
+
+def _add(logger: logging.Logger, handler: logging.Handler, formatter: logging.Formatter) -> None:
+    if hasattr(handler, "setFormatterFor"):
+        handler.setFormatterFor(logger, formatter)
+    if handler not in logger.handlers:
+        logger.addHandler(handler)
+
+
+def _normalize_output_configuration(config: Any) -> dict[str, set[str]]:
+    normalized: dict[str, set[str]] = {source: set() for source in _SOURCES}
+    if isinstance(config, str):
+        if config not in _OUTPUTS:
+            raise ValueError(f'{config} is not a valid standard output config i.e. "screen", "log" or "both"')
+        config = _OUTPUTS[config]
+    if not isinstance(config, Mapping):
+        raise ValueError(f"{config} is not a valid standard output config")  # noqa: TRY004 - as in ROS
+    for source, destinations in config.items():
+        if source not in normalized:
+            raise ValueError(f"{source} is not a valid output source")
+        chosen = {destinations} if isinstance(destinations, str) else set(destinations)
+        if not chosen <= _DESTINATIONS:
+            raise ValueError(f"{chosen} is not a valid output sources configuration")
+        normalized[source] |= chosen
+    return normalized
+
+
+def reset() -> None:
+    """Take the handlers and levels away from all loggers that were made here, and go back to the beginning."""
+    for logger in list(logging.root.manager.loggerDict.values()):
+        handlers = getattr(logger, "handlers", ())
+        kept = [each for each in handlers if not isinstance(each, ForEachLogger)]
+        if len(kept) < len(handlers) and isinstance(logger, logging.Logger):
+            logger.handlers = kept
+            logger.setLevel(logging.NOTSET)
+    for handler in launch_config.file_handlers.values():
+        handler.close()
+    launch_config.reset()
+    launch_config.level = logging.INFO

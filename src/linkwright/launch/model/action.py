@@ -1,0 +1,84 @@
+"""Actions: the entities that do something."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any
+
+from linkwright.diagnostics import phrase
+from linkwright.launch.errors.places import error_at
+from linkwright.launch.model.conditions import Condition, IfCondition, UnlessCondition
+from linkwright.launch.model.entity import LaunchDescriptionEntity, as_entities
+
+if TYPE_CHECKING:
+    from linkwright.launch.model.context import LaunchContext
+    from linkwright.launch.model.markup.entity import Entity
+    from linkwright.launch.model.markup.parser import Parser
+
+
+class Action(LaunchDescriptionEntity):
+    """An entity that does something when it is visited and its condition holds.
+
+    Args:
+        condition: decides at the visit whether `execute` runs.
+    """
+
+    def __init__(self, *, condition: Condition | None = None, **unknown: Any) -> None:
+        for name in unknown:  # names the user's class, not this one
+            raise TypeError(f"{type(self).__name__}() got an unexpected keyword argument '{name}'")
+        self._condition = condition
+
+    @classmethod
+    def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
+        """The class and the keyword arguments for the tag of an XML or YAML file: here its ``if`` or ``unless``.
+
+        Raises:
+            RuntimeError: LAUNCH118, both are there.
+        """
+        return cls, parse_condition(entity, parser)
+
+    @property
+    def condition(self) -> Condition | None:
+        """The condition, or None for an action that always runs."""
+        return getattr(self, "_condition", None)
+
+    def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
+        """The entities inside, for an action without a condition."""
+        return list(self.get_sub_entities()) if self.condition is None else []
+
+    def describe_conditional_sub_entities(self) -> list[tuple[str, Iterable[LaunchDescriptionEntity]]]:
+        """The entities inside, for an action with a condition."""
+        if self.condition is None:
+            return []
+        return [("Conditionally included: " + str(self.condition), list(self.get_sub_entities()))]
+
+    def visit(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity] | None:
+        """Execute, if the condition holds; gives None where nothing is to be visited next."""
+        if self.condition is not None and not self.condition.evaluate(context):
+            return None
+        following = self.execute(context)
+        return None if following is None else as_entities(following)
+
+    def execute(self, context: LaunchContext) -> Any:  # noqa: ARG002 - the interface of actions
+        """Do the work; may return entities to be visited next."""
+        return None
+
+    def get_sub_entities(self) -> Sequence[LaunchDescriptionEntity]:
+        """The entities inside, for a reader who asks which arguments are declared."""
+        return []
+
+
+def parse_condition(entity: Entity, parser: Parser) -> dict[str, Any]:
+    """The keyword argument ``condition``, by the ``if`` or ``unless`` of a tag; nothing without them.
+
+    Raises:
+        RuntimeError: LAUNCH118, both are there.
+    """
+    conditions = (("if", IfCondition), ("unless", UnlessCondition))
+    given = {kind: entity.get_attr(name, optional=True) for name, kind in conditions}
+    made = [kind(parser.parse_substitution(text)) for kind, text in given.items() if text is not None]
+    if len(made) > 1:
+        ros_error = RuntimeError("if and unless conditions can't be used simultaneously")
+        message = phrase("'{type_name}' has both 'if' and 'unless'", type_name=entity.type_name)
+        raise error_at(entity.place, "LAUNCH118", message, ros_error=ros_error)
+    return {"condition": made[0]} if made else {}

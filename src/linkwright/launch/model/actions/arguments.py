@@ -1,0 +1,199 @@
+"""Declaring the arguments of a launch file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+from linkwright.diagnostics import Phrase, did_you_mean, phrase, quoted_names
+from linkwright.launch.errors.places import error_at
+from linkwright.launch.model.action import Action
+from linkwright.launch.model.context import LaunchContext
+from linkwright.launch.model.markup.entity import Entity
+from linkwright.launch.model.markup.expose import expose_action
+from linkwright.launch.model.markup.parser import parse_texts
+from linkwright.launch.model.substitution import (
+    SomeSubstitutionsType,
+    Substitution,
+    describe,
+    normalize_to_list_of_substitutions,
+    perform_substitutions,
+)
+
+if TYPE_CHECKING:
+    from linkwright.launch.model.markup.parser import Parser
+
+_TRUTHS = ("true", "false", "True", "False", "TRUE", "FALSE")
+
+
+def _listed_choices(entity: Entity) -> list[str] | None:
+    """The list ``choices`` of YAML.
+
+    Raises:
+        TypeError: LAUNCH118, it is no list of texts.
+    """
+    try:
+        listed: list[str] | None = entity.get_attr("choices", data_type=list[str], optional=True)
+    except TypeError as error:
+        ros_error = TypeError("Attribute 'choices' of Entity 'arg' expected to be a list of strings")
+        message = phrase("key 'choices' of '{type_name}' must be a list of texts", type_name=entity.type_name)
+        raise error_at(entity.place, "LAUNCH118", message, ros_error=ros_error) from error
+    return listed
+
+
+@expose_action("arg")
+class DeclareLaunchArgument(Action):
+    """Declares an argument and sets the launch configuration of its name, to the value given or the default.
+
+    Args:
+        name: the argument's name.
+        default_value: the value where none is given; without one the argument is required.
+        description: what ``--show-args`` says of it.
+        choices: the values it may have.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        *,
+        default_value: SomeSubstitutionsType | None = None,
+        description: str | None = None,
+        choices: Iterable[str] | None = None,
+        **kwargs: Any,
+    ) -> None:
+        super().__init__(**kwargs)
+        self._name = name
+        self._default = None if default_value is None else normalize_to_list_of_substitutions(default_value)
+        self._choices = None if choices is None else list(choices)
+        self._description = description
+        self.conditionally_included = False
+        if self._choices is None:
+            return
+        if not self._choices:
+            ros_error = RuntimeError("Provided choices arg is empty. Use None to ignore the choice list.")
+            message = phrase("argument '{name}' is declared with an empty list of choices", name=name)
+            raise error_at(self.place, "LAUNCH112", message, ros_error=ros_error)
+        if isinstance(default_value, str) and default_value not in self._choices:
+            text = f'Provided default_value "{default_value}" is not in provided choices "{self._choices}".'
+            message = phrase(
+                "the default '{default_value}' of argument '{name}' is none of its choices",
+                default_value=default_value,
+                name=name,
+            )
+            hint = self._hint(default_value)
+            raise error_at(self.place, "LAUNCH112", message, hint, ros_error=RuntimeError(text))
+
+    @classmethod
+    def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
+        """Reads ``name``, ``default``, ``description`` and the ``choice`` inside, or the list ``choices`` of YAML."""
+        _, kwargs = super().parse(entity, parser)
+        kwargs["name"] = parser.escape_characters(entity.get_attr("name"))
+        kwargs.update(parse_texts(entity, parser, default_value="default"))
+        description = entity.get_attr("description", optional=True)
+        if description is not None:
+            kwargs["description"] = parser.escape_characters(description)
+        choices = entity.get_attr("choice", data_type=list[Entity], optional=True)
+        if choices is not None:
+            kwargs["choices"] = [parser.escape_characters(choice.get_attr("value")) for choice in choices]
+            for choice in choices:
+                choice.assert_entity_completely_parsed()
+        else:
+            listed = _listed_choices(entity)
+            if listed is not None:
+                kwargs["choices"] = [parser.escape_characters(choice) for choice in listed]
+        return cls, kwargs
+
+    @property
+    def name(self) -> str:
+        """The argument's name."""
+        return self._name
+
+    @property
+    def default_value(self) -> list[Substitution] | None:
+        """The default as substitutions, None for a required argument."""
+        return self._default
+
+    @property
+    def description(self) -> str:
+        """What ``--show-args`` says of it, the choices included."""
+        if self._description is None:
+            return "no description given" if self._choices is None else f"One of: {self._choices}"
+        if self._choices is None:
+            return self._description
+        stop = "" if self._description.endswith(".") else "."
+        return f"{self._description}{stop} Valid choices are: {self._choices}"
+
+    @property
+    def choices(self) -> list[str] | None:
+        """The values it may have, None for any."""
+        return self._choices
+
+    @property
+    def _conditionally_included(self) -> bool:
+        """`conditionally_included`, by its name in ROS."""
+        return self.conditionally_included
+
+    def describe(self) -> str:
+        """Name, default and description."""
+        default = "" if self._default is None else f", default_value={describe(self._default)}"
+        return f"{type(self).__name__}('{self._name}'{default}, description='{self.description}')"
+
+    def execute(self, context: LaunchContext) -> None:
+        """Set the launch configuration if it is not set, and check its value.
+
+        Raises:
+            RuntimeError: LAUNCH112, a value that is no choice; LAUNCH114, a required argument not given.
+        """
+        configurations = context.launch_configurations
+        if self._name not in configurations:
+            if self._default is None:
+                message = (
+                    phrase(
+                        "argument '{name}' ({description}) is required and was not given",
+                        name=self._name,
+                        description=self._description,
+                    )
+                    if self._description
+                    else phrase("argument '{name}' is required and was not given", name=self._name)
+                )
+                ros_error = RuntimeError(f'Required launch argument "{self._name}" was not provided.')
+                raise error_at(
+                    self.place, "LAUNCH114", message, phrase("add {name}:=VALUE", name=self._name), ros_error=ros_error
+                )
+            configurations[self._name] = perform_substitutions(context, self._default)
+        value = configurations[self._name]
+        if self._choices is not None and value not in self._choices:
+            text = f'Argument "{self._name}" provided value "{value}" is not valid. Valid options are: {self._choices}'
+            message = phrase(
+                "argument '{name}' has the value '{value}', which is none of its choices", name=self._name, value=value
+            )
+            hint = self._hint(str(value))
+            raise error_at(self.place, "LAUNCH112", message, hint, ros_error=RuntimeError(text))
+
+    def _hint(self, value: str) -> Phrase:
+        choices = self._choices or []
+        choose = phrase("choose from {names}", names=quoted_names(choices))
+        near = did_you_mean(value, choices) if len(choices) > 2 else None
+        return phrase("{hint} ({choose})", hint=near, choose=choose) if near else choose
+
+
+@expose_action("bool_arg")
+class DeclareBooleanLaunchArgument(DeclareLaunchArgument):
+    """Declares an argument that is true or false.
+
+    Args:
+        name: the argument's name.
+        default_value: the value where none is given.
+    """
+
+    def __init__(self, name: str, *, default_value: SomeSubstitutionsType | bool | None = None, **kwargs: Any) -> None:
+        default = str(default_value) if isinstance(default_value, bool) else default_value
+        super().__init__(name, default_value=default, choices=_TRUTHS, **kwargs)
+
+    @classmethod
+    def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
+        """Reads what ``arg`` has, without choices."""
+        _, kwargs = super().parse(entity, parser)
+        if "choices" in kwargs:
+            raise ValueError("Cannot specify choices for bool_arg")
+        return cls, kwargs

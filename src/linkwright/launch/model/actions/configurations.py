@@ -1,0 +1,83 @@
+"""Actions on launch configurations."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from linkwright.launch.model.action import Action
+from linkwright.launch.model.actions.named import (
+    AssigningAction,
+    NamedAction,
+    normalize_pairs,
+    parse_pairs,
+    perform_pairs,
+)
+from linkwright.launch.model.context import LaunchContext
+from linkwright.launch.model.markup.expose import expose_action
+
+if TYPE_CHECKING:
+    from linkwright.launch.model.markup.entity import Entity
+    from linkwright.launch.model.markup.parser import Parser
+
+
+@expose_action("let")
+class SetLaunchConfiguration(AssigningAction):
+    """Sets a launch configuration."""
+
+    def execute(self, context: LaunchContext) -> None:
+        """Set it."""
+        context.launch_configurations[self.resolved_name(context)] = self.resolved_value(context)
+
+
+@expose_action("unset")
+class UnsetLaunchConfiguration(NamedAction):
+    """Unsets a launch configuration; one that is not set stays so."""
+
+    def execute(self, context: LaunchContext) -> None:
+        """Unset it."""
+        context.launch_configurations.pop(self.resolved_name(context), None)
+
+
+class PushLaunchConfigurations(Action):
+    """Opens a scope: what is set from here on ends with `PopLaunchConfigurations`."""
+
+    def execute(self, context: LaunchContext) -> None:
+        """Open it."""
+        context.push_launch_configurations()
+
+
+class PopLaunchConfigurations(Action):
+    """Closes a scope: the launch configurations are again what they were."""
+
+    def execute(self, context: LaunchContext) -> None:
+        """Close it."""
+        context.pop_launch_configurations()
+
+
+@expose_action("reset")
+class ResetLaunchConfigurations(Action):
+    """Forgets all launch configurations but those given.
+
+    Args:
+        launch_configurations: name -> value of what is set afterwards, worked out before the others are forgotten.
+    """
+
+    def __init__(self, launch_configurations: Mapping[Any, Any] | None = None, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self._kept = normalize_pairs(launch_configurations or {})
+
+    @classmethod
+    def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
+        """Reads the ``keep`` inside."""
+        _, kwargs = super().parse(entity, parser)
+        kept = parse_pairs(entity, parser, "keep")
+        if kept is not None:
+            kwargs["launch_configurations"] = kept
+        return cls, kwargs
+
+    def execute(self, context: LaunchContext) -> None:
+        """Forget the others."""
+        kept = perform_pairs(context, self._kept)
+        context.launch_configurations.clear()
+        context.launch_configurations.update(kept)

@@ -1,0 +1,163 @@
+"""Actions on environment variables."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from linkwright.launch.model.action import Action
+from linkwright.launch.model.actions.named import (
+    AssigningAction,
+    NamedAction,
+    normalize_pairs,
+    parse_pairs,
+    perform_pairs,
+)
+from linkwright.launch.model.context import LaunchContext
+from linkwright.launch.model.markup.expose import expose_action
+from linkwright.launch.model.markup.parser import parse_texts
+from linkwright.launch.model.markup.values import normalize_typed_substitution, perform_typed_substitution
+from linkwright.launch.model.substitution import (
+    SomeSubstitutionsType,
+    Substitution,
+    normalize_to_list_of_substitutions,
+    perform_substitutions,
+)
+
+if TYPE_CHECKING:
+    from linkwright.launch.model.markup.entity import Entity
+    from linkwright.launch.model.markup.parser import Parser
+
+
+@expose_action("set_env")
+class SetEnvironmentVariable(AssigningAction):
+    """Sets an environment variable."""
+
+    def execute(self, context: LaunchContext) -> None:
+        """Set it."""
+        context.environment[self.resolved_name(context)] = self.resolved_value(context)
+
+
+@expose_action("unset_env")
+class UnsetEnvironmentVariable(NamedAction):
+    """Unsets an environment variable; one that is not set stays so."""
+
+    def execute(self, context: LaunchContext) -> None:
+        """Unset it."""
+        context.environment.pop(self.resolved_name(context), None)
+
+
+@expose_action("append_env")
+class AppendEnvironmentVariable(AssigningAction):
+    """Adds a value to an environment variable that is a list, such as a search path.
+
+    Args:
+        name: the variable.
+        value: what is added.
+        prepend: whether it goes before what is there.
+        separator: what stands between; the system's path separator by default.
+    """
+
+    def __init__(
+        self,
+        name: SomeSubstitutionsType,
+        value: SomeSubstitutionsType,
+        prepend: bool | SomeSubstitutionsType = False,
+        separator: SomeSubstitutionsType = os.pathsep,
+        **kwargs: Any,
+    ) -> None:
+        super().__init__(name, value, **kwargs)
+        self._prepend = normalize_typed_substitution(_plain_truth(prepend), bool)
+        self._separator = normalize_to_list_of_substitutions(separator)
+
+    @classmethod
+    def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
+        """Reads ``prepend`` and ``separator`` besides."""
+        _, kwargs = super().parse(entity, parser)
+        prepend = entity.get_attr("prepend", optional=True, data_type=bool, can_be_str=True)
+        if prepend is not None:
+            kwargs["prepend"] = parser.parse_if_substitutions(prepend)
+        return cls, {**kwargs, **parse_texts(entity, parser, separator="separator")}
+
+    @property
+    def prepend(self) -> Any:
+        """Whether it goes before what is there: a truth value, or substitutions."""
+        return self._prepend
+
+    @property
+    def separator(self) -> list[Substitution]:
+        """What stands between, as substitutions."""
+        return self._separator
+
+    def execute(self, context: LaunchContext) -> None:
+        """Add it."""
+        name, value = self.resolved_name(context), self.resolved_value(context)
+        parts = [context.environment[name]] if name in context.environment else []
+        parts.insert(0 if perform_typed_substitution(context, self._prepend, bool) else len(parts), value)
+        context.environment[name] = perform_substitutions(context, self._separator).join(parts)
+
+
+def _plain_truth(value: Any) -> Any:
+    """A text that says true or false as that; anything else as it is."""
+    from linkwright.launch.model.markup.values import coerce_to_type
+
+    return coerce_to_type(value, bool) if isinstance(value, str) else value
+
+
+@expose_action("rep_env")
+class ReplaceEnvironmentVariables(Action):
+    """Makes the environment the variables given and no others.
+
+    Args:
+        environment: name -> value.
+    """
+
+    def __init__(self, environment: Mapping[Any, Any] | None = None, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self._environment = dict(environment or {})
+
+    @classmethod
+    def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
+        """Reads the ``env`` inside."""
+        _, kwargs = super().parse(entity, parser)
+        environment = parse_pairs(entity, parser, "env")
+        if environment is not None:
+            kwargs["environment"] = environment
+        return cls, kwargs
+
+    @property
+    def environment(self) -> Mapping[Any, Any]:
+        """The variables, as they were given."""
+        return self._environment
+
+    def execute(self, context: LaunchContext) -> None:
+        """Replace it."""
+        context.reset_environment(perform_pairs(context, normalize_pairs(self._environment)))
+
+
+@expose_action("push_env")
+class PushEnvironment(Action):
+    """Opens a scope: what is set from here on ends with `PopEnvironment`."""
+
+    def execute(self, context: LaunchContext) -> None:
+        """Open it."""
+        context.push_environment()
+
+
+@expose_action("pop_env")
+class PopEnvironment(Action):
+    """Closes a scope: the environment is again what it was."""
+
+    def execute(self, context: LaunchContext) -> None:
+        """Close it."""
+        context.pop_environment()
+
+
+@expose_action("reset_env")
+class ResetEnvironment(Action):
+    """Gives the environment back that the launch was started with."""
+
+    def execute(self, context: LaunchContext) -> None:
+        """Give it back."""
+        context.reset_environment()

@@ -1,0 +1,116 @@
+"""Actions on events."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from linkwright.launch.model import events
+from linkwright.launch.model.action import Action
+from linkwright.launch.model.context import LaunchContext
+from linkwright.launch.model.entity import LaunchDescriptionEntity
+from linkwright.launch.model.event_handlers import BaseEventHandler
+from linkwright.launch.model.markup.expose import expose_action
+from linkwright.launch.model.substitution import (
+    SomeSubstitutionsType,
+    Substitution,
+    describe,
+    normalize_to_list_of_substitutions,
+    perform_substitutions,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from linkwright.launch.model.markup.entity import Entity
+    from linkwright.launch.model.markup.parser import Parser
+
+
+class _HandlerAction(Action):
+    """Does something with an event handler."""
+
+    def __init__(self, event_handler: BaseEventHandler, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self._event_handler = event_handler
+
+    @property
+    def event_handler(self) -> BaseEventHandler:
+        """The handler."""
+        return self._event_handler
+
+
+class RegisterEventHandler(_HandlerAction):
+    """Registers an event handler."""
+
+    def execute(self, context: LaunchContext) -> None:
+        """Register it."""
+        context.register_event_handler(self._event_handler)
+
+    def describe_conditional_sub_entities(self) -> list[tuple[str, Iterable[LaunchDescriptionEntity]]]:
+        """What the handler visits, as far as it is known."""
+        known = self.get_sub_entities()
+        return [(f"{self._event_handler} handles an event", known)] if known else []
+
+    def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
+        """Nothing: what the handler visits, it visits when an event comes."""
+        return []
+
+    def get_sub_entities(self) -> list[LaunchDescriptionEntity]:
+        """What the handler visits, as far as it is known."""
+        return self._event_handler.describe()[1]
+
+
+class UnregisterEventHandler(_HandlerAction):
+    """Unregisters an event handler."""
+
+    def execute(self, context: LaunchContext) -> None:
+        """Unregister it."""
+        context.unregister_event_handler(self._event_handler)
+
+
+class EmitEvent(Action):
+    """Puts an event into the queue."""
+
+    def __init__(self, *, event: events.Event, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        if not isinstance(event, events.Event):
+            raise TypeError(f"EmitEvent expects an event, got {event!r} of type {type(event).__name__}")
+        self._event = event
+
+    @property
+    def event(self) -> events.Event:
+        """The event."""
+        return self._event
+
+    def describe(self) -> str:
+        """The event."""
+        return f"{type(self).__name__}(event='{self._event.name}')"
+
+    def execute(self, context: LaunchContext) -> None:
+        """Emit it."""
+        context.emit_event_sync(self._event)
+
+
+@expose_action("shutdown")
+class Shutdown(EmitEvent):
+    """Ends the launch. Also good as ``on_exit`` of a node: then the log names the node."""
+
+    def __init__(self, *, reason: SomeSubstitutionsType = "reason not given", **kwargs: Any) -> None:
+        self._reason: list[Substitution] = normalize_to_list_of_substitutions(reason)
+        text = reason if isinstance(reason, str) else describe(self._reason)
+        super().__init__(event=events.Shutdown(reason=text), **kwargs)
+
+    @classmethod
+    def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
+        """Reads ``reason``."""
+        _, kwargs = super().parse(entity, parser)
+        reason = entity.get_attr("reason", optional=True)
+        if reason:
+            kwargs["reason"] = parser.parse_substitution(reason)
+        return cls, kwargs
+
+    def execute(self, context: LaunchContext) -> None:
+        """End it."""
+        cause = context.get_locals_as_dict().get("event")
+        if isinstance(cause, events.ProcessExited):
+            context.log("launch", 20, f"process[{cause.process_name}] was required: shutting down launched system")
+        context.emit_event_sync(events.Shutdown(reason=perform_substitutions(context, self._reason)))

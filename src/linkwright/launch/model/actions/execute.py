@@ -1,0 +1,385 @@
+"""Starting processes."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from linkwright.diagnostics import did_you_mean, phrase
+from linkwright.launch.errors.places import error_at
+from linkwright.launch.log.launch_log import OUTPUT_MODES, output_destinations
+from linkwright.launch.model import events
+from linkwright.launch.model.action import Action
+from linkwright.launch.model.actions.executable import Executable
+from linkwright.launch.model.conditions import InvalidConditionExpressionError, evaluate_condition_expression
+from linkwright.launch.model.context import LaunchContext
+from linkwright.launch.model.entity import LaunchDescriptionEntity, SomeEntitiesType, as_entities
+from linkwright.launch.model.markup.expose import expose_action
+from linkwright.launch.model.markup.values import normalize_typed_substitution, perform_typed_substitution
+from linkwright.launch.model.plans import ProcessPlan
+from linkwright.launch.model.substitution import (
+    SomeSubstitutionsType,
+    Substitution,
+    describe,
+    normalize_to_list_of_substitutions,
+    perform_substitutions,
+)
+
+if TYPE_CHECKING:
+    from linkwright.launch.model.actions.named import Pairs
+    from linkwright.launch.model.markup.entity import Entity
+    from linkwright.launch.model.markup.parser import Parser
+
+OnExit = SomeEntitiesType | Callable[..., Any] | None
+
+_DEFAULT_TIMEOUT = "5"
+"""Seconds."""
+
+
+class ExecuteLocal(Action):
+    """Starts a process and follows it to its end.
+
+    Args:
+        process_description: what is run.
+        shell: whether a shell runs it.
+        sigterm_timeout: seconds between SIGINT and SIGTERM when it is to end; by default the launch configuration
+            of this name, else 5.
+        sigkill_timeout: seconds between SIGTERM and SIGKILL; by default the launch configuration of this name, else 5.
+        emulate_tty: whether it shall think that it writes to a terminal; the launch configuration of this name wins.
+        output: where what it writes goes: ``screen``, ``log``, ``both``, ``own_log``, ``full``, or a mapping of
+            ``stdout``, ``stderr`` and ``both`` to sets of ``screen``, ``log`` and ``own_log``. The environment
+            variable ``OVERRIDE_LAUNCH_PROCESS_OUTPUT`` wins.
+        output_format: how a line is shown; ``{line}`` and ``{this}`` (the action) can be used.
+        cached_output: whether `get_stdout` and `get_stderr` give what it wrote.
+        log_cmd: whether the command is shown before it runs.
+        on_exit: what is visited when it has ended, or a function of event and context that returns that.
+        respawn: whether it is started again when it ends before the launch does.
+        respawn_delay: seconds to wait before that.
+        respawn_max_retries: how often at most; any number if negative.
+        split_arguments: whether each word of the command is divided as a shell would do; for substitutions that give
+            several words.
+        kwargs: see `Action`.
+
+    Attributes:
+        process_details: ``name``, ``cmd``, ``cwd``, ``env`` and ``pid`` once it runs.
+        return_code: its exit status once it has ended.
+    """
+
+    def __init__(
+        self,
+        *,
+        process_description: Executable,
+        shell: bool = False,
+        sigterm_timeout: float | SomeSubstitutionsType | None = None,
+        sigkill_timeout: float | SomeSubstitutionsType | None = None,
+        emulate_tty: bool | SomeSubstitutionsType = False,
+        output: SomeSubstitutionsType | Mapping[str, Any] = "log",
+        output_format: str = "[{this.process_description.final_name}] {line}",
+        cached_output: bool = False,
+        log_cmd: bool = False,
+        on_exit: OnExit = None,
+        respawn: bool | SomeSubstitutionsType = False,
+        respawn_delay: float | None = None,
+        respawn_max_retries: int = -1,
+        split_arguments: bool = False,
+        **kwargs: Any,
+    ) -> None:
+        super().__init__(**kwargs)
+        self._description = process_description
+        self._shell = shell
+        self._output = dict(output) if isinstance(output, Mapping) else normalize_to_list_of_substitutions(output)
+        self._output_format = output_format
+        self._log_cmd = log_cmd
+        is_function = callable(on_exit) and not isinstance(on_exit, LaunchDescriptionEntity)
+        self._after_exit: Callable[..., Any] | None = on_exit if is_function else None  # type: ignore[assignment]
+        self._on_exit = [] if is_function else as_entities(on_exit)
+        self._respawn = normalize_typed_substitution(_plain(respawn), bool)
+        self._respawn_delay = respawn_delay
+        self._respawn_max_retries = respawn_max_retries
+        self._split_arguments = split_arguments
+        self._sigterm_timeout = _timeout(sigterm_timeout, "sigterm_timeout")
+        self._sigkill_timeout = _timeout(sigkill_timeout, "sigkill_timeout")
+        self._emulate_tty = emulate_tty
+        self._cached: dict[int, list[bytes]] | None = {1: [], 2: []} if cached_output else None
+        self._started = False
+        self.process_details: dict[str, Any] | None = None
+        self.return_code: int | None = None
+
+    # --- what others read of it -----------------------------------------------------------------------------
+
+    @property
+    def process_description(self) -> Executable:
+        """What is run."""
+        return self._description
+
+    @property
+    def shell(self) -> bool:
+        """Whether a shell runs it."""
+        return self._shell
+
+    @property
+    def emulate_tty(self) -> Any:
+        """Whether it shall think that it writes to a terminal, as it was given."""
+        return self._emulate_tty
+
+    @property
+    def sigterm_timeout(self) -> list[Substitution]:
+        """Seconds between SIGINT and SIGTERM, as substitutions."""
+        return self._sigterm_timeout
+
+    @property
+    def sigkill_timeout(self) -> list[Substitution]:
+        """Seconds between SIGTERM and SIGKILL, as substitutions."""
+        return self._sigkill_timeout
+
+    @property
+    def output(self) -> Any:
+        """Where its output goes: a mapping, or substitutions."""
+        return self._output
+
+    def get_stdout(self) -> str:
+        """What it wrote to stdout; needs ``cached_output``."""
+        return self._cached_text(1)
+
+    def get_stderr(self) -> str:
+        """What it wrote to stderr; needs ``cached_output``."""
+        return self._cached_text(2)
+
+    def get_sub_entities(self) -> Sequence[LaunchDescriptionEntity]:
+        """What is visited when it has ended."""
+        return self._on_exit
+
+    def describe(self) -> str:
+        """Command, folder, environment and whether a shell runs it."""
+        about = self._description
+        command = ", ".join(describe(part) for part in about.cmd)
+        folder = None if about.cwd is None else describe(about.cwd)
+        pairs = None if about.env is None else [f"{describe(name)}: {describe(value)}" for name, value in about.env]
+        environment = None if pairs is None else "{" + ", ".join(pairs) + "}"
+        return f"{type(self).__name__}(cmd=[{command}], cwd={folder}, env={environment}, shell={self._shell})"
+
+    # --- the run --------------------------------------------------------------------------------------------
+
+    def prepare(self, context: LaunchContext) -> None:
+        """Work out the final name, command, folder and environment, for those who look at them before it runs."""
+        self._description.prepare(context, self)
+
+    def execute(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity] | None:
+        """Start the process.
+
+        Raises:
+            RuntimeError: LAUNCH141, it was started before.
+            LinkwrightError: LAUNCH141, what cannot be understood of how it is to run.
+        """
+        if not context.is_shutdown:
+            self._start(context, [perform_substitutions(context, part) for part in self._description.cmd])
+        return None
+
+    def exited(self, event: events.ProcessExited, context: LaunchContext) -> list[LaunchDescriptionEntity]:
+        """What is to be visited now that the process has ended."""
+        self.return_code = event.returncode
+        if self._after_exit is None:
+            return self._on_exit
+        return as_entities(self._after_exit(event, context))
+
+    def wrote(self, stream: int, text: bytes) -> None:
+        """Take note of what the process wrote to stdout (1) or stderr (2)."""
+        if self._cached is not None:
+            self._cached[stream].append(text)
+
+    def _start(self, context: LaunchContext, command: list[str]) -> str:
+        """Start the process of a command; returns its name in the log."""
+        if self._started:
+            text = f"ExecuteLocal action '{self._description.final_name}': executed more than once: {self.describe()}"
+            message = phrase(
+                "the action of process '{final_name}' is visited a second time", final_name=self._description.final_name
+            )
+            hint = phrase("make an action for each start, for example in a function")
+            raise error_at(self.place, "LAUNCH141", message, hint, ros_error=RuntimeError(text))
+        plan = self._plan(context, command)
+        name = context.session.number_process(plan.name)
+        about = self._description
+        about.final_name, about.final_cmd = name, list(plan.command)
+        about.final_cwd, about.final_env = plan.folder, dict(plan.environment)
+        self._started = True
+        context.session.start_process(plan, name)
+        return name
+
+    def _plan(self, context: LaunchContext, command: list[str]) -> ProcessPlan:
+        about = self._description
+        if not command or not command[0].strip():
+            raise error_at(self.place, "LAUNCH141", phrase("the command of the process is empty"))
+        if self._split_arguments and not self._shell:
+            command = [word for part in command for word in self._divided(part)]
+        program = [shlex.split(command[0])[0]] if self._shell else command
+        return ProcessPlan(
+            action=self,
+            name=about.base_name(context, program),
+            command=[*about.prefix_words(context, program), *command],
+            folder=None if about.cwd is None else perform_substitutions(context, about.cwd),
+            environment=self._environment(context),
+            shell=self._shell,
+            emulate_tty=self._truth(context, "emulate_tty", self._emulate_tty),
+            destinations=self._destinations(context),
+            output_format=self._output_format,
+            log_command=self._log_cmd,
+            respawn=bool(self._typed(context, "respawn", self._respawn)),
+            respawn_delay=self._respawn_delay or 0.0,
+            respawn_limit=self._respawn_max_retries,
+            seconds_to_sigterm=self._seconds(context, self._sigterm_timeout, "sigterm_timeout"),
+            seconds_to_sigkill=self._seconds(context, self._sigkill_timeout, "sigkill_timeout"),
+        )
+
+    def _divided(self, text: str) -> list[str]:
+        try:
+            return shlex.split(text)
+        except ValueError as error:
+            message = phrase("'{text}' cannot be divided into words: {error}", text=text, error=str(error).lower())
+            raise error_at(self.place, "LAUNCH118", message, ros_error=error) from error
+
+    def _environment(self, context: LaunchContext) -> dict[str, str]:
+        return self._description.environment(context)
+
+    def _destinations(self, context: LaunchContext) -> dict[int, frozenset[str]]:
+        mode: Any = context.environment.get("OVERRIDE_LAUNCH_PROCESS_OUTPUT") or self._output
+        if isinstance(mode, list):
+            mode = perform_substitutions(context, mode)
+        try:
+            return output_destinations(mode)
+        except KeyError as error:
+            wrong = str(error.args[0])
+            modes = ", ".join(f"'{each}'" for each in OUTPUT_MODES)
+            hint = did_you_mean(wrong, OUTPUT_MODES) or phrase("use one of {modes}", modes=modes)
+            text = f'{wrong} is not a valid standard output config i.e. "screen", "log" or "both"'
+            message = phrase("there is no output '{wrong}'", wrong=wrong)
+            raise error_at(self.place, "LAUNCH141", message, hint, ros_error=ValueError(text)) from error
+
+    def _truth(self, context: LaunchContext, name: str, given: Any) -> bool:
+        value = context.launch_configurations.get(name, given)
+        try:
+            return value if isinstance(value, bool) else evaluate_condition_expression(context, value)
+        except InvalidConditionExpressionError as error:
+            message = phrase("'{name}' is '{text}', which is neither true nor false", name=name, text=error.text)
+            raise error_at(self.place, "LAUNCH141", message, ros_error=error) from error
+
+    def _typed(self, context: LaunchContext, name: str, value: Any) -> Any:
+        try:
+            return perform_typed_substitution(context, value, bool)
+        except ValueError as error:
+            message = phrase(
+                "'{name}' is '{perform_substitutions}', which is neither true nor false",
+                name=name,
+                perform_substitutions=perform_substitutions(context, value),
+            )
+            raise error_at(self.place, "LAUNCH141", message, ros_error=error) from error
+
+    def _seconds(self, context: LaunchContext, given: list[Substitution], name: str) -> float:
+        text = perform_substitutions(context, given)
+        try:
+            return float(text)
+        except ValueError as error:
+            message = phrase("'{name}' is '{text}', which is no number", name=name, text=text)
+            raise error_at(self.place, "LAUNCH141", message, ros_error=error) from error
+
+    def _cached_text(self, stream: int) -> str:
+        if self._cached is None:
+            raise RuntimeError("cached output must be true to be able to get stdout: give it cached_output=True")
+        return b"".join(self._cached[stream]).decode(errors="replace")
+
+
+@expose_action("executable")
+class ExecuteProcess(ExecuteLocal):
+    """Starts a process and follows it to its end.
+
+    Args:
+        cmd: program and arguments, see `Executable`.
+        prefix: see `Executable`.
+        name: see `Executable`.
+        cwd: see `Executable`.
+        env: see `Executable`.
+        additional_env: see `Executable`.
+        kwargs: see `ExecuteLocal`.
+    """
+
+    def __init__(
+        self,
+        *,
+        cmd: Iterable[SomeSubstitutionsType],
+        prefix: SomeSubstitutionsType | None = None,
+        name: SomeSubstitutionsType | None = None,
+        cwd: SomeSubstitutionsType | None = None,
+        env: Mapping[Any, Any] | None = None,
+        additional_env: Mapping[Any, Any] | None = None,
+        **kwargs: Any,
+    ) -> None:
+        described = Executable(cmd=cmd, prefix=prefix, name=name, cwd=cwd, env=env, additional_env=additional_env)
+        super().__init__(process_description=described, **kwargs)
+
+    @classmethod
+    def parse(
+        cls, entity: Entity, parser: Parser, ignore: Sequence[str] | None = None
+    ) -> tuple[type[Action], dict[str, Any]]:
+        """Reads the tag of a process.
+
+        Args:
+            entity: the tag.
+            parser: for the substitutions in it.
+            ignore: names of arguments that are not read.
+        """
+        from linkwright.launch.model.actions.process_tag import parse_process
+
+        _, kwargs = super().parse(entity, parser)
+        kwargs.update(parse_process(entity, parser, frozenset(ignore or ())))
+        return cls, kwargs
+
+    @classmethod
+    def _parse_cmdline(cls, cmd: str, parser: Parser) -> list[list[Substitution]]:
+        """The words of a command line, by the name that this has in ROS."""
+        from linkwright.launch.model.markup.command_line import parse_command_line
+
+        return parse_command_line(cmd, parser)
+
+    @property
+    def cmd(self) -> list[list[Substitution]]:
+        """Program and arguments, as substitutions."""
+        return self._description.cmd
+
+    @property
+    def name(self) -> Any:
+        """The process's name in the log once it runs, such as ``talker-1``; before that, as substitutions."""
+        return self._description.final_name or self._description.name
+
+    @property
+    def cwd(self) -> Any:
+        """The folder it runs in, once it runs; before that, as substitutions."""
+        return self._description.final_cwd or self._description.cwd
+
+    @property
+    def env(self) -> Any:
+        """The environment it has, once it runs; before that, as substitutions."""
+        return self._description.final_env or self._description.env
+
+    @property
+    def additional_env(self) -> Pairs | None:
+        """Variables that it has besides, as substitutions."""
+        return self._description.additional_env
+
+    @property
+    def _name(self) -> list[Substitution] | None:
+        return self._description.name
+
+
+def _timeout(given: Any, name: str) -> list[Substitution]:
+    from linkwright.launch.model.substitutions.configuration import LaunchConfiguration
+
+    if given is None:
+        return [LaunchConfiguration(name, default=_DEFAULT_TIMEOUT)]
+    return normalize_to_list_of_substitutions(str(given) if isinstance(given, (int, float)) else given)
+
+
+def _plain(value: Any) -> Any:
+    """A text that says true or false as that; anything else as it is."""
+    from linkwright.launch.model.markup.values import coerce_to_type
+
+    return coerce_to_type(value, bool) if isinstance(value, str) else value

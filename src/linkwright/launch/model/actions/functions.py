@@ -1,0 +1,98 @@
+"""Actions that call a function or begin a coroutine."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Coroutine, Iterable, Mapping
+from typing import Any
+
+from linkwright.launch.model import events
+from linkwright.launch.model.action import Action
+from linkwright.launch.model.context import LaunchContext
+
+
+class OpaqueFunction(Action):
+    """Calls a function with the launch context when it is visited; what it returns is visited next.
+
+    Args:
+        function: called as ``function(context, *args, **kwargs)``.
+        args: further arguments.
+        kwargs: further named arguments.
+    """
+
+    def __init__(
+        self,
+        *,
+        function: Callable[..., Any],
+        args: Iterable[Any] | None = None,
+        kwargs: Mapping[str, Any] | None = None,
+        **others: Any,
+    ) -> None:
+        super().__init__(**others)
+        if not callable(function):
+            raise TypeError(f"OpaqueFunction expects a function, got {function!r} of type {type(function).__name__}")
+        self._function = function
+        self._args = tuple(args or ())
+        self._kwargs = dict(kwargs or {})
+
+    def describe(self) -> str:
+        """The function's name."""
+        name = getattr(self._function, "__qualname__", None) or type(self._function).__name__
+        return f"{type(self).__name__}(function={name.rpartition('<locals>.')[2]})"
+
+    def execute(self, context: LaunchContext) -> Any:
+        """Call it."""
+        return self._function(context, *self._args, **self._kwargs)
+
+
+class OpaqueCoroutine(Action):
+    """Begins a coroutine when it is visited; the launch does not end before it has, and its end cancels it.
+
+    Args:
+        coroutine: called as ``coroutine(context, *args, **kwargs)``.
+        args: further arguments.
+        kwargs: further named arguments.
+        ignore_context: whether it is called without the context.
+    """
+
+    def __init__(
+        self,
+        *,
+        coroutine: Callable[..., Coroutine[Any, Any, Any]],
+        args: Iterable[Any] | None = None,
+        kwargs: Mapping[str, Any] | None = None,
+        ignore_context: bool = False,
+        **others: Any,
+    ) -> None:
+        super().__init__(**others)
+        if not asyncio.iscoroutinefunction(coroutine):
+            kind = type(coroutine).__name__
+            raise TypeError(f"OpaqueCoroutine expected a coroutine function for 'coroutine', got '{kind}'")
+        self._coroutine = coroutine
+        self._args = tuple(args or ())
+        self._kwargs = dict(kwargs or {})
+        self._ignore_context = ignore_context
+        self._task: asyncio.Task[Any] | None = None
+
+    def execute(self, context: LaunchContext) -> None:
+        """Begin it."""
+        from linkwright.launch.model.event_handlers import OnShutdown
+
+        loop = context.asyncio_loop
+        if loop is None:
+            raise RuntimeError("a coroutine needs a launch that runs")
+        args = self._args if self._ignore_context else (context, *self._args)
+        task = loop.create_task(self._coroutine(*args, **self._kwargs))
+        self._task = task
+        context.register_event_handler(OnShutdown(on_shutdown=lambda *_: self._cancel(task)))
+        # Handlers of the end of actions are called for this one too.
+        task.add_done_callback(lambda _: context.emit_event_sync(events.ExecutionComplete(action=self)))
+
+    @staticmethod
+    def _cancel(task: asyncio.Task[Any]) -> None:
+        if not task.done():
+            task.cancel()
+
+    def get_asyncio_future(self) -> asyncio.Future[Any] | None:
+        """The coroutine's task, once it has begun."""
+        return self._task

@@ -1,0 +1,89 @@
+"""Groups of actions with a scope of their own."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any
+
+from linkwright.launch.model.action import Action
+from linkwright.launch.model.actions.configurations import (
+    PopLaunchConfigurations,
+    PushLaunchConfigurations,
+    ResetLaunchConfigurations,
+    SetLaunchConfiguration,
+)
+from linkwright.launch.model.actions.environment import PopEnvironment, PushEnvironment, ResetEnvironment
+from linkwright.launch.model.actions.named import parse_pairs
+from linkwright.launch.model.context import LaunchContext
+from linkwright.launch.model.entity import LaunchDescriptionEntity, as_entities
+from linkwright.launch.model.markup.expose import expose_action
+
+if TYPE_CHECKING:
+    from linkwright.launch.model.markup.entity import Entity
+    from linkwright.launch.model.markup.parser import Parser
+
+_KEEP = "keep"
+
+
+@expose_action("group")
+class GroupAction(Action):
+    """Actions that are visited together.
+
+    Args:
+        actions: the actions.
+        scoped: whether launch configurations and environment variables set inside end with the group.
+        forwarding: whether those from outside are seen inside, in a group with a scope.
+        launch_configurations: name -> value of configurations that are set for the group.
+    """
+
+    def __init__(
+        self,
+        actions: Iterable[LaunchDescriptionEntity],
+        *,
+        scoped: bool = True,
+        forwarding: bool = True,
+        launch_configurations: Mapping[Any, Any] | None = None,
+        **kwargs: Any,
+    ) -> None:
+        super().__init__(**kwargs)
+        self.__actions = as_entities(actions)
+        self._scoped = scoped
+        self._forwarding = forwarding
+        self._configurations = dict(launch_configurations or {})
+        self.__following: tuple[Any, list[LaunchDescriptionEntity]] | None = None
+
+    @classmethod
+    def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
+        """Reads ``scoped``, ``forwarding``, the ``keep`` and the actions inside."""
+        _, kwargs = super().parse(entity, parser)
+        for name in ("scoped", "forwarding"):
+            value = entity.get_attr(name, data_type=bool, optional=True, can_be_str=False)
+            if value is not None:
+                kwargs[name] = value
+        kept = parse_pairs(entity, parser, _KEEP)
+        if kept is not None:
+            kwargs["launch_configurations"] = kept
+        kwargs["actions"] = [parser.parse_action(child) for child in entity.children if child.type_name != _KEEP]
+        return cls, kwargs
+
+    def get_sub_entities(self) -> list[LaunchDescriptionEntity]:
+        """The actions of the group, with what opens and closes its scope."""
+        # Classes of users set '_GroupAction__actions' in their 'execute', by which name ROS has it.
+        if self.__following is None or self.__following[0] is not self.__actions:
+            self.__following = self.__actions, self._with_scope()
+        return self.__following[1]
+
+    def _with_scope(self) -> list[LaunchDescriptionEntity]:
+        setting: list[LaunchDescriptionEntity] = [
+            SetLaunchConfiguration(name, value) for name, value in self._configurations.items()
+        ]
+        if not self._scoped:
+            return [*setting, *self.__actions]
+        opening: list[LaunchDescriptionEntity] = [PushLaunchConfigurations(), PushEnvironment()]
+        if not self._forwarding:
+            setting = [ResetEnvironment(), ResetLaunchConfigurations(self._configurations)]
+        return [*opening, *setting, *self.__actions, PopEnvironment(), PopLaunchConfigurations()]
+
+    def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:  # noqa: ARG002
+        """The actions, to be visited next."""
+        return self.get_sub_entities()

@@ -1,0 +1,149 @@
+"""Actions that write a line into the log of the launch."""
+
+from __future__ import annotations
+
+import logging
+import warnings
+from typing import TYPE_CHECKING, Any
+
+from linkwright.diagnostics import phrase, quoted_names
+from linkwright.launch.errors.places import error_at
+from linkwright.launch.model.action import Action
+from linkwright.launch.model.context import LaunchContext
+from linkwright.launch.model.markup.expose import expose_action
+from linkwright.launch.model.substitution import (
+    SomeSubstitutionsType,
+    Substitution,
+    TextSubstitution,
+    describe,
+    normalize_to_list_of_substitutions,
+    perform_substitutions,
+)
+
+if TYPE_CHECKING:
+    from linkwright.launch.errors.places import Place
+    from linkwright.launch.model.markup.entity import Entity
+    from linkwright.launch.model.markup.parser import Parser
+
+_LOGGER = "launch.user"
+LEVELS = {
+    "DEBUG": logging.DEBUG,
+    "INFO": logging.INFO,
+    "WARN": logging.WARNING,
+    "WARNING": logging.WARNING,
+    "ERROR": logging.ERROR,
+    "FATAL": logging.CRITICAL,
+    "CRITICAL": logging.CRITICAL,
+}
+
+
+@expose_action("log")
+class Log(Action):
+    """Writes a line of a level.
+
+    Args:
+        msg: the line.
+        level: ``DEBUG``, ``INFO``, ``WARNING``, ``ERROR`` or ``CRITICAL``.
+    """
+
+    def __init__(self, *, msg: SomeSubstitutionsType, level: SomeSubstitutionsType, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self._msg = normalize_to_list_of_substitutions(msg)
+        self._level = normalize_to_list_of_substitutions(level)
+        if all(isinstance(part, TextSubstitution) for part in self._level):
+            _number("".join(part.text for part in self._level if isinstance(part, TextSubstitution)), self._level_place)
+
+    @classmethod
+    def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
+        """Reads ``message`` and ``level``."""
+        _, kwargs = super().parse(entity, parser)
+        kwargs["msg"] = parser.parse_substitution(entity.get_attr("message"))
+        level = entity.get_attr("level", optional=True)
+        if level is None:
+            if cls is Log:
+                problem = (
+                    "The action log now expects a log level. Either provide one or switch to using the log_info action"
+                )
+                place = entity.place
+                if place is None:
+                    warnings.warn(problem, stacklevel=2)
+                else:
+                    warnings.warn_explicit(problem, UserWarning, place.file, place.span().line)
+            level = "INFO"
+        kwargs["level"] = parser.parse_substitution(level)
+        return cls, kwargs
+
+    @property
+    def msg(self) -> list[Substitution]:
+        """The line, as substitutions."""
+        return self._msg
+
+    @property
+    def level(self) -> list[Substitution]:
+        """The level, as substitutions."""
+        return self._level
+
+    @property
+    def _level_place(self) -> Place | None:
+        return next((part.place for part in self._level if part.place is not None), self.place)
+
+    def describe(self) -> str:
+        """The line."""
+        return f"{type(self).__name__}({describe(self._msg)})"
+
+    def execute(self, context: LaunchContext) -> None:
+        """Write it.
+
+        Raises:
+            KeyError: LAUNCH150, there is no such level.
+        """
+        level = _number(perform_substitutions(context, self._level), self._level_place)
+        context.log(_LOGGER, level, perform_substitutions(context, self._msg))
+
+
+def _number(level: str, place: Place | None) -> int:
+    if level.upper() in LEVELS:
+        return LEVELS[level.upper()]
+    from linkwright.diagnostics import did_you_mean
+
+    hint = did_you_mean(level, LEVELS) or phrase("use one of {names}", names=quoted_names(LEVELS))
+    ros_error = KeyError(f"Invalid log level '{level}', expected: {list(LEVELS)}")
+    raise error_at(
+        place, "LAUNCH150", phrase("there is no log level '{level}'", level=level), hint, ros_error=ros_error
+    )
+
+
+class _LogOfLevel(Log):
+    """Writes a line of one level."""
+
+    _LEVEL = "INFO"
+
+    def __init__(self, *, msg: SomeSubstitutionsType, **kwargs: Any) -> None:
+        kwargs.pop("level", None)
+        super().__init__(msg=msg, level=self._LEVEL, **kwargs)
+
+
+@expose_action("log_info")
+class LogInfo(_LogOfLevel):
+    """Writes a line."""
+
+
+@expose_action("log_debug")
+class LogDebug(_LogOfLevel):
+    """Writes a line that is shown with ``--debug``."""
+
+    _LEVEL = "DEBUG"
+
+
+@expose_action("log_warning")
+class LogWarning(_LogOfLevel):
+    """Writes a line that warns."""
+
+    _LEVEL = "WARNING"
+
+
+@expose_action("log_error")
+class LogError(_LogOfLevel):
+    """Writes a line about an error; the launch goes on."""
+
+    _LEVEL = "ERROR"

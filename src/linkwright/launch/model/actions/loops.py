@@ -1,0 +1,180 @@
+"""Actions that are visited several times, with other values each time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from copy import deepcopy
+from typing import TYPE_CHECKING, Any
+
+from linkwright.diagnostics import foreign, phrase
+from linkwright.launch.errors.places import error_at
+from linkwright.launch.model.action import Action
+from linkwright.launch.model.actions.functions import OpaqueFunction
+from linkwright.launch.model.context import LaunchContext
+from linkwright.launch.model.entity import LaunchDescriptionEntity, as_entities
+from linkwright.launch.model.markup.expose import expose_action
+from linkwright.launch.model.substitution import (
+    SomeSubstitutionsType,
+    Substitution,
+    describe,
+    normalize_to_list_of_substitutions,
+    perform_substitutions,
+)
+from linkwright.launch.model.substitutions.loops import local_name
+
+if TYPE_CHECKING:
+    from linkwright.launch.model.markup.entity import Entity
+    from linkwright.launch.model.markup.parser import Parser
+
+
+@expose_action("for_each")
+class ForEach(Action):
+    """Calls a function for each of several sets of values, and visits what it returns.
+
+    Args:
+        input_values: the sets, each a YAML mapping in braces, with semicolons between them.
+        function: called with the values of a set by name; returns entities.
+    """
+
+    SEPARATOR = ";"
+
+    def __init__(self, input_values: SomeSubstitutionsType, *, function: Callable[..., Any], **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self._input_values = normalize_to_list_of_substitutions(input_values)
+        self._function = function
+
+    @classmethod
+    def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
+        """Reads ``values`` and the actions inside."""
+        _, kwargs = super().parse(entity, parser)
+        kwargs["input_values"] = parser.parse_substitution(entity.get_attr("values"))
+        children = [parser.parse_action(child) for child in entity.children]
+        kwargs["function"] = lambda **values: iteration(children, values)
+        return cls, kwargs
+
+    @property
+    def input_values(self) -> list[Substitution]:
+        """The sets of values, as substitutions."""
+        return self._input_values
+
+    @property
+    def function(self) -> Callable[..., Any]:
+        """The function."""
+        return self._function
+
+    def describe(self) -> str:
+        """Values and function."""
+        return f"{type(self).__name__}(input_values={describe(self._input_values)}, function={_name(self._function)})"
+
+    def execute(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity]:
+        """What the function returns for all sets, to be visited next.
+
+        Raises:
+            LinkwrightError: LAUNCH151, a set is no mapping.
+        """
+        import yaml
+
+        entities: list[LaunchDescriptionEntity] = []
+        for text in perform_substitutions(context, self._input_values).split(self.SEPARATOR):
+            if not text.strip():
+                continue
+            try:
+                values = yaml.safe_load(text)
+            except yaml.YAMLError as error:
+                raise error_at(
+                    self.place,
+                    "LAUNCH151",
+                    phrase("values '{text}' are no YAML: {error}", text=text.strip(), error=foreign(error)),
+                ) from error
+            if not isinstance(values, dict):
+                hint = phrase("write each set of values as {name: value, ...}, and ';' between them")
+                message = phrase("values '{text}' of the loop are no mapping", text=text.strip())
+                raise error_at(self.place, "LAUNCH151", message, hint)
+            entities += as_entities(self._function(**values))
+        return entities
+
+
+@expose_action("for")
+class ForLoop(Action):
+    """Calls a function for each number from 0, and visits what it returns.
+
+    Args:
+        length: how often.
+        function: called with the number as ``i``; returns entities.
+        name: the name by which ``$(index NAME)`` gives the number.
+    """
+
+    def __init__(
+        self, length: SomeSubstitutionsType, *, function: Callable[..., Any], name: str | None = None, **kwargs: Any
+    ) -> None:
+        super().__init__(**kwargs)
+        self._length = normalize_to_list_of_substitutions(length)
+        self._function = function
+        self._name = name
+
+    @classmethod
+    def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
+        """Reads ``len``, ``name`` and the actions inside."""
+        _, kwargs = super().parse(entity, parser)
+        kwargs["length"] = parser.parse_substitution(entity.get_attr("len"))
+        name = kwargs["name"] = entity.get_attr("name")
+        children = [parser.parse_action(child) for child in entity.children]
+        kwargs["function"] = lambda i: iteration(children, {name: i})
+        return cls, kwargs
+
+    @property
+    def length(self) -> list[Substitution]:
+        """How often, as substitutions."""
+        return self._length
+
+    @property
+    def function(self) -> Callable[..., Any]:
+        """The function."""
+        return self._function
+
+    @property
+    def name(self) -> str | None:
+        """The name of the number."""
+        return self._name
+
+    def describe(self) -> str:
+        """Length, name and function."""
+        length, function = describe(self._length), _name(self._function)
+        return f"{type(self).__name__}(length={length}, name='{self._name}', function={function})"
+
+    def execute(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity]:
+        """A `ForEach` over the numbers, to be visited next.
+
+        Raises:
+            ValueError: LAUNCH151, the length is no whole number.
+        """
+        text = perform_substitutions(context, self._length)
+        try:
+            length = int(text)
+        except ValueError as error:
+            message = phrase("the length '{text}' of a loop is no whole number", text=text)
+            raise error_at(self.place, "LAUNCH151", message, ros_error=error) from error
+        values = ForEach.SEPARATOR.join(f"{{i: {number}}}" for number in range(length))
+        return [ForEach(values, function=self._function)]
+
+
+def _name(function: Callable[..., Any]) -> str:
+    return str(getattr(function, "__name__", type(function).__name__))
+
+
+def iteration(children: Sequence[LaunchDescriptionEntity], values: Mapping[str, Any]) -> list[LaunchDescriptionEntity]:
+    """The actions of a loop for one set of values, which ``$(for-var NAME)`` and ``$(index NAME)`` give in them."""
+
+    def begin(context: LaunchContext) -> None:
+        context.push_locals()
+
+    def enter(context: LaunchContext) -> None:
+        context.extend_locals({local_name(name): str(value) for name, value in values.items()})
+
+    def leave(context: LaunchContext) -> None:
+        context.pop_locals()
+
+    # Three functions, as in ROS, whose users count what a loop makes. The children are copies, because an action such
+    # as a node keeps what it was started as.
+    around = [OpaqueFunction(function=each) for each in (begin, enter, leave)]
+    return [*around[:2], *deepcopy(list(children)), around[2]]

@@ -1,0 +1,107 @@
+"""What actions on launch configurations and environment variables share: a name, and perhaps a value."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from linkwright.launch.model.action import Action
+from linkwright.launch.model.context import LaunchContext
+from linkwright.launch.model.markup.entity import Entity
+from linkwright.launch.model.substitution import (
+    SomeSubstitutionsType,
+    Substitution,
+    describe,
+    normalize_to_list_of_substitutions,
+    perform_substitutions,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from linkwright.launch.model.markup.parser import Parser
+
+Pairs = list[tuple[list[Substitution], list[Substitution]]]
+"""Names and values, as substitutions."""
+
+
+class NamedAction(Action):
+    """An action on the thing of a name."""
+
+    def __init__(self, name: SomeSubstitutionsType, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self._name = normalize_to_list_of_substitutions(name)
+
+    @classmethod
+    def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
+        """Reads ``name``."""
+        _, kwargs = super().parse(entity, parser)
+        kwargs["name"] = parser.parse_substitution(entity.get_attr("name"))
+        return cls, kwargs
+
+    @property
+    def name(self) -> list[Substitution]:
+        """The name, as substitutions."""
+        return self._name
+
+    def describe(self) -> str:
+        """The name."""
+        return f"{type(self).__name__}({describe(self._name)})"
+
+    def resolved_name(self, context: LaunchContext) -> str:
+        """The name."""
+        return perform_substitutions(context, self._name)
+
+
+class AssigningAction(NamedAction):
+    """An action that gives a value to the thing of a name."""
+
+    def __init__(self, name: SomeSubstitutionsType, value: SomeSubstitutionsType, **kwargs: Any) -> None:
+        super().__init__(name, **kwargs)
+        self._value = normalize_to_list_of_substitutions(value)
+
+    @classmethod
+    def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
+        """Reads ``name`` and ``value``."""
+        _, kwargs = super().parse(entity, parser)
+        kwargs["value"] = parser.parse_substitution(entity.get_attr("value"))
+        return cls, kwargs
+
+    @property
+    def value(self) -> list[Substitution]:
+        """The value, as substitutions."""
+        return self._value
+
+    def describe(self) -> str:
+        """Name and value."""
+        return f"{type(self).__name__}({describe(self._name)}, {describe(self._value)})"
+
+    def resolved_value(self, context: LaunchContext) -> str:
+        """The value."""
+        return perform_substitutions(context, self._value)
+
+
+def parse_pairs(entity: Entity, parser: Parser, tag: str) -> dict[Any, Any] | None:
+    """Names and values of the entities of one tag inside of another, such as ``<env name= value=/>``."""
+    inside = entity.get_attr(tag, data_type=list[Entity], optional=True)
+    if inside is None:
+        return None
+    pairs = {
+        tuple(parser.parse_substitution(each.get_attr("name"))): parser.parse_substitution(each.get_attr("value"))
+        for each in inside
+    }
+    for each in inside:
+        each.assert_entity_completely_parsed()
+    return pairs
+
+
+def normalize_pairs(values: Any) -> Pairs:
+    """A mapping, or pairs, of names and values in one form."""
+    pairs: Iterable[Any] = values.items() if hasattr(values, "items") else values
+    return [
+        (normalize_to_list_of_substitutions(name), normalize_to_list_of_substitutions(value)) for name, value in pairs
+    ]
+
+
+def perform_pairs(context: LaunchContext, pairs: Pairs) -> dict[str, str]:
+    """Names and values as they are now."""
+    return {perform_substitutions(context, name): perform_substitutions(context, value) for name, value in pairs}

@@ -1,0 +1,101 @@
+"""The tag of a process: what ``executable`` and ``node`` have in common."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from linkwright.diagnostics import phrase
+from linkwright.launch.errors.places import error_at
+from linkwright.launch.model.actions.named import parse_pairs
+from linkwright.launch.model.markup.command_line import parse_command_line
+
+if TYPE_CHECKING:
+    from linkwright.launch.model.markup.entity import Entity
+    from linkwright.launch.model.markup.parser import Parser
+
+_TEXTS = {"cwd": "cwd", "name": "name", "prefix": "launch-prefix", "output": "output", "respawn": "respawn"}
+"""Argument -> attribute, of those that may have substitutions in them."""
+
+_TRUTHS = ("shell", "emulate_tty", "log_cmd", "cached_output", "split_arguments")
+_SECONDS = ("sigkill_timeout", "sigterm_timeout")
+
+
+def parse_process(entity: Entity, parser: Parser, ignored: frozenset[str]) -> dict[str, Any]:
+    """The keyword arguments of an `ExecuteProcess`.
+
+    Args:
+        entity: the tag.
+        parser: for the substitutions in it.
+        ignored: names of arguments that are not read.
+
+    Raises:
+        AttributeError: LAUNCH117, it has no ``cmd``.
+        TypeError: LAUNCH118, an attribute has another type.
+        ValueError: LAUNCH118, a value cannot be.
+    """
+    kwargs: dict[str, Any] = {}
+    if "cmd" not in ignored:
+        kwargs["cmd"] = parse_command_line(entity.get_attr("cmd"), parser)
+    for argument, attribute in _TEXTS.items():
+        if argument not in ignored:
+            value = entity.get_attr(attribute, optional=True, **_as_text(argument))
+            if value is not None:
+                kwargs[argument] = parser.parse_substitution(value) if isinstance(value, str) else value
+    for name in _TRUTHS:
+        if name not in ignored:
+            value = entity.get_attr(name, data_type=bool, optional=True, can_be_str=False)
+            if value is not None:
+                kwargs[name] = value
+    if "respawn_max_retries" not in ignored:
+        retries = entity.get_attr("respawn_max_retries", data_type=int, optional=True)
+        if retries is not None:
+            kwargs["respawn_max_retries"] = retries
+    if "respawn_delay" not in ignored:
+        delay = _not_negative(entity, "respawn_delay")
+        if delay is not None:
+            kwargs["respawn_delay"] = delay
+    for name in _SECONDS:
+        seconds = None if name in ignored else _not_negative(entity, name)
+        if seconds is not None:
+            kwargs[name] = str(seconds)
+    if "on_exit" not in ignored:
+        _parse_on_exit(entity, kwargs)
+    if "additional_env" not in ignored:
+        environment = parse_pairs(entity, parser, "env")
+        if environment is not None:
+            kwargs["additional_env"] = environment
+    return kwargs
+
+
+def _as_text(argument: str) -> dict[str, Any]:
+    """How an argument is read: a respawn of YAML may be a truth value, all others are text."""
+    return {"data_type": bool, "can_be_str": True} if argument == "respawn" else {}
+
+
+def _not_negative(entity: Entity, name: str) -> float | None:
+    value: float | None = entity.get_attr(name, data_type=float, optional=True, can_be_str=False)
+    if value is not None and value < 0.0:
+        text = f"Attribute {name} of Entity node expected to be a non-negative value but got `{value}`"
+        message = phrase("attribute '{name}' of '{type_name}' is negative", name=name, type_name=entity.type_name)
+        raise error_at(entity.place, "LAUNCH118", message, ros_error=ValueError(text))
+    return value
+
+
+def _parse_on_exit(entity: Entity, kwargs: dict[str, Any]) -> None:
+    from linkwright.launch.model.actions.events import Shutdown
+
+    on_exit = entity.get_attr("on_exit", optional=True)
+    if on_exit is None:
+        return
+    if on_exit != "shutdown":
+        text = (
+            f"Attribute on_exit of Entity node expected to be shutdown but got `{on_exit}`"
+            "Other on_exit actions not yet supported"
+        )
+        message = phrase(
+            "attribute 'on_exit' of '{type_name}' is '{on_exit}', and can only be 'shutdown'",
+            type_name=entity.type_name,
+            on_exit=on_exit,
+        )
+        raise error_at(entity.place, "LAUNCH118", message, ros_error=ValueError(text))
+    kwargs["on_exit"] = [Shutdown()]

@@ -1,0 +1,128 @@
+"""Actions after a while."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any
+
+from linkwright.diagnostics import phrase
+from linkwright.launch.errors.places import error_at
+from linkwright.launch.model import events
+from linkwright.launch.model.action import Action
+from linkwright.launch.model.context import LaunchContext
+from linkwright.launch.model.entity import LaunchDescriptionEntity, as_entities
+from linkwright.launch.model.markup.expose import expose_action
+from linkwright.launch.model.markup.values import normalize_typed_substitution, perform_typed_substitution
+from linkwright.launch.model.substitution import SomeSubstitutionsType, perform_substitutions
+
+if TYPE_CHECKING:
+    from linkwright.launch.model.markup.entity import Entity
+    from linkwright.launch.model.markup.parser import Parser
+    from linkwright.launch.model.running_launch import Schedule
+
+
+@expose_action("timer")
+class TimerAction(Action):
+    """Visits actions once, after a period.
+
+    Args:
+        period: seconds, a number or substitutions that give one.
+        actions: what is visited then.
+        cancel_on_shutdown: whether the end of the launch before that cancels it; otherwise the launch waits for it.
+    """
+
+    def __init__(
+        self,
+        *,
+        period: float | SomeSubstitutionsType,
+        actions: Iterable[LaunchDescriptionEntity],
+        cancel_on_shutdown: bool | SomeSubstitutionsType = True,
+        **kwargs: Any,
+    ) -> None:
+        super().__init__(**kwargs)
+        self._period = normalize_typed_substitution(_number(period, self), float)
+        self._actions = as_entities(actions)
+        self._cancel_on_shutdown = normalize_typed_substitution(cancel_on_shutdown, bool)
+        self._cancel: Callable[[], None] | None = None
+        self._canceled = False
+
+    @classmethod
+    def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
+        """Reads ``period``, ``cancel_on_shutdown`` and the actions inside."""
+        _, kwargs = super().parse(entity, parser)
+        kwargs["period"] = parser.parse_if_substitutions(entity.get_attr("period", data_type=float, can_be_str=True))
+        cancel = entity.get_attr("cancel_on_shutdown", optional=True, data_type=bool, can_be_str=True)
+        if cancel is not None:
+            kwargs["cancel_on_shutdown"] = parser.parse_if_substitutions(cancel)
+        kwargs["actions"] = [parser.parse_action(child) for child in entity.children]
+        return cls, kwargs
+
+    @property
+    def period(self) -> Any:
+        """Seconds, or substitutions that give them."""
+        return self._period
+
+    @property
+    def actions(self) -> list[LaunchDescriptionEntity]:
+        """The actions."""
+        return self._actions
+
+    def describe(self) -> str:
+        """The period."""
+        return f"{type(self).__name__}(period={self._period}, actions=<actions>)"
+
+    def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
+        """Nothing: the actions are visited only if nothing cancels it."""
+        return []
+
+    def describe_conditional_sub_entities(self) -> list[tuple[str, Iterable[LaunchDescriptionEntity]]]:
+        """The actions."""
+        return [(f"{self._period} seconds pass without being canceled", self._actions)]
+
+    def get_sub_entities(self) -> list[LaunchDescriptionEntity]:
+        """The actions."""
+        return self._actions
+
+    def cancel(self) -> None:
+        """Visit nothing, if the time has not come yet."""
+        self._canceled = True
+        if self._cancel is not None:
+            self._cancel()
+
+    def execute(self, context: LaunchContext) -> None:
+        """Start to wait.
+
+        Raises:
+            LinkwrightError: LAUNCH127, if the period is no number.
+        """
+        try:
+            seconds = float(perform_typed_substitution(context, self._period, float))
+            cancels = bool(perform_typed_substitution(context, self._cancel_on_shutdown, bool))
+        except ValueError as error:
+            text = perform_substitutions(context, self._period) if isinstance(self._period, list) else self._period
+            message = phrase("the period '{text}' of a timer is no number", text=text)
+            raise error_at(self.place, "LAUNCH127", message, ros_error=error) from error
+        if not self._canceled:
+            event = events.TimerEvent(timer_action=self, context=context)
+            self._cancel = context.session.call_later(
+                seconds, event, self._actions, cancel_on_shutdown=cancels, schedule=self._schedule(context)
+            )
+
+    def _schedule(self, context: LaunchContext) -> Schedule | None:  # noqa: ARG002 - for classes with a time of their own
+        """What counts the time; None for the launch's own loop."""
+        return None
+
+
+def _number(period: Any, timer: TimerAction) -> Any:
+    """The period as a number, where it is written as one."""
+    if isinstance(period, (bool, int)):
+        return float(period)
+    if isinstance(period, (list, tuple)) and all(isinstance(part, str) for part in period):
+        period = "".join(period)
+    if not isinstance(period, str):
+        return period
+    try:
+        return float(period)
+    except ValueError as error:
+        message = phrase("the period '{period}' of a timer is no number", period=period)
+        raise error_at(timer.place, "LAUNCH127", message, ros_error=error) from error

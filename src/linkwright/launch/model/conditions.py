@@ -1,0 +1,145 @@
+"""Conditions on actions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from linkwright.diagnostics import LinkwrightError, Phrase, phrase
+from linkwright.launch.errors.places import Placed, error_at, located
+from linkwright.launch.model.context import LaunchContext
+from linkwright.launch.model.substitution import (
+    SomeSubstitutionsType,
+    describe,
+    normalize_to_list_of_substitutions,
+    perform_substitutions,
+)
+
+_TRUE = ("true", "1")
+_FALSE = ("false", "0")
+
+
+class InvalidConditionExpressionError(Exception):
+    """The expression of a condition is neither true nor false.
+
+    Args:
+        given: its value, and what was accepted as true and as false; or one text.
+    """
+
+    def __init__(self, *given: Any) -> None:
+        self.text = str(given[0]) if given else ""
+        if len(given) > 1:
+            accepted = f"true={list(given[1])}, false={list(given[2])}" if len(given) > 2 else str(given[1])
+            super().__init__(f"invalid condition expression '{self.text}', expected one of: {accepted}")
+        else:
+            super().__init__(*given)
+
+
+class Condition(Placed):
+    """Decides when an action is visited whether it runs.
+
+    Args:
+        predicate: called with the launch context; without one, the action never runs.
+    """
+
+    def __init__(self, *, predicate: Callable[[LaunchContext], bool] | None = None) -> None:
+        self._predicate = predicate
+
+    def describe(self) -> str:
+        """A short form for listings."""
+        return f"{type(self).__name__}()"
+
+    def __str__(self) -> str:
+        return self.describe()
+
+    def _predicate_func(self, context: LaunchContext) -> bool:
+        """The same as `evaluate`, by the name under which launch files call it that look inside ROS's conditions."""
+        return self.evaluate(context)
+
+    def evaluate(self, context: LaunchContext) -> bool:
+        """Whether the action runs."""
+        if self._predicate is None:
+            return False
+        try:
+            return self._predicate(context)
+        except LinkwrightError as error:
+            raise located(error, self.place) from error
+        except InvalidConditionExpressionError as error:
+            raise error_at(self.place, "LAUNCH127", _words(error.text), ros_error=error) from error
+
+
+class _OnExpression(Condition):
+    """What asks whether an expression is true."""
+
+    def __init__(self, predicate_expression: Any, wanted: bool) -> None:
+        expression = normalize_to_list_of_substitutions(_text(predicate_expression))
+        super().__init__(predicate=lambda context: evaluate_condition_expression(context, expression) is wanted)
+        self._expression = expression
+
+    def describe(self) -> str:
+        """The expression."""
+        return f"{type(self).__name__}({describe(self._expression)})"
+
+
+class IfCondition(_OnExpression):
+    """The action runs if the expression is true."""
+
+    def __init__(self, predicate_expression: SomeSubstitutionsType) -> None:
+        super().__init__(predicate_expression, True)
+
+
+class UnlessCondition(_OnExpression):
+    """The action runs if the expression is false."""
+
+    def __init__(self, predicate_expression: SomeSubstitutionsType) -> None:
+        super().__init__(predicate_expression, False)
+
+
+class LaunchConfigurationEquals(Condition):
+    """The action runs if a launch configuration has a value; None asks whether it is unset."""
+
+    def __init__(self, launch_configuration_name: str, expected_value: SomeSubstitutionsType | None) -> None:
+        super().__init__(predicate=_equals(launch_configuration_name, expected_value))
+
+
+class LaunchConfigurationNotEquals(Condition):
+    """The action runs if a launch configuration has another value; None asks whether it is set."""
+
+    def __init__(self, launch_configuration_name: str, expected_value: SomeSubstitutionsType | None) -> None:
+        equals = _equals(launch_configuration_name, expected_value)
+        super().__init__(predicate=lambda context: not equals(context))
+
+
+def _equals(name: str, expected: SomeSubstitutionsType | None) -> Callable[[LaunchContext], bool]:
+    wanted = None if expected is None else normalize_to_list_of_substitutions(expected)
+
+    def evaluate(context: LaunchContext) -> bool:
+        value = context.launch_configurations.get(name)
+        if value is None or wanted is None:
+            return value is None and wanted is None
+        return bool(value == perform_substitutions(context, wanted))
+
+    return evaluate
+
+
+def evaluate_condition_expression(context: LaunchContext, expression: Any) -> bool:
+    """The truth of an expression: ``true`` or ``1``, ``false`` or ``0``, in upper or lower case.
+
+    Raises:
+        InvalidConditionExpressionError: for any other text.
+    """
+    text = perform_substitutions(context, normalize_to_list_of_substitutions(_text(expression)))
+    folded = text.strip().lower()
+    if folded in _TRUE:
+        return True
+    if folded in _FALSE:
+        return False
+    raise InvalidConditionExpressionError(text, _TRUE, _FALSE)
+
+
+def _text(expression: Any) -> Any:
+    return str(expression).lower() if isinstance(expression, bool) else expression
+
+
+def _words(text: str) -> Phrase:
+    return phrase("the condition is '{text}', which is neither 'true' or '1' nor 'false' or '0'", text=text)

@@ -1,0 +1,362 @@
+"""What a running launch knows: configurations, environment, locals, event handlers."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import os
+import sys
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator, MutableMapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, print_diagnostics
+from linkwright.launch.errors.exceptions import SubstitutionFailure
+from linkwright.launch.errors.places import Place, error_at, located
+
+if TYPE_CHECKING:
+    from linkwright.launch.model.descriptions import Descriptions
+    from linkwright.launch.model.events import Event
+    from linkwright.launch.model.running_launch import RunningLaunch
+
+
+class Performed(Protocol):
+    """A substitution, as far as the context knows."""
+
+    place: Place | None
+
+    def perform(self, context: LaunchContext) -> str:
+        """The text."""
+
+
+class Handler(Protocol):
+    """An event handler, as far as the context knows."""
+
+    def matches(self, event: Any) -> bool:
+        """Whether the handler is for the event."""
+
+    def handle(self, event: Any, context: LaunchContext) -> Any:
+        """The entities to be visited for the event."""
+
+
+class EventQueue:
+    """The events that wait to be handled.
+
+    Attributes:
+        on_put: called when one is added.
+    """
+
+    def __init__(self) -> None:
+        self._events: deque[Event] = deque()
+        self.on_put: Callable[[], None] | None = None
+
+    def put_nowait(self, event: Event) -> None:
+        """Add an event."""
+        self._events.append(event)
+        if self.on_put is not None:
+            self.on_put()
+
+    def get_nowait(self) -> Event:
+        """Take the oldest event.
+
+        Raises:
+            asyncio.QueueEmpty: when there is none.
+        """
+        if not self._events:
+            raise asyncio.QueueEmpty
+        return self._events.popleft()
+
+    def qsize(self) -> int:
+        """How many events wait."""
+        return len(self._events)
+
+    def empty(self) -> bool:
+        """Whether none waits."""
+        return not self._events
+
+
+class Locals:
+    """The values of the moment as attributes, to be read only."""
+
+    def __init__(self, values: dict[str, Any]) -> None:
+        object.__setattr__(self, "_values", values)
+
+    def __getattr__(self, name: str) -> Any:
+        values = object.__getattribute__(self, "_values")
+        if name not in values:
+            listed = ", ".join(values)
+            raise AttributeError(f"context.locals does not contain attribute '{name}', it contains: [{listed}]")
+        return values[name]
+
+    def __setattr__(self, name: str, value: object) -> None:
+        raise AttributeError(f"can't set attribute '{name}', locals are read-only")
+
+
+class LaunchContext:
+    """The state that actions and substitutions read and change.
+
+    Attributes:
+        argv: the arguments the launch was started with.
+        launch_configurations: name -> value of the launch configurations in scope.
+        environment: the environment variables, those of this process, as in ROS: what is set here is seen by
+            the processes started later and by ``$(env ...)`` in xacro files.
+    """
+
+    def __init__(self, *, argv: Iterable[str] | None = None, noninteractive: bool = False) -> None:
+        self.argv = list(argv or ())
+        self.noninteractive = noninteractive
+        self.launch_configurations: dict[str, Any] = {}
+        self.environment: MutableMapping[str, str] = os.environ
+        self._initial_environment = dict(os.environ)
+        self._event_queue = EventQueue()
+        self._event_handlers: deque[Handler] = deque()
+        self._is_shutdown = False
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._locals: list[dict[str, Any]] = [{}]
+        self._globals: dict[str, Any] = {}
+        self._configurations_stack: list[dict[str, Any]] = []
+        self._environment_stack: list[dict[str, str]] = []
+        self._session: RunningLaunch | None = None
+
+    def perform_substitution(self, substitution: Performed) -> str:
+        """The text of a substitution; an error says where the substitution was written."""
+        try:
+            return substitution.perform(self)
+        except LinkwrightError as error:
+            raise located(error, substitution.place) from error
+        except SubstitutionFailure as error:
+            raise error_at(substitution.place, "LAUNCH120", foreign(error), ros_error=error) from error
+
+    # --- locals ---------------------------------------------------------------------------------------------
+
+    @property
+    def locals(self) -> Locals:
+        """The values of the moment, such as ``event`` while an event is handled."""
+        return Locals(self.get_locals_as_dict())
+
+    def get_locals_as_dict(self) -> dict[str, Any]:
+        """The same values as a dict."""
+        merged = dict(self._globals)
+        for layer in self._locals:
+            merged.update(layer)
+        return merged
+
+    def extend_locals(self, extensions: dict[str, Any]) -> None:
+        """Set values of the moment."""
+        self._locals[-1].update(extensions)
+
+    def remove_locals(self, names: Iterable[str]) -> None:
+        """Remove local values from every scope that has them."""
+        for name in names:
+            for layer in self._locals:
+                layer.pop(name, None)
+
+    def extend_globals(self, extensions: dict[str, Any]) -> None:
+        """Set values that outlast the moment."""
+        self._globals.update(extensions)
+
+    def push_locals(self) -> None:
+        """Open a scope of locals: what `extend_locals` sets from here on ends with `pop_locals`."""
+        self._locals.append({})
+
+    def pop_locals(self) -> None:
+        """Close a scope of locals.
+
+        Raises:
+            RuntimeError: when none has begun.
+        """
+        if len(self._locals) < 2:
+            raise RuntimeError("locals stack unexpectedly empty")
+        self._locals.pop()
+
+    # --- scopes ---------------------------------------------------------------------------------------------
+
+    def push_launch_configurations(self) -> None:
+        """Open a scope of launch configurations."""
+        self._configurations_stack.append(dict(self.launch_configurations))
+
+    def pop_launch_configurations(self) -> None:
+        """Close it: they are what they were before.
+
+        Raises:
+            RuntimeError: when none is open.
+        """
+        if not self._configurations_stack:
+            raise RuntimeError("launch_configurations stack unexpectedly empty")
+        restored = self._configurations_stack.pop()
+        self.launch_configurations.clear()
+        self.launch_configurations.update(restored)
+
+    def push_environment(self) -> None:
+        """Open a scope of environment variables."""
+        self._environment_stack.append(dict(self.environment))
+
+    def pop_environment(self) -> None:
+        """Close it: they are what they were before.
+
+        Raises:
+            RuntimeError: when none is open.
+        """
+        if not self._environment_stack:
+            raise RuntimeError("environment stack unexpectedly empty")
+        self.reset_environment(self._environment_stack.pop())
+
+    def reset_environment(self, environment: dict[str, str] | None = None) -> None:
+        """Make the environment the one given, by default that in which the context was made."""
+        if environment is None:
+            environment = self._initial_environment
+        for name in [name for name in self.environment if name not in environment]:
+            del self.environment[name]
+        self.environment.update(environment)
+
+    def snapshot(self) -> LaunchContext:
+        """A context with the configurations as they are now, for an action that is to be tried again later."""
+        copy = LaunchContext(argv=self.argv, noninteractive=self.noninteractive)
+        copy.launch_configurations.update(self.launch_configurations)
+        copy._globals = dict(self._globals)
+        copy._locals = [self.get_locals_as_dict()]
+        copy._session = self._session
+        copy._loop = self._loop
+        copy._event_queue = self._event_queue
+        copy._event_handlers = self._event_handlers
+        return copy
+
+    # Users' entities and tests call these by the names that they have in ROS.
+    _push_locals = push_locals
+    _pop_locals = pop_locals
+    _push_launch_configurations = push_launch_configurations
+    _pop_launch_configurations = pop_launch_configurations
+    _push_environment = push_environment
+    _pop_environment = pop_environment
+    _reset_environment = reset_environment
+
+    # --- the running launch ---------------------------------------------------------------------------------
+
+    def attach(self, session: RunningLaunch) -> EventQueue:
+        """Attach the launch that runs in the context, which handles the events of the queue returned."""
+        self._session = session
+        return self._event_queue
+
+    @property
+    def is_running(self) -> bool:
+        """Whether a launch runs in this context."""
+        return self._session is not None
+
+    def detach(self) -> None:
+        """Detach the context from a launch that is over."""
+        self._session = None
+        self._event_queue.on_put = None
+        self._locals = self._locals[:1]
+
+    @property
+    def session(self) -> RunningLaunch:
+        """The running launch.
+
+        Raises:
+            RuntimeError: when nothing runs in this context.
+        """
+        if self._session is None:
+            raise RuntimeError("no launch runs in this context")
+        return self._session
+
+    @property
+    def descriptions(self) -> Descriptions | None:
+        """The robot descriptions of the running launch; None when nothing runs."""
+        return None if self._session is None else self._session.descriptions
+
+    def log(self, name: str, level: int, text: str) -> None:
+        """Write a line into the log of the launch.
+
+        Args:
+            name: whose line it is.
+            level: as in ``logging``.
+            text: the line.
+        """
+        if self._session is not None:
+            log = self._session.log
+            if level >= logging.ERROR:
+                log.complain(name, text)
+            elif level >= logging.WARNING:
+                log.caution(name, text)
+            else:
+                (log.say if level >= logging.INFO else log.detail)(name, text)
+        else:
+            from linkwright.launch.log.loggers import get_logger
+
+            get_logger(name).log(level, "%s", text)
+
+    @property
+    def log_folder(self) -> Path:
+        """The folder that this launch writes its log into."""
+        if self._session is not None:
+            return self._session.log.folder
+        from linkwright.launch.log.loggers import launch_config
+
+        return Path(launch_config.log_dir)
+
+    def warn(self, warning: Diagnostic) -> None:
+        """Warn the user."""
+        if self._session is None:
+            print_diagnostics([warning], sys.stderr)
+        else:
+            self._session.log.diagnostics([warning])
+
+    def remark(self, about: object, findings: Sequence[Diagnostic]) -> None:
+        """Report findings about a robot description, here and in the viewer."""
+        if self._session is None:
+            print_diagnostics(findings, sys.stderr)
+        else:
+            self._session.report(about, findings)
+
+    @property
+    def is_shutdown(self) -> bool:
+        """Whether the launch is ending."""
+        return self._is_shutdown or (self._session is not None and self._session.ending)
+
+    def _set_is_shutdown(self, state: bool) -> None:
+        self._is_shutdown = state
+
+    @property
+    def asyncio_loop(self) -> asyncio.AbstractEventLoop | None:
+        """The loop that the launch runs on."""
+        return self._session.loop if self._session is not None and self._session.loop else self._loop
+
+    def _set_asyncio_loop(self, loop: asyncio.AbstractEventLoop | None) -> None:
+        self._loop = loop
+
+    def add_completion_future(self, completion_future: asyncio.Future[Any]) -> None:
+        """Have the launch not end before something is done."""
+        if self._session is not None:
+            self._session.hold(completion_future)
+
+    def register_event_handler(self, event_handler: Handler, append: bool = False) -> None:
+        """Register a handler for every event from now on, before or after those registered earlier."""
+        if append:
+            self._event_handlers.append(event_handler)
+        else:
+            self._event_handlers.appendleft(event_handler)
+
+    def unregister_event_handler(self, event_handler: Handler) -> None:
+        """Unregister a handler.
+
+        Raises:
+            ValueError: if it is not registered.
+        """
+        self._event_handlers.remove(event_handler)
+
+    def would_handle_event(self, event: Event) -> bool:
+        """Whether any handler is for the event."""
+        return any(True for _ in self.handlers_of(event))
+
+    def handlers_of(self, event: Event) -> Iterator[Handler]:
+        """The handlers that are for the event, in the order in which they are asked."""
+        return (handler for handler in tuple(self._event_handlers) if handler.matches(event))
+
+    def emit_event_sync(self, event: Event) -> None:
+        """Put an event into the queue."""
+        self._event_queue.put_nowait(event)
+
+    async def emit_event(self, event: Event) -> None:
+        """Put an event into the queue."""
+        self._event_queue.put_nowait(event)

@@ -1,0 +1,76 @@
+"""Which arguments a launch description declares."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.launch.model.actions.arguments import DeclareLaunchArgument
+from linkwright.launch.model.actions.configurations import ResetLaunchConfigurations
+from linkwright.launch.model.entity import LaunchDescriptionEntity
+
+
+def declared_arguments(
+    entities: Iterable[LaunchDescriptionEntity], conditional_inclusion: bool = False
+) -> list[DeclareLaunchArgument]:
+    """The arguments declared by entities and by what they hold and include, as far as can be known now.
+
+    The first declaration of a name counts. Those behind a condition are marked by ``conditionally_included``.
+    Declarations after a `ResetLaunchConfigurations` cannot be given from outside, and do not count.
+    """
+    found = _Declared()
+    found.collect(entities, conditional_inclusion, ())
+    return list(found.arguments.values())
+
+
+def undeclared_names(entities: Iterable[LaunchDescriptionEntity], names: Iterable[str]) -> list[str]:
+    """Those of some names that nothing in a description declares; none where not all of it can be known yet."""
+    found = _Declared()
+    found.collect(entities, False, ())
+    return [] if found.incomplete else [name for name in names if name not in found.names]
+
+
+class _Declared:
+    """What entities declare.
+
+    Attributes:
+        arguments: name -> declaration of what can be given from outside.
+        names: all names, those included that an including file gives.
+        incomplete: whether something is included that cannot be looked into.
+    """
+
+    def __init__(self) -> None:
+        self.arguments: dict[str, DeclareLaunchArgument] = {}
+        self.names: set[str] = set()
+        self.incomplete = False
+
+    def collect(
+        self, entities: Iterable[LaunchDescriptionEntity], conditional: bool, set_outside: tuple[str, ...]
+    ) -> None:
+        """Take in what entities declare.
+
+        Args:
+            entities: where to look.
+            conditional: whether a condition decides if they are visited.
+            set_outside: the names that an including file gives.
+        """
+        for entity in entities:
+            if isinstance(entity, ResetLaunchConfigurations):
+                return
+            if isinstance(entity, DeclareLaunchArgument):
+                entity.conditionally_included = conditional or entity.condition is not None
+                self.names.add(entity.name)
+                if entity.name not in set_outside:
+                    self.arguments.setdefault(entity.name, entity)
+                continue
+            inside = set_outside + entity.arguments_given_inside()
+            try:
+                below = entity.describe_sub_entities()
+                maybe = entity.describe_conditional_sub_entities()
+                self.incomplete |= entity.hides_entities()
+            except LinkwrightError:
+                self.incomplete = True
+                continue  # an included file that cannot be read is reported when it is visited
+            self.collect(below, conditional, inside)
+            for _, some in maybe:
+                self.collect(some, True, inside)

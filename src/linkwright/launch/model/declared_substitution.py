@@ -1,0 +1,214 @@
+"""Substitutions that are declared: a name, arguments and a function.
+
+A class says by which tag ``$(tag ...)`` makes it, how listings show it, and which arguments it has::
+
+    class EnvironmentVariable(DeclaredSubstitution, tag="env", shown="EnvVar({name})"):
+        name: Texts = Texts()
+        default_value: OptionalTexts = OptionalTexts(default=None, kw_only=True)
+
+        def perform(self, context: LaunchContext) -> str: ...
+
+Its constructor, its properties, what it reads of XML and YAML, and the check of how many arguments there are follow
+from that.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+
+from linkwright.launch.model.markup.expose import expose_substitution
+from linkwright.launch.model.substitution import (
+    SomeSubstitutionsType,
+    Substitution,
+    describe,
+    normalize_to_list_of_substitutions,
+)
+
+if TYPE_CHECKING:
+    from typing_extensions import dataclass_transform
+else:
+    C = TypeVar("C")
+
+    def dataclass_transform(**_: Any) -> Callable[[C], C]:
+        """Tells type checkers that a constructor is made from the fields; of no effect when the program runs."""
+        return lambda decorated: decorated
+
+
+_REQUIRED = object()
+
+
+class Texts:
+    """An argument made of texts and substitutions, to be joined.
+
+    Args:
+        default: what is taken where it is not given.
+        kw_only: whether Python code gives it by its name only.
+        read: makes a list of substitutions of what is given.
+    """
+
+    def __init__(
+        self,
+        *,
+        default: Any = _REQUIRED,
+        kw_only: bool = False,
+        read: Callable[[Any], Any] = normalize_to_list_of_substitutions,
+    ) -> None:
+        self.default = default
+        self.kw_only = kw_only
+        self.read = read
+        self.name = ""
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self.name = name
+
+    @property
+    def is_required(self) -> bool:
+        """Whether it has to be given."""
+        return self.default is _REQUIRED
+
+    def __get__(self, owner: Any, kind: type | None = None) -> list[Substitution]:
+        """The argument, as substitutions."""
+        if owner is None:
+            return self  # type: ignore[return-value]  # the declaration, asked of the class
+        texts: list[Substitution] = owner.__dict__[self.name]
+        return texts
+
+    def __set__(self, owner: Any, value: SomeSubstitutionsType | Path) -> None:
+        """Take what is given, checked and brought into one form."""
+        owner.__dict__[self.name] = self.read(value)
+
+    def describe(self, value: Any) -> str:
+        """The argument as listings show it."""
+        return describe(value)
+
+
+class OptionalTexts(Texts):
+    """Such an argument that may be None."""
+
+    if TYPE_CHECKING:
+        # What is read of an instance may be None; mypy sees only the method of another type.
+        def __get__(self, owner: Any, kind: type | None = None) -> list[Substitution] | None:  # type: ignore[override]
+            ...
+
+    def __set__(self, owner: Any, value: SomeSubstitutionsType | Path | None) -> None:
+        """Take what is given, checked and brought into one form."""
+        owner.__dict__[self.name] = None if value is None else self.read(value)
+
+    def describe(self, value: Any) -> str:
+        """The argument as listings show it."""
+        return describe(value or [])
+
+
+class AnyTexts(Texts):
+    """Such an argument that may be given as a value of another kind too, which `read` takes."""
+
+    def __set__(self, owner: Any, value: Any) -> None:
+        """Take what is given, checked and brought into one form."""
+        owner.__dict__[self.name] = self.read(value)
+
+
+class AnyOptionalTexts(OptionalTexts):
+    """Such an argument that may be None or a value of another kind."""
+
+    def __set__(self, owner: Any, value: Any) -> None:
+        """Take what is given, checked and brought into one form."""
+        super().__set__(owner, value)
+
+
+class TextLists(Texts):
+    """An argument that is a list of such texts."""
+
+    def __init__(self, *, default: Any = _REQUIRED, read: Callable[[Any], Any] = iter) -> None:
+        super().__init__(default=default, read=lambda value: list(map(normalize_to_list_of_substitutions, read(value))))
+
+    # What is given and read is a list more than of `Texts`; nobody holds both by the type of the latter.
+    if TYPE_CHECKING:
+
+        def __get__(self, owner: Any, kind: type | None = None) -> list[list[Substitution]]:  # type: ignore[override]
+            ...
+
+    def __set__(self, owner: Any, value: Iterable[SomeSubstitutionsType]) -> None:  # type: ignore[override]
+        """Take what is given, checked and brought into one form."""
+        owner.__dict__[self.name] = self.read(value)
+
+    def describe(self, value: Any) -> str:
+        """The argument as listings show it."""
+        return ", ".join(map(describe, value))
+
+
+@dataclass_transform(field_specifiers=(Texts, OptionalTexts, AnyTexts, AnyOptionalTexts, TextLists))
+class DeclaredSubstitution(Substitution):
+    """What declared substitutions derive from.
+
+    Class arguments:
+        tag: the name in ``$(name ...)``; several with slashes between them; none for Python code only.
+        shown: how listings show it, with the arguments in braces and its class as ``{kind}``; by default the class and
+            all arguments.
+    """
+
+    _tag: ClassVar[str] = ""
+    _shown: ClassVar[str | None] = None
+    _arguments: ClassVar[tuple[Texts, ...]] = ()
+
+    def __init_subclass__(cls, *, tag: str = "", shown: str | None = None, **kwargs: Any) -> None:
+        super().__init_subclass__(**kwargs)
+        declared = tuple(each for each in vars(cls).values() if isinstance(each, Texts))
+        if declared:
+            cls._arguments = declared
+            if "__init__" not in vars(cls):
+                type.__setattr__(cls, "__init__", _constructor(cls))
+        if shown is not None:
+            cls._shown = shown
+        if tag:
+            cls._tag = tag
+            for each in tag.split("/"):
+                expose_substitution(each)(cls)
+
+    @classmethod
+    def parse(cls, data: Sequence[Any]) -> tuple[Any, dict[str, Any]]:
+        """The class and the keyword arguments.
+
+        Args:
+            data: the arguments, each a list of substitutions.
+
+        Raises:
+            Exception: there are too many or too few, see `wrong_count`.
+        """
+        arguments = cls._arguments
+        least, most = sum(each.is_required for each in arguments), len(arguments)
+        if not least <= len(data) <= most:
+            expected = str(most) if least == most else f"{least} or {most}"
+            raise cls.wrong_count(f"{expected} argument{'' if most == 1 else 's'}", len(data))
+        return cls, dict(zip((each.name for each in arguments), data, strict=False))
+
+    @classmethod
+    def wrong_count(cls, expected: str, given: int) -> Exception:  # noqa: ARG003 - for classes that tell
+        """What is raised where another number of arguments is given; ROS raises various classes."""
+        return TypeError(f"{cls._tag} substitution expects {expected}")
+
+    def describe(self) -> str:
+        """Its class and its arguments."""
+        texts = {each.name: each.describe(vars(self)[each.name]) for each in self._arguments}
+        if self._shown is None:
+            return f"{type(self).__name__}({', '.join(texts.values())})"
+        return self._shown.format(kind=type(self).__name__, **texts)
+
+
+def _constructor(cls: type[DeclaredSubstitution]) -> Callable[..., None]:
+    """A function with the declared arguments, so that Python itself checks them and editors know them."""
+    names: dict[str, Any] = {}
+    parameters = ["self"]
+    for argument in sorted(cls._arguments, key=lambda each: each.kw_only):
+        if argument.kw_only and "*" not in parameters:
+            parameters.append("*")
+        parameters.append(argument.name if argument.is_required else f"{argument.name}=_default_{argument.name}")
+        names[f"_default_{argument.name}"] = argument.default
+    lines = [f"    self.{each.name} = {each.name}" for each in cls._arguments]
+    code = f"def __init__({', '.join(parameters)}):\n" + "\n".join(lines)
+    exec(compile(code, __file__, "exec"), names)  # noqa: S102 - made of the names of the class's own attributes
+    made: Callable[..., None] = names["__init__"]
+    made.__qualname__ = f"{cls.__qualname__}.__init__"
+    made.__module__ = cls.__module__
+    return made

@@ -1,0 +1,104 @@
+"""The launch description: what a launch file returns."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any
+
+from linkwright.diagnostics import phrase
+from linkwright.launch.errors.places import Place, error_at
+from linkwright.launch.model.action import Action
+from linkwright.launch.model.declared_arguments import declared_arguments
+from linkwright.launch.model.entity import LaunchDescriptionEntity
+
+if TYPE_CHECKING:
+    from linkwright.launch.model.actions.arguments import DeclareLaunchArgument
+    from linkwright.launch.model.context import LaunchContext
+
+
+class LaunchDescription(LaunchDescriptionEntity):
+    """Entities in the order in which they are visited.
+
+    Args:
+        initial_entities: the entities.
+        deprecated_reason: why it should not be used any more; said when it is visited.
+    """
+
+    def __init__(
+        self,
+        initial_entities: Iterable[LaunchDescriptionEntity] | None = None,
+        *,
+        deprecated_reason: str | None = None,
+    ) -> None:
+        self._entities = [_checked(each) for each in initial_entities or ()]
+        self._deprecated_reason = deprecated_reason
+
+    @property
+    def entities(self) -> list[LaunchDescriptionEntity]:
+        """The entities."""
+        return self._entities
+
+    @property
+    def deprecated(self) -> bool:
+        """Whether it should not be used any more."""
+        return self._deprecated_reason is not None
+
+    @property
+    def deprecated_reason(self) -> str | None:
+        """Why it should not be used any more."""
+        return self._deprecated_reason
+
+    def describe(self) -> str:
+        """How many entities it has."""
+        number = len(self._entities)
+        return f"{type(self).__name__}({number} {'entity' if number == 1 else 'entities'})"
+
+    def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
+        """The entities, as tools that look at a description ask for them."""
+        return self._entities
+
+    def add_entity(self, entity: LaunchDescriptionEntity) -> None:
+        """Append an entity.
+
+        Raises:
+            AttributeError: LAUNCH147, it is none.
+        """
+        self._entities.append(_checked(entity))
+
+    def add_action(self, action: Action) -> None:
+        """Append an action.
+
+        Raises:
+            AttributeError: LAUNCH147, it is none.
+        """
+        self._entities.append(_checked(action))
+
+    def visit(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity]:
+        """The entities, to be visited next."""
+        if self.deprecated:
+            file = context.get_locals_as_dict().get("current_launch_file_path")
+            where = f"launch file [{file}] is" if file else "launch description is"
+            text = f"The {where} deprecated: {self._deprecated_reason}"
+            if hasattr(context, "log"):
+                context.log("launch", logging.WARNING, text)
+        return self._entities
+
+    def get_launch_arguments(self, conditional_inclusion: bool = False) -> list[DeclareLaunchArgument]:
+        """The arguments declared here and, as far as can be known before it runs, in what is included.
+
+        Of several declarations with one name the first is given. A declaration behind a condition is marked
+        by its ``conditionally_included``.
+        """
+        return declared_arguments(self.entities, conditional_inclusion)
+
+
+def _checked(entity: Any) -> Any:
+    """What a description is given, if it can be visited: ROS fails when the launch runs, and far from the place."""
+    if isinstance(entity, LaunchDescriptionEntity) or hasattr(entity, "visit"):
+        return entity
+    kind = type(entity).__name__
+    message = phrase("a launch description holds actions, and is given something of type {kind}", kind=kind)
+    hint = phrase("add each action by itself") if isinstance(entity, (list, tuple)) else None
+    text = f"'{kind}' object has no attribute 'visit'"
+    raise error_at(Place.of_caller(), "LAUNCH147", message, hint, ros_error=AttributeError(text))

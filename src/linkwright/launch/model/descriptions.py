@@ -1,0 +1,205 @@
+"""Robot descriptions that come from xacro: which text was expanded from which file, with which arguments."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, phrase, quoted_names
+from linkwright.packages import PackageFinder
+
+if TYPE_CHECKING:
+    from linkwright.descriptions import Description, DescriptionLibrary
+
+_OPTIONS_WITHOUT_EFFECT = frozenset({"--inorder", "-i", "-q"})
+_OPTIONS_WITH_A_VALUE = frozenset({"-v", "--verbosity"})
+
+
+@dataclass(frozen=True)
+class XacroCall:
+    """One use of xacro.
+
+    Attributes:
+        path: the model file, absolute.
+        arguments: name and value of the arguments given.
+    """
+
+    path: Path
+    arguments: tuple[tuple[str, str], ...] = ()
+
+
+class DescriptionError(LinkwrightError):
+    """A model file that cannot be expanded.
+
+    Attributes:
+        call: what was to be expanded.
+    """
+
+    def __init__(self, call: XacroCall, diagnostics: Iterable[Diagnostic]) -> None:
+        super().__init__(*diagnostics)
+        self.call = call
+
+    @property
+    def missing(self) -> bool:
+        """Whether the model file itself cannot be read, so that no edit can repair it."""
+        return not self.call.path.is_file() or not os.access(self.call.path, os.R_OK)
+
+
+class Descriptions:
+    """Expands model files and remembers what came out, with the positions that messages and the viewer need.
+
+    Args:
+        finder: where packages are.
+    """
+
+    def __init__(self, finder: PackageFinder) -> None:
+        self.finder = finder
+        self._warnings: dict[XacroCall, tuple[Diagnostic, ...]] = {}
+        self._read_ns: dict[XacroCall, int] = {}
+        self._calls: dict[str, XacroCall] = {}
+        self._files: dict[XacroCall, tuple[Path, ...]] = {}
+        self._library: DescriptionLibrary | None = None
+
+    @property
+    def library(self) -> DescriptionLibrary:
+        """The descriptions that the nodes and the viewer read from."""
+        if self._library is None:
+            from linkwright.descriptions import DescriptionLibrary
+
+            self._library = DescriptionLibrary()
+        return self._library
+
+    def expand(self, call: XacroCall) -> str:
+        """The text of a description, remembered in the library.
+
+        Raises:
+            DescriptionError: what the file, or one it includes, does wrong.
+        """
+        return self.remember(call, self.read(call))
+
+    def read(self, call: XacroCall) -> Description:
+        """Expand and read, without remembering anything; may run in another thread.
+
+        Raises:
+            DescriptionError: what the file, or one it includes, does wrong; what is wrong in the parts that are whole
+                is told with it.
+        """
+        from linkwright.descriptions import examine
+
+        self.begin(call)
+        try:
+            found = examine(call.path, arguments=dict(call.arguments), packages=self.finder, xacro=True, partly=True)
+        except LinkwrightError as error:
+            raise DescriptionError(call, error.diagnostics) from error
+        if found.problems:
+            raise DescriptionError(call, found.diagnostics)
+        return found
+
+    def begin(self, call: XacroCall) -> None:
+        """Note the time before the files of a model are read."""
+        self._read_ns[call] = time.time_ns()
+
+    def remember(self, call: XacroCall, description: Description, text: str | None = None) -> str:
+        """Keep a description; returns its text, which is `text` if that is what stands for it elsewhere."""
+        text = self.library.remember(description, text)
+        self._files[call] = description.files
+        self._calls[text] = call
+        self._warnings[call] = description.remarks
+        return text
+
+    def call_of(self, text: str) -> XacroCall | None:
+        """The use of xacro that gave a text, or None for a text from elsewhere."""
+        return self._calls.get(text)
+
+    def warnings_of(self, call: XacroCall) -> tuple[Diagnostic, ...]:
+        """The warnings of the last good expansion."""
+        return self._warnings.get(call, ())
+
+    def read_ns(self, call: XacroCall) -> int:
+        """When the files were last read, nanoseconds since the epoch; 0 for never."""
+        return self._read_ns.get(call, 0)
+
+    def files_of(self, call: XacroCall) -> tuple[Path, ...]:
+        """The files that the last good expansion read; the model file alone while there was none."""
+        return self._files.get(call, (call.path,))
+
+
+_current: ContextVar[Descriptions | None] = ContextVar("linkwright_descriptions", default=None)
+
+
+def current_descriptions() -> Descriptions | None:
+    """The descriptions of the launch that is being loaded or run, for those who cannot be handed them."""
+    return _current.get()
+
+
+@contextmanager
+def use_descriptions(descriptions: Descriptions) -> Iterator[None]:
+    """Make `current_descriptions` return them inside a ``with`` block."""
+    token = _current.set(descriptions)
+    try:
+        yield
+    finally:
+        _current.reset(token)
+
+
+def parse_xacro_words(words: Sequence[str], text: str, folder: Path) -> tuple[XacroCall, Phrase | None]:
+    """What ``xacro`` is asked for by the words of a command.
+
+    Args:
+        words: what follows ``xacro``.
+        text: the same as written, before it was split into words.
+        folder: what relative paths start from.
+
+    Returns:
+        The use of xacro, and a remark for the user or None.
+
+    Raises:
+        LinkwrightError: LAUNCH128, if the words are no use of xacro that gives a text.
+    """
+    files: list[str] = []
+    arguments: dict[str, str] = {}
+    waiting = iter(words)
+    for word in waiting:
+        name, separator, value = word.partition(":=")
+        if separator:
+            if value and not name.startswith("_"):
+                arguments[name] = value
+        elif word in _OPTIONS_WITH_A_VALUE:
+            next(waiting, None)
+        elif word.startswith("-") and len(word) > 1:
+            if word not in _OPTIONS_WITHOUT_EFFECT and not word.startswith(("-v", "--verbosity=")):
+                raise _misuse(
+                    phrase("option '{word}' of xacro has no place in a launch file", word=word), phrase("leave it out")
+                )
+        else:
+            files.append(word)
+    remark = None
+    if len(files) > 1:
+        whole = text.split(":=", 1)[0].rsplit(None, 1)[0] if ":=" in text else text
+        if not (folder / whole.strip()).is_file():
+            raise _misuse(
+                phrase(
+                    "xacro expects exactly one model file, but was given {count}: {files}",
+                    count=len(files),
+                    files=quoted_names(files),
+                ),
+                phrase("put quotes around a path with blanks: Command(['xacro \"', path, '\"'])"),
+            )
+        files = [whole.strip()]
+        remark = phrase(
+            "the path '{files}' has blanks and no quotes around it: real xacro would take it for several files",
+            files=files[0],
+        )
+    if not files:
+        raise _misuse(phrase("xacro is given no model file"), phrase("write Command(['xacro ', path])"))
+    return XacroCall(folder / files[0], tuple(arguments.items())), remark
+
+
+def _misuse(message: Phrase, hint: Phrase) -> LinkwrightError:
+    return LinkwrightError(Diagnostic("LAUNCH128", message, hint=hint))

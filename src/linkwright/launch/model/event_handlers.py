@@ -1,0 +1,234 @@
+"""Event handlers: what is to be done when something happens."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any
+
+from linkwright.launch.model import events
+from linkwright.launch.model.action import Action
+from linkwright.launch.model.entity import LaunchDescriptionEntity, SomeEntitiesType, as_entities
+
+if TYPE_CHECKING:
+    from linkwright.launch.model.context import LaunchContext
+
+EntitiesOrCallable = SomeEntitiesType | Callable[..., Any] | None
+
+
+class BaseEventHandler:
+    """Reacts to the events that a matcher accepts; users derive from it and override `handle`.
+
+    Args:
+        matcher: called with the event.
+        handle_once: whether it is unregistered after the first event.
+    """
+
+    def __init__(self, *, matcher: Callable[[Any], bool], handle_once: bool = False) -> None:
+        self._matcher = matcher
+        self._handle_once = handle_once
+
+    @property
+    def handle_once(self) -> bool:
+        """Whether it is unregistered after the first event."""
+        return self._handle_once
+
+    @property
+    def handler_description(self) -> str | None:
+        """What it does, for listings."""
+        return None
+
+    @property
+    def matcher_description(self) -> str | None:
+        """Which events it is for, for listings."""
+        return None
+
+    @property
+    def entities(self) -> Any:
+        """The entities that it visits, as far as they are known beforehand."""
+        return None
+
+    def matches(self, event: Any) -> bool:
+        """Whether the handler is for the event."""
+        return self._matcher(event)
+
+    def describe(self) -> tuple[str, list[LaunchDescriptionEntity]]:
+        """What listings say of it, and the entities that it visits."""
+        text = (
+            f"{type(self).__name__}(matcher='{self.matcher_description}', handler='{self.handler_description}', "
+            f"handle_once={self.handle_once})"
+        )
+        return text, list(_listed(self.entities))
+
+    def handle(self, event: Any, context: LaunchContext) -> Any:
+        """Take note of the event; what derives from it returns the entities to be visited."""
+        context.extend_locals({"event": event})
+        if self.handle_once:
+            context.unregister_event_handler(self)
+        return None
+
+
+class EventHandler(BaseEventHandler):
+    """Gives entities to be visited when an event comes that its matcher accepts.
+
+    Args:
+        matcher: called with the event.
+        entities: what is visited then.
+        handle_once: whether it is unregistered after the first event.
+    """
+
+    def __init__(
+        self, *, matcher: Callable[[Any], bool], entities: SomeEntitiesType | None = None, handle_once: bool = False
+    ) -> None:
+        super().__init__(matcher=matcher, handle_once=handle_once)
+        self._entities = entities
+
+    @property
+    def entities(self) -> Any:
+        """The entities to be visited."""
+        return self._entities
+
+    def handle(self, event: Any, context: LaunchContext) -> Any:
+        """The entities to be visited for the event."""
+        super().handle(event, context)
+        return self._entities
+
+
+class _ReactingHandler(BaseEventHandler):
+    """Gives entities, or what a function of the event gives, to be visited.
+
+    Args:
+        matcher: called with the event.
+        reaction: the entities, or a function of event and context that returns them.
+        name: what the user knows the reaction by.
+        handle_once: whether it is unregistered after the first event.
+
+    Raises:
+        TypeError: the reaction is neither.
+    """
+
+    def __init__(
+        self, *, matcher: Callable[[Any], bool], reaction: EntitiesOrCallable, name: str, handle_once: bool
+    ) -> None:
+        super().__init__(matcher=matcher, handle_once=handle_once)
+        self._function, self._entities = _reaction(reaction, name)
+
+    @property
+    def entities(self) -> list[LaunchDescriptionEntity]:
+        """The entities to be visited, as far as they are known beforehand."""
+        return self._entities
+
+    @property
+    def handler_description(self) -> str:
+        """The function, or that there are actions."""
+        return "<actions>" if self._function is None else str(self._function)
+
+    def handle(self, event: Any, context: LaunchContext) -> Any:
+        """The entities to be visited for the event."""
+        super().handle(event, context)
+        return self._entities if self._function is None else self._function(event, context)
+
+
+class OnActionEventBase(_ReactingHandler):
+    """A handler for events that come from an action.
+
+    Args:
+        action_matcher: the action, a function of an action, or None for all.
+        on_event: what is visited, or a function of event and context that returns that.
+        target_event_cls: the class of the events.
+        target_action_cls: the class of the actions.
+        handle_once: whether it is unregistered after the first event.
+    """
+
+    def __init__(
+        self,
+        *,
+        action_matcher: Any,
+        on_event: EntitiesOrCallable,
+        target_event_cls: type[events.Event],
+        target_action_cls: type[Action],
+        handle_once: bool = False,
+    ) -> None:
+        if not issubclass(target_event_cls, events.Event):
+            raise TypeError("'target_event_cls' must be a subclass of 'Event'")
+        is_action = isinstance(action_matcher, target_action_cls)
+        if action_matcher is not None and not is_action and not callable(action_matcher):
+            raise TypeError(f"action_matcher must be an '{target_action_cls.__name__}' instance or a callable")
+
+        def matches(event: Any) -> bool:
+            if not isinstance(event, target_event_cls):
+                return False
+            if action_matcher is None:
+                return True
+            source = event.action  # type: ignore[attr-defined]
+            return source is action_matcher if is_action else bool(action_matcher(source))
+
+        super().__init__(matcher=matches, reaction=on_event, name="on_event", handle_once=handle_once)
+        self._event_name = target_event_cls.__name__
+        self._action_name = None if action_matcher is None else target_action_cls.__name__
+
+    @property
+    def matcher_description(self) -> str:
+        """Which events it is for."""
+        if self._action_name is None:
+            return f"event == {self._event_name}"
+        return f"event == {self._event_name} and {self._action_name}(event.action)"
+
+
+def _reaction(given: Any, name: str) -> tuple[Callable[..., Any] | None, list[LaunchDescriptionEntity]]:
+    """A function, or else entities."""
+    if callable(given) and not isinstance(given, LaunchDescriptionEntity):
+        return given, []
+    try:
+        return None, as_entities(given)
+    except TypeError as error:
+        raise TypeError(f"'{name}' must be launch actions or a function that returns them: {error}") from error
+
+
+def _listed(entities: Any) -> Iterable[Any]:
+    if entities is None:
+        return ()
+    return entities if isinstance(entities, Iterable) else (entities,)
+
+
+class OnExecutionComplete(OnActionEventBase):
+    """Reacts when an action that takes time has ended."""
+
+    def __init__(
+        self, *, on_completion: EntitiesOrCallable, target_action: Any = None, handle_once: bool = False
+    ) -> None:
+        super().__init__(
+            action_matcher=target_action,
+            on_event=on_completion,
+            target_event_cls=events.ExecutionComplete,
+            target_action_cls=Action,
+            handle_once=handle_once,
+        )
+
+
+class OnIncludeLaunchDescription(BaseEventHandler):
+    """Visits the description of each `IncludeLaunchDescription` event."""
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__(matcher=lambda event: isinstance(event, events.IncludeLaunchDescription), **kwargs)
+
+    def handle(self, event: Any, context: LaunchContext) -> Any:
+        """The description."""
+        super().handle(event, context)
+        return event.launch_description
+
+
+class OnShutdown(_ReactingHandler):
+    """Reacts when the launch is to end."""
+
+    def __init__(self, *, on_shutdown: EntitiesOrCallable, handle_once: bool = False, **_: Any) -> None:
+        super().__init__(
+            matcher=lambda event: isinstance(event, events.Shutdown),
+            reaction=on_shutdown,
+            name="on_shutdown",
+            handle_once=handle_once,
+        )
+
+    @property
+    def matcher_description(self) -> str:
+        """Which events it is for."""
+        return "event issubclass of launch.events.Shutdown"

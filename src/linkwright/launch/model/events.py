@@ -1,0 +1,253 @@
+"""Events: what happens while a launch runs."""
+
+from __future__ import annotations
+
+import signal as signals
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Protocol
+
+from linkwright.launch.errors.places import Place
+
+
+class ProcessAction(Protocol):
+    """An action that has a process, or a node of the launcher's own process, started.
+
+    Attributes:
+        place: where in the user's program it was made.
+        process_details: ``name``, ``cmd``, ``cwd``, ``env`` and ``pid`` once it runs.
+    """
+
+    place: Place | None
+    process_details: dict[str, Any] | None
+
+    def wrote(self, stream: int, text: bytes) -> None:
+        """Take note of what the process wrote to stdout (1) or stderr (2)."""
+
+    def exited(self, event: ProcessExited, context: Any) -> list[Any]:
+        """The entities that are to be visited now that the process has ended."""
+
+
+ProcessMatcher = Callable[[ProcessAction], bool]
+
+
+class Event:
+    """Something that happened or is asked for."""
+
+    name = "launch.Event"
+
+
+class IncludeLaunchDescription(Event):
+    """A description is to be visited."""
+
+    name = "launch.events.IncludeLaunchDescription"
+
+    def __init__(self, launch_description: Any) -> None:
+        self.launch_description = launch_description
+
+
+class Shutdown(Event):
+    """The launch is to end."""
+
+    name = "launch.events.Shutdown"
+
+    def __init__(self, *, reason: str = "reason not given", due_to_sigint: bool = False) -> None:
+        self.reason = reason
+        self.due_to_sigint = due_to_sigint
+
+
+class TimerEvent(Event):
+    """The time of a timer has come."""
+
+    name = "launch.events.TimerEvent"
+
+    def __init__(self, *, timer_action: object, context: object = None) -> None:
+        self.timer_action = timer_action
+        self.context = context
+
+
+class ExecutionComplete(Event):
+    """An action that takes time has ended."""
+
+    name = "launch.events.ExecutionComplete"
+
+    def __init__(self, *, action: object) -> None:
+        self.action = action
+
+
+class RunningProcessEvent(Event):
+    """Something about a process, or about a node that runs in the launcher's own process.
+
+    Attributes:
+        action: the action that started it.
+        process_name: its name in the log, such as ``talker-1``.
+        cmd: the words of its command.
+        cwd: its working folder, None for the launcher's.
+        env: its environment, None for the launcher's.
+        pid: its process id.
+    """
+
+    name = "launch.events.process.RunningProcessEvent"
+
+    def __init__(
+        self,
+        *,
+        action: ProcessAction,
+        name: str,
+        cmd: Sequence[str],
+        cwd: str | None,
+        env: Mapping[str, str] | None,
+        pid: int,
+    ) -> None:
+        self.action = action
+        self.process_name = name
+        self.cmd = list(cmd)
+        self.cwd = cwd
+        self.env = env
+        self.pid = pid
+
+    @property
+    def execute_process_action(self) -> ProcessAction:
+        """The action, by its older name."""
+        return self.action
+
+
+class ProcessStarted(RunningProcessEvent):
+    """A process runs."""
+
+    name = "launch.events.process.ProcessStarted"
+
+
+class ProcessExited(RunningProcessEvent):
+    """A process has ended.
+
+    Args:
+        returncode: its exit status; minus the signal's number where a signal ended it.
+        details: see `RunningProcessEvent`.
+    """
+
+    name = "launch.events.process.ProcessExited"
+
+    def __init__(self, *, returncode: int, **details: Any) -> None:
+        super().__init__(**details)
+        self.returncode = returncode
+
+
+class ProcessIO(RunningProcessEvent):
+    """A process wrote something.
+
+    Args:
+        text: the bytes.
+        fd: 1 for stdout, 2 for stderr.
+        details: see `RunningProcessEvent`.
+    """
+
+    name = "launch.events.process.ProcessIO"
+    fd = 0
+
+    def __init__(self, *, text: bytes, fd: int | None = None, **details: Any) -> None:
+        super().__init__(**details)
+        self.text = text
+        if fd is not None:
+            self.fd = fd
+
+    @property
+    def from_stdin(self) -> bool:
+        """Whether it was sent to stdin."""
+        return self.fd == 0
+
+    @property
+    def from_stdout(self) -> bool:
+        """Whether it was written to stdout."""
+        return self.fd == 1
+
+    @property
+    def from_stderr(self) -> bool:
+        """Whether it was written to stderr."""
+        return self.fd == 2
+
+
+class ProcessStdout(ProcessIO):
+    """A process wrote to stdout."""
+
+    name = "launch.events.process.ProcessStdout"
+    fd = 1
+
+
+class ProcessStderr(ProcessIO):
+    """A process wrote to stderr."""
+
+    name = "launch.events.process.ProcessStderr"
+    fd = 2
+
+
+class ProcessTargetedEvent(Event):
+    """Something is asked of the processes that the matcher accepts."""
+
+    name = "launch.events.process.ProcessTargetedEvent"
+
+    def __init__(self, *, process_matcher: ProcessMatcher) -> None:
+        self.process_matcher = process_matcher
+
+
+class ProcessStdin(ProcessTargetedEvent):
+    """Text is to be sent to the processes that the matcher accepts.
+
+    Attributes:
+        text: the bytes.
+    """
+
+    name = "launch.events.process.ProcessStdin"
+
+    def __init__(self, *, text: bytes, process_matcher: ProcessMatcher) -> None:
+        super().__init__(process_matcher=process_matcher)
+        self.text = text
+
+
+class ShutdownProcess(ProcessTargetedEvent):
+    """The processes that the matcher accepts are to end."""
+
+    name = "launch.events.process.ShutdownProcess"
+
+
+class SignalProcess(ProcessTargetedEvent):
+    """A signal is to be sent to the processes that the matcher accepts.
+
+    Attributes:
+        signal: the signal.
+        signal_name: its name, such as ``SIGINT``.
+    """
+
+    name = "launch.events.process.SignalProcess"
+
+    def __init__(self, *, signal_number: str | int | signals.Signals, process_matcher: ProcessMatcher) -> None:
+        super().__init__(process_matcher=process_matcher)
+        if isinstance(signal_number, str):
+            self.signal = signals.Signals[signal_number]
+        else:
+            self.signal = signals.Signals(signal_number)
+        self.signal_name = self.signal.name
+
+
+def matches_action(target_action: object) -> ProcessMatcher:
+    """A matcher that accepts the process of one action."""
+    return lambda action: action is target_action
+
+
+def matches_pid(pid: int) -> ProcessMatcher:
+    """A matcher that accepts the process with an id."""
+    return lambda action: action.process_details is not None and action.process_details["pid"] == pid
+
+
+def matches_name(name: str) -> ProcessMatcher:
+    """A matcher that accepts processes by their name in the log."""
+    return lambda action: action.process_details is not None and action.process_details["name"] == name
+
+
+def matches_executable(executable: str) -> ProcessMatcher:
+    """A matcher that accepts processes by the last part of their program's path."""
+
+    def accepts(action: ProcessAction) -> bool:
+        details = action.process_details
+        return details is not None and bool(details["cmd"][0].rsplit("/", 1)[-1] == executable)
+
+    return accepts

@@ -1,0 +1,51 @@
+"""Descriptions of launch descriptions, as ``ros2 launch --print-description`` prints them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from linkwright.launch.model.actions import EmitEvent, Log, RegisterEventHandler
+from linkwright.launch.model.description import LaunchDescription
+from linkwright.launch.model.entity import LaunchDescriptionEntity
+
+_INDENT = "    "
+
+
+class LaunchIntrospector:
+    """Tells what is in a launch description without running it."""
+
+    def format_launch_description(self, launch_description: LaunchDescription) -> str:
+        """The entities, each on a line, those inside of others indented."""
+        return format_launch_description(launch_description)
+
+
+def format_launch_description(description: LaunchDescription) -> str:
+    """The entities of a description, each on a line, those inside of others indented below them as a tree."""
+    return "\n".join([description.describe(), *_tree(description.entities)])
+
+
+def _tree(entities: Iterable[Any]) -> list[str]:
+    listed = list(entities)
+    lines: list[str] = []
+    for number, entity in enumerate(listed):
+        last = number == len(listed) - 1
+        text, inside = _described(entity)
+        lines.append(("└── " if last else "├── ") + text)
+        lines += [(_INDENT if last else "│   ") + line for line in _tree(inside)]
+    return lines
+
+
+def _described(entity: Any) -> tuple[str, list[LaunchDescriptionEntity]]:
+    """An entity's description, and the entities inside of it."""
+    if isinstance(entity, RegisterEventHandler):
+        text, inside = entity.event_handler.describe()
+        return f"RegisterEventHandler('{text}'):", inside
+    if isinstance(entity, (Log, EmitEvent)) or not isinstance(entity, LaunchDescriptionEntity):
+        return entity.describe() if isinstance(entity, LaunchDescriptionEntity) else str(entity), []
+    inside = list(entity.describe_sub_entities())
+    for _, some in entity.describe_conditional_sub_entities():
+        inside += some
+    condition = getattr(entity, "condition", None)
+    suffix = f" if {condition.describe()}" if condition is not None else ""
+    return entity.describe() + suffix, inside

@@ -1,0 +1,96 @@
+"""Small functions of ``launch.utilities`` that users' actions and event handlers call."""
+
+from __future__ import annotations
+
+import asyncio
+import inspect
+import os
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+from linkwright.launch.model.entity import LaunchDescriptionEntity
+
+if TYPE_CHECKING:
+    from linkwright.launch.model.actions import RegisterEventHandler
+    from linkwright.launch.model.context import LaunchContext
+
+FilePath = str | bytes | os.PathLike[Any]
+
+
+def isclassinstance(obj: object) -> bool:
+    """Whether something is an instance of a class written in Python."""
+    return not inspect.isclass(obj) and hasattr(obj, "__dict__") and not inspect.isroutine(obj)
+
+
+def is_a(obj: object, entity_type: type) -> bool:
+    """Whether something is of exactly a class."""
+    return isclassinstance(obj) and type(obj) is entity_type
+
+
+def is_a_subclass(obj: object, entity_type: type) -> bool:
+    """Whether something is of a class or one derived from it, or is such a class itself."""
+    return isinstance(obj, entity_type) or (inspect.isclass(obj) and issubclass(obj, entity_type))
+
+
+def ensure_argument_type(argument: Any, types: Any, argument_name: str, caller: str | None = None) -> None:
+    """Check that an argument is of a type, or of one of several.
+
+    Raises:
+        TypeError: it is not.
+    """
+    allowed = [types] if inspect.isclass(types) else types
+    listed: list[Any] = list(allowed) if isinstance(allowed, Iterable) and not isinstance(allowed, str) else [None]
+    if not all(inspect.isclass(each) for each in listed):
+        raise TypeError(
+            f"'ensure_argument_type()' expected 'types' to be of type "
+            f"'type, collections.abc.Iterable of type', but got '{types}' of type '{type(types)}'"
+        )
+    if isinstance(argument, tuple(listed)):
+        return
+    by = "" if caller is None else f"'{caller}' "
+    names = " or ".join(f"'{each}'" for each in listed)
+    raise TypeError(
+        f"{by}expected '{argument_name}' to be one of {names}, but got '{argument}' of type '{type(argument)}'"
+    )
+
+
+def create_future(loop: asyncio.AbstractEventLoop | None) -> asyncio.Future[Any]:
+    """A future of a loop, by default of the running one."""
+    return (loop or get_loop()).create_future()
+
+
+def get_loop() -> asyncio.AbstractEventLoop:
+    """The running loop; where none runs, the one that this thread had before, or a new one."""
+    try:
+        return asyncio.get_running_loop()
+    except RuntimeError:
+        pass
+    if not _loops or _loops[-1].is_closed():
+        _loops[:] = [asyncio.new_event_loop()]
+    return _loops[-1]
+
+
+_loops: list[asyncio.AbstractEventLoop] = []
+"""The loop of programs that run several things one after another, once one was asked for."""
+
+
+def visit_all_entities_and_collect_futures(
+    entity: LaunchDescriptionEntity, context: LaunchContext
+) -> list[tuple[LaunchDescriptionEntity, asyncio.Future[Any]]]:
+    """Visit an entity and all it leads to, and gather what those do that go on after their visit."""
+    following = entity.visit(context)
+    future = entity.get_asyncio_future()
+    collected = [] if future is None else [(entity, future)]
+    for each in following or ():
+        collected += visit_all_entities_and_collect_futures(each, context)
+    return collected
+
+
+def shutdown_on_process_exit(process_action: Any) -> RegisterEventHandler:
+    """An action that has the launch end when a process has ended."""
+    from linkwright.launch.model.actions import EmitEvent, RegisterEventHandler
+    from linkwright.launch.model.events import Shutdown
+    from linkwright.launch.model.process_event_handlers import OnProcessExit
+
+    ended = EmitEvent(event=Shutdown(reason="process exited"))
+    return RegisterEventHandler(OnProcessExit(target_action=process_action, on_exit=[ended]))

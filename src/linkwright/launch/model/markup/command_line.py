@@ -1,0 +1,92 @@
+"""Command lines of XML and YAML launch files, divided into words with substitutions in them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from linkwright.diagnostics import phrase
+from linkwright.launch.errors.places import error_at, reading
+from linkwright.launch.model.substitution import Substitution, TextSubstitution
+
+_ESCAPED_IN_DOUBLE_QUOTES = '"\\'
+
+
+def parse_command_line(text: str, parser: Any) -> list[list[Substitution]]:
+    """The words of a command, each a list of substitutions to be joined.
+
+    Blanks, quotes and backslashes count as in a shell where they are written, not where a substitution gives them.
+    A quote may be opened before a substitution and closed after it.
+
+    Raises:
+        ValueError: LAUNCH118, a quote is never closed.
+    """
+    divided = _Words()
+    parts: list[Substitution] = parser.parse_substitution(text)
+    for part in parts:
+        if isinstance(part, TextSubstitution):
+            with reading(part.place):
+                divided.take(part.text)
+        else:
+            divided.insert(part)
+    if divided.quote:
+        ros_error = ValueError("No closing quotation")
+        message = phrase(
+            "command '{text}' cannot be divided into words: the quote {quote} is never closed",
+            text=text,
+            quote=divided.quote,
+        )
+        raise error_at(parts[-1].place, "LAUNCH118", message, ros_error=ros_error)
+    divided.end_word()
+    return divided.words
+
+
+class _Words:
+    """Words that grow by a character or a substitution at a time."""
+
+    def __init__(self) -> None:
+        self.words: list[list[Substitution]] = []
+        self.quote = ""
+        self._word: list[Substitution] = []
+        self._text = ""
+        self._began = False
+
+    def insert(self, part: Substitution) -> None:
+        """Add a substitution to the word."""
+        self._end_text()
+        self._word.append(part)
+        self._began = True
+
+    def take(self, text: str) -> None:
+        """Add what is written."""
+        characters = iter(text)
+        for character in characters:
+            if self.quote == character:
+                self.quote = ""
+            elif not self.quote and character in "'\"":
+                self.quote = character
+                self._began = True
+            elif not self.quote and character.isspace():
+                self.end_word()
+            elif character == "\\" and self.quote != "'":
+                following = next(characters, "")
+                keeps = self.quote and following not in _ESCAPED_IN_DOUBLE_QUOTES
+                self._add(character + following if keeps else following)
+            else:
+                self._add(character)
+        self._end_text()
+
+    def end_word(self) -> None:
+        """Begin another word, if there is one."""
+        self._end_text()
+        if self._began:
+            self.words.append(self._word or [TextSubstitution(text="")])
+        self._word, self._began = [], False
+
+    def _add(self, text: str) -> None:
+        self._text += text
+        self._began = True
+
+    def _end_text(self) -> None:
+        if self._text:
+            self._word.append(TextSubstitution(text=self._text))
+        self._text = ""

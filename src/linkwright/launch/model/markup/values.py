@@ -1,0 +1,268 @@
+"""Values of a type, out of text and substitutions (``launch.utilities.type_utils``).
+
+The types are ``int``, ``float``, ``bool``, ``str`` and uniform lists of these, written ``List[int]`` or ``list[int]``;
+None stands for "whatever YAML makes of it".
+"""
+
+from __future__ import annotations
+
+import typing
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from linkwright.launch.model.substitution import (
+    SomeSubstitutionsType,
+    Substitution,
+    normalize_to_list_of_substitutions,
+    perform_substitutions,
+)
+
+ScalarTypesTuple = (int, float, bool, str)
+ListTypesTuple = (typing.List[int], typing.List[float], typing.List[bool], typing.List[str])  # noqa: UP006 - compared by users
+AllowedTypesTuple = ScalarTypesTuple + ListTypesTuple
+
+ScalarTypesType = type[int] | type[float] | type[bool] | type[str]
+ListTypesType = type[list[int]] | type[list[float]] | type[list[bool]] | type[list[str]]
+AllowedTypesType = ScalarTypesType | ListTypesType
+ScalarValueType = int | float | bool | str
+ListValueType = list[int] | list[float] | list[bool] | list[str]
+SequenceValueType = Sequence[int] | Sequence[float] | Sequence[bool] | Sequence[str]
+AllowedValueType = ScalarValueType | SequenceValueType
+SomeScalarType = SomeSubstitutionsType | ScalarValueType
+SomeSequenceType = Sequence[SomeScalarType]
+SomeValueType = SomeScalarType | SomeSequenceType
+NormalizedScalarType = list[Substitution] | ScalarValueType
+NormalizedSequenceType = list[NormalizedScalarType]
+NormalizedValueType = NormalizedScalarType | NormalizedSequenceType
+StrSomeScalarType = SomeScalarType
+StrSomeSequenceType = Sequence[ScalarValueType]
+StrSomeValueType = StrSomeScalarType | StrSomeSequenceType
+
+_TRUE_BY_NUMBER = {"1": "true", "0": "false"}
+
+
+def is_typing_list(data_type: Any) -> bool:
+    """Whether a type is ``List``, ``List[...]`` or ``list[...]``; ``list`` alone is not."""
+    return data_type is typing.List or typing.get_origin(data_type) is list  # noqa: UP006 - what users may pass
+
+
+def is_valid_scalar_type(data_type: Any) -> bool:
+    """Whether a type is one of the four scalar ones."""
+    return data_type in ScalarTypesTuple
+
+
+def extract_type(data_type: Any) -> tuple[Any, bool]:
+    """The scalar type, and whether a list of it is meant.
+
+    Raises:
+        ValueError: for any other type.
+    """
+    is_list = is_typing_list(data_type) and bool(typing.get_args(data_type))
+    scalar = typing.get_args(data_type)[0] if is_list else data_type
+    if not is_valid_scalar_type(scalar):
+        raise ValueError(f"Unrecognized data type: {data_type}")
+    return scalar, is_list
+
+
+def is_instance_of_valid_type(value: Any, can_be_str: bool = False) -> bool:
+    """Whether a value has one of the types; with `can_be_str`, lists may have texts among other items."""
+    if not isinstance(value, list):
+        return isinstance(value, ScalarTypesTuple)
+    kinds = {_scalar_type(item) for item in value}
+    if None in kinds:
+        return False
+    return len(kinds - {str}) <= 1 if can_be_str else len(kinds) <= 1
+
+
+def _scalar_type(value: Any) -> type | None:
+    return next((each for each in (bool, int, float, str) if isinstance(value, each)), None)
+
+
+def is_instance_of(value: Any, data_type: Any = None, can_be_str: bool = False) -> bool:
+    """Whether a value has a type; None accepts all of them, `can_be_str` also texts in its place.
+
+    Raises:
+        ValueError: the type is none of those allowed.
+    """
+    if data_type is None:
+        return is_instance_of_valid_type(value, can_be_str=can_be_str)
+    scalar, is_list = extract_type(data_type)
+    accepted = (scalar, str) if can_be_str else (scalar,)
+    if is_list:
+        return isinstance(value, list) and all(isinstance(item, accepted) for item in value)
+    return isinstance(value, accepted)
+
+
+def coerce_to_type(value: str, data_type: Any = None, can_be_str: bool = False) -> Any:
+    """A text as a value of a type.
+
+    Args:
+        value: the text.
+        data_type: the type; None goes by YAML.
+        can_be_str: whether a text that is not of the type is given as it is (a substitution may be in it).
+
+    Raises:
+        TypeError: the value is no text.
+        ValueError: the text is not of the type, or the type is none of those allowed.
+    """
+    if not isinstance(value, str):
+        raise TypeError(f"expected 'value' to be of type '{str}', but got {value!r} of type {type(value)}")
+    if data_type is None:
+        return _by_yaml(value, f"Failed to convert '{value}' using yaml rules", can_be_str)
+    scalar, is_list = extract_type(data_type)
+    if is_list:
+        return _coerce_to_list(value, scalar, can_be_str)
+    if scalar is str:
+        return value
+    if scalar is bool:
+        made = _by_yaml(_TRUE_BY_NUMBER.get(value, value), f"Failed to convert '{value}' to '{bool}'", can_be_str)
+        if isinstance(made, (bool, str) if can_be_str else bool):
+            return made
+        raise ValueError(f"Cannot convert value '{value}' to '{bool}'")
+    try:
+        return scalar(value)
+    except ValueError:
+        if can_be_str:
+            return value
+        raise
+
+
+def _coerce_to_list(value: str, scalar: type, can_be_str: bool) -> Any:
+    accepted = (str, scalar) if can_be_str else (scalar,)
+    problem = f"Cannot convert value '{value}' to a list of '{scalar.__name__}'"
+    made = _by_yaml(value, problem, can_be_str)
+    if not isinstance(made, list):
+        raise ValueError(problem)  # noqa: TRY004 - as in ROS
+    if not all(isinstance(item, accepted) for item in made):
+        raise ValueError(f"{problem}, got {made}")
+    return made
+
+
+def _by_yaml(value: str, problem: str, can_be_str: bool) -> Any:
+    import yaml
+
+    if not value:
+        return value
+    try:
+        made = yaml.safe_load(value)
+    except Exception as error:
+        if can_be_str:
+            return value
+        raise ValueError(f"{problem}: yaml.safe_load() failed\n{error}") from error
+    if not is_instance_of_valid_type(made, can_be_str=can_be_str):
+        raise ValueError(f"{problem}: output type is not allowed, got {type(made)}")
+    return made
+
+
+def coerce_list(value: list[str], data_type: Any = None, can_be_str: bool = False) -> list[Any]:
+    """A list of texts as a uniform list of values of a scalar type; see `coerce_to_type`."""
+    if not isinstance(value, list):
+        raise TypeError(f"expected 'value' to be of type '{list}', but got {value!r} of type {type(value)}")
+    made = [coerce_to_type(item, data_type, can_be_str=can_be_str) for item in value]
+    if not is_instance_of_valid_type(made, can_be_str=can_be_str):
+        raise ValueError(f"cannot convert value to {data_type}. Got value=`{value}`")
+    return made
+
+
+def get_typed_value(value: str | list[str], data_type: Any = None, can_be_str: bool = False) -> Any:
+    """A text or a list of texts as a value of a type; see `coerce_to_type`.
+
+    Raises:
+        TypeError: a list is given and the type is no list; or it is neither a text nor a list of texts.
+        ValueError: it is not of the type.
+    """
+    if not isinstance(value, list):
+        return coerce_to_type(value, data_type, can_be_str=can_be_str)
+    if data_type is not None:
+        data_type, is_list = extract_type(data_type)
+        if not is_list:
+            raise TypeError(f"Cannot convert input '{value}' of type '{type(value)}' to '{data_type}'")
+    return coerce_list(value, data_type, can_be_str=can_be_str)
+
+
+# --- values with substitutions in them ------------------------------------------------------------------------
+
+
+def is_substitution(value: Any) -> bool:
+    """Whether something is a substitution, or a list of substitutions and texts with a substitution in it."""
+    if isinstance(value, Substitution):
+        return True
+    if isinstance(value, str) or not isinstance(value, Iterable):
+        return False
+    items = list(value)
+    return all(isinstance(item, (Substitution, str)) for item in items) and any(
+        isinstance(item, Substitution) for item in items
+    )
+
+
+def is_normalized_substitution(value: Any) -> bool:
+    """Whether something is a list of substitutions and nothing else."""
+    return isinstance(value, list) and bool(value) and all(isinstance(item, Substitution) for item in value)
+
+
+def normalize_typed_substitution(value: Any, data_type: Any) -> Any:
+    """A value, or what will be one, in one form: substitutions as lists of them, lists item by item.
+
+    A list that can be read as one substitution is: ``['a', TextSubstitution(text='b')]`` stands for ``'ab'``.
+
+    Raises:
+        TypeError: it can never be of the type.
+        ValueError: the type is none of those allowed.
+    """
+    if is_substitution(value):
+        return normalize_to_list_of_substitutions(value)
+    if isinstance(value, ScalarTypesTuple):
+        if not is_instance_of(value, data_type):
+            raise TypeError(f"value='{value}' is not an instance of {data_type}")
+        return value
+    if not isinstance(value, Sequence):
+        raise TypeError(f"value={value!r} of type {type(value)} is neither a value, a substitution nor a list")
+    scalar, is_list = (None, True) if data_type is None else extract_type(data_type)
+    if not is_list:
+        raise TypeError(f"value='{value}' is a list, and {data_type} is expected")
+    items = [normalize_to_list_of_substitutions(item) if is_substitution(item) else item for item in value]
+    plain = [item for item in items if not isinstance(item, list)]
+    if not is_instance_of(plain, None if scalar is None else list[scalar]):  # type: ignore[valid-type]
+        raise TypeError(f"value='{value}' is not a list of {data_type if scalar is None else scalar}")
+    return items
+
+
+def perform_typed_substitution(context: Any, value: Any, data_type: Any = None) -> Any:
+    """The value of what `normalize_typed_substitution` gave.
+
+    Raises:
+        TypeError: a plain value is of another type.
+        ValueError: what substitutions gave is not of the type.
+    """
+    if is_normalized_substitution(value):
+        return coerce_to_type(perform_substitutions(context, value), data_type)
+    if not isinstance(value, list):
+        if not is_instance_of(value, data_type):
+            raise TypeError(f"value='{value}' is not an instance of {data_type}")
+        return value
+    scalar = None if data_type is None else extract_type(data_type)[0]
+    made = [
+        coerce_to_type(perform_substitutions(context, item), scalar) if is_normalized_substitution(item) else item
+        for item in value
+    ]
+    if not is_instance_of(made, data_type):
+        raise ValueError(f"value='{value}' is not an instance of {data_type}, got {made}")
+    return made
+
+
+_TYPE_NAMES: dict[str, Any] = {
+    **{kind.__name__: kind for kind in ScalarTypesTuple},
+    **{f"list[{typing.get_args(kind)[0].__name__}]": kind for kind in ListTypesTuple},
+    **{f"list_of_{typing.get_args(kind)[0].__name__}": kind for kind in ListTypesTuple},
+}
+
+
+def get_data_type_from_identifier(type_identifier: str) -> Any:
+    """The type of a name such as ``int``, ``list[int]`` or ``list_of_int``.
+
+    Raises:
+        ValueError: there is no such type.
+    """
+    if type_identifier not in _TYPE_NAMES:
+        raise ValueError(f"Got invalid type identifier '{type_identifier}'")
+    return _TYPE_NAMES[type_identifier]

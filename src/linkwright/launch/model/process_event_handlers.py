@@ -1,0 +1,86 @@
+"""Event handlers for processes: that they start, write and end."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from linkwright.launch.model import events
+from linkwright.launch.model.actions.execute import ExecuteLocal
+from linkwright.launch.model.context import LaunchContext
+from linkwright.launch.model.entity import LaunchDescriptionEntity
+from linkwright.launch.model.event_handlers import EntitiesOrCallable, OnActionEventBase
+
+
+def _check_target(target_action: Any, handler: str) -> None:
+    """Raise TypeError for a target that no process can be."""
+    if target_action is None or isinstance(target_action, ExecuteLocal):
+        return
+    if isinstance(target_action, LaunchDescriptionEntity) or not callable(target_action):
+        kind = type(target_action).__name__
+        raise TypeError(f"{handler}: target_action must be an ExecuteProcess or a function of one, got a {kind}")
+
+
+class _OnProcessEvent(OnActionEventBase):
+    """A handler for events of processes."""
+
+    def __init__(
+        self,
+        event_class: type[events.Event],
+        reaction: EntitiesOrCallable,
+        target_action: Any,
+        handle_once: bool,
+    ) -> None:
+        _check_target(target_action, type(self).__name__)
+        super().__init__(
+            action_matcher=target_action,
+            on_event=reaction,
+            target_event_cls=event_class,
+            target_action_cls=ExecuteLocal,
+            handle_once=handle_once,
+        )
+
+
+class OnProcessStart(_OnProcessEvent):
+    """Reacts when a process has started."""
+
+    def __init__(self, *, on_start: EntitiesOrCallable, target_action: Any = None, handle_once: bool = False) -> None:
+        super().__init__(events.ProcessStarted, on_start, target_action, handle_once)
+
+
+class OnProcessExit(_OnProcessEvent):
+    """Reacts when a process has ended."""
+
+    def __init__(
+        self, *, on_exit: EntitiesOrCallable = None, target_action: Any = None, handle_once: bool = False
+    ) -> None:
+        super().__init__(events.ProcessExited, on_exit, target_action, handle_once)
+
+
+class OnProcessIO(_OnProcessEvent):
+    """Reacts when a process writes.
+
+    Args:
+        target_action: the action whose process is meant; all by default.
+        on_stdin: function of the event, for what is sent to stdin.
+        on_stdout: function of the event, for what is written to stdout.
+        on_stderr: function of the event, for what is written to stderr.
+        handle_once: whether it is unregistered after the first event.
+    """
+
+    def __init__(
+        self,
+        *,
+        target_action: Any = None,
+        on_stdin: Callable[[Any], Any] | None = None,
+        on_stdout: Callable[[Any], Any] | None = None,
+        on_stderr: Callable[[Any], Any] | None = None,
+        handle_once: bool = False,
+    ) -> None:
+        functions = (on_stdin, on_stdout, on_stderr)
+
+        def react(event: events.ProcessIO, _: LaunchContext) -> Any:
+            function = functions[event.fd]
+            return None if function is None else function(event)
+
+        super().__init__(events.ProcessIO, react, target_action, handle_once)

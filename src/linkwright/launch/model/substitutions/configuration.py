@@ -1,0 +1,203 @@
+"""Substitutions that read the launch context: configurations, environment, the launch file itself."""
+
+from __future__ import annotations
+
+import os
+import random
+import socket
+import sys
+from pathlib import Path
+from typing import Any
+
+from linkwright.diagnostics import did_you_mean, phrase
+from linkwright.launch.errors.exceptions import SubstitutionFailure
+from linkwright.launch.errors.places import error_at
+from linkwright.launch.model.context import LaunchContext
+from linkwright.launch.model.declared_substitution import (
+    AnyOptionalTexts,
+    DeclaredSubstitution,
+    OptionalTexts,
+    Texts,
+)
+from linkwright.launch.model.substitution import (
+    SomeSubstitutionsType,
+    Substitution,
+    normalize_to_list_of_substitutions,
+    perform_substitutions,
+)
+
+_ANONYMOUS = "anon"
+_NOT_IN_NAMES = str.maketrans(".-:", "___")
+
+
+def default_texts(given: Any) -> list[Substitution]:
+    """A default, whose parts may be numbers and truth values too."""
+    parts = given if isinstance(given, (list, tuple)) else [given]
+    return normalize_to_list_of_substitutions([each if isinstance(each, Substitution) else str(each) for each in parts])
+
+
+class LaunchConfiguration(DeclaredSubstitution, tag="var", shown="LaunchConfig({variable_name})"):
+    """The value of a launch configuration, such as a launch argument.
+
+    Args:
+        variable_name: its name.
+        default: the text where it is not set; None makes that an error.
+    """
+
+    variable_name: Texts = Texts()
+    default: AnyOptionalTexts = AnyOptionalTexts(default=None, kw_only=True, read=default_texts)
+
+    def perform(self, context: LaunchContext) -> str:
+        """The value.
+
+        Raises:
+            SubstitutionFailure: LAUNCH121, if it is not set and has no default.
+        """
+        name = perform_substitutions(context, self.variable_name)
+        known = context.launch_configurations
+        if name in known:
+            return str(known[name])
+        if self.default is not None:
+            return perform_substitutions(context, self.default)
+        hint = did_you_mean(name, known) or (
+            phrase("declare it with DeclareLaunchArgument('{name}') before the action that uses it", name=name)
+        )
+        ros_error = SubstitutionFailure(f"launch configuration '{name}' does not exist")
+        raise error_at(
+            self.place,
+            "LAUNCH121",
+            phrase("launch configuration '{name}' is not set", name=name),
+            hint,
+            ros_error=ros_error,
+        )
+
+
+class EnvironmentVariable(DeclaredSubstitution, tag="env", shown="EnvVar({name})"):
+    """The value of an environment variable.
+
+    Args:
+        name: its name.
+        default_value: the text where it is not set; None makes that an error.
+    """
+
+    name: Texts = Texts()
+    default_value: OptionalTexts = OptionalTexts(default=None, kw_only=True)
+
+    def perform(self, context: LaunchContext) -> str:
+        """The value.
+
+        Raises:
+            SubstitutionFailure: LAUNCH122, if it is not set and has no default.
+        """
+        name = perform_substitutions(context, self.name)
+        if name in context.environment:
+            return context.environment[name]
+        if self.default_value is not None:
+            return perform_substitutions(context, self.default_value)
+        hint = did_you_mean(name, context.environment) or phrase("set it, or give the substitution a default_value")
+        ros_error = SubstitutionFailure(f"environment variable '{name}' does not exist")
+        raise error_at(
+            self.place,
+            "LAUNCH122",
+            phrase("environment variable '{name}' is not set", name=name),
+            hint,
+            ros_error=ros_error,
+        )
+
+
+class LocalSubstitution(Substitution):
+    """A value of the moment, named by an expression such as ``event.reason``."""
+
+    def __init__(self, expression: str, description: str | None = None) -> None:
+        self.expression = expression
+        self.description = description
+
+    def describe(self) -> str:
+        """The expression."""
+        return f"LocalVar('{self.description or self.expression}')"
+
+    def perform(self, context: LaunchContext) -> str:
+        """The value.
+
+        Raises:
+            SubstitutionFailure: LAUNCH123, if there is no such value now.
+        """
+        known = context.get_locals_as_dict()
+        first, *rest = self.expression.split(".")
+        if first not in known:
+            ros_error = SubstitutionFailure(f"no local '{first}' in this context")
+            message = phrase("'{first}' is not known at this moment", first=first)
+            raise error_at(self.place, "LAUNCH123", message, did_you_mean(first, known), ros_error=ros_error)
+        value = known[first]
+        for name in rest:
+            if not hasattr(value, name):
+                message = phrase(
+                    "'{expression}': {type} has no '{name}'",
+                    expression=self.expression,
+                    type=type(value).__name__,
+                    name=name,
+                )
+                hint = did_you_mean(name, dir(value))
+                raise error_at(self.place, "LAUNCH123", message, hint, ros_error=SubstitutionFailure(message))
+            value = getattr(value, name)
+        return str(value)
+
+
+class ThisLaunchFile(DeclaredSubstitution, tag="filename"):
+    """The path of the launch file that is being visited."""
+
+    def perform(self, context: LaunchContext) -> str:
+        """The path.
+
+        Raises:
+            SubstitutionFailure: LAUNCH123, if the description comes from no file.
+        """
+        path = context.get_locals_as_dict().get("current_launch_file_path")
+        if path is None:
+            ros_error = SubstitutionFailure(f"{type(self).__name__} used outside of a launch file (in a script)")
+            raise error_at(
+                self.place, "LAUNCH123", phrase("the launch description comes from no file"), ros_error=ros_error
+            )
+        return str(path)
+
+
+class ThisLaunchFileDir(DeclaredSubstitution, tag="dirname"):
+    """The folder of the launch file that is being visited. With ``/`` it gives a path below it."""
+
+    def __truediv__(self, other: SomeSubstitutionsType) -> Any:
+        from linkwright.launch.model.substitutions.paths import PathJoinSubstitution
+
+        return PathJoinSubstitution([self, other])
+
+    def perform(self, context: LaunchContext) -> str:
+        """The folder.
+
+        Raises:
+            SubstitutionFailure: LAUNCH123, if the description comes from no file.
+        """
+        path: str = ThisLaunchFile.perform(self, context)  # type: ignore[arg-type]
+        return str(Path(path).parent)
+
+
+class LaunchLogDir(DeclaredSubstitution, tag="launch_log_dir/log_dir"):
+    """The folder that this launch writes its log into."""
+
+    def perform(self, context: LaunchContext) -> str:
+        """The folder."""
+        return str(context.log_folder)
+
+
+class AnonName(DeclaredSubstitution, tag=_ANONYMOUS):
+    """A name with host and numbers behind it that no other launch has; the same each time in one launch."""
+
+    name: Texts = Texts()
+
+    def perform(self, context: LaunchContext) -> str:
+        """The name with its numbers."""
+        name = perform_substitutions(context, self.name)
+        names: dict[str, str] = context.launch_configurations.setdefault(_ANONYMOUS, {})
+        if name not in names:
+            number = random.randint(0, sys.maxsize)  # noqa: S311 - a name, no secret
+            made = f"{name}_{socket.gethostname()}_{os.getpid()}_{number}"
+            names[name] = made.translate(_NOT_IN_NAMES)
+        return names[name]

@@ -1,0 +1,89 @@
+"""The substitution that evaluates a Python expression."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Sequence
+from typing import Any
+
+from linkwright.diagnostics import LinkwrightError, foreign, phrase
+from linkwright.launch.errors.places import error_at
+from linkwright.launch.model.context import LaunchContext
+from linkwright.launch.model.declared_substitution import (
+    AnyTexts,
+    DeclaredSubstitution,
+    Texts,
+)
+from linkwright.launch.model.substitution import (
+    TextSubstitution,
+    describe,
+    perform_substitutions,
+)
+
+
+class PythonExpression(DeclaredSubstitution, tag="eval"):
+    """The value of a Python expression, as text.
+
+    Args:
+        expression: the expression.
+        python_modules: modules whose names the expression may use, ``math`` by default (its members also bare).
+    """
+
+    expression: Texts = Texts()
+    python_modules: AnyTexts = AnyTexts(default=("math",))
+
+    @classmethod
+    def parse(cls, data: Sequence[Any]) -> tuple[Any, dict[str, Any]]:
+        """The class and its arguments, for an expression and perhaps modules with commas between them.
+
+        Raises:
+            TypeError: there are none, or more.
+        """
+        if len(data) not in (1, 2):
+            raise TypeError("eval substitution expects 1 or 2 arguments")
+        kwargs: dict[str, Any] = {"expression": data[0]}
+        if len(data) == 2:
+            if not all(isinstance(part, TextSubstitution) for part in data[1]):
+                raise TypeError("the modules of an eval substitution must be plain text")
+            names = "".join(part.text for part in data[1]).split(",")
+            kwargs["python_modules"] = [TextSubstitution(text=name.strip()) for name in names if name.strip()]
+        return cls, kwargs
+
+    def describe(self) -> str:
+        """The expression and the modules."""
+        modules = ", ".join(module.describe() for module in self.python_modules)
+        return f"PythonExpr({describe(self.expression)}, [{modules}])"
+
+    def perform(self, context: LaunchContext) -> str:
+        """The value.
+
+        The expression runs with all the rights of the launch file it is written in: that is a program anyway.
+
+        Raises:
+            Exception: LAUNCH126, with the class and text of what Python raises.
+        """
+        expression = perform_substitutions(context, self.expression)
+        names: dict[str, Any] = {}
+        try:
+            for module in self.python_modules:
+                name = perform_substitutions(context, [module])
+                names[name] = importlib.import_module(name)
+            if "math" in names:
+                members = vars(names["math"]).items()
+                names.update({name: value for name, value in members if not name.startswith("_")})
+            return str(eval(expression, {}, names))  # noqa: S307 - launch files are programs by design
+        except LinkwrightError:
+            raise
+        except Exception as error:
+            message = phrase(
+                "Python expression '{expression}' cannot be evaluated ({kind}: {reason})",
+                expression=expression,
+                kind=type(error).__name__,
+                reason=foreign(error),
+            )
+            hint = None
+            if isinstance(error, NameError):
+                hint = phrase(
+                    "put quotes around the parts that are text: [\"'\", LaunchConfiguration('x'), \"' == 'y'\"]"
+                )
+            raise error_at(self.place, "LAUNCH126", message, hint, ros_error=error) from error

@@ -1,0 +1,200 @@
+"""Substitutions that compare and combine truth values."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from linkwright.diagnostics import phrase
+from linkwright.launch.errors.exceptions import SubstitutionFailure
+from linkwright.launch.errors.places import error_at
+from linkwright.launch.model.context import LaunchContext
+from linkwright.launch.model.declared_substitution import (
+    AnyTexts,
+    DeclaredSubstitution,
+    Texts,
+)
+from linkwright.launch.model.markup.expose import expose_substitution
+from linkwright.launch.model.markup.values import coerce_to_type
+from linkwright.launch.model.substitution import (
+    SomeSubstitutionsType,
+    Substitution,
+    describe,
+    normalize_to_list_of_substitutions,
+    perform_substitutions,
+)
+
+_WORDS = {"true": True, "1": True, "false": False, "0": False}
+
+
+def _operand(value: Any) -> list[Substitution]:
+    """A side of a comparison, which may be a number, a truth value or None too."""
+    if value is None:
+        value = ""
+    if isinstance(value, (bool, int, float)):
+        value = str(value).lower() if isinstance(value, bool) else str(value)
+    return normalize_to_list_of_substitutions(value)
+
+
+class EqualsSubstitution(DeclaredSubstitution, tag="equals"):
+    """``true`` if two texts are equal, by number or truth value where both are such."""
+
+    left: AnyTexts = AnyTexts(read=_operand)
+    right: AnyTexts = AnyTexts(read=_operand)
+
+    def perform(self, context: LaunchContext) -> str:
+        """``true`` or ``false``."""
+        return _text(self._equal(context))
+
+    def _equal(self, context: LaunchContext) -> bool:
+        left = perform_substitutions(context, self.left)
+        right = perform_substitutions(context, self.right)
+        truths = [_WORDS.get(text.strip().lower()) for text in (left, right)]
+        if None not in truths:
+            return truths[0] == truths[1]
+        try:
+            return math.isclose(float(left), float(right))
+        except ValueError:
+            return left == right
+
+
+class NotEqualsSubstitution(EqualsSubstitution, tag="not-equals"):
+    """``true`` if two texts differ."""
+
+    def perform(self, context: LaunchContext) -> str:
+        """``true`` or ``false``."""
+        return _text(not self._equal(context))
+
+
+class NotSubstitution(DeclaredSubstitution, tag="not", shown="NotSubstitution({value})"):
+    """The opposite of a truth value."""
+
+    value: Texts = Texts()
+
+    def perform(self, context: LaunchContext) -> str:
+        """``true`` or ``false``."""
+        return _text(not _boolean(self, context, self.value))
+
+
+class AndSubstitution(DeclaredSubstitution, tag="and"):
+    """Whether both values are true."""
+
+    left: Texts = Texts()
+    right: Texts = Texts()
+
+    def perform(self, context: LaunchContext) -> str:
+        """``true`` or ``false``."""
+        return _text(all(self._truths(context)))
+
+    def _truths(self, context: LaunchContext) -> list[bool]:
+        return [_boolean(self, context, side) for side in (self.left, self.right)]
+
+
+class OrSubstitution(AndSubstitution, tag="or"):
+    """Whether one of two values is true."""
+
+    def perform(self, context: LaunchContext) -> str:
+        """``true`` or ``false``."""
+        return _text(any(self._truths(context)))
+
+
+class _Several(Substitution):
+    """What combines any number of values."""
+
+    def __init__(self, *args: SomeSubstitutionsType) -> None:
+        self._values = [normalize_to_list_of_substitutions(value) for value in args]
+
+    @property
+    def args(self) -> list[list[Substitution]]:
+        """The values, as substitutions."""
+        return self._values
+
+    def describe(self) -> str:
+        """The values."""
+        return f"{type(self).__name__}({', '.join(map(describe, self._values))})"
+
+    def _truths(self, context: LaunchContext) -> list[bool]:
+        return [_boolean(self, context, value) for value in self._values]
+
+
+def _parsed_any(data: Sequence[Any]) -> tuple[Any, dict[str, Any]]:
+    return lambda: AnySubstitution(*data), {}
+
+
+def _parsed_all(data: Sequence[Any]) -> tuple[Any, dict[str, Any]]:
+    return lambda: AllSubstitution(*data), {}
+
+
+expose_substitution("any")(_parsed_any)
+expose_substitution("all")(_parsed_all)
+
+
+class AnySubstitution(_Several):
+    """Whether any of several values is true."""
+
+    def perform(self, context: LaunchContext) -> str:
+        """``true`` or ``false``."""
+        return _text(any(self._truths(context)))
+
+
+class AllSubstitution(_Several):
+    """Whether all of several values are true."""
+
+    def perform(self, context: LaunchContext) -> str:
+        """``true`` or ``false``."""
+        return _text(all(self._truths(context)))
+
+
+class IfElseSubstitution(
+    DeclaredSubstitution, tag="if", shown="IfElseSubstitution({condition}, {if_value}, {else_value})"
+):
+    """One text or another, by a truth value.
+
+    Args:
+        condition: the truth value.
+        if_value: the text where it is true.
+        else_value: the text where it is false.
+    """
+
+    condition: Texts = Texts()
+    if_value: Texts = Texts()
+    else_value: Texts = Texts(default="")
+
+    def __init__(
+        self,
+        condition: SomeSubstitutionsType,
+        if_value: SomeSubstitutionsType = "",
+        else_value: SomeSubstitutionsType = "",
+    ) -> None:
+        if not if_value and not else_value and (if_value, else_value) == ("", ""):
+            text = "One of if_value and else_value must be specified"
+            raise error_at(
+                self.place,
+                "LAUNCH127",
+                phrase("IfElseSubstitution needs an 'if_value' or an 'else_value'"),
+                ros_error=RuntimeError(text),
+            )
+        self.condition, self.if_value, self.else_value = condition, if_value, else_value
+
+    def perform(self, context: LaunchContext) -> str:
+        """The text chosen."""
+        chosen = self.if_value if _boolean(self, context, self.condition) else self.else_value
+        return perform_substitutions(context, chosen)
+
+
+def _boolean(substitution: Substitution, context: LaunchContext, value: list[Substitution]) -> bool:
+    text = perform_substitutions(context, value)
+    word = _WORDS.get(text.strip().lower())
+    if word is not None:
+        return word
+    try:
+        return bool(coerce_to_type(text, bool))
+    except ValueError as error:
+        name = type(substitution).__name__
+        message = phrase("{name} needs 'true' or 'false', not '{text}'", name=name, text=text)
+        raise error_at(substitution.place, "LAUNCH127", message, ros_error=SubstitutionFailure(str(error))) from error
+
+
+def _text(value: bool) -> str:
+    return "true" if value else "false"

@@ -1,0 +1,75 @@
+"""Substitutions that give the values of loops, see `linkwright.launch.model.actions.loops`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from linkwright.diagnostics import did_you_mean, phrase, quoted_names
+from linkwright.launch.errors.places import error_at
+from linkwright.launch.model.context import LaunchContext
+from linkwright.launch.model.declared_substitution import (
+    DeclaredSubstitution,
+    OptionalTexts,
+    Texts,
+)
+from linkwright.launch.model.substitution import (
+    SomeSubstitutionsType,
+    perform_substitutions,
+)
+
+_PREFIX = "ForEachVar__"
+
+
+def local_name(name: str) -> str:
+    """The name of the local of the launch context that holds a value of a loop."""
+    return _PREFIX + name
+
+
+class ForEachVar(DeclaredSubstitution, tag="for-var", shown="{kind}(name={name}, default_value={default_value})"):
+    """A value of this round of a `ForEach`.
+
+    Args:
+        name: the value's name.
+        default_value: the text where the round has no such value; None makes that an error.
+    """
+
+    name: Texts = Texts()
+    default_value: OptionalTexts = OptionalTexts(default=None, kw_only=True)
+
+    @classmethod
+    def wrong_count(cls, expected: str, given: int) -> Exception:  # noqa: ARG003 - the interface
+        """A ValueError, as ROS has it here."""
+        return ValueError(f"{cls.__name__} substitution expects {expected}")
+
+    @staticmethod
+    def get_local_arg_name(name: str) -> str:
+        """The name of the local of the launch context that holds the value."""
+        return local_name(name)
+
+    def perform(self, context: LaunchContext) -> str:
+        """The value.
+
+        Raises:
+            RuntimeError: LAUNCH123, if there is no such value and no default.
+        """
+        name = perform_substitutions(context, self.name)
+        values = context.get_locals_as_dict()
+        if local_name(name) in values:
+            return str(values[local_name(name)])
+        if self.default_value is not None:
+            return perform_substitutions(context, self.default_value)
+        known = [each.removeprefix(_PREFIX) for each in values if each.startswith(_PREFIX)]
+        hint = did_you_mean(name, known)
+        if hint is None:
+            hint = phrase("it has {names}", names=quoted_names(known)) if known else phrase("use it inside of a loop")
+        ros_error = RuntimeError(f"No value available for {type(self).__name__} '{name}' and no default value provided")
+        raise error_at(
+            self.place, "LAUNCH123", phrase("the loop has no value '{name}'", name=name), hint, ros_error=ros_error
+        )
+
+
+class ForLoopIndex(ForEachVar, tag="index"):
+    """The number of this round of a `ForLoop`, by the loop's name."""
+
+    def __init__(self, name: SomeSubstitutionsType, **_: Any) -> None:
+        super().__init__(name)

@@ -1,0 +1,168 @@
+"""Substitutions that give paths and what is in files."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from linkwright.diagnostics import Phrase, did_you_mean, foreign, phrase
+from linkwright.launch.errors.exceptions import SubstitutionFailure
+from linkwright.launch.errors.places import error_at
+from linkwright.launch.model.context import LaunchContext
+from linkwright.launch.model.declared_substitution import (
+    DeclaredSubstitution,
+    TextLists,
+    Texts,
+)
+from linkwright.launch.model.substitution import (
+    SomeSubstitutionsType,
+    Substitution,
+    perform_substitutions,
+)
+
+IN_PROCESS_PROGRAMS = frozenset({"xacro"})
+"""Programs that `Command` runs inside this process, so that they need not be installed."""
+
+_LAUNCH_STEMS = ("", ".launch", "_launch")
+_LAUNCH_SUFFIXES = (".py", ".xml", ".yaml")
+
+
+class PathSubstitution(DeclaredSubstitution, shown="Path({path})"):
+    """A path. With ``/`` it gives a path below it: ``PathSubstitution("a") / "b"``."""
+
+    path: Texts = Texts()
+
+    def __truediv__(self, other: SomeSubstitutionsType) -> PathJoinSubstitution:
+        return PathJoinSubstitution([self, other])
+
+    def perform(self, context: LaunchContext) -> str:
+        """The path."""
+        return perform_substitutions(context, self.path)
+
+
+class PathJoinSubstitution(DeclaredSubstitution, tag="path-join", shown="PathJoin({substitutions})"):
+    """Parts of a path, joined with the separator of the system.
+
+    Also written with the ``/`` operator: ``PathJoinSubstitution(["a"]) / "b"``.
+    """
+
+    substitutions: TextLists = TextLists(
+        read=lambda given: [given] if isinstance(given, (str, Substitution)) else given
+    )
+
+    @classmethod
+    def parse(cls, data: Sequence[Any]) -> tuple[Any, dict[str, Any]]:
+        """The class and its arguments, for the parts.
+
+        Raises:
+            ValueError: there are none.
+        """
+        if not data:
+            raise ValueError("path-join substitution expects at least 1 argument")
+        return cls, {"substitutions": data}
+
+    def __truediv__(self, other: SomeSubstitutionsType) -> PathJoinSubstitution:
+        return PathJoinSubstitution([*self.substitutions, other])
+
+    def perform(self, context: LaunchContext) -> str:
+        """The path."""
+        return os.path.join(*(perform_substitutions(context, part) for part in self.substitutions))  # noqa: PTH118
+
+
+class FindExecutable(DeclaredSubstitution, tag="find-exec", shown="FindExec({name})"):
+    """The path of a program on ``PATH``.
+
+    A program that `Command` runs inside this process is found even where it is not installed: then its bare
+    name is given.
+    """
+
+    name: Texts = Texts(kw_only=True)
+
+    def perform(self, context: LaunchContext) -> str:
+        """The path.
+
+        Raises:
+            SubstitutionFailure: LAUNCH124, if there is no such program.
+        """
+        name = perform_substitutions(context, self.name)
+        path = shutil.which(name, path=context.environment.get("PATH"))
+        if path is not None:
+            return path
+        if name in IN_PROCESS_PROGRAMS:
+            return name
+        hint = did_you_mean(name, IN_PROCESS_PROGRAMS) or phrase("install it, or add its folder to PATH")
+        ros_error = SubstitutionFailure(f"executable '{name}' not found on the PATH")
+        raise error_at(
+            self.place, "LAUNCH124", phrase("executable '{name}' is not on PATH", name=name), hint, ros_error=ros_error
+        )
+
+
+class FileContent(DeclaredSubstitution, tag="file-content"):
+    """What is in a text file."""
+
+    path: Texts = Texts()
+
+    def perform(self, context: LaunchContext) -> str:
+        """The text.
+
+        Raises:
+            SubstitutionFailure: LAUNCH125, if the file cannot be read.
+        """
+        path = perform_substitutions(context, self.path)
+        try:
+            return Path(path).read_text(encoding="utf-8")
+        except FileNotFoundError as error:
+            ros_error = SubstitutionFailure(f"File not found: {path}")
+            raise error_at(
+                self.place, "LAUNCH125", phrase("file '{path}' does not exist", path=path), ros_error=ros_error
+            ) from error
+        except (OSError, UnicodeDecodeError) as error:
+            ros_error = SubstitutionFailure(f"Failed to open file: {path}")
+            message = phrase("file '{path}' cannot be read: {error}", path=path, error=foreign(error))
+            raise error_at(self.place, "LAUNCH125", message, ros_error=ros_error) from error
+
+
+class FindLaunchfile(DeclaredSubstitution, tag="find-launchfile", shown="FindLaunchfile(name={name}, path={path})"):
+    """The path of the launch file of a name in a folder, whatever its kind.
+
+    Args:
+        name: the name of the file, or its beginning, without ``.launch``, ``_launch`` and the ending.
+        path: the folder.
+    """
+
+    name: Texts = Texts(kw_only=True)
+    path: Texts = Texts(kw_only=True)
+
+    def perform(self, context: LaunchContext) -> str:
+        """The path.
+
+        Raises:
+            SubstitutionFailure: LAUNCH125, if there is no such file, or more than one.
+        """
+        name = perform_substitutions(context, self.name)
+        folder = Path(perform_substitutions(context, self.path))
+        if not folder.is_dir():
+            raise self._failure(phrase("'{folder}' is no folder", folder=folder))
+        files = sorted(file for file in folder.iterdir() if file.is_file() and file.suffix in _LAUNCH_SUFFIXES)
+        found = [
+            file for file in files if file.name == name or file.stem in [name + ending for ending in _LAUNCH_STEMS]
+        ]
+        if len(found) == 1:
+            return str(found[0])
+        if found:
+            listed = ", ".join(file.name for file in found)
+            raise self._failure(
+                phrase(
+                    "several launch files '{name}' are in '{folder}': {listed}", name=name, folder=folder, listed=listed
+                )
+            )
+        raise self._failure(
+            phrase("no launch file '{name}' is in '{folder}'", name=name, folder=folder),
+            did_you_mean(name, [file.name for file in files]),
+        )
+
+    def _failure(self, message: Phrase, hint: Phrase | None = None) -> Exception:
+        return error_at(self.place, "LAUNCH125", message, hint, ros_error=SubstitutionFailure(message))

@@ -1,0 +1,74 @@
+"""Substitutions that work on texts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from linkwright.launch.model.context import LaunchContext
+from linkwright.launch.model.declared_substitution import (
+    DeclaredSubstitution,
+    TextLists,
+    Texts,
+)
+from linkwright.launch.model.substitution import (
+    perform_substitutions,
+)
+
+
+class StringJoinSubstitution(DeclaredSubstitution, tag="string-join", shown="StringJoin({delimiter}, {substitutions})"):
+    """Texts with a delimiter between them.
+
+    Args:
+        substitutions: the texts; each may be made of several.
+        delimiter: what stands between.
+    """
+
+    substitutions: TextLists = TextLists()
+    delimiter: Texts = Texts(default="")
+
+    @classmethod
+    def parse(cls, data: Sequence[Any]) -> tuple[Any, dict[str, Any]]:
+        """The class and its arguments, for a delimiter and texts.
+
+        Raises:
+            ValueError: there are not enough.
+        """
+        if len(data) < 2:
+            raise ValueError("string-join substitution expects a delimiter and at least 1 more argument")
+        return cls, {"delimiter": data[0], "substitutions": data[1:]}
+
+    def perform(self, context: LaunchContext) -> str:
+        """The joined text."""
+        delimiter = perform_substitutions(context, self.delimiter)
+        return delimiter.join(perform_substitutions(context, part) for part in self.substitutions)
+
+
+class _OfOneText(DeclaredSubstitution):
+    """What works on one text."""
+
+    value: Texts = Texts()
+
+
+class StringStripSubstitution(_OfOneText, tag="string-strip"):
+    """A text without blanks at its ends."""
+
+    def perform(self, context: LaunchContext) -> str:
+        """The text."""
+        return perform_substitutions(context, self.value).strip()
+
+
+class IsEmptySubstitution(_OfOneText, tag="is-empty"):
+    """Whether a text has no characters."""
+
+    def perform(self, context: LaunchContext) -> str:
+        """``true`` or ``false``."""
+        return "false" if perform_substitutions(context, self.value) else "true"
+
+
+class NotEmptySubstitution(_OfOneText, tag="not-empty"):
+    """Whether a text has characters."""
+
+    def perform(self, context: LaunchContext) -> str:
+        """``true`` or ``false``."""
+        return "true" if perform_substitutions(context, self.value) else "false"

@@ -1,0 +1,40 @@
+"""Keyword arguments by the names that they had up to ROS 2 Foxy: ``node_executable`` for ``executable`` and so on.
+
+Launch files of that time are still about, and nothing else in them is out of date.
+"""
+
+from __future__ import annotations
+
+import functools
+import warnings
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+_Class = TypeVar("_Class", bound=type)
+
+
+def with_deprecated_arguments(**present: str) -> Callable[[_Class], _Class]:
+    """Have a class take keyword arguments by former names too, with a warning that tells today's.
+
+    Args:
+        present: former name -> name of today.
+    """
+
+    def extend(kind: _Class) -> _Class:
+        initialize = kind.__init__  # type: ignore[misc]
+
+        @functools.wraps(initialize)
+        def __init__(self: Any, *args: Any, **kwargs: Any) -> None:  # noqa: N807 - becomes the method of that name
+            for former, name in present.items():
+                if former not in kwargs:
+                    continue
+                if name in kwargs:
+                    raise TypeError(f"{kind.__name__} is given both '{former}' and '{name}', which is its name now")
+                warnings.warn(f"'{former}' of {kind.__name__} is called '{name}' now", UserWarning, stacklevel=2)
+                kwargs[name] = kwargs.pop(former)
+            initialize(self, *args, **kwargs)
+
+        kind.__init__ = __init__  # type: ignore[misc]
+        return kind
+
+    return extend

@@ -1,0 +1,107 @@
+"""What programs use of the ``ros2 launch`` verb (``ros2launch.api``)."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from linkwright.launch.arguments import argument_listing
+from linkwright.launch.engine.service import LaunchService
+from linkwright.launch.frontend.include import IncludeLaunchDescription
+from linkwright.launch.frontend.launch_file import load_launch_file
+from linkwright.launch.model.description import LaunchDescription
+from linkwright.launch.model.introspector import format_launch_description
+from linkwright.packages import current_finder
+
+_ENDINGS = ("launch.py", "launch.xml", "launch.yaml", "launch.yml")
+
+
+class MultipleLaunchFilesError(Exception):
+    """Several files of a package have a name.
+
+    Attributes:
+        paths: the files.
+    """
+
+    def __init__(self, msg: str, paths: Sequence[str]) -> None:
+        super().__init__(msg)
+        self.paths = list(paths)
+
+
+def get_share_file_path_from_package(*, package_name: str, file_name: str) -> str:
+    """The path of a file of a package, wherever it is in its share folder.
+
+    Raises:
+        PackageNotFoundError: PKG101, there is no such package.
+        FileNotFoundError: it has no such file.
+        MultipleLaunchFilesError: it has several.
+    """
+    share = current_finder().share(package_name)
+    found = [str(Path(folder, file_name)) for folder, _, files in os.walk(share) if file_name in files]
+    where = f"in the share directory of package '{package_name}'"
+    if not found:
+        raise FileNotFoundError(f"file '{file_name}' was not found {where} which is at '{share}'")
+    if len(found) > 1:
+        listed = ", ".join(f"'{path}'" for path in found)
+        raise MultipleLaunchFilesError(f"file '{file_name}' was found more than once {where}: [{listed}]", found)
+    return found[0]
+
+
+def get_launch_file_paths(*, path: str) -> list[str]:
+    """The launch files in a folder and those below it."""
+    inside = (str(Path(folder, name)) for folder, _, files in os.walk(path) for name in files)
+    return [each for each in inside if is_launch_file(each)]
+
+
+def is_launch_file(path: str) -> bool:
+    """Whether a path is one of a launch file."""
+    return str(path).endswith(_ENDINGS) and Path(path).is_file()
+
+
+def parse_launch_arguments(launch_arguments: Sequence[str]) -> list[tuple[str, str]]:
+    """Names and values of arguments written ``name:=value``; of several with one name the last counts.
+
+    Raises:
+        RuntimeError: one is malformed.
+    """
+    parsed: dict[str, str] = {}
+    for argument in launch_arguments:
+        name, sign, value = argument.partition(":=")
+        if not name or not sign or not value:
+            text = f"malformed launch argument '{argument}', expected format '<name>:=<value>'"
+            raise RuntimeError(text)
+        parsed[name] = value
+    return list(parsed.items())
+
+
+def print_a_launch_file(*, launch_file_path: str) -> None:
+    """Print what is in a launch file."""
+    print(format_launch_description(load_launch_file(Path(launch_file_path))))
+
+
+def print_arguments_of_launch_file(*, launch_file_path: str) -> None:
+    """Print which arguments a launch file takes."""
+    print(argument_listing(load_launch_file(Path(launch_file_path))))
+
+
+def launch_a_launch_file(
+    *,
+    launch_file_path: str,
+    launch_file_arguments: Sequence[str],
+    noninteractive: bool = False,
+    debug: bool = False,
+    **_: Any,
+) -> int:
+    """Launch a file with arguments, to its end.
+
+    Returns:
+        0, or 1 if something in the launch failed.
+    """
+    service = LaunchService(argv=launch_file_arguments, noninteractive=noninteractive, debug=debug)
+    included = IncludeLaunchDescription(
+        launch_file_path, launch_arguments=parse_launch_arguments(launch_file_arguments)
+    )
+    service.include_launch_description(LaunchDescription([included]))
+    return service.run()

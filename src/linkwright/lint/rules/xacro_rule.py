@@ -1,0 +1,27 @@
+"""What rules about xacro files have in common."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from linkwright.diagnostics import Diagnostic
+from linkwright.lint.rule import Rule
+from linkwright.lint.subject import Subject
+
+if TYPE_CHECKING:
+    from linkwright.lint.xacro_facts import XacroFacts
+
+
+class XacroRule(Rule):
+    """A rule about the xacro files of a description; it has nothing to say of plain URDF."""
+
+    holds_for_libraries = True
+
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        if subject.expansion is not None:
+            yield from self.check_xacro(subject.xacro)
+
+    def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
+        """What the rule finds in the files of a description."""
+        raise NotImplementedError

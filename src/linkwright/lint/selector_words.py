@@ -1,0 +1,38 @@
+"""The words that a user selects rules by: whether one is a selector, and which."""
+
+from __future__ import annotations
+
+import re
+
+from linkwright.diagnostics import Phrase, nearest, phrase, quoted_names
+from linkwright.lint.explain import room_pages
+from linkwright.lint.registry import all_rules, find_rule
+from linkwright.lint.selectors import ALL
+
+_CODE = re.compile("[A-Z]+[0-9]{0,3}").fullmatch
+
+
+def is_selector(word: str) -> bool:
+    """Whether a word can select findings."""
+    if word == ALL or find_rule(word) is not None:
+        return True
+    if not _CODE(word):
+        return False
+    return any(rule.code.startswith(word) for rule in all_rules()) or any(
+        code.startswith(word) for code in room_pages()
+    )
+
+
+def canonical(word: str) -> str:
+    """A selector as the rest compares it: a rule's code for its name, otherwise as it is."""
+    rule = find_rule(word)
+    return rule.code if rule else word
+
+
+def selector_hint(word: str) -> Phrase:
+    """What to say of a word that selects nothing."""
+    candidates = [name for rule in all_rules() for name in (rule.name, rule.code)]
+    near = nearest(word, candidates, limit=1)
+    if near:
+        return phrase("did you mean {names}?", names=quoted_names(near))
+    return phrase("give a code such as LW201, the beginning of one, or the name of a rule")

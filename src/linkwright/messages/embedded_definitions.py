@@ -1,0 +1,42 @@
+"""Definitions that come with data: recordings carry those of their messages.
+
+The text of one message comes first, then those of the messages in it, each after a line of ``=`` and one that names it
+(``MSG: geometry_msgs/Point``; ``IDL:`` for those in IDL). That is MCAP's ``ros2msg`` and ``ros2idl``, and rosbag2's in
+SQLite files.
+"""
+
+from __future__ import annotations
+
+import re
+
+from linkwright.diagnostics import SourceText
+from linkwright.messages.library import LIBRARY
+from linkwright.messages.names import split_name
+
+_NEXT = re.compile(r"^={10,}\s*\n(MSG|IDL): *(\S+) *\n?", re.MULTILINE)
+
+
+def add_definitions(type_name: str, text: str, origin: str, *, idl: bool = False) -> None:
+    """Make a message known by the definitions that come with it, and those in it.
+
+    Interfaces that come with Linkwright and those of the workspace go before, and of two texts for one name the first.
+    The texts are read when their messages are asked for, and what is wrong with them is told then.
+
+    Args:
+        type_name: such as ``my_msgs/msg/Count``; what is no name of a message is passed over.
+        text: the definitions.
+        origin: what brought them, for messages about mistakes in them.
+        idl: whether the first one is IDL.
+    """
+    first, *others = _NEXT.split(text)
+    _add("IDL" if idl else "MSG", type_name, first, origin)
+    for language, name, body in zip(others[::3], others[1::3], others[2::3], strict=True):
+        _add(language, name, body, origin)
+
+
+def _add(language: str, name: str, text: str, origin: str) -> None:
+    split = split_name(name)
+    if split is None or split.kind not in (None, "msg") or not text.strip():
+        return
+    type_name = f"{split.package}/msg/{split.name}"
+    LIBRARY.carry(type_name, SourceText(f"{origin}/{type_name}.{language.lower()}", text))

@@ -1,0 +1,29 @@
+"""Where ROS packages are: environment, colcon workspaces, source trees, and the ones shipped with us."""
+
+from linkwright.packages.active import current_finder, use_finder
+from linkwright.packages.ament import install_prefix, is_installed
+from linkwright.packages.ament_functions import (
+    get_package_prefix,
+    get_package_share_directory,
+    get_package_share_path,
+    get_packages_with_prefixes,
+)
+from linkwright.packages.errors import PackageNotFoundError
+from linkwright.packages.finder import PackageFinder
+from linkwright.packages.manifest import MANIFEST, enclosing_package, package_name
+
+__all__ = [
+    "MANIFEST",
+    "PackageFinder",
+    "PackageNotFoundError",
+    "current_finder",
+    "enclosing_package",
+    "get_package_prefix",
+    "get_package_share_directory",
+    "get_package_share_path",
+    "get_packages_with_prefixes",
+    "install_prefix",
+    "is_installed",
+    "package_name",
+    "use_finder",
+]

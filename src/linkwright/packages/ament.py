@@ -1,0 +1,83 @@
+"""Installed packages: the ament resource index and colcon's ``install`` folders.
+
+An ament package at a prefix has the marker ``share/ament_index/resource_index/packages/NAME`` and keeps its
+files in ``share/NAME``. colcon lays a workspace's ``install`` folder out either as one prefix for all
+(``--merge-install``) or as one prefix for each package. With ``--symlink-install`` the files in ``share`` are
+links to the sources; paths are returned as they stand in ``share``, never resolved, as ROS does.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+from linkwright.packages.manifest import MANIFEST
+
+PREFIX_PATH = "AMENT_PREFIX_PATH"
+"""The environment variable that sourcing a ROS or a workspace sets."""
+
+_MARKERS = Path("share", "ament_index", "resource_index", "packages")
+_COLCON_LAYOUT = ".colcon_install_layout"
+
+
+def install_prefix(share: Path) -> Path:
+    """The prefix of a package: the folder that its ``share/NAME`` lies in, or the source folder itself."""
+    return share.parents[1] if is_installed(share) else share
+
+
+def is_installed(share: Path) -> bool:
+    """Whether a share folder belongs to an installed package, not to a source tree."""
+    return share.parent.name == "share"
+
+
+def environment_prefixes(environment: Mapping[str, str]) -> list[Path]:
+    """The prefixes that ``AMENT_PREFIX_PATH`` names, in its order."""
+    return [Path(entry) for entry in environment.get(PREFIX_PATH, "").split(os.pathsep) if entry]
+
+
+def share_in_prefix(prefix: Path, name: str) -> Path | None:
+    """The share folder of a package in one prefix, or None.
+
+    A ``package.xml`` in the share folder is enough where the index marker was forgotten, a frequent slip in
+    hand-written ``setup.py`` files.
+    """
+    share = prefix / "share" / name
+    if (prefix / _MARKERS / name).is_file() or (share / MANIFEST).is_file():
+        return share
+    return None
+
+
+def packages_in_prefix(prefix: Path) -> Iterator[tuple[str, Path]]:
+    """Name and share folder of every package in one prefix, by name."""
+    names = set(_entries(prefix / _MARKERS))
+    share = prefix / "share"
+    names.update(name for name in _entries(share) if (share / name / MANIFEST).is_file())
+    for name in sorted(names):
+        yield name, share / name
+
+
+def is_colcon_install(folder: Path) -> bool:
+    """Whether a folder named ``install`` was written by colcon."""
+    return (folder / _COLCON_LAYOUT).is_file() or (folder / "local_setup.sh").is_file()
+
+
+def share_in_install(install: Path, name: str) -> Path | None:
+    """The share folder of a package in a colcon install folder of either layout, or None."""
+    return share_in_prefix(install / name, name) or share_in_prefix(install, name)
+
+
+def packages_in_install(install: Path) -> Iterator[tuple[str, Path]]:
+    """Name and share folder of every package in a colcon install folder of either layout."""
+    yield from packages_in_prefix(install)
+    for entry in _entries(install):
+        share = share_in_prefix(install / entry, entry)
+        if share is not None:
+            yield entry, share
+
+
+def _entries(folder: Path) -> list[str]:
+    try:
+        return sorted(os.listdir(folder))  # noqa: PTH208 - names only, and much faster than Path objects
+    except OSError:
+        return []

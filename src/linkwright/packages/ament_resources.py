@@ -1,0 +1,115 @@
+"""The resource index of ament: what installed packages have registered (``ament_index_python.resources``).
+
+Packages in their sources count as registered under the type ``packages``; what else they would register, only their
+build knows.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from linkwright.packages.active import current_finder
+from linkwright.packages.ament import environment_prefixes, install_prefix, is_installed
+
+INDEX = Path("share", "ament_index", "resource_index")
+_PACKAGES = "packages"
+_SEPARATORS = ("/", "\\")
+
+
+class InvalidResourceTypeNameError(Exception):
+    """The name of a type of resources is empty, or a path."""
+
+
+class InvalidResourceNameError(Exception):
+    """The name of a resource is empty, or a path."""
+
+
+def get_search_paths() -> list[str]:
+    """The prefixes that resources are looked for in, in their order.
+
+    Raises:
+        LookupError: there are none.
+    """
+    prefixes = [str(prefix) for prefix in _prefixes() if prefix.is_dir()]
+    if not prefixes:
+        raise LookupError("Environment variable 'AMENT_PREFIX_PATH' is not set or empty")
+    return prefixes
+
+
+def get_resource(resource_type: str, resource_name: str) -> tuple[str, str]:
+    """The content of a resource, and the prefix that it is in.
+
+    Raises:
+        LookupError: there is no such resource.
+        OSError: it cannot be read.
+        InvalidResourceTypeNameError: a type that cannot be.
+        InvalidResourceNameError: a name that cannot be.
+    """
+    prefix = _found(resource_type, resource_name)
+    if prefix is None:
+        raise LookupError(f"Could not find the resource '{resource_name}' of type '{resource_type}'")
+    marker = prefix / INDEX / resource_type / resource_name
+    return (marker.read_text(encoding="utf-8") if marker.is_file() else ""), str(prefix)
+
+
+def has_resource(resource_type: str, resource_name: str) -> str | bool:
+    """The prefix that a resource is in, or False.
+
+    Raises:
+        InvalidResourceTypeNameError: a type that cannot be.
+        InvalidResourceNameError: a name that cannot be.
+    """
+    prefix = _found(resource_type, resource_name)
+    return False if prefix is None else str(prefix)
+
+
+def get_resources(resource_type: str) -> dict[str, str]:
+    """The resources of a type: name -> prefix.
+
+    Raises:
+        InvalidResourceTypeNameError: a type that cannot be.
+    """
+    _check_type(resource_type)
+    found: dict[str, str] = {}
+    for prefix in _prefixes():
+        for name in _entries(prefix / INDEX / resource_type):
+            found.setdefault(name, str(prefix))
+    if resource_type == _PACKAGES:
+        for name, share in current_finder().packages().items():
+            found.setdefault(name, str(install_prefix(share)))
+    return found
+
+
+def get_resource_types() -> set[str]:
+    """The types of all resources."""
+    types = {_PACKAGES} if current_finder().packages() else set()
+    for prefix in _prefixes():
+        types.update(entry.name for entry in (prefix / INDEX).glob("*") if entry.is_dir())
+    return types
+
+
+def _found(kind: str, name: str) -> Path | None:
+    _check_type(kind)
+    if not name or any(separator in name for separator in _SEPARATORS):
+        raise InvalidResourceNameError(f"Resource name '{name}' is empty or has a path separator in it")
+    if kind == _PACKAGES:
+        share = current_finder().find(name)
+        return None if share is None else install_prefix(share)
+    return next((prefix for prefix in _prefixes() if (prefix / INDEX / kind / name).is_file()), None)
+
+
+def _check_type(kind: str) -> None:
+    if not kind or any(separator in kind for separator in _SEPARATORS):
+        raise InvalidResourceTypeNameError(f"Resource type '{kind}' is empty or has a path separator in it")
+
+
+def _prefixes() -> list[Path]:
+    """The prefixes of the environment, and those of installed packages that nobody sourced."""
+    shares = current_finder().packages().values()
+    unsourced = (install_prefix(share) for share in shares if is_installed(share))
+    return list(dict.fromkeys([*environment_prefixes(os.environ), *unsourced]))
+
+
+def _entries(folder: Path) -> list[str]:
+    return sorted(path.name for path in folder.glob("*") if path.is_file() and not path.name.startswith("."))

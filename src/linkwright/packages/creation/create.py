@@ -1,0 +1,230 @@
+"""New packages, laid out as ``ros2 pkg create`` (ROS 2 Humble) lays them out.
+
+A request is checked, turned into a list of steps (folders and files with their texts), and the steps are carried out.
+"""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from linkwright.diagnostics import (
+    Diagnostic,
+    LinkwrightError,
+    Severity,
+    did_you_mean,
+    foreign,
+    has_errors,
+    joined,
+    phrase,
+    term,
+)
+from linkwright.packages.creation import cmake_templates, package_templates
+from linkwright.packages.creation.licenses import known_licenses, license_text
+from linkwright.packages.creation.request import DEFAULT_LICENSE, PackageRequest
+from linkwright.packages.naming import check_dependency, check_email, check_member_name, check_package_name
+from linkwright.whole_files import write_whole_file
+
+
+@dataclass(frozen=True)
+class Folder:
+    """A folder to make, relative to the package's folder."""
+
+    path: Path
+
+
+@dataclass(frozen=True)
+class File:
+    """A file to write, relative to the package's folder; one that is not announced is written silently."""
+
+    path: Path
+    text: str
+    announced: bool = True
+
+
+@dataclass(frozen=True)
+class Remark:
+    """A line of the report between the steps."""
+
+    text: str
+
+
+Step = Folder | File | Remark
+
+
+def create_package(request: PackageRequest, report: Callable[[str], None]) -> list[Diagnostic]:
+    """Make the package's folder and files.
+
+    Args:
+        request: what to make.
+        report: called with each line that ``ros2 pkg create`` prints, in its order.
+
+    Returns:
+        Warnings: about the name, the licence, and a node that was renamed.
+
+    Raises:
+        LinkwrightError: PKG201 to PKG206 when the request cannot be met (nothing is written then), PKG207 when the
+            folder exists, PKG208 when the disk refuses.
+    """
+    findings = check_request(request)
+    if has_errors(findings):
+        raise LinkwrightError(*findings)
+    for line in summary(request):
+        report(line)
+    package = request.destination / request.name
+    made = False
+    try:
+        package.mkdir(parents=True)
+        made = True
+        report(f"creating folder {shown(package)}")
+        for step in steps(request):
+            _carry_out(step, package, report)
+    except OSError as error:
+        if made:
+            shutil.rmtree(package, ignore_errors=True)  # half a package would be in the way of the next attempt
+        where = shown(Path(error.filename)) if error.filename else shown(package)
+        message = phrase("cannot create '{where}': {strerror}", where=where, strerror=foreign(error.strerror or error))
+        hint = phrase("choose a folder that you may write to: --destination-directory FOLDER")
+        raise LinkwrightError(Diagnostic("PKG208", message, hint=hint)) from None
+    return findings
+
+
+def check_request(request: PackageRequest) -> list[Diagnostic]:
+    """Everything that is wrong with a request, and advice."""
+    findings = check_package_name(request.name)
+    if request.build_type == "ament_python" and request.name == "test":
+        message = phrase(
+            "an ament_python package cannot be named 'test': its module and its tests would share a folder"
+        )
+        findings.append(Diagnostic("PKG206", message, hint=phrase("choose another name")))
+    for name, what in ((request.node_name, "node"), (request.library_name, "library")):
+        if name is not None:
+            findings += check_member_name(name, what)
+    for dependency in request.dependencies:
+        findings += check_dependency(dependency)
+    findings += check_email(request.maintainer.email)
+    package = request.destination / request.name
+    if not has_errors(findings) and (package.exists() or package.is_symlink()):
+        what = "folder" if package.is_dir() else "file"
+        hint = phrase("remove it, or choose another name or another --destination-directory")
+        findings.append(
+            Diagnostic(
+                "PKG207",
+                phrase("the {what} '{package}' exists already", what=term(what), package=shown(package)),
+                hint=hint,
+            )
+        )
+    if request.node != request.node_name:
+        message = phrase(
+            "the node cannot have the library's name '{library_name}': it is called '{node}'",
+            library_name=request.library_name,
+            node=request.node,
+        )
+        findings.append(Diagnostic("PKG209", message, severity=Severity.WARNING))
+    return findings + _check_license(request.license)
+
+
+def _check_license(identifier: str) -> list[Diagnostic]:
+    known = known_licenses()
+    if identifier in known:
+        return []
+    if identifier == DEFAULT_LICENSE:
+        message = phrase("the package has no license yet, so no LICENSE is written")
+        hint = phrase("give --license with one of {known}", known=joined(known))
+    else:
+        message = phrase(
+            "no text is known for the license '{identifier}': package.xml names it, but no LICENSE is written",
+            identifier=identifier,
+        )
+        hint = did_you_mean(identifier, known) or phrase("texts are known for {known}", known=joined(known))
+    return [Diagnostic("PKG210", message, severity=Severity.WARNING, hint=hint)]
+
+
+def summary(request: PackageRequest) -> Iterator[str]:
+    """The lines that say what is about to be made."""
+    yield "going to create a new package"
+    yield f"package name: {request.name}"
+    yield f"destination directory: {request.destination.resolve()}"
+    yield f"package format: {request.package_format}"
+    yield f"version: {package_templates.VERSION}"
+    yield f"description: {request.description}"
+    yield f"maintainer: {[str(request.maintainer)]}"
+    yield f"licenses: {[request.license]}"
+    yield f"build type: {request.build_type}"
+    yield f"dependencies: {list(request.dependencies)}"
+    if request.node:
+        yield f"node_name: {request.node}"
+    if request.library_name:
+        yield f"library_name: {request.library_name}"
+
+
+def steps(request: PackageRequest) -> Iterator[Step]:
+    """What to do inside the package's folder, in the order of ``ros2 pkg create``."""
+    yield File(Path("package.xml"), package_templates.manifest(request))
+    if request.build_type == "ament_python":
+        yield from _python_steps(request)
+    else:
+        yield from _cmake_steps(request)
+    text = license_text(request.license, year=request.year, holder=request.maintainer.name)
+    if text is not None:
+        yield File(Path("LICENSE"), text, announced=False)
+
+
+def shown(path: Path) -> str:
+    """A path as ros2 prints it: below the current folder it begins with a dot."""
+    return str(path) if path.is_absolute() or path.parts[:1] == ("..",) else f"./{path}"
+
+
+def _python_steps(request: PackageRequest) -> Iterator[Step]:
+    module = Path(request.name)
+    yield Remark("creating source folder")
+    yield Folder(module)
+    yield File(Path("setup.py"), package_templates.setup_py(request))
+    yield File(Path("setup.cfg"), package_templates.setup_cfg(request))
+    yield Folder(Path("resource"))
+    yield File(Path("resource") / request.name, "")
+    yield File(module / "__init__.py", "")
+    yield Folder(Path("test"))
+    for linter in package_templates.LINTERS:
+        yield File(Path("test") / f"test_{linter}.py", package_templates.linter_test(linter))
+    if request.node:
+        yield File(module / f"{request.node}.py", package_templates.node_py(request))
+    if request.library_name:
+        yield Folder(module / request.library_name)
+        yield File(module / request.library_name / "__init__.py", "")
+
+
+def _cmake_steps(request: PackageRequest) -> Iterator[Step]:
+    source, include = Path("src"), Path("include") / request.name
+    yield Remark("creating source and include folder")
+    yield Folder(source)
+    yield Folder(include)
+    if request.build_type == "ament_cmake":
+        yield File(Path("CMakeLists.txt"), cmake_templates.ament_cmake_lists(request))
+    else:
+        yield File(Path("CMakeLists.txt"), cmake_templates.plain_cmake_lists(request))
+        if request.node or request.library_name:
+            yield File(Path(f"{request.name}Config.cmake.in"), cmake_templates.config(request))
+            yield File(Path(f"{request.name}ConfigVersion.cmake.in"), cmake_templates.config_version())
+    if request.node:
+        yield File(source / f"{request.node}.cpp", cmake_templates.node_cpp(request))
+    if request.library_name:
+        yield File(include / f"{request.library_name}.hpp", cmake_templates.library_hpp(request))
+        yield File(source / f"{request.library_name}.cpp", cmake_templates.library_cpp(request))
+        yield File(include / "visibility_control.h", cmake_templates.visibility_control(request))
+
+
+def _carry_out(step: Step, package: Path, report: Callable[[str], None]) -> None:
+    if isinstance(step, Remark):
+        report(step.text)
+        return
+    path = package / step.path
+    if isinstance(step, Folder):
+        report(f"creating folder {shown(path)}")
+        path.mkdir(parents=True, exist_ok=True)
+        return
+    if step.announced:
+        report(f"creating {shown(path)}")
+    write_whole_file(path, step.text)

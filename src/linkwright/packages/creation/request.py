@@ -1,0 +1,57 @@
+"""What a new package shall be."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+BuildType = Literal["cmake", "ament_cmake", "ament_python"]
+BUILD_TYPES: tuple[BuildType, ...] = ("cmake", "ament_cmake", "ament_python")
+
+DEFAULT_DESCRIPTION = "TODO: Package description"
+DEFAULT_LICENSE = "TODO: License declaration"
+
+
+@dataclass(frozen=True)
+class Maintainer:
+    """Who answers for a package."""
+
+    name: str
+    email: str
+
+    def __str__(self) -> str:
+        return f"{self.name} <{self.email}>"
+
+
+@dataclass(frozen=True)
+class PackageRequest:
+    """The package that somebody wants.
+
+    Attributes:
+        destination: the folder in which the package's own folder is made, as the user wrote it.
+        license: an SPDX identifier, or any other words; only for a known identifier is a ``LICENSE`` written.
+        dependencies: names for ``<depend>``.
+        node_name: an executable to begin with, or None.
+        library_name: a library to begin with, or None.
+        year: for the copyright line of the ``LICENSE``.
+    """
+
+    name: str
+    maintainer: Maintainer
+    year: int
+    destination: Path = Path()
+    package_format: int = 3
+    build_type: BuildType = "ament_cmake"
+    description: str = DEFAULT_DESCRIPTION
+    license: str = DEFAULT_LICENSE
+    dependencies: tuple[str, ...] = ()
+    node_name: str | None = None
+    library_name: str | None = None
+
+    @property
+    def node(self) -> str | None:
+        """The executable's name; it gives way when the library has the same one, since both become a target."""
+        if self.node_name is not None and self.node_name == self.library_name:
+            return f"{self.node_name}_node"
+        return self.node_name

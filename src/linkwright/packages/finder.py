@@ -1,0 +1,239 @@
+"""Finding packages: in the environment, colcon workspaces, source trees, and among those shipped with Linkwright."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping, MutableMapping, Sequence
+from pathlib import Path
+
+import linkwright
+from linkwright.diagnostics import Phrase, display_path, joined, phrase
+from linkwright.packages import ament, uri
+from linkwright.packages.ament import install_prefix
+from linkwright.packages.errors import PackageNotFoundError
+from linkwright.packages.manifest import enclosing_package
+from linkwright.packages.share_layout import share_of_sources
+from linkwright.packages.sources import SourceScan
+
+START_VARIABLE = "LINKWRIGHT_START"
+"""The environment variable by which a launcher tells its processes where its own search for packages began."""
+
+
+class PackageFinder:
+    """Finds ROS packages the way ROS users lay them out.
+
+    The places, in the order they are asked:
+
+    1. `extra`, given by the caller;
+    2. the prefixes of ``AMENT_PREFIX_PATH`` (a sourced ROS or workspace);
+    3. colcon's ``install`` folders in the start folders and in the folders above them, merged or isolated;
+    4. source trees: the package a start folder lies in and the packages beside that one, the packages below
+       a start folder, and those below ``src`` of the folders above it;
+    5. the packages shipped with Linkwright.
+
+    Nothing is read from the disk before it is needed, and a search through source trees stops where it meets
+    the package.
+
+    Args:
+        start: where the user stands, one folder or several of falling weight; by default the current folder, and
+            behind it those that `START_VARIABLE` names.
+        environment: the variables to read ``AMENT_PREFIX_PATH`` from; the process's by default.
+        extra: package name -> share folder, before everything else.
+    """
+
+    def __init__(
+        self,
+        *,
+        start: Path | Sequence[Path] | None = None,
+        environment: Mapping[str, str] | None = None,
+        extra: Mapping[str, str | Path] | None = None,
+    ) -> None:
+        self._environment = os.environ if environment is None else environment
+        if start is None:
+            given = self._environment.get(START_VARIABLE, "").split(os.pathsep)
+            start = [Path.cwd(), *(Path(folder) for folder in given if folder)]
+        starts = [start] if isinstance(start, Path) else start
+        self._starts = tuple(dict.fromkeys(_absolute(each) for each in starts))
+        self._extra = {name: Path(share) for name, share in (extra or {}).items()}
+        self._scans: dict[Path, SourceScan] = {}
+        self._known: dict[str, Path] = {}
+        self._offered: str | None = None
+
+    @property
+    def starts(self) -> tuple[Path, ...]:
+        """Where the search begins."""
+        return self._starts
+
+    def find(self, name: str) -> Path | None:
+        """The share folder of a package, or None; where it is not installed, see `share_of_sources`."""
+        share = self._known.get(name)
+        if share is None:
+            share = next((place for place in self._places(name) if place is not None), None)
+            if share is not None:
+                self._known[name] = share
+        return share
+
+    def share(self, name: str) -> Path:
+        """The share folder of a package; where it is not installed, see `share_of_sources`.
+
+        Raises:
+            PackageNotFoundError: PKG101, with the places that were searched and the nearest names.
+        """
+        share = self.find(name)
+        if share is None:
+            raise PackageNotFoundError(name, self._searched(), self.packages())
+        return share
+
+    def packages(self) -> dict[str, Path]:
+        """All packages there are: name -> share folder, or source folder; of two with one name the one `find` gives."""
+        found = dict(self._extra)
+        for name, share in self._all():
+            found.setdefault(name, share)
+        return found
+
+    def resolve(self, address: str, relative_to: Path | None = None) -> Path:
+        """The file that an address in a description or launch file means; whether it exists is not asked.
+
+        Args:
+            address: ``package://NAME/PATH``, ``file:///PATH`` or a plain path.
+            relative_to: the folder that a relative plain path starts from; the current folder by default.
+
+        Raises:
+            LinkwrightError: PKG101 for an unknown package, PKG102 for an address of another form.
+        """
+        return uri.resolve(address, self.share, relative_to)
+
+    def offer_prefix_path(self, environment: MutableMapping[str, str]) -> None:
+        """Set ``AMENT_PREFIX_PATH`` where nobody sourced anything, for programs that ask for it.
+
+        It names what sourcing the workspaces would; before they are built, the folder that they would be installed to.
+        This finder goes on as if it were not set, until somebody adds to it.
+        """
+        if environment.get(ament.PREFIX_PATH):
+            return
+        shares = (share for install in self._installs() for _, share in ament.packages_in_install(install))
+        prefixes = dict.fromkeys(str(install_prefix(share)) for share in shares) or [str(self._starts[0] / "install")]
+        self._offered = environment[ament.PREFIX_PATH] = os.pathsep.join(prefixes)
+
+    def _prefixes(self) -> list[Path]:
+        if self._environment.get(ament.PREFIX_PATH) == self._offered:
+            return []
+        return ament.environment_prefixes(self._environment)
+
+    def forget(self) -> None:
+        """Look at the disk anew at the next question; packages may have come, gone or moved."""
+        self._known.clear()
+        self._scans.clear()
+
+    # --- the places -----------------------------------------------------------------------------------------
+
+    def _places(self, name: str) -> Iterator[Path | None]:
+        yield self._extra.get(name)
+        for prefix in self._prefixes():
+            yield ament.share_in_prefix(prefix, name)
+        for install in self._installs():
+            yield ament.share_in_install(install, name)
+        yield _share_of(name, dict(self._enclosing()).get(name))
+        for root in self._source_roots():
+            yield _share_of(name, self._scan(root).find(name))
+        yield self._shipped().get(name)
+
+    def _all(self) -> Iterator[tuple[str, Path]]:
+        for prefix in self._prefixes():
+            yield from ament.packages_in_prefix(prefix)
+        for install in self._installs():
+            yield from ament.packages_in_install(install)
+        yield from self._enclosing()
+        for root in self._source_roots():
+            yield from self._scan(root).packages().items()
+        yield from self._shipped().items()
+
+    def _upwards(self) -> Iterator[Path]:
+        seen: set[Path] = set()
+        for start in self._starts:
+            for folder in (start, *start.parents):
+                if folder not in seen:
+                    seen.add(folder)
+                    yield folder
+
+    def _installs(self) -> Iterator[Path]:
+        for folder in self._upwards():
+            install = folder / "install"
+            if ament.is_colcon_install(install):
+                yield install
+
+    def _enclosing(self) -> Iterator[tuple[str, Path]]:
+        for start in self._starts:
+            found = enclosing_package(start)
+            if found:
+                yield found
+
+    def _source_roots(self) -> Iterator[Path]:
+        roots: dict[Path, None] = {}
+        for start in self._starts:
+            found = enclosing_package(start)
+            if found:
+                roots[found[1].parent] = None
+            else:
+                roots[start] = None
+            for folder in (start, *start.parents):
+                source = folder / "src"
+                if source.is_dir():
+                    roots[source] = None
+        yield from roots
+
+    def _scan(self, root: Path) -> SourceScan:
+        scan = self._scans.get(root)
+        if scan is None:
+            scan = self._scans[root] = SourceScan(root)
+        return scan
+
+    def _shipped(self) -> dict[str, Path]:
+        folder = shipped_folder()
+        return {} if folder is None else SourceScan(folder).packages()
+
+    # --- notes of the error -----------------------------------------------------------------------------------
+
+    def _searched(self) -> list[Phrase]:
+        prefixes = self._prefixes()
+        if prefixes:
+            places = [phrase("AMENT_PREFIX_PATH: {prefixes}", prefixes=os.pathsep.join(map(str, prefixes)))]
+        else:
+            places = [phrase("AMENT_PREFIX_PATH: not set")]
+        places += [
+            phrase("colcon install folder {install}", install=display_path(install)) for install in self._installs()
+        ]
+        for root in self._source_roots():
+            scan = self._scan(root)
+            if scan.truncated:
+                files = phrase(
+                    "package.xml files below {root} (only in part: too many folders)", root=display_path(root)
+                )
+            else:
+                files = phrase("package.xml files below {root}", root=display_path(root))
+            places.append(files)
+            places += [
+                phrase("{folder}, which names no package", folder=display_path(folder / "package.xml"))
+                for folder in scan.unnamed
+            ]
+        shipped = joined(self._shipped()) or phrase("none")
+        places.append(phrase("the packages shipped with Linkwright: {shipped}", shipped=shipped))
+        return places
+
+
+def shipped_folder() -> Path | None:
+    """Where the packages shipped with us lie: in the wheel, or in the repository of an editable install."""
+    package = Path(linkwright.__file__).parent
+    for folder in (package / "robots", package.parents[1] / "robots"):
+        if folder.is_dir():
+            return folder
+    return None
+
+
+def _share_of(name: str, folder: Path | None) -> Path | None:
+    return None if folder is None else share_of_sources(name, folder)
+
+
+def _absolute(path: str | Path) -> Path:
+    """An absolute path with its links kept: share folders are full of them."""
+    return Path(os.path.abspath(path))  # noqa: PTH100 - Path.resolve would follow the links

@@ -1,0 +1,79 @@
+"""Folders of links in the user's cache; see `linkwright.packages.share_layout`."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import shutil
+import tempfile
+import time
+from collections.abc import Mapping
+from contextlib import suppress
+from pathlib import Path
+
+from linkwright.packages.cache import SHARES, cache_folder
+from linkwright.packages.readers.installed_file import InstalledFile
+
+_MOST_LINKS = 5000
+_KEPT_SECONDS = 7 * 24 * 3600.0
+"""How long a layout is kept that its package no longer has; a program that still runs may use it."""
+
+
+def link_folder(name: str, folder: Path, moved: Mapping[str, InstalledFile]) -> Path:
+    """A folder with all that is in the sources of a package, and what it installs where it installs it.
+
+    It is made once for what is in it, and then found again, by other processes too.
+
+    Args:
+        name: the package, and the folder's name.
+        folder: its source folder.
+        moved: the files that are elsewhere than in the sources, by their paths in the share folder.
+
+    Raises:
+        OSError: it cannot be made.
+    """
+    links: dict[str, str | Path] = {}
+    tops = {path.partition("/")[0] for path in moved}
+    for entry in sorted(folder.iterdir()):
+        if entry.name.startswith("."):
+            continue
+        if entry.name in tops and entry.is_dir():
+            links |= {each.relative_to(folder).as_posix(): each for each in entry.rglob("*") if each.is_file()}
+        else:
+            links[entry.name] = entry
+    for path, file in moved.items():
+        links[path] = folder / file.source if file.values is None else file.text(folder)
+    if len(links) > _MOST_LINKS:
+        raise OSError("too many files")
+    mark = hashlib.sha256(repr((str(folder), sorted((path, str(link)) for path, link in links.items()))).encode())
+    layouts = cache_folder() / SHARES / hashlib.sha256(os.fsencode(folder)).hexdigest()[:12]
+    share = layouts / mark.hexdigest()[:12] / name
+    if share.is_dir():
+        with suppress(OSError):
+            os.utime(share.parent)
+        return share
+    layouts.mkdir(parents=True, exist_ok=True)
+    _forget_old(layouts)
+    made = Path(tempfile.mkdtemp(dir=layouts, prefix="new-"))
+    try:
+        for path, link in links.items():
+            target = made / name / path
+            target.parent.mkdir(parents=True, exist_ok=True)
+            if isinstance(link, str):
+                target.write_text(link, encoding="utf-8")
+            else:
+                target.symlink_to(link)
+        with suppress(OSError):  # another process was faster
+            made.rename(share.parent)
+    finally:
+        shutil.rmtree(made, ignore_errors=True)
+    if not share.is_dir():
+        raise OSError("the links were not made")
+    return share
+
+
+def _forget_old(layouts: Path) -> None:
+    for layout in layouts.iterdir():
+        with suppress(OSError):
+            if time.time() - layout.stat().st_mtime > _KEPT_SECONDS:
+                shutil.rmtree(layout, ignore_errors=True)

@@ -1,0 +1,111 @@
+"""Rules for the names and addresses in a package: what the build tools cannot take, and what REP 144 advises.
+
+Errors are what would break a build later (a folder that Python cannot import, a project that CMake refuses, an e-mail
+address for which colcon drops the package's environment hooks). Departures from REP 144 are warnings.
+"""
+
+from __future__ import annotations
+
+import keyword
+import re
+
+from linkwright.diagnostics import Diagnostic, Phrase, Severity, phrase, quoted, term
+
+_IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+# A name as catkin_pkg accepts it, for the sake of old packages.
+_ACCEPTED = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]*")
+_DEPENDENCY = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.+-]*")
+# An address as catkin_pkg, which colcon asks, accepts it: ASCII, with a top-level domain of two or more letters.
+_EMAIL = re.compile(r"[\w%+-]+(\.[\w%+-]+)*@[\w%-]+(\.[\w%-]+)*\.[A-Za-z]{2,}", re.ASCII)
+
+
+def check_package_name(name: str) -> list[Diagnostic]:
+    """What is wrong with the name of a package; errors first (PKG201), or advice (PKG202)."""
+    if not _IDENTIFIER.fullmatch(name):
+        problem = _broken_rule(name)
+        hint = _suggestion(name)
+        return [
+            Diagnostic(
+                "PKG201",
+                phrase("'{name}' cannot be the name of a package: {problem}", name=name, problem=problem),
+                hint=hint,
+            )
+        ]
+    if keyword.iskeyword(name):
+        message = phrase("'{name}' cannot be the name of a package: it is a word of the Python language", name=name)
+        return [Diagnostic("PKG201", message, hint=phrase("did you mean {names}?", names=quoted(f"{name}_robot")))]
+    advice = _departure(name)
+    if advice is None:
+        return []
+    message = phrase("package name '{name}' does not follow REP 144: {advice}", name=name, advice=advice)
+    return [Diagnostic("PKG202", message, severity=Severity.WARNING, hint=_suggestion(name))]
+
+
+def check_member_name(name: str, what: str) -> list[Diagnostic]:
+    """What is wrong with the name of a node or library (PKG203); `what` says which."""
+    if _IDENTIFIER.fullmatch(name) and not keyword.iskeyword(name):
+        return []
+    problem = phrase("it is a word of the Python language") if keyword.iskeyword(name) else _broken_rule(name)
+    return [
+        Diagnostic(
+            "PKG203",
+            phrase("'{name}' cannot be the name of a {what}: {problem}", name=name, what=term(what), problem=problem),
+            hint=_suggestion(name),
+        )
+    ]
+
+
+def check_dependency(name: str) -> list[Diagnostic]:
+    """What is wrong with the name of a package or system key that is depended on (PKG204)."""
+    if _DEPENDENCY.fullmatch(name):
+        return []
+    message = phrase("'{name}' cannot be the name of a dependency", name=name)
+    return [Diagnostic("PKG204", message, hint=phrase("separate names with blanks: --dependencies urdf xacro"))]
+
+
+def check_email(address: str) -> list[Diagnostic]:
+    """What is wrong with a maintainer's e-mail address (PKG205)."""
+    if is_email(address):
+        return []
+    message = phrase("'{address}' is not an e-mail address that colcon accepts", address=address)
+    return [Diagnostic("PKG205", message, hint=phrase("write it as name@example.org, in ASCII letters"))]
+
+
+def is_accepted_name(name: str) -> bool:
+    """Whether colcon builds a package of this name, whatever REP 144 says of it."""
+    return _ACCEPTED.fullmatch(name) is not None
+
+
+def is_email(address: str) -> bool:
+    """Whether colcon takes this for an e-mail address."""
+    return _EMAIL.fullmatch(address) is not None
+
+
+def _broken_rule(name: str) -> str:
+    if not name:
+        return phrase("it is empty")
+    wrong = sorted(set(re.findall(r"[^A-Za-z0-9_]", name)))
+    if wrong:
+        shown = " ".join("a blank" if character.isspace() else character for character in wrong)
+        return phrase("only letters, digits and underscores may be in it, not {shown}", shown=shown)
+    return phrase("it must begin with a letter")
+
+
+def _departure(name: str) -> str | None:
+    if name != name.lower():
+        return phrase("names are lower case")
+    if "__" in name:
+        return phrase("underscores stand alone, not in a row")
+    if len(name) < 2:
+        return phrase("names have at least two characters")
+    return None
+
+
+def _suggestion(name: str) -> Phrase | None:
+    better = re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_").lstrip("0123456789_")
+    fits = _IDENTIFIER.fullmatch(better) and better != name and _departure(better) is None
+    return (
+        phrase("did you mean {names}?", names=quoted(better))
+        if fits
+        else phrase("begin with a letter and go on with letters, digits and underscores")
+    )

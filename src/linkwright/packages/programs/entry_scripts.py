@@ -1,0 +1,93 @@
+"""Script files for entry points of packages that were not built: what ``colcon build`` would install, in a cache.
+
+A launch file may ask for the path of an executable, and debuggers, shells and process lists want a program with a name
+of its own; so an entry point becomes a real file.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Sequence
+from pathlib import Path
+
+import linkwright
+from linkwright.packages.cache import cache_folder
+from linkwright.packages.programs.child_python import python_command
+from linkwright.packages.readers.entry_points import EntryPoint
+from linkwright.whole_files import write_whole_file
+
+_LONGEST_INTERPRETER_LINE = 120
+"""Systems cut longer ones off."""
+
+
+def script_for(package: str, name: str, entry: EntryPoint, roots: Sequence[Path]) -> Path:
+    """The script file that runs an entry point, made anew where it has changed.
+
+    Args:
+        package: the package.
+        name: the program's name.
+        entry: what it runs.
+        roots: the folders to import modules from, the package's own first.
+
+    Raises:
+        OSError: it cannot be written.
+    """
+    return _kept(package, name, str(roots[0]), _script(entry, roots))
+
+
+def script_for_ours(package: str, name: str) -> Path:
+    """The script file that runs one of our own nodes.
+
+    Raises:
+        OSError: it cannot be written.
+    """
+    lines = [
+        *_interpreter_lines(),
+        "import sys",
+        "",
+        "from linkwright.interruption import end_at_once",
+        "",
+        'if __name__ == "__main__":',
+        "    end_at_once()",
+        "    from linkwright.nodes.process import main",
+        "",
+        f"    sys.exit(main({package!r}, {name!r}, sys.argv[1:]))",
+        "",
+    ]
+    return _kept(package, name, linkwright.__file__, "\n".join(lines))
+
+
+def _kept(package: str, name: str, origin: str, text: str) -> Path:
+    key = hashlib.sha256(f"{origin}\0{package}\0{name}".encode()).hexdigest()[:16]
+    path = cache_folder() / "executables" / key / "lib" / package / name
+    if path.is_file() and path.read_text(encoding="utf-8") == text:
+        return path
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_whole_file(path, text, mode=0o755)
+    return path
+
+
+def _script(entry: EntryPoint, roots: Sequence[Path]) -> str:
+    function, _, rest = entry.function.partition(".")
+    return "\n".join(
+        [
+            *_interpreter_lines(),
+            "import sys",
+            "",
+            f"sys.path[:1] = {[str(root) for root in roots]!r}",
+            f"from {entry.module} import {function}  # noqa: E402",
+            "",
+            'if __name__ == "__main__":',
+            f"    sys.exit({function}{'.' if rest else ''}{rest}())",
+            "",
+        ]
+    )
+
+
+def _interpreter_lines() -> list[str]:
+    (interpreter,) = python_command([])
+    line = f"#!{interpreter}"
+    if " " not in interpreter and len(line) < _LONGEST_INTERPRETER_LINE:
+        return [line]
+    # To a shell the second line is a command, to Python the beginning of a text.
+    return ["#!/bin/sh", f'\'\'\'exec\' "{interpreter}" "$0" "$@"', "' '''"]

@@ -1,0 +1,46 @@
+"""Python modules of the packages in the workspace, for launch files that import them.
+
+In ROS a launch file may import the modules of every package that was built and sourced. Here those of packages that
+are there in their sources only are found as well, and those of install folders that nobody sourced.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from importlib.machinery import ModuleSpec, PathFinder
+from pathlib import Path
+
+from linkwright.packages import PackageFinder, install_prefix, is_installed
+from linkwright.packages.programs.source_programs import NOT_FOR_PROGRAMS, python_root
+from linkwright.packages.programs.workspace_environment import python_folders
+
+
+def find_module(finder: PackageFinder, name: str) -> ModuleSpec | None:
+    """The top-level module of a name: in the package of this name, else in any package; None where none has it."""
+    if name in NOT_FOR_PROGRAMS:
+        return None
+    own = finder.find(name)
+    if own is not None:
+        spec = _first(name, _folders(own, name))
+        if spec is None and any((own / name).glob("*.py")):
+            spec = PathFinder.find_spec(name, [str(own)])  # its folder of modules has no __init__.py
+        if spec is not None:
+            return spec
+    return _first(name, (folder for package, share in finder.packages().items() for folder in _folders(share, package)))
+
+
+def _folders(share: Path, package: str) -> Iterator[Path]:
+    """The folders that a package's modules are imported from."""
+    if is_installed(share):
+        yield from python_folders(install_prefix(share), package)
+        return
+    root = python_root(share, package)
+    if root is not None:
+        yield root
+
+
+def _first(name: str, folders: Iterable[Path]) -> ModuleSpec | None:
+    for folder in folders:
+        if (folder / name / "__init__.py").is_file() or (folder / f"{name}.py").is_file():
+            return PathFinder.find_spec(name, [str(folder)])
+    return None

@@ -1,0 +1,168 @@
+"""The programs that a package in its sources would install, found without building it.
+
+They are read from ``setup.py``, ``setup.cfg`` and ``pyproject.toml`` (entry points and scripts) and from the
+``install(PROGRAMS ...)`` of a ``CMakeLists.txt``. Nothing is run for it, with one exception: a ``setup.py`` that puts
+its entry points together by a program is asked by running it, in a process of its own with a ``setup()`` that only
+reports.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from linkwright.diagnostics import SourceText
+from linkwright.packages.readers.entry_points import (
+    LINE,
+    PROGRAMS,
+    EntryPoint,
+    in_pyproject,
+    in_setup_cfg,
+    option_lines,
+    text_of,
+)
+
+_PYTHON_PACKAGE = re.compile(r"^\s*ament_python_install_package\s*\(", re.MULTILINE | re.IGNORECASE)
+NOT_FOR_PROGRAMS = frozenset({"setup", "conftest", "test", "tests"})
+_ASK_SECONDS = 10.0
+_ASK = """
+import json, runpy, sys, types
+def setup(**given):
+    found = given.get("entry_points") or {}
+    print(json.dumps([list(found.get("console_scripts") or ()), list(given.get("scripts") or ())]))
+fake = types.ModuleType("setuptools")
+fake.setup = setup
+fake.find_packages = fake.find_namespace_packages = lambda *_, **__: []
+fake.__getattr__ = lambda name: type(name, (), {})
+sys.modules["setuptools"] = fake
+sys.argv = ["setup.py"]
+runpy.run_path("setup.py", run_name="__main__")
+"""
+
+
+@dataclass
+class SourcePrograms:
+    """What a source package would install to ``lib/PACKAGE``.
+
+    Attributes:
+        folder: the package.
+        entry_points: by the program's name.
+        scripts: files by the program's name.
+        compiled: names of programs that have to be built first.
+    """
+
+    folder: Path
+    entry_points: dict[str, EntryPoint] = field(default_factory=dict)
+    scripts: dict[str, Path] = field(default_factory=dict)
+    compiled: set[str] = field(default_factory=set)
+
+    def names(self) -> list[str]:
+        """The names of all programs, built or not, sorted."""
+        return sorted({*self.entry_points, *self.scripts, *self.compiled})
+
+
+def source_programs(folder: Path) -> SourcePrograms:
+    """The programs of a source package."""
+    found = SourcePrograms(folder)
+    _read_configurations(found)
+    _read_setup_py(found)
+    _read_cmake(found)
+    return found
+
+
+def python_root(folder: Path, package: str) -> Path | None:
+    """The folder to import the Python modules of a source package from; None where it has none."""
+    for candidate in (folder, folder / "src"):
+        if (candidate / package / "__init__.py").is_file():
+            return candidate
+    if _PYTHON_PACKAGE.search(text_of(folder / "CMakeLists.txt")):
+        return folder
+    is_python = (folder / "setup.py").is_file() or (folder / "setup.cfg").is_file()
+    return folder if is_python and any(_modules(folder)) else None
+
+
+def module_file(root: Path, module: str) -> Path | None:
+    """The file of a module below a folder; None where there is none."""
+    path = root.joinpath(*module.split("."))
+    for candidate in (path.with_name(path.name + ".py"), path / "__init__.py"):
+        if candidate.is_file():
+            return candidate
+    return None
+
+
+def _modules(folder: Path) -> Iterator[Path]:
+    """The modules and packages in a folder that a program could import; not those for building and testing."""
+    for path in (*folder.glob("*.py"), *(each.parent for each in folder.glob("*/__init__.py"))):
+        if path.stem not in NOT_FOR_PROGRAMS:
+            yield path
+
+
+def _read_configurations(found: SourcePrograms) -> None:
+    """Read ``pyproject.toml`` and ``setup.cfg``."""
+    cfg = text_of(found.folder / "setup.cfg")
+    for line in (*in_pyproject(text_of(found.folder / "pyproject.toml"), PROGRAMS), *in_setup_cfg(cfg, PROGRAMS)):
+        _add_entry(found, line)
+    for line in option_lines(cfg, "options", "scripts"):
+        _add_script(found, line.strip())
+
+
+def _read_setup_py(found: SourcePrograms) -> None:
+    from linkwright.packages.readers.setup_py import read_setup
+
+    path = found.folder / "setup.py"
+    text = text_of(path)
+    if not text:
+        return
+    facts = read_setup(SourceText(str(path), text))
+    for entry in facts.entry_points:
+        found.entry_points[entry.executable] = EntryPoint(entry.module, entry.function or "main")
+    computed = facts.call and not facts.entry_points_complete
+    if computed or re.search(r"\bscripts\s*=", text):
+        entries, scripts = _asked(found.folder)
+        for line in entries:
+            _add_entry(found, line)
+        for name in scripts:
+            _add_script(found, name)
+
+
+def _asked(folder: Path) -> tuple[list[str], list[str]]:
+    """The entry points and scripts that a ``setup.py`` gives when it runs; none where it fails."""
+    try:
+        done = subprocess.run(  # noqa: S603 - the user asks for a program of this very package
+            [sys.executable, "-c", _ASK], cwd=folder, capture_output=True, timeout=_ASK_SECONDS, check=True, text=True
+        )
+        entries, scripts = json.loads(done.stdout.splitlines()[-1])
+    except (OSError, subprocess.SubprocessError, ValueError, IndexError):
+        return [], []
+    return [str(each) for each in entries], [str(each) for each in scripts]
+
+
+def _read_cmake(found: SourcePrograms) -> None:
+    path = found.folder / "CMakeLists.txt"
+    text = text_of(path)
+    if not text:
+        return
+    from linkwright.packages.readers.cmake import read_cmake
+
+    file = read_cmake(SourceText(str(path), text), found.folder)
+    for name, relative in file.programs.items():
+        _add_script(found, relative, name)
+    found.compiled |= file.executables - set(file.programs)
+
+
+def _add_entry(found: SourcePrograms, line: Any) -> None:
+    match = LINE.match(line) if isinstance(line, str) else None
+    if match is not None:
+        found.entry_points[match[1]] = EntryPoint(match[2], match[3] or "main")
+
+
+def _add_script(found: SourcePrograms, relative: str, name: str | None = None) -> None:
+    path = found.folder / relative
+    if relative and path.is_file():
+        found.scripts[name or path.name] = path

@@ -1,0 +1,63 @@
+"""The environment in which a user's executable finds the packages that its launcher found."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+from linkwright.packages import PackageFinder, install_prefix, is_installed
+from linkwright.packages.finder import START_VARIABLE
+from linkwright.packages.programs.source_programs import python_root
+
+_AMENT = "AMENT_PREFIX_PATH"
+_PYTHON = "PYTHONPATH"
+
+
+def workspace_environment(finder: PackageFinder, base: Mapping[str, str]) -> dict[str, str]:
+    """An environment with what building the workspaces and sourcing their ``setup.bash`` would have added.
+
+    Args:
+        finder: where packages are.
+        base: the environment to begin with; what it names already stays before all else.
+    """
+    made = dict(base)
+    made[START_VARIABLE] = os.pathsep.join(map(str, finder.starts))
+    known = set(base.get(_AMENT, "").split(os.pathsep))
+    prefixes: dict[str, None] = {}
+    folders: dict[str, None] = {}
+    for name, share in finder.packages().items():
+        prefix = install_prefix(share)
+        if not is_installed(share):
+            root = python_root(share, name)
+            if root is not None:
+                folders[str(root)] = None
+        elif str(prefix) not in known:
+            prefixes[str(prefix)] = None
+            folders.update((str(folder), None) for folder in python_folders(prefix, name))
+    _append(made, _AMENT, prefixes)
+    _append(made, _PYTHON, folders)
+    return made
+
+
+def python_folders(prefix: Path, package: str) -> Iterator[Path]:
+    """Where the Python modules of an installed package lie, a link to its sources (``--symlink-install``) included."""
+    for pattern in ("lib/python*/site-packages", "local/lib/python*/dist-packages"):
+        yield from prefix.glob(pattern)
+    for hook in (prefix / "share" / package / "hook").glob("pythonpath*.dsv"):
+        try:
+            lines = hook.read_text(encoding="utf-8").splitlines()
+        except OSError:
+            continue
+        for line in lines:
+            _, _, rest = line.partition(";")
+            variable, _, value = rest.partition(";")
+            if variable == _PYTHON and value:
+                yield prefix / value
+
+
+def _append(environment: dict[str, str], name: str, entries: Mapping[str, None]) -> None:
+    present = [entry for entry in environment.get(name, "").split(os.pathsep) if entry]
+    added = [entry for entry in entries if entry not in present]
+    if added:
+        environment[name] = os.pathsep.join([*present, *added])

@@ -1,0 +1,92 @@
+"""Entry points as the files of a package's sources name them: lines ``name = module:attribute`` of a group."""
+
+from __future__ import annotations
+
+import ast
+import re
+import sys
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+PROGRAMS = "console_scripts"
+"""The group of the programs that a package installs."""
+
+LINE = re.compile(r"\s*([^\s=]+)\s*=\s*([\w.]+)\s*(?::\s*([\w.]+))?")
+"""Name, module and attribute of an entry point; the attribute may be missing."""
+
+
+@dataclass(frozen=True, slots=True)
+class EntryPoint:
+    """A function that is a program.
+
+    Attributes:
+        module: full name of its module.
+        function: its name there, perhaps with dots.
+    """
+
+    module: str
+    function: str
+
+    def __str__(self) -> str:
+        return f"{self.module}:{self.function}"
+
+
+def in_setup_py(text: str, group: str) -> list[str]:
+    """The lines of a group wherever a ``setup.py`` writes them into a dictionary, without running it."""
+    with suppress(SyntaxError):
+        for node in ast.walk(ast.parse(text)):
+            for key, value in zip(node.keys, node.values, strict=True) if isinstance(node, ast.Dict) else ():
+                if isinstance(key, ast.Constant) and key.value == group:
+                    items = value.elts if isinstance(value, (ast.List, ast.Tuple)) else [value]
+                    texts = [each.value for each in items if isinstance(each, ast.Constant)]
+                    return [line for each in texts if isinstance(each, str) for line in each.splitlines()]
+    return []
+
+
+def in_setup_cfg(text: str, group: str) -> list[str]:
+    """The lines of a group in a ``setup.cfg``."""
+    return option_lines(text, "options.entry_points", group)
+
+
+def in_pyproject(text: str, group: str) -> list[str]:
+    """The lines of a group in a ``pyproject.toml``."""
+    if sys.version_info >= (3, 11):
+        import tomllib
+    else:
+        import tomli as tomllib  # type: ignore[import-not-found, unused-ignore]
+    try:
+        project: Any = tomllib.loads(text)["project"]
+        points = project["scripts"] if group == PROGRAMS else project["entry-points"][group]
+        return [f"{name} = {target}" for name, target in points.items()]
+    except (tomllib.TOMLDecodeError, KeyError, TypeError, AttributeError):
+        return []
+
+
+def in_metadata(text: str, group: str) -> list[str]:
+    """The lines of a group in the ``entry_points.txt`` that a build leaves behind."""
+    from configparser import ConfigParser, Error
+
+    parser = ConfigParser(interpolation=None, delimiters=("=",))
+    with suppress(Error):
+        parser.read_string(text)
+    return [f"{name} = {value}" for name, value in parser.items(group)] if parser.has_section(group) else []
+
+
+def option_lines(text: str, section: str, option: str) -> list[str]:
+    """The lines of an option of a ``setup.cfg``."""
+    from configparser import ConfigParser, Error
+
+    parser = ConfigParser(interpolation=None)
+    with suppress(Error):
+        parser.read_string(text)
+    return parser.get(section, option, fallback="").splitlines()
+
+
+def text_of(path: Path) -> str:
+    """The text of a file; nothing where it cannot be read."""
+    try:
+        return path.read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return ""

@@ -1,0 +1,178 @@
+"""What a Python launch file says, read from its syntax tree without running it."""
+
+from __future__ import annotations
+
+import ast
+from contextlib import suppress
+from dataclasses import dataclass, field
+
+from linkwright.diagnostics import SourceText, Span
+from linkwright.packages.readers.python_values import PythonFile, SharePath, argument_of, called_name
+from linkwright.packages.readers.setup_py import SyntaxMistake, syntax_mistake
+
+FUNCTION = "generate_launch_description"
+_TEST_FUNCTION = "generate_test_description"
+_TESTING = frozenset({"launch_testing", "launch_pytest"})
+_ENDINGS = (".launch.py", "_launch.py")
+_JOINING = frozenset({"join", "Path", "PurePath", "joinpath", "PathJoinSubstitution", "str", "as_posix"})
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Something written in a launch file: its text, its node and where it stands."""
+
+    text: str
+    node: ast.expr
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class StartedNode:
+    """A ``Node`` of a launch file: package and executable, each None where that cannot be told."""
+
+    package: Place | None
+    executable: Place | None
+
+
+@dataclass(frozen=True, slots=True)
+class SharedFile:
+    """A path in a share folder that a launch file puts together."""
+
+    package: str
+    path: str
+    span: Span
+
+
+@dataclass
+class LaunchFile:
+    """A launch file.
+
+    Attributes:
+        path: its path below the package.
+        error: the syntax error, where it is no Python.
+        python: the parsed file, or None.
+        has_function: whether it defines ``generate_launch_description``, or gets names from elsewhere that may.
+        is_test: whether it is run by launch_testing or launch_pytest, which ask for other functions.
+        nodes: what it starts.
+        shares: the packages whose share folder it asks for.
+        paths: the whole paths that it makes in share folders.
+        imports: the packages that it imports from, with their places.
+    """
+
+    source: SourceText
+    path: str
+    error: SyntaxMistake | None = None
+    python: PythonFile | None = None
+    has_function: bool = False
+    is_test: bool = False
+    nodes: list[StartedNode] = field(default_factory=list)
+    shares: list[Place] = field(default_factory=list)
+    paths: list[SharedFile] = field(default_factory=list)
+    imports: list[tuple[str, Span]] = field(default_factory=list)
+
+
+def is_launch_file(path: str) -> bool:
+    """Whether a file is called as Python launch files are."""
+    return path.endswith(_ENDINGS)
+
+
+def read_launch_file(source: SourceText, path: str) -> LaunchFile:
+    """What a launch file says; `path` is that below its package."""
+    facts = LaunchFile(source, path)
+    try:
+        python = facts.python = PythonFile(source)
+    except (SyntaxError, ValueError) as error:
+        facts.error = syntax_mistake(source, error)
+        return facts
+    facts.has_function = any(map(_may_define_function, python.tree.body))
+    _read_imports(python, facts)
+    facts.is_test = any(_defines_function(node, _TEST_FUNCTION) for node in python.tree.body) or any(
+        package in _TESTING for package, _ in facts.imports
+    )
+    for call in python.calls("Node", "LifecycleNode", "ComposableNode"):
+        package, executable = argument_of(call, "package"), argument_of(call, "executable")
+        facts.nodes.append(StartedNode(_place(python, package), _place(python, executable)))
+    for call in python.calls("get_package_share_directory", "get_package_share_path", "FindPackageShare"):
+        argument = call.args[0] if call.args else argument_of(call, "package")
+        place = _place(python, argument)
+        if place is not None:
+            facts.shares.append(place)
+    with suppress(RecursionError):  # a sum of a thousand terms; the paths in it are not looked at
+        _PathReader(python, facts).visit(python.tree)
+    return facts
+
+
+def _may_define_function(node: ast.stmt) -> bool:
+    if isinstance(node, ast.ImportFrom) and any(alias.name == "*" for alias in node.names):
+        return True
+    return _defines_function(node, FUNCTION) or isinstance(node, (ast.If, ast.Try))  # it may be defined in there
+
+
+def _defines_function(node: ast.stmt, name: str) -> bool:
+    if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)):
+        return node.name == name
+    if isinstance(node, ast.ImportFrom):
+        return any((alias.asname or alias.name) == name for alias in node.names)
+    return isinstance(node, ast.Assign) and any(
+        isinstance(target, ast.Name) and target.id == name for target in node.targets
+    )
+
+
+def _read_imports(python: PythonFile, facts: LaunchFile) -> None:
+    found: dict[str, Span] = {}
+    for node in ast.walk(python.tree):
+        if isinstance(node, ast.ImportFrom) and node.module and not node.level:
+            found.setdefault(node.module.partition(".")[0], python.span(node))
+        elif isinstance(node, ast.Import):
+            for alias in node.names:
+                found.setdefault(alias.name.partition(".")[0], python.span(node))
+    facts.imports = list(found.items())
+
+
+def _place(python: PythonFile, node: ast.expr | None) -> Place | None:
+    if node is None:
+        return None
+    text = python.text(node)
+    return None if text is None else Place(text, node, python.span(node))
+
+
+class _PathReader(ast.NodeVisitor):
+    """Finds the whole paths: expressions that have a value in a share folder and are no part of a larger path."""
+
+    def __init__(self, python: PythonFile, facts: LaunchFile) -> None:
+        self._python = python
+        self._facts = facts
+        self._inside_path = 0
+        self._used: set[str] = set()
+        for node in ast.walk(python.tree):
+            if _is_path_operation(node):
+                self._used.update(each.id for each in ast.walk(node) if isinstance(each, ast.Name))
+
+    def visit_Assign(self, node: ast.Assign) -> None:
+        names = [target.id for target in node.targets if isinstance(target, ast.Name)]
+        if any(name in self._used for name in names):
+            self._inside_path += 1  # the name goes into a longer path
+            self.generic_visit(node)
+            self._inside_path -= 1
+        else:
+            self.generic_visit(node)
+
+    def generic_visit(self, node: ast.AST) -> None:
+        if not _is_path_operation(node):
+            super().generic_visit(node)
+            return
+        assert isinstance(node, ast.expr)
+        value = self._python.value(node)
+        if isinstance(value, SharePath) and value.rest and not self._inside_path:
+            self._facts.paths.append(SharedFile(value.package, value.rest.strip("/"), self._python.span(node)))
+        self._inside_path += 1
+        super().generic_visit(node)
+        self._inside_path -= 1
+
+
+def _is_path_operation(node: ast.AST) -> bool:
+    if isinstance(node, ast.BinOp):
+        return isinstance(node.op, (ast.Add, ast.Div))
+    if isinstance(node, ast.JoinedStr):
+        return True
+    return isinstance(node, ast.Call) and called_name(node).rpartition(".")[2] in _JOINING

@@ -1,0 +1,282 @@
+"""What a Python file says without being run: the strings and paths that its expressions stand for.
+
+Only what needs no guessing gets a value: literals, names that are assigned once, paths that are put together, share
+folders of packages, and patterns of file names. Everything else is `UNKNOWN`, and rules are silent about it.
+"""
+
+from __future__ import annotations
+
+import ast
+import warnings
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from enum import Enum
+from typing import Union
+
+from linkwright.diagnostics import SourceText, Span, phrase
+
+
+class Nothing(Enum):
+    """The value of what cannot be told."""
+
+    UNKNOWN = "unknown"
+
+
+UNKNOWN = Nothing.UNKNOWN
+
+
+@dataclass(frozen=True, slots=True)
+class SharePath:
+    """The share folder of a package with some text behind it.
+
+    Attributes:
+        package: name of the package.
+        rest: what is behind the folder, such as ``/urdf/robot.urdf``; empty for the folder itself.
+    """
+
+    package: str
+    rest: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Pattern:
+    """The files that ``glob`` finds.
+
+    Attributes:
+        text: the pattern.
+        recursive: whether ``**`` in it stands for any number of folders.
+    """
+
+    text: str
+    recursive: bool
+
+
+Value = Union[Nothing, str, int, float, None, SharePath, Pattern, tuple["Value", ...]]  # noqa: UP007 - it names itself
+
+_DEEPEST = 40
+_JOINS = frozenset({"os.path.join", "path.join", "join", "Path", "PurePath", "pathlib.Path", "PathJoinSubstitution"})
+_SHARES = frozenset({"get_package_share_directory", "get_package_share_path", "FindPackageShare"})
+
+
+class PythonFile:
+    """A parsed Python file.
+
+    Args:
+        source: its text.
+
+    Attributes:
+        tree: its syntax tree.
+
+    Raises:
+        SyntaxError: it is no Python.
+        ValueError: it holds a null byte, or is nested too deeply.
+    """
+
+    def __init__(self, source: SourceText) -> None:
+        self.source = source
+        self.tree = _parsed(source.text)
+        self._assigned: dict[str, ast.expr | None] = {}
+        for node in ast.walk(self.tree):
+            self._note_bindings(node)
+
+    def _note_bindings(self, node: ast.AST) -> None:
+        if isinstance(node, ast.Assign):
+            for target in node.targets:
+                self._bind(target, node.value)
+        elif isinstance(node, ast.AnnAssign) and node.value is not None:
+            self._bind(node.target, node.value)
+        elif isinstance(node, (ast.AugAssign, ast.NamedExpr, ast.For, ast.AsyncFor, ast.comprehension)):
+            self._bind(node.target, None)
+        elif isinstance(node, ast.withitem) and node.optional_vars is not None:
+            self._bind(node.optional_vars, None)
+        elif isinstance(node, ast.arg):
+            self._assigned[node.arg] = None
+        elif isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
+            self._assigned[node.name] = None
+
+    def _bind(self, target: ast.expr, value: ast.expr | None) -> None:
+        if isinstance(target, ast.Name):
+            again = target.id in self._assigned
+            self._assigned[target.id] = None if again else value
+        elif isinstance(target, (ast.Tuple, ast.List)):
+            for part in target.elts:
+                self._bind(part, None)
+        elif isinstance(target, ast.Starred):
+            self._bind(target.value, None)
+
+    def assigned(self, name: str) -> ast.expr | None:
+        """The expression that a name is assigned, when that happens exactly once in the file."""
+        return self._assigned.get(name)
+
+    def resolved(self, node: ast.expr) -> ast.expr:
+        """An expression, or for a name what it is assigned."""
+        for _ in range(_DEEPEST):
+            if not isinstance(node, ast.Name):
+                break
+            value = self.assigned(node.id)
+            if value is None:
+                break
+            node = value
+        return node
+
+    def calls(self, *names: str) -> Iterator[ast.Call]:
+        """The calls of functions or classes, by the last part of their names, in the order of the text."""
+        found = [
+            node
+            for node in ast.walk(self.tree)
+            if isinstance(node, ast.Call) and called_name(node).rpartition(".")[2] in names
+        ]
+        yield from sorted(found, key=lambda node: (node.lineno, node.col_offset))
+
+    def offset(self, line: int, column: int) -> int:
+        """Character offset of a line, from 1, and a column in bytes, from 0, as the syntax tree has them."""
+        text = self.source.line(line)
+        characters = column if text.isascii() else len(text.encode()[:column].decode("utf-8", "replace"))
+        return self.source.offset(line, characters + 1)
+
+    def range(self, node: ast.expr | ast.stmt | ast.keyword | ast.alias) -> tuple[int, int]:
+        """Character offsets of a node, the end exclusive."""
+        start = self.offset(node.lineno, node.col_offset)
+        if node.end_lineno is None or node.end_col_offset is None:
+            return start, start + 1
+        return start, self.offset(node.end_lineno, node.end_col_offset)
+
+    def span(self, node: ast.expr | ast.stmt | ast.keyword | ast.alias) -> Span:
+        """The place of a node; of one over several lines, its first line."""
+        start, end = self.range(node)
+        line_end = self.source.text.find("\n", start)
+        if 0 <= line_end < end:
+            end = line_end
+        return self.source.span(start, max(end, start + 1))
+
+    # values
+
+    def value(self, node: ast.expr | None, depth: int = 0) -> Value:
+        """What an expression stands for."""
+        if node is None or depth > _DEEPEST:
+            return UNKNOWN
+        if isinstance(node, ast.Constant):
+            return node.value if isinstance(node.value, (str, int, float, type(None))) else UNKNOWN
+        if isinstance(node, ast.Name):
+            return self.value(self.assigned(node.id), depth + 1)
+        if isinstance(node, (ast.List, ast.Tuple)):
+            return tuple(self.value(item, depth + 1) for item in node.elts)
+        if isinstance(node, ast.JoinedStr):
+            return concatenated([self._piece(piece, depth) for piece in node.values])
+        if isinstance(node, ast.BinOp):
+            return self._operation(node, depth)
+        if isinstance(node, ast.Call):
+            return self._call(node, depth)
+        return UNKNOWN
+
+    def text(self, node: ast.expr | None) -> str | None:
+        """The string that an expression stands for, or None."""
+        value = self.value(node)
+        return value if isinstance(value, str) else None
+
+    def _piece(self, piece: ast.expr, depth: int) -> Value:
+        if isinstance(piece, ast.FormattedValue):
+            plain = piece.conversion == -1 and piece.format_spec is None
+            return self.value(piece.value, depth + 1) if plain else UNKNOWN
+        return self.value(piece, depth + 1)
+
+    def _operation(self, node: ast.BinOp, depth: int) -> Value:
+        left, right = self.value(node.left, depth + 1), self.value(node.right, depth + 1)
+        if isinstance(node.op, ast.Add):
+            if isinstance(left, tuple) and isinstance(right, tuple):
+                return left + right
+            return concatenated([left, right])
+        if isinstance(node.op, ast.Div):
+            return joined([left, right])
+        if isinstance(node.op, ast.Mod) and isinstance(left, str):
+            given = right if isinstance(right, tuple) else (right,)
+            if all(isinstance(value, (str, int)) for value in given) and left.count("%") == len(given):
+                try:
+                    return left % given
+                except (TypeError, ValueError):
+                    return UNKNOWN
+        return UNKNOWN
+
+    def _call(self, node: ast.Call, depth: int) -> Value:
+        name = called_name(node)
+        last = name.rpartition(".")[2]
+        if any(isinstance(argument, ast.Starred) for argument in node.args):
+            return UNKNOWN
+        if last in _SHARES:
+            package = self.value(node.args[0] if node.args else argument_of(node, "package"), depth + 1)
+            return SharePath(package) if isinstance(package, str) else UNKNOWN
+        given = [self.value(argument, depth + 1) for argument in node.args]
+        if name in _JOINS and given:
+            if last == "PathJoinSubstitution":
+                return joined(given[0]) if isinstance(given[0], tuple) else UNKNOWN
+            return joined(given)
+        if last == "joinpath" and isinstance(node.func, ast.Attribute):
+            return joined([self.value(node.func.value, depth + 1), *given])
+        if last in ("as_posix", "find") and isinstance(node.func, ast.Attribute):
+            owner = self.value(node.func.value, depth + 1)
+            return owner if isinstance(owner, SharePath) or last == "as_posix" else UNKNOWN
+        if name == "str" and len(given) == 1:
+            return given[0]
+        if last in ("glob", "iglob") and name in ("glob", "glob.glob", "iglob", "glob.iglob") and given:
+            recursive = argument_of(node, "recursive")
+            is_recursive = isinstance(recursive, ast.Constant) and bool(recursive.value)
+            return Pattern(given[0], is_recursive) if isinstance(given[0], str) else UNKNOWN
+        if last == "TextSubstitution":
+            return self.value(argument_of(node, "text"), depth + 1)
+        return UNKNOWN
+
+
+def _parsed(text: str) -> ast.Module:
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # about the user's text, such as an escape that is none
+            return ast.parse(text)
+    except (RecursionError, MemoryError):
+        raise ValueError(phrase("it is nested too deeply")) from None
+
+
+def called_name(node: ast.Call) -> str:
+    """The dotted name of what is called; empty parts where it is not a name."""
+    parts: list[str] = []
+    function: ast.expr = node.func
+    while isinstance(function, ast.Attribute):
+        parts.append(function.attr)
+        function = function.value
+    parts.append(function.id if isinstance(function, ast.Name) else "")
+    return ".".join(reversed(parts))
+
+
+def argument_of(node: ast.Call, name: str) -> ast.expr | None:
+    """The value of a named argument of a call, or None."""
+    return next((keyword.value for keyword in node.keywords if keyword.arg == name), None)
+
+
+def concatenated(values: Sequence[Value]) -> Value:
+    """The values written one behind another."""
+    if not values:
+        return ""
+    first = values[0]
+    rest = values[1:]
+    if not all(isinstance(value, str) for value in rest):
+        return UNKNOWN
+    text = "".join(value for value in rest if isinstance(value, str))
+    if isinstance(first, SharePath):
+        return SharePath(first.package, first.rest + text)
+    return first + text if isinstance(first, str) else UNKNOWN
+
+
+def joined(values: Sequence[Value]) -> Value:
+    """The path that the values make as its parts."""
+    if not values:
+        return UNKNOWN
+    path = values[0]
+    for value in values[1:]:
+        if not isinstance(value, str) or value.startswith("/"):
+            return UNKNOWN
+        if isinstance(path, SharePath):
+            path = SharePath(path.package, f"{path.rest.rstrip('/')}/{value}")
+        elif isinstance(path, str):
+            path = f"{path.rstrip('/')}/{value}" if path else value
+        else:
+            return UNKNOWN
+    return path if isinstance(path, (str, SharePath)) else UNKNOWN

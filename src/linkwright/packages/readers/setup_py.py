@@ -1,0 +1,243 @@
+"""What a ``setup.py`` installs, read from its syntax tree without running it."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from glob import glob
+from pathlib import Path
+
+from linkwright.diagnostics import SourceText, Span
+from linkwright.packages.readers.entry_points import LINE, PROGRAMS
+from linkwright.packages.readers.installed_file import InstalledFile
+from linkwright.packages.readers.python_values import Pattern, PythonFile, argument_of, called_name
+
+
+@dataclass(frozen=True, slots=True)
+class SyntaxMistake:
+    """Why a file is no Python, and where."""
+
+    message: str
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Installed:
+    """A file or a pattern of files that is installed.
+
+    Attributes:
+        text: the file or pattern, relative to the package.
+        is_pattern: whether it is handed to ``glob``.
+        recursive: whether ``**`` in it stands for any number of folders.
+        destination: the folder below the prefix that it goes to, or None where that cannot be told.
+        span: where it is written.
+    """
+
+    text: str
+    is_pattern: bool
+    recursive: bool
+    destination: str | None
+    span: Span
+
+    def files(self, package: Path) -> list[str]:
+        """The files of a package that are meant, as paths below it with slashes."""
+        if not self.is_pattern:
+            return [self.text] if (package / self.text).exists() else []
+        # Not Path.glob, whose rules for hidden files and "**" are others than those of the glob that setup.py calls.
+        found = glob(self.text, root_dir=package, recursive=self.recursive)  # noqa: PTH207
+        return [name.replace("\\", "/") for name in found if (package / name).is_file()]
+
+
+@dataclass(frozen=True, slots=True)
+class Program:
+    """An executable: its name, the module and function it runs, and where that is written."""
+
+    executable: str
+    module: str
+    function: str | None
+    span: Span
+
+
+@dataclass
+class SetupFile:
+    """A ``setup.py``.
+
+    Attributes:
+        error: the syntax error, where it is no Python.
+        call: whether it calls ``setup``.
+        name: the name it gives the package, with its place; None where that cannot be told.
+        installed: what ``data_files`` installs.
+        data_files_span: where ``data_files`` is written, or the call of ``setup``.
+        is_complete: whether it installs no other data files than these.
+        packages: the Python packages that it names, with their places; None where they are searched for.
+        entry_points: the executables.
+        entry_points_complete: whether these are all.
+    """
+
+    source: SourceText
+    error: SyntaxMistake | None = None
+    call: bool = False
+    name: tuple[str, Span] | None = None
+    installed: list[Installed] = field(default_factory=list)
+    data_files_span: Span | None = None
+    is_complete: bool = True
+    packages: list[tuple[str, Span]] | None = None
+    entry_points: list[Program] = field(default_factory=list)
+    entry_points_complete: bool = True
+
+    def installed_files(self, package: Path) -> Iterator[InstalledFile]:
+        """What ``data_files`` installs, file by file, where that can be told.
+
+        Args:
+            package: the package's folder.
+        """
+        for item in self.installed:
+            if item.destination is not None:
+                for file in item.files(package):
+                    yield InstalledFile(file, f"{item.destination.rstrip('/')}/{file.rpartition('/')[2]}")
+
+
+def read_setup(source: SourceText) -> SetupFile:
+    """What a ``setup.py`` says."""
+    facts = SetupFile(source)
+    try:
+        python = PythonFile(source)
+    except (SyntaxError, ValueError) as error:
+        facts.error = syntax_mistake(source, error)
+        return facts
+    call = next(python.calls("setup"), None)
+    if call is None:
+        return facts
+    facts.call = True
+    if any(keyword.arg is None for keyword in call.keywords):
+        facts.is_complete = facts.entry_points_complete = False
+    name = argument_of(call, "name")
+    text = python.text(name)
+    if name is not None and text is not None:
+        facts.name = text, python.span(name)
+    try:
+        _Installing(python, facts).read(argument_of(call, "data_files"), call)
+    except RecursionError:  # lists that are made of each other, or of a thousand terms
+        facts.is_complete = False
+    _read_packages(python, facts, argument_of(call, "packages"))
+    _read_entry_points(python, facts, argument_of(call, "entry_points"))
+    return facts
+
+
+def syntax_mistake(source: SourceText, error: SyntaxError | ValueError) -> SyntaxMistake:
+    """Why a text is no Python."""
+    if not isinstance(error, SyntaxError):
+        return SyntaxMistake(str(error), source.span(0))
+    start = source.offset(error.lineno or 1, max(error.offset or 1, 1))
+    return SyntaxMistake(error.msg, source.span(start, start + 1))
+
+
+class _Installing:
+    """Reads ``data_files``."""
+
+    def __init__(self, python: PythonFile, facts: SetupFile) -> None:
+        self._python = python
+        self._facts = facts
+
+    def read(self, node: ast.expr | None, call: ast.Call) -> None:
+        self._facts.data_files_span = self._python.span(node if node is not None else call.func)
+        if node is None:
+            return
+        names = [node.id] if isinstance(node, ast.Name) else []
+        resolved = self._python.resolved(node)
+        if isinstance(resolved, ast.Name):
+            self._facts.is_complete = False
+            return
+        self._entries(resolved)
+        for name in names:
+            self._added_to(name)
+
+    def _entries(self, node: ast.expr) -> None:
+        if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
+            self._entries(self._python.resolved(node.left))
+            self._entries(self._python.resolved(node.right))
+        elif isinstance(node, (ast.List, ast.Tuple)):
+            for entry in node.elts:
+                self._entry(entry)
+        else:
+            self._facts.is_complete = False
+
+    def _entry(self, node: ast.expr) -> None:
+        if isinstance(node, ast.Starred):
+            self._entries(self._python.resolved(node.value))
+            return
+        node = self._python.resolved(node)
+        if not isinstance(node, (ast.Tuple, ast.List)) or len(node.elts) != 2:
+            self._facts.is_complete = False
+            return
+        self._sources(node.elts[1], self._python.text(node.elts[0]))
+
+    def _sources(self, node: ast.expr, destination: str | None) -> None:
+        node = self._python.resolved(node)
+        value = self._python.value(node)
+        span = self._python.span(node)
+        if isinstance(value, Pattern):
+            self._add(value.text, destination, span, value)
+        elif isinstance(value, str):
+            self._add(value, destination, span, None)
+        elif isinstance(node, (ast.List, ast.Tuple)):
+            for item in node.elts:
+                self._sources(item.value if isinstance(item, ast.Starred) else item, destination)
+        elif isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
+            self._sources(node.left, destination)
+            self._sources(node.right, destination)
+        else:
+            self._facts.is_complete = False
+
+    def _add(self, text: str, destination: str | None, span: Span, pattern: Pattern | None) -> None:
+        recursive = pattern is not None and pattern.recursive
+        text = text.removeprefix("./")
+        self._facts.installed.append(Installed(text, pattern is not None, recursive, destination, span))
+
+    def _added_to(self, name: str) -> None:
+        """What ``name.append(...)``, ``name.extend(...)`` and ``name += ...`` add."""
+        for node in ast.walk(self._python.tree):
+            if isinstance(node, ast.Call) and called_name(node) in (f"{name}.append", f"{name}.extend"):
+                if len(node.args) != 1:
+                    continue
+                if called_name(node).endswith("append"):
+                    self._entry(node.args[0])
+                else:
+                    self._entries(self._python.resolved(node.args[0]))
+            elif isinstance(node, ast.AugAssign) and isinstance(node.target, ast.Name) and node.target.id == name:
+                self._entries(self._python.resolved(node.value))
+
+
+def _read_packages(python: PythonFile, facts: SetupFile, node: ast.expr | None) -> None:
+    node = None if node is None else python.resolved(node)
+    if not isinstance(node, (ast.List, ast.Tuple)):
+        return
+    facts.packages = []
+    for item in node.elts:
+        text = python.text(item)
+        if text is not None:
+            facts.packages.append((text, python.span(item)))
+
+
+def _read_entry_points(python: PythonFile, facts: SetupFile, node: ast.expr | None) -> None:
+    if node is None:
+        return
+    node = python.resolved(node)
+    if not isinstance(node, ast.Dict):
+        facts.entry_points_complete = False
+        return
+    for key, value in zip(node.keys, node.values, strict=True):
+        if python.text(key) != PROGRAMS:
+            continue
+        scripts = python.resolved(value)
+        if not isinstance(scripts, (ast.List, ast.Tuple)):
+            facts.entry_points_complete = False
+            continue
+        for script in scripts.elts:
+            text = python.text(script)
+            match = LINE.match(text) if text is not None else None
+            if match is None:
+                facts.entry_points_complete = False
+            else:
+                facts.entry_points.append(Program(match[1], match[2], match[3], python.span(script)))

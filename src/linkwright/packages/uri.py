@@ -1,0 +1,66 @@
+"""Resolving ``package://`` and ``file://`` URIs and the plain paths of descriptions."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+from linkwright.diagnostics import phrase
+from linkwright.packages.errors import bad_uri
+
+_SCHEME = re.compile(r"([A-Za-z][A-Za-z0-9+.-]+):")
+
+
+def resolve(address: str, share: Callable[[str], Path], relative_to: Path | None) -> Path:
+    """The path that an address means, with `share` to ask for a package's share folder.
+
+    Raises:
+        LinkwrightError: what `share` raises, and PKG102 for an address that is neither of the three forms.
+    """
+    if not address.strip():
+        raise bad_uri(phrase("'{uri}' is empty where the path of a file is expected", uri=address))
+    scheme = _SCHEME.match(address)
+    if scheme is None:
+        path = Path(address)
+        return path if path.is_absolute() or relative_to is None else relative_to / path
+    kind, rest = scheme.group(1).lower(), address[scheme.end() :]
+    if kind == "package":
+        return _package_path(address, rest, share)
+    if kind == "file":
+        return _file_path(address, rest)
+    hint = phrase("use package://PACKAGE/PATH")
+    if kind in ("http", "https"):
+        hint = phrase("nothing is fetched from the network: put the file into a package and use package://PACKAGE/PATH")
+    problem = phrase("'{uri}' has the scheme '{scheme}', which names no file here", uri=address, scheme=scheme.group(1))
+    raise bad_uri(problem, hint)
+
+
+def _package_path(address: str, rest: str, share: Callable[[str], Path]) -> Path:
+    if not rest.startswith("//"):
+        raise bad_uri(phrase("'{uri}' lacks the two slashes", uri=address), phrase("write package://PACKAGE/PATH"))
+    name, _, path = rest[2:].partition("/")
+    if not name:
+        raise bad_uri(phrase("'{uri}' names no package", uri=address), phrase("write package://PACKAGE/PATH"))
+    return share(_decoded(name)) / _decoded(path).lstrip("/")
+
+
+def _file_path(address: str, rest: str) -> Path:
+    if rest.startswith("//localhost/"):
+        rest = rest.removeprefix("//localhost")
+    elif rest.startswith("//"):
+        rest = rest[2:]
+    if not rest.startswith("/"):
+        raise bad_uri(
+            phrase("'{uri}' has no absolute path", uri=address),
+            phrase("write file:///ABSOLUTE/PATH, with three slashes"),
+        )
+    return Path(_decoded(rest))
+
+
+def _decoded(text: str) -> str:
+    if "%" not in text:
+        return text
+    from urllib.parse import unquote
+
+    return unquote(text)

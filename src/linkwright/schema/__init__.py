@@ -1,0 +1,24 @@
+"""What an XML language consists of, as data, and what that data drives: reading, writing, explaining.
+
+A language is a tree of `ElementRule` objects. This room knows no language itself; URDF's is `linkwright.urdf.schema`.
+"""
+
+from linkwright.schema.describing import describe_attribute, describe_element
+from linkwright.schema.reading import ElementReader, reader_of
+from linkwright.schema.report import UNREADABLE, Report
+from linkwright.schema.rules import AttributeRule, ElementRule, ValueType, Version
+from linkwright.schema.writing import write_element
+
+__all__ = [
+    "UNREADABLE",
+    "AttributeRule",
+    "ElementReader",
+    "ElementRule",
+    "Report",
+    "ValueType",
+    "Version",
+    "describe_attribute",
+    "describe_element",
+    "reader_of",
+    "write_element",
+]

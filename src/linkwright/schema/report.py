@@ -1,0 +1,46 @@
+"""What a reader of elements tells, and to whom."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Final, Protocol
+
+from linkwright.schema.rules import AttributeRule, ElementRule
+from linkwright.xmltree import Element
+
+UNREADABLE: Final = type("Unreadable", (), {"__repr__": lambda _: "UNREADABLE"})()
+"""Stands for what cannot be read; what is wrong with it has been reported."""
+
+
+class Report(Protocol):
+    """Where a reader tells what it finds, in the words of a language.
+
+    `owner` is the element that messages name an element's place by: the link or joint that it is part of.
+
+    Attributes:
+        count: how many findings there are.
+    """
+
+    count: int
+
+    def missing_attribute(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> None:
+        """A required attribute, or text inside, is not there."""
+
+    def malformed(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> Any:
+        """An attribute, or the text inside, does not say what it must; the value to go on with, or `UNREADABLE`."""
+
+    def too_new(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> None:
+        """An attribute is ignored, because it came with a later version of the language."""
+
+    def missing_child(self, element: Element, rule: ElementRule, child: ElementRule, owner: Element) -> None:
+        """A required child is not there."""
+
+    def empty_choice(self, element: Element, rule: ElementRule, owner: Element) -> None:
+        """None of several children is there."""
+
+    def unknown_choice(self, child: Element, rule: ElementRule, owner: Element) -> None:
+        """The child that should be one of several is none of them in this version of the language."""
+
+
+Read = Callable[[Element, Element, Report], Any]
+"""From an element, its owner and a report to an object or `UNREADABLE`."""

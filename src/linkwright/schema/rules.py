@@ -1,0 +1,155 @@
+"""The elements and attributes of a language as data."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+Version = tuple[int, int]
+"""Major and minor version of a language."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ValueType:
+    """What a value in a file must be.
+
+    Attributes:
+        name: as messages and documentation say it: ``3 numbers``.
+        read: the value that a text says; raises `ValueError` where it says none.
+        write: the text for a value; None for a value that no text says.
+    """
+
+    name: str
+    read: Callable[[str], Any] = str
+    write: Callable[[Any], str | None] = str
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class AttributeRule:
+    """One attribute, or the text inside an element.
+
+    Attributes:
+        name: as written in the file.
+        type: what its value must be.
+        meaning: one phrase for hints, hover texts and documentation.
+        unit: SI unit, or an empty string.
+        required: whether the element cannot be read without it.
+        default: the value that stands for an absent one, as text; None where there is none.
+        since: the version that brought it; files of older versions ignore it.
+        until: the version that made a required attribute optional, or None.
+        later_default: a version, and the value that stands for an absent one from then on.
+        usual: whether one writes it although it is not required.
+        field: the field of the object that has its value; by default that of the attribute's name.
+        get: takes the value to write from the object, where that is not simply its field.
+    """
+
+    name: str
+    type: ValueType
+    meaning: str
+    unit: str = ""
+    required: bool = False
+    default: str | None = None
+    since: Version = (1, 0)
+    until: Version | None = None
+    later_default: tuple[Version, Any] | None = None
+    usual: bool = False
+    field: str = ""
+    get: Callable[[Any], Any] | None = None
+
+    @property
+    def target(self) -> str:
+        """The field that its value goes to."""
+        return self.field or self.name
+
+    def value_in(self, instance: Any) -> Any:
+        """The value that an object gives it."""
+        return getattr(instance, self.target) if self.get is None else self.get(instance)
+
+    def is_required(self, version: Version) -> bool:
+        """Whether a file of this version must give it."""
+        return self.required and (self.until is None or version < self.until)
+
+    def absent_value(self, version: Version) -> Any:
+        """What stands for it where a file of this version does not give it; None where nothing does."""
+        if self.later_default is not None and version >= self.later_default[0]:
+            return self.later_default[1]
+        return None if self.default is None else self.type.read(self.default)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ElementRule:
+    """One element in its place: what it may carry and contain, and what it is read into.
+
+    Attributes:
+        tag: the element's name.
+        meaning: one phrase for hover texts and documentation.
+        attributes: in the order in which documentation lists them.
+        children: the elements inside that are read, in the order in which they are written.
+        required: whether the element around it cannot be read without it.
+        many: whether all of them count; otherwise only the first is read.
+        since: the version that brought it.
+        text: what the text inside says, where the element has its value there.
+        choice: whether the first element inside decides which of the children is meant, and its object is this one's.
+        make: makes the object, which must not be false, of the fields of attributes and children, given by name; None
+            where they are fields of the object around it, as those of ``<mass value="1"/>`` are.
+        located: whether `make` takes the element, as ``element``.
+        field: the field of the object around it; by default that of the tag's name.
+        get: takes what to write from the object around it, where that is not simply its field.
+        default: what stands for an absent element: an object, or the tuple of values that are fields of the object
+            around it.
+        owns: whether messages name the place of what is inside by it, as that of a colour by its material.
+        keeps: whether there is an object of an element with unreadable parts, with what is absent in their place;
+            of parts of which all count, it gets `UNREADABLE` for each of those.
+        nests: whether it may contain elements of its own kind.
+        check: looks at a value that was read, with its element, its owner and the report; what it returns is taken in
+            its place, `UNREADABLE` for none.
+    """
+
+    tag: str
+    meaning: str
+    attributes: tuple[AttributeRule, ...] = ()
+    children: tuple[ElementRule, ...] = ()
+    required: bool = False
+    many: bool = False
+    since: Version = (1, 0)
+    text: AttributeRule | None = None
+    choice: bool = False
+    make: Callable[..., Any] | None = None
+    located: bool = False
+    field: str = ""
+    get: Callable[[Any], Any] | None = None
+    default: Any = None
+    owns: bool = False
+    keeps: bool = False
+    nests: bool = False
+    check: Callable[..., Any] | None = None
+
+    @property
+    def target(self) -> str:
+        """The field of the object around it that its own goes to."""
+        return self.field or self.tag
+
+    @property
+    def is_inline(self) -> bool:
+        """Whether its values are fields of the object around it."""
+        return self.make is None and not self.choice
+
+    def value_in(self, instance: Any) -> Any:
+        """The object, or objects, that the object around it has for this element."""
+        return getattr(instance, self.target) if self.get is None else self.get(instance)
+
+    @property
+    def values(self) -> tuple[AttributeRule, ...]:
+        """What it says itself: its attributes, and the text inside."""
+        return self.attributes if self.text is None else (*self.attributes, self.text)
+
+    def attribute(self, name: str) -> AttributeRule | None:
+        """The rule of one attribute, or None."""
+        return next((rule for rule in self.attributes if rule.name == name), None)
+
+    def child(self, tag: str) -> ElementRule | None:
+        """The rule of one child element, or None."""
+        if self.nests and tag == self.tag:
+            return self
+        return next((rule for rule in self.children if rule.tag == tag), None)

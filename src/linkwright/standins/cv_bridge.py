@@ -1,0 +1,201 @@
+"""Images of messages as the numpy arrays that OpenCV takes, and back (the API of ``cv_bridge``), without OpenCV."""
+
+from __future__ import annotations
+
+import io
+import sys
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.messages import get_message
+from linkwright.standins.image_encodings import (
+    DEPTHS,
+    NUMPY_NAMES,
+    ConversionError,
+    converted,
+    depth_and_channels,
+    encoding,
+)
+
+if TYPE_CHECKING:
+    from PIL.Image import Image as PillowImage
+
+_PILLOW_FORMATS = {"jpg": "JPEG", "jpeg": "JPEG", "jpe": "JPEG", "jp2": "JPEG2000", "tif": "TIFF", "tiff": "TIFF"}
+_JPEG_QUALITY = 95  # OpenCV's own
+
+
+class CvBridgeError(TypeError):
+    """An image cannot be converted; the text says why."""
+
+
+def getCvType(encoding_name: str) -> int:  # the name is cv_bridge's
+    """OpenCV's number of the type of images in an encoding: 16, which is ``CV_8UC3``, for ``bgr8``.
+
+    Raises:
+        RuntimeError: the encoding is unknown.
+    """
+    return encoding(encoding_name).cv_type
+
+
+class CvBridge:
+    """Converts between sensor_msgs images and arrays.
+
+    Attributes:
+        cvtype_to_name: OpenCV's number of a type -> its name without ``CV_``, such as ``8UC3``.
+        cvdepth_to_numpy_depth: OpenCV's number of a number's type -> numpy's name.
+        numpy_type_to_cvtype: numpy's name of a number's type -> OpenCV's, and the other way round.
+    """
+
+    def __init__(self) -> None:
+        self.cvtype_to_name = {
+            index + ((channels - 1) << 3): f"{depth}C{channels}"
+            for index, depth in enumerate(DEPTHS)
+            for channels in (1, 2, 3, 4)
+        }
+        self.cvdepth_to_numpy_depth = dict(enumerate(NUMPY_NAMES))
+        self.numpy_type_to_cvtype = dict(zip(NUMPY_NAMES, DEPTHS, strict=True))
+        self.numpy_type_to_cvtype |= dict(zip(DEPTHS, NUMPY_NAMES, strict=True))
+
+    def dtype_with_channels_to_cvtype2(self, dtype: np.dtype[Any], n_channels: int) -> str:
+        """OpenCV's name of a type, such as ``8UC3``."""
+        return f"{self.numpy_type_to_cvtype[dtype.name]}C{n_channels}"
+
+    def cvtype2_to_dtype_with_channels(self, cvtype: int) -> tuple[str, int]:
+        """Numpy's name of the type of a number, and how many there are for each pixel."""
+        depth, channels = depth_and_channels(cvtype)
+        return self.numpy_type_to_cvtype[depth], channels
+
+    def encoding_to_cvtype2(self, encoding: str) -> int:
+        """As `getCvType`, with CvBridgeError for an unknown encoding."""
+        try:
+            return getCvType(encoding)
+        except ConversionError as error:
+            raise CvBridgeError(error) from error
+
+    def encoding_to_dtype_with_channels(self, encoding: str) -> tuple[str, int]:
+        """Numpy's name of the type of a number, and how many there are for each pixel, for an encoding."""
+        return self.cvtype2_to_dtype_with_channels(self.encoding_to_cvtype2(encoding))
+
+    def imgmsg_to_cv2(self, img_msg: Any, desired_encoding: str = "passthrough") -> NDArray[Any]:
+        """The pixels of a sensor_msgs/msg/Image.
+
+        Args:
+            img_msg: the message.
+            desired_encoding: what the result is to be in; as it is in the message when ``passthrough``.
+
+        Returns:
+            Shape (height, width), or (height, width, channels) where the encoding has more than one.
+
+        Raises:
+            CvBridgeError: an encoding is unknown, or it cannot be converted into the other.
+            TypeError: the message has too few bytes.
+        """
+        name, channels = self.encoding_to_dtype_with_channels(img_msg.encoding)
+        dtype = np.dtype(name).newbyteorder(">" if img_msg.is_bigendian else "<")
+        columns = img_msg.step // dtype.itemsize // channels
+        shape = (img_msg.height, columns) if channels == 1 else (img_msg.height, columns, channels)
+        padded: NDArray[Any] = np.ndarray(shape, dtype, buffer=bytes(img_msg.data))
+        image = np.ascontiguousarray(padded[:, : img_msg.width]).astype(dtype.newbyteorder("="))
+        return self._converted(image, img_msg.encoding, desired_encoding)
+
+    def cv2_to_imgmsg(self, cvim: Any, encoding: str = "passthrough", header: Any = None) -> Any:
+        """A sensor_msgs/msg/Image of an array.
+
+        Args:
+            cvim: shape (height, width) or (height, width, channels).
+            encoding: what its numbers are; only their type is told when ``passthrough``.
+            header: the message's, if given.
+
+        Raises:
+            TypeError: it is no array.
+            CvBridgeError: the array's type is not that of the encoding.
+        """
+        _check_array(cvim)
+        message = get_message("sensor_msgs/msg/Image")()
+        message.height, message.width = cvim.shape[:2]
+        if header is not None:
+            message.header = header
+        type_name = self.dtype_with_channels_to_cvtype2(cvim.dtype, 1 if cvim.ndim < 3 else cvim.shape[2])
+        if encoding == "passthrough":
+            message.encoding = type_name
+        else:
+            message.encoding = encoding
+            if self.cvtype_to_name.get(self.encoding_to_cvtype2(encoding)) != type_name:
+                raise CvBridgeError(f"encoding specified as {encoding}, but image has incompatible type {type_name}")
+        swapped = cvim.dtype.byteorder == ">" or (cvim.dtype.byteorder == "=" and sys.byteorder == "big")
+        message.is_bigendian = int(swapped)
+        message.data = cvim.tobytes()
+        message.step = len(message.data) // message.height if message.height else 0
+        return message
+
+    def compressed_imgmsg_to_cv2(self, cmprs_img_msg: Any, desired_encoding: str = "passthrough") -> NDArray[Any]:
+        """The pixels of a sensor_msgs/msg/CompressedImage: grey, or blue, green and red, of 8 bits.
+
+        Args:
+            cmprs_img_msg: the message.
+            desired_encoding: what the result is to be in, from ``bgr8``; as it was read when ``passthrough``.
+
+        Raises:
+            CvBridgeError: the data are no image, or it cannot be converted.
+        """
+        from PIL import Image, UnidentifiedImageError  # an extra: other conversions do without
+
+        try:
+            with Image.open(io.BytesIO(bytes(cmprs_img_msg.data))) as picture:
+                grey = picture.mode in ("1", "L", "LA", "I", "I;16", "F")
+                pixels = np.asarray(picture.convert("L" if grey else "RGB"))
+        except (UnidentifiedImageError, OSError, SyntaxError) as error:
+            raise CvBridgeError(f"the data of the compressed image cannot be read: {error}") from error
+        image = pixels.copy() if grey else np.ascontiguousarray(pixels[..., ::-1])
+        return self._converted(image, "mono8" if grey else "bgr8", desired_encoding)
+
+    def cv2_to_compressed_imgmsg(self, cvim: Any, dst_format: str = "jpg") -> Any:
+        """A sensor_msgs/msg/CompressedImage of an array.
+
+        Args:
+            cvim: shape (height, width), or (height, width, 3 or 4) with blue first, of 8 bits.
+            dst_format: the format, as the ending of a file name: ``jpg``, ``png``, ``bmp``, ``webp``, ``tiff``...
+
+        Raises:
+            TypeError: it is no array.
+            CvBridgeError: there is no such format, or it does not take such an image.
+        """
+        _check_array(cvim)
+        message = get_message("sensor_msgs/msg/CompressedImage")()
+        message.format = dst_format
+        into = io.BytesIO()
+        try:
+            picture = _pillow_image(cvim)
+            kind = _PILLOW_FORMATS.get(dst_format.lower(), dst_format.upper())
+            if kind == "JPEG" and picture.mode == "RGBA":
+                picture = picture.convert("RGB")
+            picture.save(into, kind, quality=_JPEG_QUALITY)
+        except (KeyError, OSError, ValueError, TypeError) as error:
+            raise CvBridgeError(f"the image cannot be written as '{dst_format}': {error}") from error
+        message.data = into.getvalue()
+        return message
+
+    def _converted(self, image: NDArray[Any], source: str, wanted: str) -> NDArray[Any]:
+        if wanted == "passthrough":
+            return image
+        try:
+            return converted(image, source, wanted)
+        except ConversionError as error:
+            raise CvBridgeError(error) from error
+
+
+def _check_array(image: object) -> None:
+    if not isinstance(image, np.ndarray | np.generic):
+        raise TypeError("Your input type is not a numpy array")
+
+
+def _pillow_image(image: NDArray[Any]) -> PillowImage:
+    from PIL import Image
+
+    if image.ndim == 3 and image.shape[2] == 1:
+        image = image[..., 0]
+    if image.ndim == 3:
+        image = np.ascontiguousarray(image[..., [2, 1, 0, 3][: image.shape[2]]])
+    return Image.fromarray(image)

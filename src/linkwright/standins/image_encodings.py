@@ -1,0 +1,147 @@
+"""Images in the encodings of ``sensor_msgs/image_encodings``, and from one into another as OpenCV converts them."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.viewer.images.bayer import demosaiced
+from linkwright.viewer.images.yuv import from_packed
+
+DEPTHS = ("8U", "8S", "16U", "16S", "32S", "32F", "64F")
+"""OpenCV's names of number types; the place of each is its number."""
+NUMPY_NAMES = ("uint8", "int8", "uint16", "int16", "int32", "float32", "float64")
+_CHANNEL_SHIFT = 3
+
+_TYPE = re.compile(r"(8U|8S|16U|16S|32S|32F|64F)C(\d*)")
+_COLOUR = re.compile(r"(mono|rgb|bgr|rgba|bgra)(8|16)|bayer_(rggb|bggr|gbrg|grbg)(8|16)")
+_PACKED_YUV = {"yuv422": "uyvy", "uyvy": "uyvy", "yuv422_yuy2": "yuyv", "yuyv": "yuyv"}
+_CHANNELS = {"mono": 1, "rgb": 3, "bgr": 3, "rgba": 4, "bgra": 4}
+
+# How OpenCV weighs colours to a grey: ITU-R BT.601 in units of 1/32768.
+_GREY_SHIFT = 15
+_RED, _GREEN, _BLUE = 9798, 19235, 3735
+
+
+class ConversionError(RuntimeError):
+    """An encoding is unknown, or an image cannot be brought into it; the text says which."""
+
+
+@dataclass(frozen=True, slots=True)
+class Encoding:
+    """What an encoding says of the numbers of an image.
+
+    Attributes:
+        name: as messages have it.
+        depth: OpenCV's name of the type of a number.
+        channels: numbers for each pixel.
+        order: what the channels are: ``mono``, ``rgb``, ``bgra``, ``bayer_rggb``, ``yuyv``...; empty for plain numbers.
+    """
+
+    name: str
+    depth: str
+    channels: int
+    order: str
+
+    @property
+    def cv_type(self) -> int:
+        """OpenCV's number of the type of such images, such as 16 for ``CV_8UC3``."""
+        return DEPTHS.index(self.depth) + ((self.channels - 1) << _CHANNEL_SHIFT)
+
+
+def encoding(name: str) -> Encoding:
+    """What the name of an encoding says.
+
+    Raises:
+        ConversionError: it is none.
+    """
+    if plain := _TYPE.fullmatch(name):
+        return Encoding(name, plain[1], int(plain[2] or 1), "")
+    if name in _PACKED_YUV:
+        return Encoding(name, "8U", 2, _PACKED_YUV[name])
+    colour = _COLOUR.fullmatch(name)
+    if colour is None:
+        raise ConversionError(f"Unrecognized image encoding [{name}]")
+    if colour[3]:
+        return Encoding(name, f"{colour[4]}U", 1, f"bayer_{colour[3]}")
+    return Encoding(name, f"{colour[2]}U", _CHANNELS[colour[1]], colour[1])
+
+
+def depth_and_channels(cv_type: int) -> tuple[str, int]:
+    """What OpenCV's number of a type stands for: its name of the type of a number, and the numbers for each pixel."""
+    return DEPTHS[cv_type & ((1 << _CHANNEL_SHIFT) - 1)], (cv_type >> _CHANNEL_SHIFT) + 1
+
+
+def converted(image: NDArray[Any], source: str, wanted: str) -> NDArray[Any]:
+    """An image in another encoding, a copy.
+
+    Args:
+        image: shape (height, width), or (height, width, channels) where the encoding has more than one.
+        source: the name of its encoding.
+        wanted: the name of the one that it is to have.
+
+    Raises:
+        ConversionError: one of them is unknown, or such a conversion makes no sense.
+    """
+    of, to = encoding(source), encoding(wanted)
+    if source == wanted or not wanted:
+        return np.array(image, order="C")
+    if not of.order and to.order:
+        raise ConversionError(f"[{source}] is not a color format, and [{wanted}] is: that conversion makes no sense")
+    if not to.order:
+        if of.channels != to.channels:
+            raise ConversionError(f"[{source}] and [{wanted}] do not have the same number of channels")
+        return _in_depth(image, of, to)
+    if to.order not in _CHANNELS:
+        raise ConversionError(f"Unsupported conversion from [{source}] to [{wanted}]")
+    return _in_depth(_in_order(image, of, to.order), of, to)
+
+
+def _in_order(image: NDArray[Any], of: Encoding, order: str) -> NDArray[Any]:
+    """The same image with its channels in another order, or some more or less of them."""
+    if of.order == order:
+        return image
+    if of.order == "mono":
+        channels = [image] * 3
+    else:
+        image = _as_colours(image, of)
+        reversed_ = of.order.startswith("bgr")
+        channels = [image[..., index] for index in ((2, 1, 0) if reversed_ else (0, 1, 2))]
+    if order == "mono":
+        red, green, blue = (channel.astype(np.int64) for channel in channels)
+        weighed = red * _RED + green * _GREEN + blue * _BLUE + (1 << (_GREY_SHIFT - 1))
+        return (weighed >> _GREY_SHIFT).astype(image.dtype)
+    if order.startswith("bgr"):
+        channels.reverse()
+    if len(order) > 3:
+        opaque = np.full(image.shape[:2], np.iinfo(image.dtype).max, image.dtype)
+        channels.append(image[..., 3] if of.order in ("rgba", "bgra") else opaque)
+    return np.stack(channels, axis=-1)
+
+
+def _as_colours(image: NDArray[Any], of: Encoding) -> NDArray[Any]:
+    """An image of a Bayer mosaic or of YUV as RGB; any other as it is."""
+    if of.order.startswith("bayer_"):
+        if of.depth != "8U":
+            raise ConversionError(f"Unsupported conversion from [{of.name}]: only mosaics of 8 bits are read")
+        return demosaiced(image, of.order.removeprefix("bayer_"))
+    if of.name in _PACKED_YUV:
+        return from_packed(image, of.order)
+    return image
+
+
+def _in_depth(image: NDArray[Any], of: Encoding, to: Encoding) -> NDArray[Any]:
+    """The same image with numbers of another type; between 8 and 16 bits without sign black and white stay so."""
+    dtype = np.dtype(NUMPY_NAMES[DEPTHS.index(to.depth)])
+    if image.dtype == dtype:
+        return np.array(image, order="C")
+    factor = {("8U", "16U"): 65535.0 / 255.0, ("16U", "8U"): 255.0 / 65535.0}.get((of.depth, to.depth), 1.0)
+    numbers = image.astype(np.float64) * factor
+    if dtype.kind == "f":
+        return numbers.astype(dtype)
+    limits = np.iinfo(dtype)
+    return np.clip(np.rint(np.nan_to_num(numbers)), limits.min, limits.max).astype(dtype)

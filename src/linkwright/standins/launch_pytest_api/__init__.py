@@ -1,0 +1,1 @@
+"""What ``launch_pytest`` has: launches as pytest fixtures, and tests that run beside them and after them."""

@@ -1,0 +1,283 @@
+"""The pytest plugin of ``launch_pytest``: launches what its fixtures describe, and runs the tests that are marked.
+
+A test with ``@pytest.mark.launch(fixture=description)`` runs beside the launch: a coroutine on the launch's event
+loop, a function in a thread. With ``shutdown=True`` it runs once the launch has ended; a generator does so from its
+``yield`` on. Where the launch outlasts the test that second part is a test by itself, after all that run beside it.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import functools
+import importlib
+import inspect
+import types
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from linkwright.launch.engine.service import LaunchService
+from linkwright.launch.model.actions.testing import ReadyToTest
+from linkwright.launch.model.description import LaunchDescription
+from linkwright.launch.model.entity import LaunchDescriptionEntity
+from linkwright.standins.launch_pytest_api.fixtures import (
+    FIXTURES,
+    LaunchOptions,
+    event_loop,
+    finish,
+    launch_context,
+    launch_service,
+    options_of,
+)
+
+if TYPE_CHECKING:
+    from _pytest.fixtures import SubRequest
+
+__all__ = ["event_loop", "launch_context", "launch_service"]  # pytest finds the fixtures here
+
+_MARKER = "launch(fixture, shutdown=False): run the test beside the launch of a launch_pytest fixture, or after its end"
+_OVER = object()
+
+
+class LaunchTestWarning(pytest.PytestWarning):
+    """A test is marked in a way that makes no launch test of it."""
+
+
+def look_up_hooks() -> None:
+    """Have the stand-in ``launch_pytest.plugin`` hold its names: pytest takes only hooks that a module has already."""
+    module = importlib.import_module("launch_pytest.plugin")
+    for name in module.__all__:
+        getattr(module, name)
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Make the marker known."""
+    config.addinivalue_line("markers", _MARKER)
+
+
+# --- the launch ---------------------------------------------------------------------------------------------
+
+
+@pytest.hookimpl(wrapper=True, tryfirst=True)
+def pytest_fixture_setup(fixturedef: pytest.FixtureDef[Any], request: SubRequest) -> Generator[None, object, object]:
+    """Launch what a launch fixture gives, and wait until tests may begin."""
+    options = options_of(fixturedef.func)
+    if options is None:
+        return (yield)
+    service = request.getfixturevalue("launch_service")
+    loop = request.getfixturevalue("event_loop")
+    made = yield
+    when = f"launch fixture '{options.fixture}'"
+    fixturedef.addfinalizer(functools.partial(finish, service, when, ask=options.auto_shutdown))
+    try:
+        _launch(service, loop, _description_in(made, when), options)
+    except BaseException as error:  # which the other tests that ask for the fixture get too
+        fixturedef.cached_result = (None, fixturedef.cache_key(request), (error, error.__traceback__))
+        raise
+    return made
+
+
+def _description_in(made: object, when: str) -> LaunchDescription:
+    """The description in what a launch fixture gave."""
+    first = made[0] if isinstance(made, Sequence) and made else made
+    if not isinstance(first, LaunchDescription):
+        pytest.fail(
+            f"{when}: its value must be either a launch description or a sequence whose first item is one",
+            pytrace=False,
+        )
+    return first
+
+
+def _launch(
+    service: LaunchService, loop: asyncio.AbstractEventLoop, description: LaunchDescription, options: LaunchOptions
+) -> None:
+    """Begin a launch, and return once its `ReadyToTest` was visited."""
+    actions = list(_ready_actions(description.entities))
+    if len(actions) > 1:
+        pytest.fail(f"launch fixture '{options.fixture}': only one ReadyToTest action may be in it", pytrace=False)
+    if not actions:
+        actions.append(ReadyToTest())
+        description.add_action(actions[0])
+    ready = asyncio.Event()
+    actions[0]._add_callback(ready.set)
+    service.include_launch_description(description)
+    run = loop.create_task(service.run_async(shutdown_when_idle=options.shutdown_when_idle))
+    waiting = loop.create_task(ready.wait())
+    loop.run_until_complete(asyncio.wait({waiting, run}, return_when=asyncio.FIRST_COMPLETED))
+    if not ready.is_set():
+        waiting.cancel()
+        run.result()  # raises what run_async raised
+        pytest.fail(f"launch fixture '{options.fixture}': the launch ended before it was ready to test", pytrace=False)
+
+
+def _ready_actions(entities: Iterable[LaunchDescriptionEntity]) -> Iterator[ReadyToTest]:
+    """The `ReadyToTest` actions among entities and all that is inside them."""
+    for entity in entities:
+        if isinstance(entity, ReadyToTest):
+            yield entity
+        yield from _ready_actions(entity.describe_sub_entities())
+        for _, inside in entity.describe_conditional_sub_entities():
+            yield from _ready_actions(inside)
+
+
+# --- the tests ----------------------------------------------------------------------------------------------
+
+
+class LaunchTest(pytest.Function):
+    """A test that runs beside a launch, or what of it runs after the launch.
+
+    Attributes:
+        options: of the fixture that is launched.
+        test: the test's function or bound method.
+        begun: the generator, once the part before its ``yield`` has passed.
+        first_part: the test whose generator this one goes on with; None for a test of its own.
+    """
+
+    options: LaunchOptions
+    test: Callable[..., Any]
+    begun: Any = None
+    first_part: LaunchTest | None = None
+
+    @classmethod
+    def of(cls, item: pytest.Function, options: LaunchOptions, first_part: LaunchTest | None = None) -> LaunchTest:
+        """The launch test of a function that pytest collected."""
+        ending = "" if first_part is None else "[shutdown_test]"
+        made: LaunchTest = cls.from_parent(
+            item.parent,
+            name=item.name + ending,
+            callspec=getattr(item, "callspec", None),
+            callobj=_plain(item.obj),
+            fixtureinfo=item._fixtureinfo,
+            keywords=item.keywords,
+            originalname=item.originalname + ending,  # which newer pytest takes for the identifier
+        )
+        made.options, made.test, made.first_part = options, item.obj, first_part
+        return made
+
+    @property
+    def is_after_shutdown(self) -> bool:
+        """Whether it runs once the launch has ended."""
+        marker = self.get_closest_marker("launch")
+        return self.first_part is not None or bool(marker and marker.kwargs.get("shutdown", False))
+
+    @property
+    def launch(self) -> tuple[object, ...]:
+        """What tests of the same launch have in common."""
+        kinds: dict[str, Any] = {"function": pytest.Function, "class": pytest.Class, "module": pytest.Module}
+        lasting = self.getparent(kinds.get(self.options.scope, pytest.Session)) or self.getparent(pytest.Module)
+        params = self.callspec.indices if hasattr(self, "callspec") else {}
+        return self.options.fixture, lasting, params.get(self.options.fixture)
+
+    def runtest(self) -> None:
+        """Run it, or the part of it that this one is."""
+        __tracebackhide__ = True
+        loop = self._loop
+        given = {name: self.funcargs[name] for name in self._fixtureinfo.argnames}
+        if not _has_parts(self.test):
+            if self.is_after_shutdown:
+                self._end_launch()
+            if inspect.iscoroutinefunction(self.test):
+                loop.run_until_complete(self.test(**given))
+            else:
+                loop.run_until_complete(loop.run_in_executor(None, functools.partial(self.test, **given)))
+        elif self.first_part is not None:
+            if self.first_part.begun is None:
+                pytest.skip("the part of the test before the shutdown did not pass")
+            self._go_on(loop, self.first_part.begun)
+        elif self.is_after_shutdown:
+            pytest.fail("a generator or async generator must not be marked with shutdown=True", pytrace=False)
+        else:
+            generator = self.test(**given)
+            if inspect.isasyncgen(generator):
+                loop.run_until_complete(_next(generator))
+            else:
+                loop.run_until_complete(loop.run_in_executor(None, next, generator, _OVER))
+            self.begun = generator
+            if self.options.scope == "function":
+                self._go_on(loop, generator)
+
+    @property
+    def _loop(self) -> asyncio.AbstractEventLoop:
+        loop = self.funcargs["event_loop"]
+        assert isinstance(loop, asyncio.AbstractEventLoop)
+        return loop
+
+    def _end_launch(self) -> None:
+        service = self.funcargs["launch_service"]
+        assert isinstance(service, LaunchService)
+        finish(service, f"before test '{self.name}'", ask=self.options.auto_shutdown)
+
+    def _go_on(self, loop: asyncio.AbstractEventLoop, generator: Any) -> None:
+        """Run what follows the ``yield``."""
+        __tracebackhide__ = True
+        self._end_launch()
+        is_async = inspect.isasyncgen(generator)
+        rest = loop.run_until_complete(_next(generator)) if is_async else next(generator, _OVER)
+        if rest is not _OVER:
+            pytest.fail("a launch test that is a generator must stop iteration after yielding once", pytrace=False)
+
+
+async def _next(generator: Any) -> object:
+    return await anext(generator, _OVER)
+
+
+def _has_parts(test: Callable[..., Any]) -> bool:
+    return inspect.isgeneratorfunction(test) or inspect.isasyncgenfunction(test)
+
+
+def _plain(test: Callable[..., Any]) -> Callable[..., Any]:
+    """A function with the same arguments for pytest to look at: plugins for coroutines would run one themselves."""
+
+    @functools.wraps(getattr(test, "__func__", test))
+    def plain(*_: object, **__: object) -> None:
+        raise AssertionError("run by LaunchTest.runtest")
+
+    owner = getattr(test, "__self__", None)
+    return plain if owner is None else types.MethodType(plain, owner)
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_pycollect_makeitem(
+    collector: pytest.Module | pytest.Class, name: str, obj: object
+) -> list[pytest.Function] | None:
+    """Collect the tests that are marked."""
+    if not inspect.isfunction(obj) or not collector.funcnamefilter(name):
+        return None
+    marks = [mark for mark in getattr(obj, "pytestmark", ()) if mark.name == "launch"]
+    marker = marks[0] if marks else collector.get_closest_marker("launch")
+    if marker is None:
+        return None
+    options = options_of(marker.kwargs.get("fixture"))
+    if options is None:
+        return [_skipped(pytest.Function.from_parent(collector, name=name))]
+    pytest.mark.usefixtures(options.fixture, *FIXTURES[:2])(obj)
+    items = list(collector._genfunctions(name, obj))
+    tests = [LaunchTest.of(item, options) for item in items]
+    rests = []
+    if _has_parts(obj) and options.scope != "function":
+        rests = [LaunchTest.of(item, options, test) for item, test in zip(items, tests, strict=True)]
+    return [*tests, *rests]
+
+
+def _skipped(item: pytest.Function) -> pytest.Function:
+    reason = 'the "fixture" keyword argument is required in pytest.mark.launch(), with a launch_pytest fixture'
+    item.warn(LaunchTestWarning(reason))
+    item.add_marker(pytest.mark.skip(reason))
+    return item
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Have what runs after a launch run after all tests that run beside it."""
+    last = {
+        item.launch: index
+        for index, item in enumerate(items)
+        if isinstance(item, LaunchTest) and not item.is_after_shutdown
+    }
+    places: dict[pytest.Item, tuple[int, bool]] = {}
+    for index, item in enumerate(items):
+        after = isinstance(item, LaunchTest) and item.is_after_shutdown
+        beside = last.get(item.launch, index) if isinstance(item, LaunchTest) and after else index
+        places[item] = max(index, beside), after
+    items.sort(key=lambda item: places[item])

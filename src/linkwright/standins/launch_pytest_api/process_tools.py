@@ -1,0 +1,199 @@
+"""Waiting for what processes of a launch do (``launch_pytest.tools.process``).
+
+Each function takes the launch's context, the action that runs the process, and a timeout in seconds, or None to wait
+without end. The coroutines are for tests that run on the launch's event loop, the functions that end in ``_sync`` for
+tests that run in a thread beside it. A start or an exit before the call does not count: as in ROS, the next one is
+waited for. What was written is known of actions with ``cached_output=True`` only.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+import time
+from collections.abc import Callable, Coroutine, Iterator
+from contextlib import contextmanager
+from functools import wraps
+from typing import Any, ParamSpec
+
+from linkwright.launch.model.actions.execute import ExecuteLocal
+from linkwright.launch.model.context import Handler, LaunchContext
+from linkwright.launch.model.process_event_handlers import OnProcessExit, OnProcessIO, OnProcessStart
+
+Validate = Callable[[str], Any]
+"""Whether a text is right: says so by what it returns, or by raising AssertionError."""
+
+Reaction = Callable[..., None]
+_P = ParamSpec("_P")
+
+
+class _Wait:
+    """A wait for an event, or for something that may hold after one.
+
+    Args:
+        context: of the launch.
+        handler: makes the handler of such events, which calls a function.
+        timeout: in seconds; None to wait without end.
+        condition: what has to give a true value, now or after an event; without one, the first event ends the wait.
+        given_up: what is called when the time is over.
+    """
+
+    def __init__(
+        self,
+        context: LaunchContext,
+        handler: Callable[[Reaction], Handler],
+        timeout: float | None,
+        condition: Callable[[], Any] | None = None,
+        given_up: Callable[[], object] = lambda: None,
+    ) -> None:
+        self._context = context
+        self._handler = handler
+        self._timeout = timeout
+        self._condition = condition
+        self._given_up = given_up
+        self._happened = False
+
+    async def run(self) -> Any:
+        """Wait on the launch's event loop; returns what the condition gave last."""
+        event = asyncio.Event()
+        with self._listening(event.set):
+            value = self._value()
+            deadline = self._deadline()
+            while not value:
+                try:
+                    await asyncio.wait_for(event.wait(), _left(deadline))
+                except asyncio.TimeoutError:
+                    self._given_up()
+                    break
+                event.clear()
+                value = self._value()
+        return value
+
+    def run_sync(self) -> Any:
+        """Wait in a thread beside the loop; returns what the condition gave last."""
+        event = threading.Event()
+        with self._listening(event.set):
+            value = self._value()
+            deadline = self._deadline()
+            while not value:
+                if not event.wait(_left(deadline)):
+                    self._given_up()
+                    break
+                event.clear()
+                value = self._value()
+        return value
+
+    def _deadline(self) -> float | None:
+        return None if self._timeout is None else time.monotonic() + self._timeout
+
+    def _value(self) -> Any:
+        return self._happened if self._condition is None else self._condition()
+
+    @contextmanager
+    def _listening(self, notify: Callable[[], None]) -> Iterator[None]:
+        """Have `notify` called after each event."""
+
+        def react(*_: object) -> None:
+            self._happened = True
+            notify()
+
+        handler = self._handler(react)
+        self._context.register_event_handler(handler)
+        try:
+            yield
+        finally:
+            self._context.unregister_event_handler(handler)
+
+
+def _left(deadline: float | None) -> float | None:
+    """The seconds until a moment of the monotonic clock, at least 0."""
+    return None if deadline is None else max(deadline - time.monotonic(), 0.0)
+
+
+def _waits(make: Callable[_P, _Wait]) -> tuple[Callable[_P, Coroutine[Any, Any, Any]], Callable[_P, Any]]:
+    """The coroutine and the function that make a wait and go through it; both have the maker's signature and text."""
+
+    @wraps(make)
+    async def wait(*args: _P.args, **kwargs: _P.kwargs) -> Any:
+        return await make(*args, **kwargs).run()
+
+    @wraps(make)
+    def wait_sync(*args: _P.args, **kwargs: _P.kwargs) -> Any:
+        return make(*args, **kwargs).run_sync()
+
+    return wait, wait_sync
+
+
+def _for_output(stream: str) -> Callable[..., _Wait]:
+    def wait(
+        launch_context: LaunchContext,
+        execute_process_action: ExecuteLocal,
+        validate_output: Validate,
+        timeout: float | None = None,
+    ) -> _Wait:
+        """Wait until `validate_output` returns a true value for all output so far; returns what it returned last."""
+        handler, read = _written(execute_process_action, stream)
+        return _Wait(launch_context, handler, timeout, lambda: validate_output(read()))
+
+    return wait
+
+
+def _asserting_output(stream: str) -> Callable[..., _Wait]:
+    def wait(
+        launch_context: LaunchContext,
+        execute_process_action: ExecuteLocal,
+        validate_output: Validate,
+        timeout: float | None = None,
+    ) -> _Wait:
+        """Wait until `validate_output` no longer raises AssertionError for all output so far; at last, let it raise."""
+        handler, read = _written(execute_process_action, stream)
+
+        def holds() -> bool:
+            try:
+                validate_output(read())
+            except AssertionError:
+                return False
+            return True
+
+        return _Wait(launch_context, handler, timeout, holds, lambda: validate_output(read()))
+
+    return wait
+
+
+def _for_start(
+    launch_context: LaunchContext, execute_process_action: ExecuteLocal, timeout: float | None = None
+) -> _Wait:
+    """Wait until the process starts; returns whether it did in time."""
+
+    def handler(react: Reaction) -> Handler:
+        return OnProcessStart(target_action=execute_process_action, on_start=react)
+
+    return _Wait(launch_context, handler, timeout)
+
+
+def _for_exit(
+    launch_context: LaunchContext, execute_process_action: ExecuteLocal, timeout: float | None = None
+) -> _Wait:
+    """Wait until the process ends; returns whether it did in time."""
+
+    def handler(react: Reaction) -> Handler:
+        return OnProcessExit(target_action=execute_process_action, on_exit=react)
+
+    return _Wait(launch_context, handler, timeout)
+
+
+def _written(action: ExecuteLocal, stream: str) -> tuple[Callable[[Reaction], Handler], Callable[[], str]]:
+    """What is told when a process writes to ``stdout`` or ``stderr``, and what reads all that it has written there."""
+
+    def handler(react: Reaction) -> Handler:
+        return OnProcessIO(target_action=action, **{f"on_{stream}": react})  # type: ignore[arg-type]  # a keyword by its name
+
+    return handler, getattr(action, f"get_{stream}")
+
+
+wait_for_output, wait_for_output_sync = _waits(_for_output("stdout"))
+wait_for_stderr, wait_for_stderr_sync = _waits(_for_output("stderr"))
+assert_output, assert_output_sync = _waits(_asserting_output("stdout"))
+assert_stderr, assert_stderr_sync = _waits(_asserting_output("stderr"))
+wait_for_start, wait_for_start_sync = _waits(_for_start)
+wait_for_exit, wait_for_exit_sync = _waits(_for_exit)

@@ -1,0 +1,141 @@
+"""Makes the modules that the tables of names describe, so that ``from launch.actions import Shutdown`` works.
+
+A folder of modules that are not there, as a path for Python's own finder: `FOLDER` holds every package that has a
+table, ``FOLDER/launch`` the modules of ``launch``. Whatever is on ``sys.path`` before it comes first, package by
+package, and `pkgutil` sees the modules as it sees files. A name is looked up where the table says when somebody first
+asks for it.
+"""
+
+from __future__ import annotations
+
+import importlib
+import os
+import sys
+from ast import literal_eval
+from collections.abc import Iterator
+from importlib.machinery import ModuleSpec
+from types import ModuleType
+from typing import Any
+
+from linkwright.standins import table
+
+FOLDER = str(table.FOLDER)
+"""To be put on ``sys.path``, after `install`."""
+
+
+def install() -> None:
+    """Have Python find the modules of `FOLDER`; may be called again."""
+    if _finder_of not in sys.path_hooks:
+        sys.path_hooks.insert(0, _finder_of)
+        for path in [path for path in sys.path_importer_cache if path.startswith(FOLDER)]:
+            del sys.path_importer_cache[path]
+
+
+def find_spec(name: str) -> ModuleSpec | None:
+    """The module of this name, or None when no table has it."""
+    found = table.find(name)
+    if found is None:
+        return None
+    spec = ModuleSpec(
+        name,
+        _Loader(found),  # type: ignore[arg-type]  # a loader by its methods: the class takes long to import
+        origin=str(table.FOLDER / f"{name.partition('.')[0]}.txt"),
+        is_package=bool(found.submodules) or "." not in name,
+    )
+    spec.has_location = True
+    if spec.submodule_search_locations is not None:
+        spec.submodule_search_locations.append(os.path.join(FOLDER, *name.split(".")))  # noqa: PTH118 - no real folder
+    return spec
+
+
+def is_ours(module: ModuleType | None) -> bool:
+    """Whether a module is one that was made here."""
+    return isinstance(getattr(getattr(module, "__spec__", None), "loader", None), _Loader)
+
+
+def _finder_of(path: str) -> _Finder:
+    """The finder of a folder, as Python asks each hook for it."""
+    if path != FOLDER and not path.startswith(FOLDER + os.sep):
+        raise ImportError(f"{path!r} holds no stand-ins", path=path)
+    return _Finder(path[len(FOLDER) + 1 :].replace(os.sep, "."))
+
+
+class _Finder:
+    """Finds the modules of one package, or all packages."""
+
+    def __init__(self, package: str) -> None:
+        self._package = package
+
+    def find_spec(self, name: str, target: ModuleType | None = None) -> ModuleSpec | None:  # noqa: ARG002 - the protocol's
+        """The module of this name, or None."""
+        return find_spec(name)
+
+    def iter_modules(self, prefix: str = "") -> Iterator[tuple[str, bool]]:
+        """The names of the modules, each with whether it is a package, for `pkgutil`."""
+        found = table.find(self._package)
+        names = table.packages() if found is None else found.submodules
+        for name in names:
+            below = table.find(f"{self._package}.{name}" if self._package else name)
+            yield prefix + name, bool(below and below.submodules) or not self._package
+
+
+class _Loader:
+    """Makes a module that looks its names up when somebody asks for them."""
+
+    def __init__(self, described: table.Module) -> None:
+        self._described = described
+
+    def homes(self, name: str) -> list[str]:
+        """Where else a name is that the module does not have, for whoever explains the error."""
+        return table.homes(name)
+
+    def create_module(self, spec: ModuleSpec) -> ModuleType | None:  # noqa: ARG002 - the protocol's
+        """None: a module as Python makes it."""
+        return None
+
+    def exec_module(self, module: ModuleType) -> None:
+        """Give the module its names."""
+        described = self._described
+        module.__doc__ = f"Stands in for ``{described.name}``."
+        names = {**dict.fromkeys(described.names), **dict.fromkeys(described.submodules)}
+
+        def look_up(name: str) -> Any:
+            if name in described.names:
+                value = value_of(described, name)
+            elif name in described.submodules:
+                value = importlib.import_module(f"{described.name}.{name}")
+            elif described.others:
+                origin, _, function = described.others.rpartition(".")
+                return getattr(importlib.import_module(origin), function)(name)
+            else:
+                raise AttributeError(f"module '{described.name}' has no attribute '{name}'", name=name, obj=module)
+            setattr(module, name, value)
+            return value
+
+        module.__getattr__ = look_up  # type: ignore[method-assign]  # PEP 562
+        module.__dir__ = lambda: sorted({*names, *vars(module)})  # type: ignore[method-assign]
+        module.__all__ = described.public  # type: ignore[attr-defined]
+        for name in described.submodules:
+            if name in described.names and described.names[name].origin != table.IMPORT:
+                # A function with the name of its module, which Python would put in its place when that is imported.
+                importlib.import_module(f"{described.name}.{name}")
+                setattr(module, name, value_of(described, name))
+        if described.setup:
+            origin, _, function = described.setup.rpartition(".")
+            getattr(importlib.import_module(origin), function)()
+
+
+def value_of(module: table.Module, name: str) -> Any:
+    """What a name of a module stands for.
+
+    Raises:
+        ImportError: the module that should have it cannot be imported.
+        AttributeError: that module does not have it.
+    """
+    found = module.names[name]
+    if found.origin == table.IMPORT:
+        inside = found.name in module.submodules
+        return importlib.import_module(f"{module.name}.{found.name}" if inside else found.name)
+    if found.origin == table.VALUE:
+        return literal_eval(found.name)
+    return getattr(importlib.import_module(found.origin), found.name)

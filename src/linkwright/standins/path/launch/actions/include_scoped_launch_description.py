@@ -1,6 +1,0 @@
-"""Stands in for ``launch.actions.include_scoped_launch_description``."""
-
-from linkwright.launch.actions import IncludeScopedLaunchDescription
-from linkwright.standins.launch_names import imported_there as __getattr__
-
-__all__ = ["IncludeScopedLaunchDescription"]

@@ -1,6 +1,0 @@
-"""Stands in for ``launch.launch_description_sources.any_launch_description_source``."""
-
-from linkwright.launch.sources import AnyLaunchDescriptionSource
-from linkwright.standins.launch_names import imported_there as __getattr__
-
-__all__ = ["AnyLaunchDescriptionSource"]

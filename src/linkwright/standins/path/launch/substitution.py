@@ -1,5 +1,0 @@
-"""Stands in for ``launch.substitution``."""
-
-from linkwright.launch.substitution import Substitution
-
-__all__ = ["Substitution"]

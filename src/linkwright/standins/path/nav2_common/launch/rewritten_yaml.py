@@ -1,5 +1,0 @@
-"""Stands in for ``nav2_common.launch.rewritten_yaml``."""
-
-from linkwright.launch.rewriting import RewrittenYaml
-
-__all__ = ["RewrittenYaml"]

@@ -1,3 +1,0 @@
-"""Stands in for ``rclpy.impl``."""
-
-__all__ = []

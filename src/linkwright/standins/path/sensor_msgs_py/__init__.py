@@ -1,3 +1,0 @@
-"""Stands in for ``sensor_msgs_py``."""
-
-__all__ = []

@@ -1,0 +1,119 @@
+"""What programs take of ros2cli's packages: ``ros2pkg.api`` and ``ros2topic.api``."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import KeysView
+from typing import Any
+
+from linkwright.messages import get_message
+from linkwright.packages import PackageNotFoundError, get_package_prefix, get_packages_with_prefixes
+from linkwright.standins.rclpy_api.naming import expand_topic_name, topic_or_service_is_hidden, validate_full_topic_name
+from linkwright.standins.rclpy_api.session import ok
+
+_POLL_SECONDS = 0.1
+
+
+class PackageNotFound(Exception):
+    """There is no such package."""
+
+    def __init__(self, package_name: str) -> None:
+        super().__init__(package_name)
+        self.package_name = package_name
+
+
+def get_package_names() -> KeysView[str]:
+    """The names of all packages."""
+    return get_packages_with_prefixes().keys()
+
+
+def get_prefix_path(package_name: str) -> str | None:
+    """The prefix of a package; None without one."""
+    try:
+        return get_package_prefix(package_name)
+    except PackageNotFoundError:
+        return None
+
+
+def get_executable_paths(*, package_name: str) -> list[str]:
+    """The programs below ``lib`` of a package's prefix.
+
+    Raises:
+        PackageNotFound: there is no such package.
+    """
+    prefix = get_prefix_path(package_name)
+    if prefix is None:
+        raise PackageNotFound(package_name)
+    found: list[str] = []
+    for folder, inside, files in os.walk(os.path.join(prefix, "lib", package_name)):  # noqa: PTH118 - texts, as there
+        inside[:] = sorted(each for each in inside if not each.startswith("."))
+        paths = (os.path.join(folder, name) for name in sorted(files))  # noqa: PTH118
+        found += [path for path in paths if os.access(path, os.X_OK)]
+    return found
+
+
+def get_topic_names_and_types(*, node: Any, include_hidden_topics: bool = False) -> list[tuple[str, list[str]]]:
+    """The topics that a node knows of, with their types."""
+    found: list[tuple[str, list[str]]] = node.get_topic_names_and_types()
+    return [each for each in found if include_hidden_topics or not topic_or_service_is_hidden(each[0])]
+
+
+def get_topic_names(*, node: Any, include_hidden_topics: bool = False) -> list[str]:
+    """The names of the topics that a node knows of."""
+    return [name for name, _ in get_topic_names_and_types(node=node, include_hidden_topics=include_hidden_topics)]
+
+
+def get_msg_class(node: Any, topic: str, blocking: bool = False, include_hidden_topics: bool = False) -> Any:
+    """The class of a topic's messages; None where nobody publishes it, or it is waited for that somebody does.
+
+    Raises:
+        RuntimeError: the name is none, or the topic has several types.
+    """
+    found = _get_msg_class(node, topic, include_hidden_topics)
+    if found is None:
+        print(f"WARNING: topic [{topic}] does not appear to be published yet")
+    while found is None and blocking and ok():
+        time.sleep(_POLL_SECONDS)
+        found = _get_msg_class(node, topic, include_hidden_topics)
+    return found
+
+
+def _get_msg_class(node: Any, topic: str, include_hidden_topics: bool) -> Any:
+    try:
+        name = expand_topic_name(topic, node.get_name(), node.get_namespace())
+        validate_full_topic_name(name)
+    except ValueError as error:
+        raise RuntimeError(error) from error
+    topics = dict(get_topic_names_and_types(node=node, include_hidden_topics=include_hidden_topics))
+    types = topics.get(name)
+    if types is None:
+        return None
+    if len(types) > 1:
+        listed = ", ".join(types)
+        raise RuntimeError(f"Cannot echo topic '{topic}', as it contains more than one type: [{listed}]")
+    return get_message(types[0])
+
+
+def unsigned_int(string: str) -> int:
+    """A number on a command line that is not negative.
+
+    Raises:
+        ArgumentTypeError: it is negative.
+        ValueError: it is no number.
+    """
+    return _at_least(0, string, "value must be non-negative integer")
+
+
+def positive_int(string: str) -> int:
+    """A number on a command line that is greater than zero; raises what `unsigned_int` does."""
+    return _at_least(1, string, "value must be a positive integer")
+
+
+def _at_least(least: int, string: str, problem: str) -> int:
+    from argparse import ArgumentTypeError
+
+    value = int(string)
+    if value < least:
+        raise ArgumentTypeError(problem)
+    return value

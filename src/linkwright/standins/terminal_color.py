@@ -1,0 +1,106 @@
+"""Colours of terminals by marks in texts such as ``@{redf}`` (``osrf_pycommon.terminal_color``)."""
+
+from __future__ import annotations
+
+import re
+from string import Template
+from typing import Any
+
+_ESCAPE_SEQUENCE = re.compile(r"\033\[\d{1,2}[m]")
+_STYLES = {
+    "boldon": 1,
+    "italicson": 3,
+    "ulon": 4,
+    "invon": 7,
+    "boldoff": 22,
+    "italicsoff": 23,
+    "uloff": 24,
+    "invoff": 27,
+}
+_COLOURS = ("black", "red", "green", "yellow", "blue", "purple", "cyan", "white")
+_SHORT = {"@!": "@{boldon}", "@/": "@{italicson}", "@_": "@{ulon}", "@|": "@{reset}"}
+
+
+def _codes() -> dict[str, str]:
+    numbers = {"reset": 0, **_STYLES}
+    for index, colour in enumerate(_COLOURS):
+        numbers[f"{colour}f"], numbers[f"{colour}b"] = 30 + index, 40 + index
+    made = {name: f"\033[{number}m" for name, number in numbers.items()}
+    escapes = {"escape": "\033", "atexclamation": "@!", "atfwdslash": "@/", "atunderscore": "@_", "atbar": "@|"}
+    return {**made, **escapes}
+
+
+_ANSI = _codes()
+
+
+class _Switch:
+    """Whether marks become colours, or vanish."""
+
+    is_on = True
+
+
+class _Marked(Template):
+    delimiter = "@"
+
+
+def ansi(key: str) -> str:
+    """The escape sequence of a name such as ``redf`` or ``reset``; nothing while colours are switched off.
+
+    Raises:
+        KeyError: there is no such name.
+    """
+    return get_ansi_dict()[key]
+
+
+def get_ansi_dict() -> dict[str, str]:
+    """The escape sequences by name."""
+    return dict(_ANSI) if _Switch.is_on else dict.fromkeys(_ANSI, "")
+
+
+def enable_ansi_color_substitution_globally() -> None:
+    """Have marks become colours."""
+    _Switch.is_on = True
+
+
+def disable_ansi_color_substitution_globally() -> None:
+    """Have marks vanish."""
+    _Switch.is_on = False
+
+
+def format_color(msg: str) -> str:
+    """A text with its marks replaced, ``@!`` and its kind among them, and an end to all colours behind it.
+
+    Raises:
+        KeyError: there is no such mark.
+        ValueError: an ``@`` begins no mark; `sanitize` a text that may have such.
+    """
+    for short, mark in _SHORT.items():
+        msg = msg.replace(short, mark)
+    return _Marked(msg).substitute(get_ansi_dict()) + ansi("reset")
+
+
+def print_color(*args: Any, **kwargs: Any) -> None:
+    """Print texts as `format_color` gives them; takes what ``print`` takes."""
+    end, separator = kwargs.pop("end", "\n"), kwargs.pop("sep", " ")
+    print(format_color(separator.join(map(str, args))), end=end, **kwargs)
+
+
+def sanitize(msg: str) -> str:
+    """A text in which nothing is a mark for `format_color`."""
+    return (
+        msg.replace("@", "@@")
+        .replace("@@!", "@{atexclamation}")
+        .replace("@@/", "@{atfwdslash}")
+        .replace("@@_", "@{atunderscore}")
+        .replace("@@|", "@{atbar}")
+    )
+
+
+def remove_ansi_escape_sequences(string: str) -> str:
+    """A text without colours."""
+    return _ESCAPE_SEQUENCE.sub("", string)
+
+
+def split_by_ansi_escape_sequence(string: str, include_delimiters: bool = False) -> list[str]:
+    """The parts of a text between changes of colour; by choice with the changes."""
+    return re.split(f"({_ESCAPE_SEQUENCE.pattern})" if include_delimiters else _ESCAPE_SEQUENCE, string)

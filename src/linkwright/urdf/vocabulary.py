@@ -1,0 +1,55 @@
+"""What an element or attribute of URDF means, looked up by its name or by its path, such as ``joint.limit.effort``."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from linkwright.schema import ElementRule, describe_attribute, describe_element
+from linkwright.urdf.schema import ROBOT
+
+_Path = tuple[str, ...]
+
+
+def meanings(name: str) -> list[str]:
+    """What a name or path stands for, each meaning in Markdown; none where URDF has no such thing.
+
+    A path goes from the outside in, may begin anywhere and may end with an attribute: ``joint.limit.effort``
+    and ``limit.effort`` are the same, and so are ``limit/effort`` and ``<limit> effort``.
+    """
+    asked = tuple(re.findall(r"[\w-]+", name.casefold()))
+    if not asked:
+        return []
+    places: dict[str, list[_Path]] = {}
+    for path, rule in _elements(ROBOT, ()):
+        if _ends_with(path, asked):
+            places.setdefault(describe_element(rule), []).append(path)
+        if asked[:-1] == path[len(path) - len(asked) + 1 :]:
+            for attribute in rule.attributes:
+                if attribute.name.casefold() == asked[-1]:
+                    places.setdefault(f"- {describe_attribute(attribute)}", []).append((*path, attribute.name))
+    return [f"{_headed(paths)}\n\n{text}" for text, paths in places.items()]
+
+
+def names() -> list[str]:
+    """The names of all elements and attributes, each once."""
+    found = [
+        name for path, rule in _elements(ROBOT, ()) for name in (path[-1], *(each.name for each in rule.attributes))
+    ]
+    return list(dict.fromkeys(found))
+
+
+def _elements(rule: ElementRule, around: _Path) -> Iterator[tuple[_Path, ElementRule]]:
+    path = (*around, rule.tag)
+    yield path, rule
+    for child in rule.children:
+        yield from _elements(child, path)
+
+
+def _ends_with(path: _Path, asked: _Path) -> bool:
+    return path[-len(asked) :] == asked
+
+
+def _headed(paths: list[_Path]) -> str:
+    """A heading with the paths from within ``<robot>``."""
+    return "# " + ", ".join(f"`{'.'.join(path[1:] or path)}`" for path in paths)

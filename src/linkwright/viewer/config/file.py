@@ -1,0 +1,94 @@
+"""Reads and writes configuration files: encoding and line ends are kept, and a file is never left half written."""
+
+from __future__ import annotations
+
+import codecs
+from dataclasses import dataclass
+from pathlib import Path
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
+from linkwright.whole_files import write_whole_file
+
+MAXIMUM_SIZE = 16 * 1024 * 1024
+"""Largest file read, bytes; those that RViz writes have some ten thousand."""
+
+
+@dataclass(frozen=True, slots=True)
+class FileForm:
+    """How a file encodes its text.
+
+    Attributes:
+        mark: whether it begins with a byte order mark.
+        newline: what ends its lines.
+    """
+
+    mark: bool = False
+    newline: str = "\n"
+
+
+@dataclass(frozen=True, slots=True)
+class FileState:
+    """Identifies the version of a file that was read: its time of change, nanoseconds, and its size, bytes."""
+
+    modified: int
+    size: int
+
+
+def read(path: Path) -> tuple[str, FileForm]:
+    """The text of a file, with its own line ends, and its form.
+
+    Raises:
+        LinkwrightError: RVIZ101, it cannot be read.
+    """
+    try:
+        with path.open("rb") as file:
+            content = file.read(MAXIMUM_SIZE + 1)
+    except OSError as error:
+        hint = phrase("name a .rviz file after '-d'") if isinstance(error, FileNotFoundError) else None
+        message = phrase(
+            "cannot read the RViz configuration '{path}': {strerror}",
+            path=path,
+            strerror=foreign(error.strerror or error),
+        )
+        raise LinkwrightError(Diagnostic("RVIZ101", message, hint=hint)) from None
+    if len(content) > MAXIMUM_SIZE:
+        message = phrase(
+            "the RViz configuration '{path}' is larger than {maximum_size} MiB",
+            path=path,
+            maximum_size=MAXIMUM_SIZE // 2**20,
+        )
+        raise LinkwrightError(Diagnostic("RVIZ101", message))
+    mark = content.startswith(codecs.BOM_UTF8)
+    try:
+        text = content.removeprefix(codecs.BOM_UTF8).decode("utf-8")
+    except UnicodeDecodeError:
+        message = phrase("the RViz configuration '{path}' is not a text in UTF-8", path=path)
+        raise LinkwrightError(Diagnostic("RVIZ101", message)) from None
+    return text, FileForm(mark, "\r\n" if "\r\n" in text else "\n")
+
+
+def write(path: Path, text: str, form: FileForm) -> None:
+    """Write a text to a file, whole or not at all.
+
+    Raises:
+        LinkwrightError: RVIZ104, it cannot be written.
+    """
+    content = (codecs.BOM_UTF8 if form.mark else b"") + text.encode("utf-8")
+    try:
+        write_whole_file(path, content)
+    except OSError as error:
+        message = phrase(
+            "cannot write the RViz configuration '{path}': {strerror}",
+            path=path,
+            strerror=foreign(error.strerror or error),
+        )
+        raise LinkwrightError(Diagnostic("RVIZ104", message)) from None
+
+
+def state_of(path: Path) -> FileState | None:
+    """The state of a file now; None when there is none."""
+    try:
+        facts = path.stat()
+    except OSError:
+        return None
+    return FileState(facts.st_mtime_ns, facts.st_size)

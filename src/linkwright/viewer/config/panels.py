@@ -1,0 +1,141 @@
+"""The panels of a .rviz file: which of those that RViz brings along are open.
+
+RViz keeps that in three places. ``Panels`` lists the panels that there are. The state of the window, see
+`window_state`, has those of them that the user closed. ``Window Geometry`` says of those that went with a whole side
+of the window that they are ``collapsed``; RViz looks at that only while ``Hide Left Dock`` or ``Hide Right Dock`` is
+on, and shows them again otherwise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping
+from types import MappingProxyType
+
+from linkwright.diagnostics import Diagnostic, Severity, phrase
+from linkwright.viewer.config.former_names import is_former
+from linkwright.viewer.config.window_state import is_shown, with_shown
+from linkwright.viewer.config.yaml_tree import Section, entries, insert_section, new_section, remove_section
+from linkwright.viewer.protocol.panels import PanelName
+
+_PANELS = "Panels"
+_GEOMETRY = "Window Geometry"
+_STATE = (_GEOMETRY, "QMainWindow State")
+_HIDDEN_SIDES = ((_GEOMETRY, "Hide Left Dock"), (_GEOMETRY, "Hide Right Dock"))
+
+_NAMES: Mapping[PanelName, str] = MappingProxyType(
+    {
+        "displays": "Displays",
+        "selection": "Selection",
+        "tool-properties": "Tool Properties",
+        "views": "Views",
+        "time": "Time",
+        "transformation": "Transformation",
+    }
+)
+_PRESENT, _FORMER = "rviz_common/", "rviz/"
+_CLASSES: Mapping[str, PanelName] = MappingProxyType(
+    {prefix + name: panel for panel, name in _NAMES.items() for prefix in (_PRESENT, _FORMER)}
+)
+_NOT_OF_RVIZ_1 = frozenset({"transformation"})
+
+
+class PanelsConfig:
+    """``Panels`` of a file, and what its ``Window Geometry`` says of them. Panels of other classes stay as they are.
+
+    Args:
+        document: the file.
+        report: called with the panels that cannot be shown (RVIZ204).
+    """
+
+    def __init__(self, document: Section, report: Callable[[Diagnostic], None]) -> None:
+        self._document = document
+        self._order = list(document.sections(_PANELS))
+        self._added: list[Section] = []
+        others = [section for section in self._order if section.scalar("Class") and _panel(section) is None]
+        if others:
+            names = ", ".join(f"'{section.text('Name') or section.text('Class')}'" for section in others)
+            message = phrase("panels that the page does not have are kept in the file: {names}", names=names)
+            report(Diagnostic("RVIZ204", message, others[0].span(), Severity.WARNING, source=document.source))
+
+    @property
+    def shown(self) -> list[PanelName] | None:
+        """The panels that RViz would show, in the order of the file; None where it says nothing of panels."""
+        if entries(self._document, _PANELS) is None:
+            return None
+        found = (_panel(section) for section in self._listed() if self._is_shown(section))
+        return list(dict.fromkeys(panel for panel in found if panel is not None))
+
+    def show(self, panels: Collection[PanelName]) -> bool:
+        """Make the file say that these are the panels that are open; whether it said anything else.
+
+        Closing a panel does what RViz does: its entry stays and the window's state says that it is hidden. Where the
+        file has no such state, or has the entry only since the panel was opened here, the entry goes, as with RViz's
+        *Delete Panel*; opened again, it is back in its place.
+        """
+        before = self.shown
+        for panel in _NAMES:
+            if panel in panels:
+                self._open(panel)
+            else:
+                self._close(panel)
+        return self.shown != before
+
+    def _open(self, panel: PanelName) -> None:
+        listed = [section for section in self._listed() if _panel(section) == panel]
+        if any(map(self._is_shown, listed)):
+            return
+        section = listed[0] if listed else self._add(panel)
+        if section is not None:
+            self._set_shown(section, True)
+
+    def _close(self, panel: PanelName) -> None:
+        for section in list(self._listed()):
+            if _panel(section) != panel or not self._is_shown(section):
+                continue
+            if section not in self._added:
+                self._set_shown(section, False)
+            if self._is_shown(section):
+                remove_section(self._document, _PANELS, section)
+
+    def _listed(self) -> list[Section]:
+        """The entries that RViz loads; it passes over those that lack a class or a name."""
+        return [each for each in self._document.sections(_PANELS) if each.scalar("Class") and each.scalar("Name")]
+
+    def _is_shown(self, section: Section) -> bool:
+        name = section.text("Name") or ""
+        if self._is_on(_GEOMETRY, name, "collapsed"):
+            return not any(self._is_on(*path) for path in _HIDDEN_SIDES)
+        return is_shown(self._document.text(*_STATE) or "", name) is not False
+
+    def _set_shown(self, section: Section, shown: bool) -> None:
+        """Have the window show a panel or not, as far as the file says such things."""
+        name = section.text("Name") or ""
+        state = self._document.text(*_STATE) or ""
+        if is_shown(state, name) not in (None, shown):
+            self._document.put(_STATE, with_shown(state, name, shown))
+        if self._is_on(_GEOMETRY, name, "collapsed"):
+            self._document.put((_GEOMETRY, name, "collapsed"), "false")
+
+    def _add(self, panel: PanelName) -> Section | None:
+        """An entry for a panel: the one that it had, in its place, or a new one; None in a file that cannot have it."""
+        there = list(self._document.sections(_PANELS))
+        gone = next((each for each in self._order if _panel(each) == panel and each not in there), None)
+        if gone is None:
+            former = any(is_former(each.text("Class") or "") for each in self._order)
+            if former and panel in _NOT_OF_RVIZ_1:
+                return None
+            gone = new_section(self._document.source)
+            gone.put(("Class",), (_FORMER if former else _PRESENT) + _NAMES[panel], string=True)
+            gone.put(("Name",), _NAMES[panel], string=True)
+            self._order.append(gone)
+            self._added.append(gone)
+        after = self._order[self._order.index(gone) + 1 :]
+        insert_section(self._document, _PANELS, gone, next((each for each in after if each in there), None))
+        return gone
+
+    def _is_on(self, *path: str) -> bool:
+        return (self._document.text(*path) or "").strip().lower() == "true"
+
+
+def _panel(section: Section) -> PanelName | None:
+    return _CLASSES.get(section.text("Class") or "")

@@ -1,0 +1,145 @@
+"""Unsaved edits, kept in a recovery file for each configuration when the program ends.
+
+RViz asks before its window is closed. Ctrl-C in a terminal does not.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+from collections.abc import Iterable
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, phrase
+from linkwright.viewer.config import file as configuration_file
+from linkwright.viewer.config.file import FileForm
+from linkwright.viewer.config.places import ENDING, RecentFiles, state_folder
+
+if TYPE_CHECKING:
+    from linkwright.viewer.config.rviz_config import RvizConfig
+
+_UNNAMED = "untitled"
+_UNFIT = re.compile(r"[^\w. -]+|^\.+")
+_LONGEST_NAME = 56
+"""Characters, of which a file system may count four bytes each."""
+_HOW = phrase("open that file on the page, or with 'rviz2 -d'")
+
+
+def recovery_folder() -> Path:
+    """The folder of these files, below the user's state."""
+    return state_folder() / "unsaved"
+
+
+def recovery_file(config: RvizConfig) -> Path:
+    """Where the edits of a configuration are kept; one that was recovered, and has no other file yet, is that file."""
+    folder = recovery_folder()
+    if config.path is not None:
+        path = _whole(config.path)
+        return folder / path.name if path.parent == _whole(folder) else folder / _name_for(str(path))
+    name = config.document.source.name
+    return folder / (f"{_UNNAMED}{ENDING}" if name.startswith("<") else _name_for(name))  # "<default>" and the like
+
+
+def keep_unsaved(configs: Iterable[RvizConfig]) -> list[Diagnostic]:
+    """Write configurations that have unsaved edits into the recovery files.
+
+    Returns:
+        Where each of them is (RVIZ301), or that it is lost (RVIZ104).
+    """
+    said: list[Diagnostic] = []
+    taken: set[Path] = set()
+    for config in configs:
+        text = config.text()
+        if _is_saved(config, text):
+            continue
+        path = _free(recovery_file(config), taken)
+        taken.add(path)
+        with suppress(OSError):  # writing says what is wrong
+            path.parent.mkdir(parents=True, exist_ok=True)
+        try:
+            configuration_file.write(path, text, FileForm())
+        except LinkwrightError as error:
+            said += error.diagnostics
+        else:
+            RecentFiles().add(path)
+            said.append(_kept(config, path))
+    return said
+
+
+def find_unsaved(config: RvizConfig) -> list[Diagnostic]:
+    """Report edits of a file that an earlier run of the program kept (RVIZ302)."""
+    path = recovery_file(config)
+    if config.path is None or _whole(config.path) == _whole(path) or not path.is_file():
+        return []
+    message = phrase(
+        "changes of '{path}' that were not saved at an earlier time are in '{kept}': {how}",
+        path=config.path,
+        kept=path,
+        how=_HOW,
+    )
+    return [Diagnostic("RVIZ302", message, severity=Severity.INFO)]
+
+
+def forget_unsaved(former: Path | None, config: RvizConfig, recent: RecentFiles) -> None:
+    """Remove what was kept of a configuration that was saved a moment ago.
+
+    Args:
+        former: the file that it had before: a recovery file that now is saved elsewhere has done its work.
+        config: has the file that it was saved to.
+        recent: where the files are listed that were removed.
+    """
+    done = {recovery_file(config)}
+    if former is not None and _whole(former).parent == _whole(recovery_folder()):
+        done.add(_whole(former))
+    for path in done:
+        if config.path is None or _whole(path) == _whole(config.path):
+            continue
+        with suppress(OSError):
+            path.unlink()
+            recent.remove(path)
+
+
+def _kept(config: RvizConfig, path: Path) -> Diagnostic:
+    if config.path is None or _whole(config.path) == _whole(path):
+        message = phrase("displays that were not saved are kept in '{path}': {how}", path=path, how=_HOW)
+    else:
+        message = phrase(
+            "changes of '{path}' that were not saved are kept in '{kept}': {how}",
+            path=config.path,
+            kept=path,
+            how=_HOW,
+        )
+    return Diagnostic("RVIZ301", message, severity=Severity.WARNING)
+
+
+def _is_saved(config: RvizConfig, text: str) -> bool:
+    """Whether the file has a text: what was edited was edited back."""
+    if config.path is None:
+        return False
+    try:
+        return configuration_file.read(config.path)[0] == text
+    except LinkwrightError:
+        return False
+
+
+def _name_for(name: str) -> str:
+    """A name in the recovery folder for a configuration that is called like this, which a page may have done."""
+    mark = hashlib.sha256(os.fsencode(name)).hexdigest()[:8]  # of two files of one name
+    stem = _UNFIT.sub("_", Path(name).stem)[:_LONGEST_NAME]
+    return f"{stem or _UNNAMED}-{mark}{ENDING}"
+
+
+def _free(path: Path, taken: set[Path]) -> Path:
+    """The file, or for a page's own displays, which began as a copy of the same configuration, one beside it."""
+    number, found = 1, path
+    while found in taken:
+        number += 1
+        found = path.with_name(f"{path.stem}-{number}{ENDING}")
+    return found
+
+
+def _whole(path: Path) -> Path:
+    return Path(os.path.realpath(path))

@@ -1,0 +1,299 @@
+"""RViz's configuration files (``.rviz``): read, kept whole, changed in place, written back."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+from linkwright.viewer.config import file as configuration_file
+from linkwright.viewer.config import yaml_tree
+from linkwright.viewer.config.displays import DisplayConfig, displace, place, read_displays
+from linkwright.viewer.config.file import FileForm, FileState
+from linkwright.viewer.config.former_names import GROUP
+from linkwright.viewer.config.panels import PanelsConfig
+from linkwright.viewer.config.property_store import PropertyStore
+from linkwright.viewer.config.schema import PropertySpec
+from linkwright.viewer.config.tools import ToolsConfig
+from linkwright.viewer.config.views import ViewsConfig
+from linkwright.viewer.config.yaml_tree import Arranged, Made, Section
+
+__all__ = ["GLOBAL_OPTIONS", "Arrangement", "DisplayConfig", "RvizConfig"]
+
+GLOBAL_OPTIONS = (
+    PropertySpec(
+        "Fixed Frame",
+        "frame",
+        "base_link",
+        "The frame that stands still: everything is drawn where it is in this frame.",
+    ),
+    PropertySpec("Background Color", "color", "#303030", "The colour behind the scene."),
+    PropertySpec(
+        "Frame Rate",
+        "int",
+        30,
+        "The most transform updates a second, in hertz.",
+        minimum=1,
+        maximum=120,
+    ),
+)
+
+_MANAGER = "Visualization Manager"
+_OTHER_KEYS = ("Panels", "Toolbars", "Window Geometry")
+"""A file with one of these is a configuration, if one without displays."""
+_OWN_PREFIX = "rviz_default_plugins/"
+
+_DEFAULT = """\
+Panels:
+  - Class: rviz_common/Displays
+    Name: Displays
+  - Class: rviz_common/Selection
+    Name: Selection
+  - Class: rviz_common/Tool Properties
+    Name: Tool Properties
+  - Class: rviz_common/Views
+    Name: Views
+  - Class: rviz_common/Time
+    Name: Time
+Visualization Manager:
+  Class: ""
+  Displays:
+    - Class: rviz_default_plugins/Grid
+      Enabled: true
+      Name: Grid
+      Value: true
+  Enabled: true
+  Global Options:
+    Background Color: 48; 48; 48
+    Fixed Frame: map
+    Frame Rate: 30
+  Name: root
+  Tools:
+    - Class: rviz_default_plugins/Interact
+    - Class: rviz_default_plugins/MoveCamera
+    - Class: rviz_default_plugins/Select
+    - Class: rviz_default_plugins/FocusCamera
+    - Class: rviz_default_plugins/Measure
+    - Class: rviz_default_plugins/SetInitialPose
+    - Class: rviz_default_plugins/SetGoal
+    - Class: rviz_default_plugins/PublishPoint
+  Value: true
+  Views:
+    Current:
+      Class: rviz_default_plugins/Orbit
+      Name: Current View
+      Value: Orbit (rviz)
+    Saved: ~
+"""
+_MODEL_DISPLAYS: tuple[tuple[str, dict[str, str]], ...] = (
+    ("RobotModel", {"Description Topic": "/robot_description"}),
+    ("TF", {}),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Arrangement:
+    """Which displays there were, in which order and groups: what stood under ``Displays`` of each holder."""
+
+    displays: dict[DisplayConfig | None, list[DisplayConfig]]
+    memories: dict[DisplayConfig | None, Arranged]
+
+
+class RvizConfig:
+    """A configuration file.
+
+    What this program does not know is kept and written back: keys, their order, Qt's window state, displays of other
+    classes. Missing keys have RViz's defaults and stay missing until they are set. A file in which nothing was
+    changed is written back to the letter; from one that was, comments go, as in RViz.
+
+    Attributes:
+        path: the file it was read from or saved to, or None.
+        document: the whole file.
+        displays: the entries of ``Displays``; groups hold others.
+        options: the Global Options.
+        views: the current view and the saved ones.
+        tools: the tools.
+        panels: which panels are open.
+        warnings: what the file says that cannot be used.
+    """
+
+    def __init__(self, document: Section, path: Path | None = None, form: FileForm | None = None) -> None:
+        self.path = path
+        self.warnings: list[Diagnostic] = []
+        self.document = document
+        self._form = form or FileForm()
+        self._made: list[Made] = []
+        self._state: FileState | None = configuration_file.state_of(path) if path else None
+        self.options = PropertyStore(
+            "global",
+            document,
+            lambda: GLOBAL_OPTIONS,
+            self.warnings.append,
+            base=(_MANAGER, "Global Options"),
+        )
+        self.options.rows()  # so that all warnings are there from the start
+        self.displays: list[DisplayConfig] = read_displays(
+            document.section(_MANAGER) or yaml_tree.new_section(document.source), None, self.warnings.append
+        )
+        self.views = ViewsConfig(document, self.warnings.append)
+        self.tools = ToolsConfig(document, self.warnings.append)
+        self.panels = PanelsConfig(document, self.warnings.append)
+
+    @classmethod
+    def load(cls, path: str | Path) -> RvizConfig:
+        """Read a file.
+
+        Raises:
+            LinkwrightError: RVIZ101, it cannot be read; RVIZ102, it is not YAML; RVIZ103, it is no such configuration.
+        """
+        path = Path(path)
+        text, form = configuration_file.read(path)
+        return cls.parse(text, str(path), path, form)
+
+    @classmethod
+    def parse(
+        cls, text: str, name: str = "<rviz>", path: Path | None = None, form: FileForm | None = None
+    ) -> RvizConfig:
+        """Read a text; `name` is what messages call it.
+
+        Raises:
+            LinkwrightError: RVIZ102, it is not YAML; RVIZ103, it is no such configuration.
+        """
+        document = yaml_tree.parse(text, name)
+        if document.section(_MANAGER) is None and not set(_OTHER_KEYS) & set(document.keys()):
+            message = phrase("'{name}' is no RViz configuration: it has no '{manager}'", name=name, manager=_MANAGER)
+            raise LinkwrightError(Diagnostic("RVIZ103", message, document.span(), source=document.source))
+        return cls(document, path, form)
+
+    @classmethod
+    def default(cls) -> RvizConfig:
+        """What RViz shows without a file: a Grid, Fixed Frame ``map``."""
+        return cls.parse(_DEFAULT, "<default>")
+
+    @classmethod
+    def for_model(cls, fixed_frame: str, *, distance: float = 3.0, name: str = "<model>") -> RvizConfig:
+        """Grid, RobotModel and TF about one robot.
+
+        Args:
+            fixed_frame: the Fixed Frame, usually the robot's root link.
+            distance: of the eye from the origin, metres.
+            name: of the model's file, by which edits that are not saved are kept.
+        """
+        config = cls.parse(_DEFAULT, name)
+        for name, values in _MODEL_DISPLAYS:
+            display = config.make(_OWN_PREFIX + name, name)
+            for key, value in values.items():
+                display.section.put((key,), value, string=True, nested=True)
+            config.insert(display)
+        config.options.set(("Fixed Frame",), fixed_frame)
+        view = config.views.current
+        view.values["Distance"] = distance
+        config.views.current = view
+        return config
+
+    def copy(self) -> RvizConfig:
+        """A copy that belongs to no file."""
+        return RvizConfig.parse(self.text(), self.document.source.name)
+
+    # --- displays ----------------------------------------------------------------------------------------------
+
+    def walk(self) -> Iterator[DisplayConfig]:
+        """Every display, each group before what is in it."""
+        for display in self.displays:
+            yield from display.walk()
+
+    def make(self, cls: str, name: str) -> DisplayConfig:
+        """A display that is enabled and has the defaults of its class; `insert` puts it into the file."""
+        section = yaml_tree.new_section(self.document.source)
+        section.put(("Class",), cls, string=True)
+        section.put(("Enabled",), "true")
+        section.put(("Name",), name, string=True)
+        if cls != GROUP:
+            section.put(("Value",), "true")
+        return DisplayConfig(section, None)
+
+    def duplicate(self, display: DisplayConfig) -> DisplayConfig:
+        """A copy of a display's entry; `insert` puts it into the file."""
+        return DisplayConfig(yaml_tree.copy_section(display.section), None)
+
+    def insert(self, display: DisplayConfig, group: DisplayConfig | None = None, index: int | None = None) -> None:
+        """Put a display into a group, or among the outermost: in front of the one with an index, or last.
+
+        Raises:
+            ValueError: when that place is no group, or inside of the display itself.
+        """
+        if group is not None and (not group.is_group or group in display.walk()):
+            raise ValueError(f"'{display.name}' cannot be put into '{group.name}'")
+        siblings = self.siblings(group)
+        place(display, self._parent(group), siblings, len(siblings) if index is None else index)
+        display.group = group
+
+    def remove(self, display: DisplayConfig) -> None:
+        """Take a display out of the file."""
+        displace(display, self._parent(display.group), self.siblings(display.group))
+
+    def make_group(self, name: str) -> DisplayConfig:
+        """A group that holds nothing; `insert` puts it into the file."""
+        return self.make(GROUP, name)
+
+    def arrangement(self) -> Arrangement:
+        """Which displays there are, for `arrange`."""
+        groups = [None, *(display for display in self.walk() if display.is_group)]
+        return Arrangement(
+            {group: list(self.siblings(group)) for group in groups},
+            {group: self._arranged(group) for group in groups},
+        )
+
+    def arrange(self, arrangement: Arrangement) -> None:
+        """Restore an arrangement of displays."""
+        for group, displays in arrangement.displays.items():
+            self.siblings(group)[:] = displays
+            for display in displays:
+                display.group = group
+            yaml_tree.rearrange(self._parent(group), "Displays", arrangement.memories[group])
+        self._made = yaml_tree.unmake(self._made)
+
+    def siblings(self, group: DisplayConfig | None) -> list[DisplayConfig]:
+        """What a group holds; the outermost displays for None."""
+        return self.displays if group is None else group.displays
+
+    def _arranged(self, group: DisplayConfig | None) -> Arranged:
+        holder = group.section if group is not None else self.document.section(_MANAGER)
+        return yaml_tree.arranged(holder, "Displays") if holder is not None else Arranged(None, None)
+
+    def _parent(self, group: DisplayConfig | None) -> Section:
+        """The section that has ``Displays``; that of the outermost is made where it is missing."""
+        if group is not None:
+            return group.section
+        manager, made = yaml_tree.make_section(self.document, _MANAGER)
+        self._made += made
+        return manager
+
+    # --- file --------------------------------------------------------------------------------------------------
+
+    def text(self) -> str:
+        """The file's text with the values set so far."""
+        source = self.document.source
+        if yaml_tree.same(self.document, yaml_tree.parse(source.text, source.name)):
+            return source.text
+        return yaml_tree.write(self.document).replace("\n", self._form.newline)
+
+    def save(self, path: str | Path | None = None) -> None:
+        """Write to a file, by default the one it came from, which it is from then on.
+
+        Raises:
+            ValueError: when it came from none and none is given.
+            LinkwrightError: RVIZ104, the file cannot be written.
+        """
+        target = Path(path) if path is not None else self.path
+        if target is None:
+            raise ValueError("no file to save to")
+        configuration_file.write(target, self.text(), self._form)
+        self.path = target
+        self._state = configuration_file.state_of(target)
+
+    @property
+    def changed_on_disk(self) -> bool:
+        """Whether another program has changed the file since it was read or saved."""
+        return self.path is not None and configuration_file.state_of(self.path) not in (self._state, None)

@@ -1,0 +1,224 @@
+"""Properties declared once: what a display has, its defaults and bounds, and which values are taken.
+
+From a `PropertySpec` come the row of the page, the reading and writing of the .rviz file, and the checks of what the
+page sends. Names and defaults are RViz's; so is clamping a number into its bounds.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from contextlib import suppress
+from dataclasses import dataclass
+
+from linkwright.diagnostics import phrase
+from linkwright.viewer.protocol.parts import PropertyKind, PropertyValue, RowDetails
+
+FIXED_FRAME = "<Fixed Frame>"
+"""Stands for whatever the Fixed Frame is, where RViz asks for a frame."""
+
+MAXIMUM_TEXT = 4096
+"""Longest string taken from a page, characters."""
+
+_HEX_COLOUR = re.compile(r"#[0-9a-fA-F]{6}")
+_SHORT_COLOUR = re.compile(r"#[0-9a-fA-F]{3}")
+_RVIZ_COLOUR = re.compile(r"([+-]?\d{1,6})\s*;\s*([+-]?\d{1,6})\s*;\s*([+-]?\d{1,6})\s*(;.*)?")
+_YAML_NUMBER = re.compile(r"[+-]?\.(inf|nan)", re.IGNORECASE)
+_INFINITE = 3.4028234663852886e38
+"""Replaces infinity, which JSON lacks: the largest 32-bit float, as in RViz."""
+_BOOLEANS = dict.fromkeys(("true", "1", "yes", "on"), True) | dict.fromkeys(("false", "", "0"), False)
+
+
+@dataclass(frozen=True, slots=True)
+class PropertySpec:
+    """One property.
+
+    Attributes:
+        name: as RViz shows it and as the file spells its key.
+        kind: what values it takes; a ``group`` takes none.
+        default: RViz's default.
+        description: the tooltip.
+        options: of an ``enum``.
+        minimum: of an ``int`` or ``float``, inclusive.
+        maximum: of an ``int`` or ``float``, inclusive.
+        messages: of a ``topic``, the types of those offered; none for those of the display.
+        words: of a ``topic``, parts of the names of those offered, in lower case; none for any name.
+        children: the rows below it.
+        when: path within the display and value of the property that must hold for this row to be shown; the conditions
+            of that property must hold too.
+        expanded: whether its children show at the start.
+        nested: whether the file keeps its value under ``Value``, because it has parts there.
+        hidden: whether it has a value in the file but no row, as properties that RViz hides.
+        read_only: whether only the program sets it; the file does not have it.
+        details: what the row stands for, if pages show more of it in read-only rows of their own, see `Property`.
+    """
+
+    name: str
+    kind: PropertyKind
+    default: PropertyValue = None
+    description: str = ""
+    options: tuple[str, ...] = ()
+    minimum: float | None = None
+    maximum: float | None = None
+    messages: tuple[str, ...] = ()
+    words: tuple[str, ...] = ()
+    children: tuple[PropertySpec, ...] = ()
+    when: tuple[tuple[str, ...], PropertyValue] | None = None
+    expanded: bool = False
+    nested: bool = False
+    hidden: bool = False
+    read_only: bool = False
+    details: RowDetails | None = None
+
+
+def vector(name: str, description: str) -> PropertySpec:
+    """Three floats X, Y, Z in metres, 0 by default, as RViz's VectorProperty stores them."""
+    return PropertySpec(
+        name, "group", description=description, children=tuple(PropertySpec(axis, "float", 0.0) for axis in "XYZ")
+    )
+
+
+def accept(spec: PropertySpec, value: object) -> PropertyValue:
+    """The value to store for one that a page sent: of the kind's type, clamped into the bounds.
+
+    Raises:
+        ValueError: when it is none for this property; the text says what is expected.
+    """
+    if spec.read_only:
+        raise ValueError("only the program sets it")
+    taken = _take(spec, value)
+    if taken is None:
+        raise ValueError(
+            phrase(
+                "{format}, not {value}",
+                format=_EXPECTED[spec.kind].format(options=", ".join(spec.options)),
+                value=_shown(value),
+            )
+        )
+    return taken
+
+
+def from_text(spec: PropertySpec, text: str) -> PropertyValue:
+    """The value that a scalar of a .rviz file stands for.
+
+    Raises:
+        ValueError: when it stands for none; the text says what is expected.
+    """
+    return accept(spec, _converted(spec, text.strip()))
+
+
+def in_place_of(spec: PropertySpec) -> PropertyValue:
+    """The value to use where the text in a file cannot be read: true for a box, as in RViz, else the default.
+
+    To Qt, and so to RViz, every text is true but ``false``, ``0`` and none: ``no`` and ``off`` are.
+    """
+    return True if spec.kind == "bool" else spec.default
+
+
+def is_on(text: str) -> bool:
+    """Whether the text of a box in a file means true to RViz, see `in_place_of`."""
+    return _BOOLEANS.get(text.strip().lower(), True)
+
+
+def to_text(spec: PropertySpec, value: PropertyValue) -> str:
+    """The spelling of a value in a .rviz file."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, float):
+        text = repr(value)
+        mantissa, exponent, power = text.partition("e")
+        return f"{mantissa}.0e{power}" if exponent and "." not in mantissa else text
+    if spec.kind == "color" and isinstance(value, str):
+        return "; ".join(str(int(value[start : start + 2], 16)) for start in (1, 3, 5))
+    return str(value)
+
+
+_EXPECTED = {
+    "group": phrase("no value is expected"),
+    "bool": phrase("true or false is expected"),
+    "int": phrase("a whole number is expected"),
+    "float": phrase("a finite number is expected"),
+    "string": phrase("a text of at most {maximum_text} characters is expected", maximum_text=MAXIMUM_TEXT),
+    "color": "a colour such as #a0a0a4 is expected",
+    "enum": "one of {options} is expected",
+    "frame": phrase("the name of a frame is expected"),
+    "topic": phrase("the name of a topic is expected"),
+}
+
+
+def _take(spec: PropertySpec, value: object) -> PropertyValue:
+    kind = spec.kind
+    if kind == "bool":
+        return value if isinstance(value, bool) else None
+    if kind in ("int", "float"):
+        return _number(spec, value)
+    if not isinstance(value, str) or len(value) > MAXIMUM_TEXT or kind == "group":
+        return None
+    if kind == "enum":
+        return value if value in spec.options else None
+    if kind == "color":
+        return value.lower() if _HEX_COLOUR.fullmatch(value) else None
+    if kind == "frame":
+        return value.strip().removeprefix("/") or None  # tf2 knows no leading slash; RViz strips it too
+    return value
+
+
+def _number(spec: PropertySpec, value: object) -> int | float | None:
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        return None
+    try:
+        number = float(value)
+    except OverflowError:
+        return None
+    if not math.isfinite(number):
+        return None
+    if spec.minimum is not None:
+        number = max(number, float(spec.minimum))
+    if spec.maximum is not None:
+        number = min(number, float(spec.maximum))
+    if spec.kind == "float":
+        return number
+    return int(number) if number.is_integer() and abs(number) < 2**53 else None
+
+
+def _converted(spec: PropertySpec, text: str) -> object:
+    """The value that Qt makes of a spelling for RViz, or the text itself for `accept` to refuse."""
+    kind = spec.kind
+    if kind == "bool":
+        return _BOOLEANS.get(text.lower(), text)
+    if kind in ("int", "float"):
+        return _spelt_number(spec, text)
+    if kind == "color":
+        return _spelt_colour(text)
+    return text
+
+
+def _spelt_number(spec: PropertySpec, text: str) -> object:
+    if "_" in text or not text.isascii():
+        return text  # numbers to Python, not to Qt
+    try:
+        number = float(text.replace(".", "", 1) if _YAML_NUMBER.fullmatch(text) else text)
+    except ValueError:
+        return text
+    if math.isnan(number):
+        return spec.default  # RViz writes one when its camera was lost, and would draw nothing with it
+    return number if math.isfinite(number) else math.copysign(_INFINITE, number)
+
+
+def _spelt_colour(text: str) -> str:
+    found = _RVIZ_COLOUR.fullmatch(text)
+    if found:  # a fourth part, as of an alpha, is passed over
+        return "#" + "".join(f"{min(max(int(part), 0), 255):02x}" for part in found.groups()[:3])
+    if _SHORT_COLOUR.fullmatch(text):
+        return "#" + "".join(2 * digit for digit in text[1:])
+    if text.isalpha():
+        import webcolors  # type: ignore[import-untyped]  # it ships no types; here, because names are rare
+
+        with suppress(ValueError):
+            return str(webcolors.name_to_hex(text))  # knows the names that Qt knows: those of SVG
+    return text
+
+
+def _shown(value: object) -> str:
+    text = repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."

@@ -1,0 +1,404 @@
+"""YAML as a tree that is edited in place: whatever is not touched is written back as it was read.
+
+RViz's files hold much that this program does not know. The tree keeps PyYAML's nodes: key order, quoting and the
+spelling of every scalar survive, and every value knows its line.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import yaml
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText, Span, foreign, phrase
+from linkwright.viewer.config import yaml_layout
+
+_Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+_Resolver: Any = yaml.resolver.Resolver
+
+MAXIMUM_DEPTH = 100
+"""Deepest nesting read. PyYAML builds nodes by recursion, without a bound of its own."""
+
+MAXIMUM_NODES = 1_000_000
+"""Most keys and values of a document after its aliases were written out: a few lines of YAML can stand for billions."""
+
+_STRING = "tag:yaml.org,2002:str"
+_NULL = "tag:yaml.org,2002:null"
+_MAPPING = "tag:yaml.org,2002:map"
+_SEQUENCE = "tag:yaml.org,2002:seq"
+
+
+@dataclass(frozen=True, slots=True)
+class Scalar:
+    """A scalar as it is spelt in the file, and where."""
+
+    text: str
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Memory:
+    """What the file had under a key; None where it had no such key."""
+
+    key: str
+    value: yaml.Node | None
+
+
+class Section:
+    """A mapping of the file.
+
+    A scalar is asked for by its path of keys. RViz stores a value that has parts of its own under ``Value`` among
+    them; a path that ends at such a mapping means that value.
+    """
+
+    def __init__(self, node: yaml.MappingNode, source: SourceText) -> None:
+        self.node = node
+        self.source = source
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Section) and self.node is other.node
+
+    def __hash__(self) -> int:
+        return id(self.node)
+
+    def keys(self) -> list[str]:
+        """The keys, in the order of the file."""
+        return [key.value for key, _ in self.node.value if isinstance(key, yaml.ScalarNode)]
+
+    def scalar(self, *path: str) -> Scalar | None:
+        """The scalar at a path; None where there is none or it is null."""
+        node = self._scalar_node(path)
+        return None if node is None else Scalar(node.value, self.span(node))
+
+    def text(self, *path: str) -> str | None:
+        """The text of the scalar at a path, for what is asked often: it does not say where it stands."""
+        node = self._scalar_node(path)
+        return None if node is None else str(node.value)
+
+    def section(self, *path: str) -> Section | None:
+        """The mapping at a path, or None."""
+        node = self._find(path)
+        return Section(node, self.source) if isinstance(node, yaml.MappingNode) else None
+
+    def sections(self, *path: str) -> Iterator[Section]:
+        """The mappings in the sequence at a path; other items are passed over."""
+        node = self._find(path)
+        if isinstance(node, yaml.SequenceNode):
+            for item in node.value:
+                if isinstance(item, yaml.MappingNode):
+                    yield Section(item, self.source)
+
+    def put(self, path: tuple[str, ...], text: str, *, string: bool = False, nested: bool = False) -> None:
+        """Set the scalar at a path, making the mappings on the way.
+
+        Args:
+            path: keys, at least one.
+            text: the spelling of the value.
+            string: whether it is a string whatever it looks like (then it is quoted where it must be).
+            nested: whether the value has parts of its own, and so goes under ``Value``.
+        """
+        tag = _STRING if string else _Resolver().resolve(yaml.ScalarNode, text, (True, False))
+        parent = self.node
+        for key in path[:-1]:
+            parent = _child_mapping(parent, key)
+        there = _child(parent, path[-1])
+        # A plain value stays one where its parts would fit beside it: so did RViz 1 write topics.
+        plain = isinstance(there, yaml.ScalarNode) and there.tag != _NULL
+        if isinstance(there, yaml.MappingNode) or (nested and not plain):
+            parent, last = _child_mapping(parent, path[-1]), "Value"
+        else:
+            last = path[-1]
+        _set(parent, last, yaml.ScalarNode(tag, text))
+
+    def memory(self, key: str) -> Memory:
+        """What stands under a key now, for `recall`."""
+        there = _child(self.node, key)
+        return Memory(key, None if there is None else _copy(there))
+
+    def recall(self, memory: Memory) -> None:
+        """Make what stands under a key what it was; a key that came since goes."""
+        if memory.value is not None:
+            _set(self.node, memory.key, _copy(memory.value))
+            return
+        self.node.value[:] = [pair for pair in self.node.value if pair[0].value != memory.key]
+
+    def span(self, node: yaml.Node | None = None) -> Span:
+        """Where a node of this file begins and ends; the mapping itself by default."""
+        return _span(node or self.node, self.source)
+
+    def _scalar_node(self, path: tuple[str, ...]) -> yaml.ScalarNode | None:
+        node = self._find(path)
+        if isinstance(node, yaml.MappingNode):
+            node = _child(node, "Value")
+        return node if isinstance(node, yaml.ScalarNode) and node.tag != _NULL else None
+
+    def _find(self, path: tuple[str, ...]) -> yaml.Node | None:
+        node: yaml.Node | None = self.node
+        for key in path:
+            if not isinstance(node, yaml.MappingNode):
+                return None
+            node = _child(node, key)
+        return node
+
+
+def parse(text: str, name: str) -> Section:
+    """Read a document whose root is a mapping.
+
+    Raises:
+        LinkwrightError: RVIZ102, not YAML; RVIZ103, its root is no mapping.
+    """
+    source = SourceText(name, text)
+    try:
+        _check_depth(text, source)
+        # RViz reads the first document and no more.
+        root = next(yaml.compose_all(text, Loader=_Loader), None)
+    except yaml.YAMLError as error:
+        raise LinkwrightError(_not_yaml(error, source)) from None
+    if not isinstance(root, yaml.MappingNode):
+        message = (
+            phrase("'{name}' is empty", name=name)
+            if root is None
+            else phrase("'{name}' holds no keys and values", name=name)
+        )
+        hint = phrase("an RViz configuration begins with 'Panels:' and 'Visualization Manager:'")
+        raise LinkwrightError(Diagnostic("RVIZ103", message, source.span(0, 0), hint=hint, source=source))
+    if "*" in text:
+        _write_out_aliases(root, source)
+    return Section(root, source)
+
+
+def write(section: Section) -> str:
+    """The document as text: keys in their order, scalars spelt as they were read, laid out as the source is."""
+    return yaml_layout.write(section.node, section.source.text)
+
+
+def same(one: Section, other: Section) -> bool:
+    """Whether two documents would be written alike."""
+    return yaml_layout.plain(one.node) == yaml_layout.plain(other.node)
+
+
+def new_section(source: SourceText) -> Section:
+    """An empty mapping that is nowhere in a document yet."""
+    return Section(yaml.MappingNode(_MAPPING, [], flow_style=False), source)
+
+
+def copy_section(section: Section) -> Section:
+    """A copy that is nowhere in a document yet."""
+    node = _copy(section.node)
+    assert isinstance(node, yaml.MappingNode)
+    return Section(node, section.source)
+
+
+def insert_section(parent: Section, key: str, section: Section, before: Section | None = None) -> None:
+    """Put a mapping into the sequence under a key, which is made where it is missing.
+
+    Args:
+        parent: has the key.
+        key: of the sequence.
+        section: what is put there.
+        before: the item it goes in front of; None or one that is not there for the end.
+    """
+    sequence = _child(parent.node, key)
+    if not isinstance(sequence, yaml.SequenceNode):
+        sequence = yaml.SequenceNode(_SEQUENCE, [], flow_style=False)
+        _set(parent.node, key, sequence)
+    elif sequence.flow_style and not sequence.value:
+        sequence.flow_style = False
+    items = sequence.value
+    at = next((index for index, item in enumerate(items) if before is not None and item is before.node), len(items))
+    items.insert(at, section.node)
+
+
+def remove_section(parent: Section, key: str, section: Section) -> None:
+    """Take a mapping out of the sequence under a key."""
+    sequence = _child(parent.node, key)
+    if isinstance(sequence, yaml.SequenceNode):
+        sequence.value[:] = [item for item in sequence.value if item is not section.node]
+
+
+def entries(parent: Section, key: str) -> list[yaml.Node] | None:
+    """The items of the sequence under a key, which are not copied; None where there is no sequence."""
+    sequence = _child(parent.node, key)
+    return list(sequence.value) if isinstance(sequence, yaml.SequenceNode) else None
+
+
+@dataclass(frozen=True, slots=True)
+class Arranged:
+    """What stood under the key of a sequence, and its items if it was one; neither is copied."""
+
+    node: yaml.Node | None
+    items: list[yaml.Node] | None
+
+
+def arranged(parent: Section, key: str) -> Arranged:
+    """What stands under the key of a sequence now, for `rearrange`."""
+    return Arranged(_child(parent.node, key), entries(parent, key))
+
+
+def rearrange(parent: Section, key: str, arranged: Arranged) -> None:
+    """Have under the key of a sequence what stood there, with the items that it held."""
+    if arranged.node is None:
+        parent.recall(Memory(key, None))
+        return
+    if isinstance(arranged.node, yaml.SequenceNode):
+        arranged.node.value[:] = arranged.items or []
+    _set(parent.node, key, arranged.node)
+
+
+@dataclass(frozen=True, slots=True)
+class Made:
+    """A mapping that was made where there was none, for `unmake`.
+
+    Attributes:
+        holder: the mapping that has it.
+        memory: what the holder said before.
+        section: the mapping itself.
+        keys: what it had at once.
+    """
+
+    holder: Section
+    memory: Memory
+    section: Section
+    keys: list[str]
+
+
+def make_section(section: Section, *path: str) -> tuple[Section, list[Made]]:
+    """The mapping at a path, made where it is missing, and which were made on the way to it, itself included."""
+    made = []
+    for key in path:
+        there = section.section(key)
+        if there is None:
+            memory = section.memory(key)
+            there = ensure_section(section, key)
+            made.append(Made(section, memory, there, there.keys()))
+        section = there
+    return section, made
+
+
+def unmake(made: list[Made]) -> list[Made]:
+    """Take mappings away that hold no more than they did when they were made; returns those that do."""
+    left = list(made)
+    while left and left[-1].section.keys() == left[-1].keys:
+        gone = left.pop()
+        gone.holder.recall(gone.memory)
+    return left
+
+
+def ensure_section(section: Section, *path: str) -> Section:
+    """The mapping at a path, made where it is missing."""
+    node = section.node
+    for key in path:
+        node = _child_mapping(node, key)
+    return Section(node, section.source)
+
+
+def _copy(node: yaml.Node, *, deep: bool = True) -> yaml.Node:
+    """A node alike; `copy` knows no marks of libyaml."""
+    if isinstance(node, yaml.ScalarNode):
+        return yaml.ScalarNode(node.tag, node.value, node.start_mark, node.end_mark, node.style)
+    assert isinstance(node, yaml.CollectionNode)
+    value = list(node.value)
+    if deep and isinstance(node, yaml.SequenceNode):
+        value = [_copy(item) for item in value]
+    elif deep:
+        value = [(_copy(key), _copy(each)) for key, each in value]
+    return type(node)(node.tag, value, node.start_mark, node.end_mark, node.flow_style)
+
+
+def _span(node: yaml.Node, source: SourceText) -> Span:
+    start, end = node.start_mark, node.end_mark
+    if start is None or end is None:
+        return source.span(0, 0)
+    return Span(source.name, start.line + 1, start.column + 1, end.line + 1, end.column + 1)
+
+
+def _child(node: yaml.MappingNode, key: str) -> yaml.Node | None:
+    found: yaml.Node | None = None
+    for name, value in node.value:
+        if isinstance(name, yaml.ScalarNode) and name.value == key:
+            found = value  # as in RViz, the last of two wins
+    return found
+
+
+def _child_mapping(node: yaml.MappingNode, key: str) -> yaml.MappingNode:
+    found = _child(node, key)
+    if isinstance(found, yaml.MappingNode):
+        if found.flow_style and not found.value:
+            found.flow_style = False
+        return found
+    made = yaml.MappingNode(_MAPPING, [], flow_style=False)
+    if isinstance(found, yaml.ScalarNode) and found.tag != _NULL:
+        _set(made, "Value", found)
+    _set(node, key, made)
+    return made
+
+
+def _set(node: yaml.MappingNode, key: str, value: yaml.Node) -> None:
+    for index in range(len(node.value) - 1, -1, -1):
+        name = node.value[index][0]
+        if isinstance(name, yaml.ScalarNode) and name.value == key:
+            node.value[index] = (name, value)
+            return
+    names = [name.value for name, _ in node.value if isinstance(name, yaml.ScalarNode)]
+    ordered = len(names) == len(node.value) and names == sorted(names)
+    at = bisect(names, key) if ordered else len(names)  # RViz writes most of its keys in the order of the alphabet
+    node.value.insert(at, (yaml.ScalarNode(_STRING, key), value))
+
+
+def _check_depth(text: str, source: SourceText) -> None:
+    depth = 0
+    for event in yaml.parse(text, Loader=_Loader):
+        if isinstance(event, yaml.CollectionStartEvent):
+            depth += 1
+            if depth > MAXIMUM_DEPTH:
+                at = event.start_mark
+                span = source.span(source.offset(at.line + 1, at.column + 1)) if at else None
+                message = phrase("nested deeper than {maximum_depth} levels", maximum_depth=MAXIMUM_DEPTH)
+                raise LinkwrightError(Diagnostic("RVIZ102", message, span, source=source))
+        elif isinstance(event, yaml.CollectionEndEvent):
+            depth -= 1
+
+
+def _write_out_aliases(root: yaml.Node, source: SourceText) -> None:
+    """Give each alias a copy of what it stands for, so that an edit of one place is no edit of another."""
+    seen: set[int] = set()
+    count = 0
+
+    def visit(node: yaml.Node, above: tuple[int, ...]) -> yaml.Node:
+        nonlocal count
+        count += 1
+        if id(node) in above or count > MAXIMUM_NODES:
+            message = (
+                phrase("an alias stands for itself")
+                if id(node) in above
+                else phrase("more than {maximum_nodes} values", maximum_nodes=MAXIMUM_NODES)
+            )
+            raise LinkwrightError(Diagnostic("RVIZ102", message, _span(node, source), source=source))
+        if id(node) in seen:
+            node = _copy(node, deep=False)
+        seen.add(id(node))
+        below = (*above, id(node))
+        if isinstance(node, yaml.SequenceNode):
+            node.value[:] = [visit(item, below) for item in node.value]
+        elif isinstance(node, yaml.MappingNode):
+            node.value[:] = [(visit(key, below), visit(value, below)) for key, value in node.value]
+        return node
+
+    visit(root, ())
+
+
+def _not_yaml(error: yaml.YAMLError, source: SourceText) -> Diagnostic:
+    mark = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
+    problem = getattr(error, "problem", None) or getattr(error, "reason", None) or str(error)
+    span = None
+    if mark is not None:
+        span = source.span(source.offset(mark.line + 1, mark.column + 1))
+    hint = None
+    if span is not None and "\t" in source.line(span.line):
+        hint = phrase("indent with spaces: YAML does not allow tabs")
+    return Diagnostic(
+        "RVIZ102", phrase("not valid YAML: {problem}", problem=foreign(problem)), span, hint=hint, source=source
+    )

@@ -1,0 +1,245 @@
+"""Displays of points: what PointCloud2, LaserScan, DepthCloud and the displays of single numbers have in common."""
+
+from __future__ import annotations
+
+import asyncio
+import math
+import time
+from collections import deque
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any
+
+from linkwright.viewer.clouds import BadCloudError, Points, coloured, decimated, supported_transformers
+from linkwright.viewer.config.property_store import Path, Schema
+from linkwright.viewer.config.rviz_config import DisplayConfig
+from linkwright.viewer.displays.base.data_display import Pose
+from linkwright.viewer.displays.base.host import DisplayHost
+from linkwright.viewer.displays.base.topic_display import TopicDisplay
+from linkwright.viewer.displays.properties.cloud import (
+    AUTO_INTENSITY,
+    AUTO_VALUES,
+    CHANNEL,
+    COLOUR_PROPERTIES,
+    COLOUR_TRANSFORMER,
+    DECAY_TIME,
+    INTENSITY_BOUNDS,
+    VALUE_BOUNDS,
+    colour_settings,
+)
+from linkwright.viewer.protocol.displays import PropertyChanged
+from linkwright.viewer.protocol.points import CloudPoints
+
+_COUNT_PERIOD = 0.25
+"""Seconds between two changes of the row that counts points."""
+
+
+@dataclass(slots=True)
+class _Shown:
+    key: str
+    points: Points
+    pose: Pose
+    stamp_ns: int
+    received: float
+
+
+class CloudDisplay(TopicDisplay):
+    """Shows the points that a subclass makes of each message.
+
+    The colours are worked out here and sent with the places; style, size and opacity are the page's business. With a
+    Decay Time every message is content of its own, which is taken away when its time is over.
+    """
+
+    def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
+        self._transformers: tuple[str, ...] = ()
+        self._channels: tuple[str, ...] = ()
+        super().__init__(host, identity, config)
+        self._shown: deque[_Shown] = deque()
+        self._number = 0
+        self._decay: asyncio.TimerHandle | None = None
+        self._counting: asyncio.TimerHandle | None = None
+        self._computed: dict[str, tuple[float, float]] = {}
+
+    def points_of(self, message: Any) -> Points:
+        """The points of a message, in the frame of its header.
+
+        Raises:
+            BadCloudError: there are none to be had.
+        """
+        raise NotImplementedError
+
+    def placed(self, points: Points, message: Any, pose: Pose) -> tuple[Points, Pose]:  # noqa: ARG002
+        """The points of a message and the pose of the frame that they are in; a scanner may move while it scans."""
+        return points, pose
+
+    def pixel_size(self) -> float:
+        """Size of points by their depth, for a camera's pixels; 0 for the size that the properties say."""
+        return 0.0
+
+    def choose_transformer(self, transformer: str) -> None:
+        """Colour as the messages ask for; the file says what the user asked for, and is not changed by that."""
+        if self.properties.tell((COLOUR_TRANSFORMER,), transformer):
+            self.publish_properties()
+
+    def schema(self) -> Schema:
+        """The properties, with the transformers and channels that the last message offers."""
+        offered: dict[str, tuple[str, ...]] = {}
+        if self._transformers:
+            offered[COLOUR_TRANSFORMER] = tuple(sorted(self._transformers))
+        if self._channels:
+            offered[CHANNEL] = self._channels
+        if not offered:
+            return self.SCHEMA
+        return tuple(
+            replace(spec, options=offered[spec.name]) if spec.name in offered else spec for spec in self.SCHEMA
+        )
+
+    def take(self, message: Any, pose: Pose | None) -> None:
+        """Show the points of a message."""
+        assert pose is not None
+        try:
+            points = self.points_of(message)
+        except BadCloudError as error:
+            self.say("Message", "error", str(error))
+            return
+        self.unsay("Message")
+        self.show(*self.placed(points, message, pose), self.frame_of(message)[1])
+
+    def show(self, points: Points, pose: Pose, stamp_ns: int) -> None:
+        """Show points whose frame is at a pose, and those before them as long as the Decay Time says."""
+        self._offer_transformers(points)
+        now = time.monotonic()
+        decay = self.properties.number(DECAY_TIME)
+        self._number += 1
+        if decay == 0:
+            for each in self._shown:
+                if each.key:
+                    self.forget(each.key)
+            self._shown.clear()
+        shown = _Shown(str(self._number) if decay > 0 else "", points, pose, stamp_ns, now)
+        self._shown.append(shown)
+        self._draw(shown)
+        self._expire()
+        self._count_points()
+
+    def changed(self, path: Path) -> None:
+        """Recolour the points, or let them decay."""
+        super().changed(path)
+        if path == (AUTO_INTENSITY,):
+            self._keep_bounds(AUTO_INTENSITY, *((name,) for name in INTENSITY_BOUNDS))
+        elif path == (AUTO_VALUES,):
+            self._keep_bounds(AUTO_VALUES, *((AUTO_VALUES, name) for name in VALUE_BOUNDS))
+        if path[0] in COLOUR_PROPERTIES:
+            for shown in self._shown:
+                self._draw(shown)
+        elif path == (DECAY_TIME,):
+            self._expire()
+            self._count_points()
+
+    def reset(self) -> None:
+        """Forget all points."""
+        self._shown.clear()
+        self._cancel()
+        super().reset()
+
+    def stop(self) -> None:
+        """Stop listening."""
+        self._cancel()
+        super().stop()
+
+    def fields_of(self, key: str, index: int) -> dict[str, float | str] | None:
+        """The values of a point that is shown, besides its coordinates; None when it is shown no more."""
+        shown = next((each for each in self._shown if each.key == key), None)
+        if shown is None or not 0 <= index < len(shown.points):
+            return None
+        fields: dict[str, float | str] = {}
+        for name, values in shown.points.channels.items():
+            value = values[index]
+            if name in ("rgb", "rgba"):
+                packed = int(value.astype(value.dtype.newbyteorder("=")).view("u4")) if value.itemsize == 4 else 0
+                fields[name] = f"#{packed & 0xFFFFFF:06x}{packed >> 24:02x}"
+            else:
+                number = float(value)
+                fields[name] = number if math.isfinite(number) else str(number)
+        return fields
+
+    # --- colours -----------------------------------------------------------------------------------------------
+
+    def _draw(self, shown: _Shown) -> None:
+        settings = colour_settings(self.properties)
+        colours, computed = coloured(shown.points, settings, shown.pose)
+        if computed is not None:
+            self._computed[AUTO_INTENSITY if settings.transformer == "Intensity" else AUTO_VALUES] = computed
+        content = CloudPoints(
+            positions=shown.points.positions,
+            colours=colours,
+            translucent=settings.transformer == "RGB8" and bool((colours[:, 3] < 255).any()),
+            pixel=self.pixel_size(),
+        )
+        shrink = partial(decimated, content)
+        self.send(content, key=shown.key, pose=shown.pose, stamp_ns=shown.stamp_ns, shrink=shrink)
+
+    def _offer_transformers(self, points: Points) -> None:
+        transformers = supported_transformers(points)
+        channels = ("x", "y", "z", *points.channels)
+        if (transformers, channels) != (self._transformers, self._channels):
+            self._transformers, self._channels = transformers, channels
+            self.publish_properties()
+        if self.properties.text(COLOUR_TRANSFORMER) not in transformers:
+            self.choose_transformer(transformers[0])
+
+    def _keep_bounds(self, auto: str, *paths: Path) -> None:
+        """Bounds that are computed no more begin with the last ones that were."""
+        computed = self._computed.get(auto)
+        if computed is None or self.properties.flag(auto):
+            return
+        for path, value in zip(paths, computed, strict=True):
+            taken = self.properties.set(path, value)
+            self.pages.publish(PropertyChanged(self.property_id(path), taken))
+
+    # --- decay -------------------------------------------------------------------------------------------------
+
+    def _expire(self) -> None:
+        """Take away what is older than the Decay Time; without one, all but the newest."""
+        if self._decay is not None:
+            self._decay.cancel()
+            self._decay = None
+        decay = self.properties.number(DECAY_TIME)
+        if decay == 0:
+            self._leave(len(self._shown) - 1)
+            return
+        now = time.monotonic()
+        self._leave(sum(now - each.received > decay for each in self._shown))
+        if self._shown:
+            due = self._shown[0].received + decay - now
+            self._decay = asyncio.get_running_loop().call_later(max(0.01, due + 0.005), self._decayed)
+
+    def _decayed(self) -> None:
+        self._decay = None
+        self._expire()
+        self._count_points()
+
+    def _leave(self, count: int) -> None:
+        for _ in range(count):
+            self.forget(self._shown.popleft().key)
+
+    def _cancel(self) -> None:
+        for handle in (self._decay, self._counting):
+            if handle is not None:
+                handle.cancel()
+        self._decay = self._counting = None
+
+    # --- status ------------------------------------------------------------------------------------------------
+
+    def _count_points(self) -> None:
+        if self._counting is None:
+            self._say_count()
+            self._counting = asyncio.get_running_loop().call_later(_COUNT_PERIOD, self._count_ended)
+
+    def _count_ended(self) -> None:
+        self._counting = None
+        self._say_count()
+
+    def _say_count(self) -> None:
+        points = sum(len(each.points) for each in self._shown)
+        self.say("Points", "ok", f"Showing [{points}] points from [{len(self._shown)}] messages")

@@ -1,0 +1,287 @@
+"""Displays of what comes on a topic: the subscription, waiting for transforms, what pages are sent."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+import traceback
+from collections import deque
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Any, ClassVar
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph import QoSProfile, Subscription, SubscriptionEventCallbacks, TransformException
+from linkwright.viewer.config.property_store import Path, Schema
+from linkwright.viewer.config.rviz_config import DisplayConfig
+from linkwright.viewer.config.topic_properties import FILTER_SIZE, qos_of, topic_spec
+from linkwright.viewer.displays.base.data_display import DataDisplay, Pose
+from linkwright.viewer.displays.base.host import DisplayHost
+
+TOPIC = "Topic"
+TRANSFORM = "Transform"
+
+_FAILURE = "Failure"
+"""The status row of a message that a display failed at; RViz has none such."""
+
+_COUNT_PERIOD = 1.0
+"""Seconds between two updates of the row that counts messages or says why there are none."""
+
+
+class TopicDisplay(DataDisplay):
+    """A display of the messages of one type on one topic.
+
+    A subclass says `CLASS`, `MESSAGE` and its properties, among them a `topic_spec`, and overrides `take`. It listens
+    only while it is enabled, as in RViz.
+
+    Attributes:
+        last: the message shown now, to show it anew when a property changes how.
+    """
+
+    MESSAGE: ClassVar[str] = ""
+    """The type of its messages, such as ``sensor_msgs/msg/LaserScan``."""
+
+    SCHEMA: ClassVar[Schema] = (topic_spec(),)
+
+    TOPIC_ROW: ClassVar[str] = TOPIC
+    """The status row that says whether messages come."""
+
+    TRANSFORMED: ClassVar[bool] = True
+    """Whether messages wait until the frame in their header can be placed in the Fixed Frame at their time."""
+
+    FOLLOWS_TRANSFORMS: ClassVar[bool] = False
+    """Whether `transforms_came` is called though messages do not wait: the display places parts of them itself."""
+
+    def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
+        super().__init__(host, identity, config)
+        self.last: Any = None
+        self._subscription: Subscription[Any] | None = None
+        self._release: Callable[[], None] | None = None
+        self._waiting: deque[Any] = deque()
+        self._held: deque[Any] = deque()
+        self._fixed_frame = ""
+        self._failing = False
+        self._count = 0
+        self._since = 0.0
+        self._telling: asyncio.TimerHandle | None = None
+        self._incompatibility = ""
+
+    # --- what subclasses override ------------------------------------------------------------------------------
+
+    def take(self, message: Any, pose: Pose | None) -> None:
+        """A message to show.
+
+        Args:
+            message: of the type `MESSAGE`; it must not be changed.
+            pose: of the frame in its header, at its time; None when the display is not `TRANSFORMED`.
+        """
+        raise NotImplementedError
+
+    def reset(self) -> None:
+        """Forget everything shown: the topic, the Fixed Frame or time is another."""
+        self.forget()
+
+    def transforms_came(self) -> None:
+        """There are new transforms."""
+        self._try_waiting()
+
+    def frame_of(self, message: Any) -> tuple[str, int]:
+        """The frame of a message and its time in nanoseconds (0 for the latest): those of its header."""
+        stamp = message.header.stamp
+        return message.header.frame_id, stamp.sec * 1_000_000_000 + stamp.nanosec
+
+    def subscription(self) -> tuple[str, str, QoSProfile]:
+        """Type, topic and quality of service of what it listens to; without a topic it does not."""
+        return self.MESSAGE, self.properties.text(TOPIC).strip(), qos_of(self.properties)
+
+    def most_waiting(self) -> int:
+        """How many messages may wait for their transforms."""
+        return int(self.properties.number(TOPIC, FILTER_SIZE))
+
+    # --- what subclasses call ----------------------------------------------------------------------------------
+
+    def show_again(self) -> None:
+        """Show the last message again."""
+        if self.last is not None:
+            self._offer(self.last)
+
+    # --- life --------------------------------------------------------------------------------------------------
+
+    def start(self) -> None:
+        """Listen, if the display is enabled."""
+        self._fixed_frame = self.host.frames.fixed_frame
+        if self.enabled:
+            self._subscribe()
+
+    def stop(self) -> None:
+        """Stop listening."""
+        self._unsubscribe()
+
+    def changed(self, path: Path) -> None:
+        """Listen to another topic, or with another quality of service."""
+        if path[0] == TOPIC and path != (TOPIC, FILTER_SIZE):
+            self._restart()
+
+    def enabled_changed(self) -> None:
+        """Start or stop listening."""
+        self._restart()
+
+    def frames_changed(self) -> None:
+        """Show the last message in the other Fixed Frame."""
+        if self.fixed_frame_changed():
+            self._waiting.clear()
+            self.reset()
+            self.show_again()
+        self._try_waiting()
+
+    def time_changed(self) -> None:
+        """Show what came while time stood still."""
+        self._try_waiting()
+        while self._held and not self.host.time.paused:
+            self._offer(self._held.popleft())
+
+    def time_reset(self) -> None:
+        """Show nothing until messages come again."""
+        self.last = None
+        self._waiting.clear()
+        self._held.clear()
+        self.reset()
+
+    def fixed_frame_changed(self) -> bool:
+        """Whether the Fixed Frame is another than when this was asked last."""
+        before, self._fixed_frame = self._fixed_frame, self.host.frames.fixed_frame
+        return before != self._fixed_frame
+
+    def _restart(self) -> None:
+        self._unsubscribe()
+        self.last = None
+        self._failing = False
+        self.reset()
+        self.unsay()
+        if self.enabled:
+            self._subscribe()
+
+    def _subscribe(self) -> None:
+        message, topic, qos = self.subscription()
+        self._count, self._since, self._incompatibility = 0, time.monotonic(), ""
+        if not topic:
+            self.say(self.TOPIC_ROW, "error", "Error subscribing: Empty topic name")
+            return
+        try:
+            self._subscription = self.context.node.create_subscription(
+                message,
+                topic,
+                self._received,
+                qos,
+                event_callbacks=SubscriptionEventCallbacks(incompatible_qos=self._incompatible),
+            )
+        except LinkwrightError as error:
+            self.say(self.TOPIC_ROW, "error", f"Error subscribing: {error.diagnostics[0].message}")
+            return
+        if self.TRANSFORMED or self.FOLLOWS_TRANSFORMS:
+            self._release = self.context.transforms.use(self.transforms_came)
+        self._tell_count()
+
+    def _unsubscribe(self) -> None:
+        if self._telling is not None:
+            self._telling.cancel()
+            self._telling = None
+        if self._subscription is not None:
+            with suppress(ValueError):  # the node may have been destroyed before
+                self.context.node.destroy_subscription(self._subscription)
+            self._subscription = None
+        if self._release is not None:
+            self._release()
+            self._release = None
+        self._waiting.clear()
+        self._held.clear()
+
+    def _incompatible(self, info: Any) -> None:
+        policy = getattr(info.last_policy_kind, "name", str(info.last_policy_kind))
+        self._incompatibility = f"A publisher offers incompatible QoS. Last incompatible policy: {policy}"
+        if self._count == 0:
+            self._tell_count()
+
+    def _tell_count(self) -> None:
+        """Show how many messages came, or why there are none; repeated while there are none."""
+        if self._count > 0:
+            seconds = time.monotonic() - self._since
+            rate = f" at {self._count / seconds:.0f} hz." if self._count > 1 and seconds > 0 else ""
+            self.say(self.TOPIC_ROW, "ok", f"{self._count} messages received{rate}")
+            return
+        self.say(self.TOPIC_ROW, "warn", self._incompatibility or self._other_type() or "No messages received")
+        self._tell_count_later()
+
+    def _tell_count_later(self) -> None:
+        def tell() -> None:
+            self._telling = None
+            self._tell_count()
+
+        if self._telling is None:
+            self._telling = asyncio.get_running_loop().call_later(_COUNT_PERIOD, tell)
+
+    def _other_type(self) -> str:
+        """That the topic carries messages of another type, if it carries no others."""
+        message, topic, _ = self.subscription()
+        types = {each.topic_type for each in self.context.node.get_publishers_info_by_topic(topic)}
+        if not types or message in types:
+            return ""
+        return f"No messages received: the topic carries {', '.join(sorted(types))}, not {message}"
+
+    # --- messages ----------------------------------------------------------------------------------------------
+
+    def _received(self, message: Any) -> None:
+        self._count += 1
+        if self._count == 1:
+            self._tell_count()
+        else:
+            self._tell_count_later()
+        if self.TRANSFORMED:
+            self.host.time.took(self.config.name, self.frame_of(message)[1])
+        if self.host.time.paused:
+            self._held.append(message)
+            while len(self._held) > max(1, self.subscription()[2].depth):
+                self._held.popleft()
+        else:
+            self._offer(message)
+
+    def _offer(self, message: Any) -> None:
+        if not self.TRANSFORMED:
+            self._take(message, None)
+            return
+        if self._waiting or not self._place(message):
+            self._waiting.append(message)
+            while len(self._waiting) > self.most_waiting():
+                self._waiting.popleft()
+
+    def _try_waiting(self) -> None:
+        while self._waiting and not self.host.time.paused and self._place(self._waiting[0]):
+            self._waiting.popleft()
+
+    def _place(self, message: Any) -> bool:
+        frame, stamp_ns = self.frame_of(message)
+        frame = frame.removeprefix("/")
+        try:
+            pose = self.context.transforms.pose(self._fixed_frame, frame, stamp_ns)
+        except TransformException as error:
+            reason = error.diagnostics[0].message
+            self.say(TRANSFORM, "error", f"Could not transform from [{frame}] to [{self._fixed_frame}]: {reason}")
+            return False
+        self.say(TRANSFORM, "ok", "Transform OK")
+        self._take(message, pose)
+        return True
+
+    def _take(self, message: Any, pose: Pose | None) -> None:
+        """Show a message. An unexpected failure must not stop those that come after it."""
+        self.last = message
+        try:
+            self.take(message, pose)
+        except Exception as error:  # noqa: BLE001  # the message is a stranger's
+            if not self._failing:
+                self.context.node.get_logger().error(f"'{self.config.name}' failed:\n{traceback.format_exc().rstrip()}")
+            self._failing = True
+            self.say(_FAILURE, "error", f"The message could not be shown: {error or type(error).__name__}")
+            return
+        if self._failing:
+            self._failing = False
+            self.unsay(_FAILURE)

@@ -1,0 +1,1 @@
+"""Properties that several displays have, and how their values are read."""

@@ -1,0 +1,1 @@
+"""What pages can ask for besides displays, a module or a package each."""

@@ -1,0 +1,279 @@
+"""What pages do with configurations: edit which displays there are, undo, open, save."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.viewer.config import file as configuration_file
+from linkwright.viewer.config.places import RecentFiles, configuration_path, list_folder
+from linkwright.viewer.config.recovery import forget_unsaved
+from linkwright.viewer.config.rviz_config import RvizConfig
+from linkwright.viewer.config.schema import MAXIMUM_TEXT
+from linkwright.viewer.displays.catalogue import has_display
+from linkwright.viewer.features.display_choices import choices, show_topic, topic_choices
+from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
+from linkwright.viewer.protocol.configuration import (
+    AddDisplay,
+    AskConfigurationText,
+    AskFolder,
+    AskTopics,
+    Configuration,
+    ConfigurationRefused,
+    ConfigurationSaved,
+    ConfigurationText,
+    DuplicateDisplays,
+    GroupDisplays,
+    LoadConfiguration,
+    MoveDisplays,
+    NewConfiguration,
+    OpenConfiguration,
+    Question,
+    Redo,
+    RemoveDisplays,
+    RenameDisplay,
+    RevertConfiguration,
+    SaveConfiguration,
+    Undo,
+)
+from linkwright.viewer.protocol.message import ServerMessage
+
+if TYPE_CHECKING:
+    from linkwright.viewer.displays.base.display import ViewerDisplay
+    from linkwright.viewer.visualization.manager import VisualizationManager
+    from linkwright.viewer.web.audience import Page
+
+_UNNAMED = "untitled.rviz"
+
+
+Message = TypeVar("Message")
+
+
+@dataclass(frozen=True, slots=True)
+class Request(Generic[Message]):
+    """What a page asks for, and the configuration that it sees."""
+
+    page: Page
+    manager: VisualizationManager
+    message: Message
+
+
+class ConfigurationFeature(PageFeature):
+    """Carries out what pages ask for.
+
+    Nothing unsaved is lost unless the page says that it may be.
+
+    Args:
+        viewer: that it belongs to.
+        recent: the files opened or saved before.
+    """
+
+    def __init__(self, viewer: FeatureHost, recent: RecentFiles | None = None) -> None:
+        super().__init__(viewer)
+        self._recent = recent or RecentFiles()
+        self._told: dict[VisualizationManager, Configuration] = {}
+
+    def opening(self) -> list[ServerMessage]:
+        """What can be added."""
+        return [choices()]
+
+    def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
+        """The current state."""
+        self._told[manager] = self._state(manager)
+        return [self._told[manager]]
+
+    def manager_closed(self, manager: VisualizationManager) -> None:
+        """Forget what was sent to its pages."""
+        self._told.pop(manager, None)
+
+    def edited(self, manager: VisualizationManager) -> None:
+        """Send pages the current state, if it has changed."""
+        state = self._state(manager)
+        if self._told.get(manager) != state:
+            self._told[manager] = state
+            manager.publish(state)
+
+    def receive(self, page: Page, message: Any) -> None:
+        """Carry out what a page asks for, or say why not."""
+        manager = self.managers.of(page)
+        try:
+            _DEEDS[type(message)](self, Request(page, manager, message))
+        except LinkwrightError as error:
+            first = error.diagnostics[0]
+            where = f" ({first.span.file}:{first.span.line})" if first.span else ""
+            page.send(ConfigurationRefused(first.message + where, None, None))
+        except ValueError as error:
+            page.send(ConfigurationRefused(str(error), None, None))
+
+    def _state(self, manager: VisualizationManager) -> Configuration:
+        config, history = manager.config, manager.history
+        return Configuration(
+            path=None if config.path is None else str(config.path),
+            opened=manager.opened,
+            unsaved=history.unsaved,
+            undo=history.undoable,
+            redo=history.redoable,
+            own=manager is not self.managers.shared,
+            recent=self._recent.paths,
+        )
+
+    # --- displays ----------------------------------------------------------------------------------------------
+
+    def _add(self, asked: Request[AddDisplay]) -> None:
+        message, manager = asked.message, asked.manager
+        if not has_display(message.cls):
+            raise ValueError(f"there are no displays of the class '{message.cls[:100]}'")
+        entry = manager.config.make(message.cls, _name(message.name))
+        group = manager.display(message.group) if message.group is not None else None
+        topic = message.topic
+        prepare = None if topic is None else lambda display: show_topic(display, topic)
+        manager.tree.add(entry, group.config if group else None, prepare)
+
+    def _duplicate(self, asked: Request[DuplicateDisplays]) -> None:
+        if displays := _found(asked.manager, asked.message.displays):
+            asked.manager.tree.duplicate(displays)
+
+    def _rename(self, asked: Request[RenameDisplay]) -> None:
+        for display in _found(asked.manager, [asked.message.display]):
+            asked.manager.tree.rename(display, _name(asked.message.name))
+
+    def _remove(self, asked: Request[RemoveDisplays]) -> None:
+        if displays := _found(asked.manager, asked.message.displays):
+            asked.manager.tree.remove(displays)
+
+    def _move(self, asked: Request[MoveDisplays]) -> None:
+        message, manager = asked.message, asked.manager
+        group = manager.display(message.group) if message.group is not None else None
+        before = manager.display(message.before) if message.before is not None else None
+        displays = _found(manager, message.displays)
+        if displays and (group is None) == (message.group is None):
+            manager.tree.move(displays, group.config if group else None, before.config if before else None)
+
+    def _group(self, asked: Request[GroupDisplays]) -> None:
+        if displays := _found(asked.manager, asked.message.displays):
+            asked.manager.tree.gather(displays, _name(asked.message.name))
+
+    def _undo(self, asked: Request[Undo]) -> None:
+        asked.manager.history.undo()
+
+    def _redo(self, asked: Request[Redo]) -> None:
+        asked.manager.history.redo()
+
+    # --- questions ---------------------------------------------------------------------------------------------
+
+    def _ask_topics(self, asked: Request[AskTopics]) -> None:
+        asked.page.send(topic_choices(self.context.node))
+
+    def _ask_folder(self, asked: Request[AskFolder]) -> None:
+        asked.page.send(list_folder(asked.message.path, _folder(asked.manager)))
+
+    def _ask_text(self, asked: Request[AskConfigurationText]) -> None:
+        path = asked.manager.config.path
+        asked.page.send(ConfigurationText(path.name if path else _UNNAMED, asked.manager.config.text()))
+
+    # --- files -------------------------------------------------------------------------------------------------
+
+    def _new(self, asked: Request[NewConfiguration]) -> None:
+        if asked.message.discard or self._may_lose(asked.page, asked.manager, None):
+            self._show(asked.manager, RvizConfig.default())
+
+    def _open(self, asked: Request[OpenConfiguration]) -> None:
+        path = configuration_path(asked.message.path, _folder(asked.manager))
+        config = RvizConfig.load(path)
+        if asked.message.discard or self._may_lose(asked.page, asked.manager, str(path)):
+            self._show(asked.manager, config)
+            self._remember(asked.manager, path)
+
+    def _load(self, asked: Request[LoadConfiguration]) -> None:
+        config = RvizConfig.parse(asked.message.text.removeprefix("\ufeff"), asked.message.name[:MAXIMUM_TEXT])
+        if asked.message.discard or self._may_lose(asked.page, asked.manager, None):
+            self._show(asked.manager, config)
+
+    def _revert(self, asked: Request[RevertConfiguration]) -> None:
+        if asked.manager.config.path is not None:
+            self._show(asked.manager, RvizConfig.load(asked.manager.config.path))
+
+    def _save(self, asked: Request[SaveConfiguration]) -> None:
+        config, named = asked.manager.config, asked.message.path
+        path = config.path if named is None else configuration_path(named, _folder(asked.manager))
+        if path is None:
+            raise ValueError("the configuration has no file yet")
+        if not asked.message.replace:
+            if path == config.path and config.changed_on_disk:
+                self._ask(asked.page, "changed_on_disk", f"'{path}' was changed by another program", str(path))
+                return
+            if path != config.path and configuration_file.state_of(path) is not None:
+                self._ask(asked.page, "exists", f"'{path}' is there already", str(path))
+                return
+        former = config.path
+        config.save(path)
+        forget_unsaved(former, config, self._recent)
+        asked.page.send(ConfigurationSaved(str(path)))
+        asked.manager.history.saved()
+        self._remember(asked.manager, path)
+
+    def _may_lose(self, page: Page, manager: VisualizationManager, path: str | None) -> bool:
+        if manager.history.unsaved:
+            self._ask(page, "unsaved", "there are unsaved changes", path)
+        return not manager.history.unsaved
+
+    def _ask(self, page: Page, question: Question, text: str, path: str | None) -> None:
+        page.send(ConfigurationRefused(text, question, path))
+
+    def _show(self, manager: VisualizationManager, config: RvizConfig) -> None:
+        manager.open(config)
+        for message in self.viewer.configured(manager):
+            manager.publish(message)
+
+    def _remember(self, manager: VisualizationManager, path: Path) -> None:
+        self._recent.add(path)
+        self.edited(manager)
+
+
+_DEEDS: dict[type, Callable[..., None]] = {
+    AddDisplay: ConfigurationFeature._add,
+    AskConfigurationText: ConfigurationFeature._ask_text,
+    AskFolder: ConfigurationFeature._ask_folder,
+    AskTopics: ConfigurationFeature._ask_topics,
+    DuplicateDisplays: ConfigurationFeature._duplicate,
+    GroupDisplays: ConfigurationFeature._group,
+    LoadConfiguration: ConfigurationFeature._load,
+    MoveDisplays: ConfigurationFeature._move,
+    NewConfiguration: ConfigurationFeature._new,
+    OpenConfiguration: ConfigurationFeature._open,
+    Redo: ConfigurationFeature._redo,
+    RemoveDisplays: ConfigurationFeature._remove,
+    RenameDisplay: ConfigurationFeature._rename,
+    RevertConfiguration: ConfigurationFeature._revert,
+    SaveConfiguration: ConfigurationFeature._save,
+    Undo: ConfigurationFeature._undo,
+}
+
+ConfigurationFeature.RECEIVES = tuple(_DEEDS)
+
+
+def _found(manager: VisualizationManager, identities: list[str]) -> list[ViewerDisplay]:
+    """The displays with these ids in the order of the tree; those that went since are passed over."""
+    wanted = set(identities)
+    return [display for display in manager.displays if display.id in wanted]
+
+
+def _folder(manager: VisualizationManager) -> Path:
+    """What paths are relative to: the folder of the open file, or the working directory."""
+    path = manager.config.path
+    return path.absolute().parent if path is not None else Path.cwd()
+
+
+def _name(text: str) -> str:
+    """A name that a page gave.
+
+    Raises:
+        ValueError: it is empty or too long.
+    """
+    name = " ".join(text.split())
+    if not name or len(name) > 200:
+        raise ValueError("a display's name has 1 to 200 characters")
+    return name

@@ -1,0 +1,132 @@
+"""Answers pages' questions about the descriptions of RobotModel displays."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, ClassVar
+
+from linkwright.diagnostics import Diagnostic
+from linkwright.viewer.displays.robot_model import RobotModelDisplay
+from linkwright.viewer.features.description.known import KnownDescription
+from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
+from linkwright.viewer.protocol.description import (
+    AskDescription,
+    AskDescriptionText,
+    AskInertia,
+    DescriptionChanged,
+    DescriptionText,
+)
+from linkwright.viewer.protocol.message import ServerMessage, tag_of
+from linkwright.viewer.protocol.robot import AskProvenance
+
+if TYPE_CHECKING:
+    from linkwright.viewer.visualization.manager import VisualizationManager
+    from linkwright.viewer.web.audience import Page
+
+_Question = AskDescription | AskDescriptionText | AskInertia | AskProvenance
+
+
+class DescriptionFeature(PageFeature):
+    """Answers questions about descriptions in order, in a thread.
+
+    When a page asks the same question again before it is answered, only the newest is.
+
+    """
+
+    RECEIVES: ClassVar[tuple[type, ...]] = (AskDescription, AskDescriptionText, AskInertia, AskProvenance)
+
+    def __init__(self, viewer: FeatureHost) -> None:
+        super().__init__(viewer)
+        self._known: dict[str, KnownDescription] = {}
+        self._faulty: dict[str, str] = {}
+        self._answers: dict[tuple[Page, str], asyncio.Task[None]] = {}
+        self._thinking = asyncio.Lock()
+
+    def robot_changed(self) -> None:
+        """Tell pages which of their robots have changed."""
+        shown: set[str] = set()
+        for manager in self.managers.all():
+            for display in manager.robot_models():
+                shown.add(display.id)
+                before = self._known.get(display.id)
+                known = self._look_at(display)
+                if known is not None and known is not before:
+                    manager.pages.publish(known.changed_from(before))
+        for gone in self._known.keys() - shown:
+            del self._known[gone]
+
+    def diagnostics_changed(self, diagnostics: Sequence[Diagnostic]) -> None:
+        """Remember the files with findings; their text is the one the findings refer to."""
+        self._faulty = {each.source.name: each.source.text for each in diagnostics if each.source is not None}
+
+    def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
+        """Which descriptions can be asked for; nothing counts as changed."""
+        known = [self._look_at(display) for display in manager.robot_models()]
+        return [DescriptionChanged(each.display, each.revision, [], []) for each in known if each is not None]
+
+    def receive(self, page: Page, message: _Question) -> None:
+        """Queue a question."""
+        about = message.file if isinstance(message, AskDescriptionText) else ""
+        key = (page, f"{tag_of(message)} {message.display} {about}")
+        if key in self._answers:
+            self._answers[key].cancel()
+        task = asyncio.get_running_loop().create_task(self._answer(page, message))
+        self._answers[key] = task
+        task.add_done_callback(lambda done: self._answers.pop(key) if self._answers.get(key) is done else None)
+
+    def page_gone(self, page: Page) -> None:
+        """Forget its questions."""
+        for (asking, _), task in list(self._answers.items()):
+            if asking is page:
+                task.cancel()
+
+    def close(self) -> None:
+        """Stop answering."""
+        for task in self._answers.values():
+            task.cancel()
+
+    async def _answer(self, page: Page, question: _Question) -> None:
+        seen = self.managers.of(page).robot_models()
+        display = next((each for each in seen if each.id == question.display), None)
+        known = None if display is None else self._look_at(display)
+        faulty = dict(self._faulty)
+
+        def answer() -> ServerMessage | None:
+            if isinstance(question, AskDescriptionText):
+                return _text(known, faulty, question)
+            if known is None:
+                return None
+            if isinstance(question, AskDescription):
+                return known.account
+            if isinstance(question, AskInertia):
+                return known.findings(self.context.finder)
+            return display.provenance(question.link) if display is not None else None
+
+        async with self._thinking:
+            told = await asyncio.to_thread(answer)
+        if told is not None:
+            page.send(told)
+
+    def _look_at(self, display: RobotModelDisplay) -> KnownDescription | None:
+        """What is known of the description that a display shows now."""
+        robot, prefix = display.robot, display.properties.text("TF Prefix")
+        known = self._known.get(display.id)
+        if robot is None:
+            return known
+        if known is None or known.robot is not robot or known.prefix != prefix:
+            revision = known.revision + 1 if known else 1
+            files = self.context.library.files(display.text)
+            known = KnownDescription(display.id, revision, robot, display.text, prefix, files)
+            self._known[display.id] = known
+        return known
+
+
+def _text(known: KnownDescription | None, faulty: dict[str, str], question: AskDescriptionText) -> DescriptionText:
+    """A text; of a file that something is wrong with, the one that it is wrong with and not that of the robot shown."""
+    file = question.file
+    if file in faulty:
+        return DescriptionText(question.display, known.revision if known else 0, file, faulty[file])
+    if known is None:
+        return DescriptionText(question.display, 0, file, None)
+    return known.named_text(file)

@@ -1,0 +1,58 @@
+"""Pages ask for the robot as a file, and fetch it once."""
+
+from __future__ import annotations
+
+import asyncio
+import re
+import traceback
+from functools import partial
+from typing import ClassVar
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.diagnostics.translation import translated
+from linkwright.viewer.features.export.formats import FORMATS, export_snapshot
+from linkwright.viewer.features.export.snapshot import snapshot_of
+from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
+from linkwright.viewer.protocol.export import AskExport, ExportFailed, ExportReady
+from linkwright.viewer.web.audience import Page
+from linkwright.viewer.web.downloads import Download
+
+
+class ExportFeature(PageFeature):
+    """Makes files of what a page sees."""
+
+    RECEIVES: ClassVar[tuple[type, ...]] = (AskExport,)
+
+    def __init__(self, viewer: FeatureHost) -> None:
+        super().__init__(viewer)
+        self._working: dict[Page, asyncio.Task[None]] = {}
+
+    def receive(self, page: Page, message: AskExport) -> None:
+        """Begin to make a file; one at a time for each page."""
+        if message.format not in FORMATS or page in self._working:
+            return
+        task = asyncio.get_running_loop().create_task(self._make(page, message))
+        self._working[page] = task
+        task.add_done_callback(lambda _: self._working.pop(page, None))
+
+    def close(self) -> None:
+        """Stop exporting."""
+        for task in self._working.values():
+            task.cancel()
+
+    async def _make(self, page: Page, message: AskExport) -> None:
+        try:
+            snapshot = snapshot_of(self.viewer, self.managers.of(page), message.view)
+            data = await asyncio.to_thread(partial(export_snapshot, snapshot, message.format))
+        except LinkwrightError as error:
+            page.send(ExportFailed("; ".join(each.message for each in translated(error.diagnostics))))
+            return
+        except Exception as error:  # noqa: BLE001  # a fault of ours must not leave the page waiting
+            self.context.node.get_logger().error(
+                f"The export failed:\n{traceback.format_exc()}"
+            )  # no logger of logging
+            page.send(ExportFailed(f"{type(error).__name__}: {error}"))
+            return
+        name = re.sub(r"[^\w.-]+", "_", snapshot.name).strip("._") or "robot"
+        file = Download(f"{name}.{message.format}", FORMATS[message.format].content_type, data)
+        page.send(ExportReady(self.context.downloads.put(file), file.name))

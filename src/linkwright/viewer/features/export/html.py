@@ -1,0 +1,88 @@
+"""A robot as one HTML file: scripts, styles, meshes and textures are all in it, and nothing is fetched."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import html
+import json
+
+from linkwright._version import __version__
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+from linkwright.viewer.features.export.files import FileSet, addresses
+from linkwright.viewer.features.export.snapshot import Snapshot
+from linkwright.viewer.protocol.codec import encode
+from linkwright.viewer.protocol.robot import RobotScene
+from linkwright.viewer.web.server import PAGE_FOLDER
+
+_PAGE = """\
+<!doctype html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta http-equiv="Content-Security-Policy" content="{policy}">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta name="color-scheme" content="dark light">
+<meta name="generator" content="{program}">
+<title>{title}</title>
+<style>{style}</style>
+</head>
+<body>
+<div id="app"></div>
+<noscript>The robot is drawn with JavaScript and WebGL.</noscript>
+<script type="application/json" id="recorded">{recorded}</script>
+<script>{script}</script>
+</body>
+</html>
+"""
+
+
+def html_of(snapshot: Snapshot) -> bytes:
+    """The page of a snapshot.
+
+    Raises:
+        LinkwrightError: VIEW202, the page of this installation was not built.
+    """
+    folder = PAGE_FOLDER / "export"
+    try:
+        script = (folder / "export.js").read_text(encoding="utf-8")
+        style = (folder / "export.css").read_text(encoding="utf-8")
+    except OSError:
+        hint = phrase("in a checkout of Linkwright run `make page`")
+        raise LinkwrightError(Diagnostic("VIEW202", phrase("the page for exports was not built"), hint=hint)) from None
+    script = script.replace("</script", "<\\/script").replace("<!--", "<\\!--")
+    program = f"Linkwright {__version__}"
+    text = _PAGE.format(
+        policy=_policy(script),
+        program=program,
+        title=html.escape(snapshot.name),
+        style=style.replace("</style", "<\\/style"),
+        recorded=_recorded(snapshot, program),
+        script=script,
+    )
+    return text.encode()
+
+
+def _policy(script: str) -> str:
+    """Only this one script runs; images and meshes come from the page itself."""
+    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
+    return (
+        f"default-src 'none'; script-src 'sha256-{digest}'; style-src 'unsafe-inline'; img-src data: blob:; "
+        "connect-src data: blob:; font-src data:; base-uri 'none'; form-action 'none'"
+    )
+
+
+def _recorded(snapshot: Snapshot, program: str) -> str:
+    """What a server would tell the page, as JSON that can stand in HTML."""
+    robots = [message for message in snapshot.messages if isinstance(message, RobotScene)]
+    files = FileSet(snapshot.meshes).collect([*addresses(robots), *snapshot.marker_meshes])
+    messages = ",".join(encode(message) for message in snapshot.messages)
+    rest = {
+        "program": program,
+        "display": snapshot.scene.display,
+        "fit": snapshot.fit,
+        "frames": [base64.b64encode(frame).decode() for frame in snapshot.frames],
+        "files": {address: base64.b64encode(data).decode() for address, data in files.items()},
+    }
+    text = f'{{"messages":[{messages}],{json.dumps(rest)[1:]}'
+    return text.replace("<", "\\u003c")

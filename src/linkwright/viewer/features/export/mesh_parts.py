@@ -1,0 +1,141 @@
+"""Mesh files with their materials, by the rules of RViz that the page follows too."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from linkwright.diagnostics import missing_extra, phrase
+from linkwright.geometry.mesh_files import PlacedMesh, placed_meshes
+from linkwright.viewer.features.export.primitives import Array, Triangles
+
+UNCOLOURED = 0.6
+"""The grey of a mesh that says nothing of its colour."""
+
+_UPRIGHT = np.array([[1.0, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]])
+"""glTF's y up turned to z up."""
+
+
+@dataclass(frozen=True, slots=True)
+class OwnLook:
+    """A material that came with the file.
+
+    Attributes:
+        color: red, green, blue as they are to be seen, 0 to 1.
+        image: its texture as PNG, or None.
+    """
+
+    color: tuple[float, float, float]
+    image: bytes | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class MeshPart:
+    """Triangles in the frame of the file, and their material; None where the URDF's applies."""
+
+    triangles: Triangles
+    own: OwnLook | None
+
+
+def read_parts(path: Path, *, resolver: Any) -> list[MeshPart]:
+    """The parts of an STL, COLLADA, OBJ or glTF file.
+
+    Args:
+        path: of the file.
+        resolver: gives trimesh the files that it names, by ``get(name)``.
+
+    Raises:
+        ValueError: it cannot be read; says why.
+        LinkwrightError: VIEW205, a library for it is not installed.
+    """
+    kind = path.suffix.lower().removeprefix(".")
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            parts = _parts(path.read_bytes(), "stl" if kind == "stlb" else kind, resolver)
+    except ModuleNotFoundError as error:
+        raise missing_extra("VIEW205", error) from None
+    except Exception as error:  # noqa: BLE001 - a parser of foreign bytes may raise anything
+        lines = str(error).strip().splitlines()
+        raise ValueError(lines[0] if lines else type(error).__name__) from None
+    if not parts:
+        raise ValueError(phrase("it has no triangles"))
+    return parts
+
+
+def _parts(data: bytes, kind: str, resolver: Any) -> list[MeshPart]:
+    parts = []
+    for placed in placed_meshes(data, kind, resolver=resolver):
+        matrix = placed.matrix
+        if kind == "dae":
+            matrix = np.diag([*[placed.unit] * 3, 1.0]) @ matrix
+        elif kind in ("glb", "gltf"):
+            matrix = _UPRIGHT @ matrix
+        parts.append(MeshPart(_triangles(placed, matrix, smooth=kind != "stl"), _own(placed.mesh, kind)))
+    return parts
+
+
+def _triangles(placed: PlacedMesh, matrix: Array, *, smooth: bool) -> Triangles:
+    mesh, faces = placed.mesh, placed.faces
+    positions = np.asarray(mesh.vertices, dtype=np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
+    normals = _normals(mesh, positions, faces, matrix) if smooth else None
+    uv = getattr(mesh.visual, "uv", None)
+    coordinates = None
+    if uv is not None and np.shape(uv) == (len(positions), 2):
+        coordinates = np.asarray(uv, dtype=np.float64) * (1, -1) + (0, 1)  # trimesh counts from below
+    return Triangles(positions, faces.reshape(-1), normals, coordinates, _vertex_colors(mesh, len(positions)))
+
+
+def _normals(mesh: Any, positions: Array, faces: Any, matrix: Array) -> Array | None:
+    """The normals of the file, else those that its triangles have at each corner together."""
+    if "vertex_normals" in mesh._cache.cache and len(mesh.vertex_normals) == len(positions):
+        normals = np.asarray(mesh.vertex_normals, dtype=np.float64) @ np.linalg.pinv(matrix[:3, :3])
+    else:
+        a, b, c = (positions[faces[:, corner]] for corner in range(3))
+        areas = np.cross(b - a, c - a)
+        normals = np.zeros_like(positions)
+        for corner in range(3):
+            np.add.at(normals, faces[:, corner], areas)
+    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+    return normals / lengths if np.isfinite(lengths).all() and (lengths > 0).all() else None
+
+
+def _vertex_colors(mesh: Any, count: int) -> Array | None:
+    if mesh.visual.kind != "vertex":
+        return None
+    colors = np.asarray(mesh.visual.vertex_colors, dtype=np.float64) / 255.0
+    return colors if colors.shape == (count, 4) else None
+
+
+def _own(mesh: Any, kind: str) -> OwnLook | None:
+    if kind == "stl":
+        return None
+    if mesh.visual.kind == "vertex":
+        return OwnLook((1.0, 1.0, 1.0)) if kind != "dae" else None
+    material = getattr(mesh.visual, "material", None)
+    if material is None:
+        return OwnLook((1.0, 1.0, 1.0)) if kind in ("glb", "gltf") else None  # glTF's default material is white
+    if kind == "obj":
+        color = material.kwargs.get("kd", np.asarray(material.diffuse[:3]) / 255.0)
+        return OwnLook(_rgb(color), _png(getattr(material, "image", None)))
+    factor = material.baseColorFactor
+    color = np.ones(3) if factor is None else np.asarray(factor, dtype=np.float64)[:3] / 255.0
+    return OwnLook(_rgb(color), _png(material.baseColorTexture))
+
+
+def _rgb(color: Any) -> tuple[float, float, float]:
+    red, green, blue = (min(1.0, max(0.0, float(part))) for part in list(color)[:3])
+    return red, green, blue
+
+
+def _png(image: Any) -> bytes | None:
+    if image is None:
+        return None
+    file = BytesIO()
+    image.convert("RGBA" if image.mode in ("RGBA", "LA", "PA", "P") else "RGB").save(file, "PNG")
+    return file.getvalue()

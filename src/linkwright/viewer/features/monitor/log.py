@@ -1,0 +1,111 @@
+"""The log console: what ``rqt_console`` shows of ``/rosout``."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable
+from typing import Any
+
+from linkwright.graph import MessageInfo
+from linkwright.viewer.features.monitor.pacing import Paced
+from linkwright.viewer.features.monitor.topic_tap import TopicTap
+from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
+from linkwright.viewer.protocol.codec import encode
+from linkwright.viewer.protocol.log import LogLine, LogLines, WatchLog
+from linkwright.viewer.web.audience import Page
+
+_TOPIC = "/rosout"
+_PERIOD = 0.1
+_MOST_WAITING = 1000
+"""Records that wait for one page; of more only the newest are sent."""
+
+_KEPT = 1000
+"""Records of the past for a page that begins to watch while another does."""
+
+
+class _Reader:
+    """The records that wait for one page. The message with them is made when its turn in the outbox comes."""
+
+    key = "log_lines"
+
+    def __init__(self, past: Iterable[LogLine]) -> None:
+        self._waiting = deque(past, maxlen=_MOST_WAITING)
+        self._missed = 0
+
+    def __len__(self) -> int:
+        return len(self._waiting)
+
+    def add(self, line: LogLine) -> None:
+        """Have a record sent; the oldest is dropped when too many wait."""
+        if len(self._waiting) == _MOST_WAITING:
+            self._missed += 1
+        self._waiting.append(line)
+
+    def since(self, seen: int) -> tuple[str | None, int]:
+        """The message with all records that wait; see `Changes`."""
+        if not self._waiting:
+            return None, seen
+        message = LogLines(list(self._waiting), self._missed)
+        self._waiting.clear()
+        self._missed = 0
+        return encode(message), seen
+
+
+class LogFeature(PageFeature):
+    """Sends pages what nodes log."""
+
+    RECEIVES = (WatchLog,)
+
+    def __init__(self, viewer: FeatureHost) -> None:
+        super().__init__(viewer)
+        self._readers: dict[Page, _Reader] = {}
+        self._past: deque[LogLine] = deque(maxlen=_KEPT)
+        self._tap: TopicTap | None = None
+        self._turn = Paced(self._send, _PERIOD)
+
+    def receive(self, page: Page, message: WatchLog) -> None:
+        """Start or stop sending records to a page."""
+        if not message.watched:
+            self.page_gone(page)
+            return
+        if page in self._readers:
+            return
+        self._readers[page] = _Reader(self._past)
+        if self._tap is None:
+            self._tap = TopicTap(self.context, _TOPIC, self._take)
+        self._turn.ask()
+
+    def page_gone(self, page: Page) -> None:
+        """Forget the page."""
+        self._readers.pop(page, None)
+        if not self._readers:
+            self.close()
+
+    def close(self) -> None:
+        """Leave the topic."""
+        self._readers.clear()
+        self._past.clear()
+        self._turn.cancel()
+        if self._tap is not None:
+            self._tap.close()
+            self._tap = None
+
+    def _take(self, message: Any, _: MessageInfo) -> None:
+        line = LogLine(
+            level=message.level,
+            node=message.name,
+            message=message.msg,
+            time=message.stamp.nanoseconds * 1e-9,
+            file=message.file,
+            function=message.function,
+            line=message.line,
+        )
+        self._past.append(line)
+        for reader in self._readers.values():
+            reader.add(line)
+        self._turn.ask()
+
+    def _send(self) -> None:
+        for page, reader in self._readers.items():
+            if len(reader):
+                page.outbox.put(reader.key, reader)

@@ -1,0 +1,125 @@
+"""A subscription to any topic, with the type and the quality of service of its publishers, whenever they come."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph import (
+    EndpointKind,
+    MessageInfo,
+    QoSCompatibility,
+    QoSProfile,
+    Subscription,
+    qos_check_compatible,
+)
+from linkwright.graph.qos.fitting import fit
+from linkwright.graph.qos.profile import QoSPresetProfiles
+from linkwright.viewer.context import ViewerContext
+
+_DEPTH = 500
+"""How many messages may wait while the loop is busy with something else."""
+
+
+class TopicTap:
+    """Receives a topic until it is closed.
+
+    The topic need not exist yet. As ``ros2 topic echo`` does, it asks for the strongest quality of service that all
+    publishers offer; should one come later that offers less, it subscribes anew.
+
+    Args:
+        context: whose node subscribes. Its remappings do not apply: the topic is meant by its name in the graph.
+        topic: absolute name.
+        take: called with each message, or its bytes, and what is known of it.
+        raw: whether `take` gets CDR bytes.
+        changed: called when `error` or `message_class` has another value.
+    """
+
+    def __init__(
+        self,
+        context: ViewerContext,
+        topic: str,
+        take: Callable[[Any, MessageInfo], None],
+        *,
+        raw: bool = False,
+        changed: Callable[[], None] | None = None,
+    ) -> None:
+        self.topic = topic
+        self.error: str | None = None
+        """Why nothing can be received; None also while there is nobody who publishes."""
+        self.message_class: Any = None
+        """The class of the messages; None while it is not known."""
+        self._node = context.node
+        self._changes = context.graph_changes
+        self._take = take
+        self._raw = raw
+        self._changed = changed
+        self._subscription: Subscription[Any] | None = None
+        self._qos: QoSProfile | None = None
+        self._changes.listen(self._look)
+        self._review()
+
+    def close(self) -> None:
+        """Leave the topic."""
+        self._changes.ignore(self._look)
+        self._leave()
+
+    def _look(self) -> None:
+        before = self.error, self.message_class
+        self._review()
+        if (self.error, self.message_class) != before and self._changed is not None:
+            self._changed()
+
+    def _review(self) -> None:
+        publishers = [
+            endpoint
+            for endpoint in self._node.graph.endpoints()
+            if endpoint.name == self.topic and endpoint.kind is EndpointKind.PUBLISHER
+        ]
+        types = sorted({each.type_name for each in publishers})
+        if not types:
+            return  # what was known of publishers that have gone holds until others come
+        if len(types) > 1:
+            self.error = f"the topic carries more than one type: {', '.join(types)}"
+            self._leave()
+            return
+        offers = [each.qos for each in publishers]
+        if self._subscription is not None and self._fits(types[0], offers):
+            return
+        self._leave()
+        self._subscribe(types[0], offers)
+
+    def _fits(self, type_name: str, offers: list[QoSProfile]) -> bool:
+        asked = self._qos
+        return (
+            type_name == self.message_class.TYPE_NAME
+            and asked is not None
+            and all(qos_check_compatible(offer, asked)[0] is not QoSCompatibility.ERROR for offer in offers)
+        )
+
+    def _subscribe(self, type_name: str, offers: list[QoSProfile]) -> None:
+        from linkwright.messages import get_message
+
+        try:
+            self.message_class = get_message(type_name)
+        except LinkwrightError as error:
+            self.error = error.diagnostics[0].message
+            self.message_class = None
+            return
+        wanted = QoSPresetProfiles.get_from_short_key("sensor_data")
+        self._qos = fit(wanted, offers).profile
+        self._qos.depth = _DEPTH
+        self._subscription = Subscription(
+            self._node.handle, self.message_class, self.topic, self._qos, self._receive, raw=self._raw
+        )
+        self._node.handle.add(self._subscription)
+        self.error = None
+
+    def _receive(self, message: Any, info: MessageInfo) -> None:
+        self._take(message, info)
+
+    def _leave(self) -> None:
+        if self._subscription is not None:
+            self._node.destroy_subscription(self._subscription)
+            self._subscription = None

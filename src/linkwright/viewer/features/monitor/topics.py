@@ -1,0 +1,184 @@
+"""The topic monitor: what ``rqt_topic`` shows."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Any
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph import EndpointKind, MessageInfo
+from linkwright.graph.introspection.traffic import TrafficWindow
+from linkwright.viewer.context import ViewerContext
+from linkwright.viewer.features.monitor.message_tree import message_tree
+from linkwright.viewer.features.monitor.pacing import Paced
+from linkwright.viewer.features.monitor.topic_tap import TopicTap
+from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
+from linkwright.viewer.protocol.topics import TopicFigures, TopicList, TopicMessage, TopicRow, TopicTraffic, WatchTopics
+from linkwright.viewer.web.audience import Page
+
+_FIGURES_PERIOD = 1.0
+_MESSAGES_PERIOD = 0.2
+_WINDOW_MESSAGES = 2000
+_WINDOW_NS = 5_000_000_000
+_SHORTEST_NS = 500_000_000
+"""For so long a topic is watched before its figures are told: messages may come in bursts."""
+
+_NANO = 1e-9
+
+
+@dataclass(slots=True)
+class _Wish:
+    """What one page wants to know."""
+
+    listed: bool = False
+    measured: frozenset[str] = frozenset()
+    opened: frozenset[str] = frozenset()
+    told: TopicList | None = None
+    due: set[str] = field(default_factory=set)
+    """Opened topics of which there is news for this page."""
+
+
+class _Gauge:
+    """Measures a topic, and keeps its last message as bytes: it is read only when somebody looks at it."""
+
+    def __init__(self, feature: TopicsFeature, context: ViewerContext, topic: str) -> None:
+        self._feature = feature
+        self.topic = topic
+        self.window = TrafficWindow(_WINDOW_MESSAGES, _WINDOW_NS)
+        self.last: tuple[bytes, float] | None = None
+        self.tap = TopicTap(context, topic, self._take, raw=True, changed=feature.measure_soon)
+
+    def message(self) -> TopicMessage | None:
+        """The last message; None before there is one, or when its bytes are none."""
+        from linkwright.messages import deserialize
+
+        if self.last is None or self.tap.message_class is None:
+            return None
+        data, received = self.last
+        try:
+            return TopicMessage(self.topic, received, message_tree(deserialize(data, self.tap.message_class)))
+        except LinkwrightError:
+            self.tap.error = "a message of the topic could not be read"
+            return None
+
+    def traffic(self) -> TopicTraffic:
+        figures = self.window.traffic(time.monotonic_ns())
+        if figures is None or figures.age_ns < _SHORTEST_NS:
+            return TopicTraffic(self.topic, None, None, self.tap.error)
+        return TopicTraffic(self.topic, figures.messages_per_second, figures.bytes_per_second, self.tap.error)
+
+    def _take(self, data: Any, info: MessageInfo) -> None:
+        self.window.add(time.monotonic_ns(), len(data))
+        self.last = (data, info.received_timestamp * _NANO)
+        self._feature.came(self.topic)
+
+
+class TopicsFeature(PageFeature):
+    """Lists topics, and measures those that a page wants to have measured; there are no other subscriptions."""
+
+    RECEIVES = (WatchTopics,)
+
+    def __init__(self, viewer: FeatureHost) -> None:
+        super().__init__(viewer)
+        self._wishes: dict[Page, _Wish] = {}
+        self._gauges: dict[str, _Gauge] = {}
+        self._figures = Paced(self._send_figures, _FIGURES_PERIOD)
+        self._messages = Paced(self._send_messages, _MESSAGES_PERIOD)
+
+    def receive(self, page: Page, message: WatchTopics) -> None:
+        """Take note of what a page wants to know from now on."""
+        before = self._wishes.get(page, _Wish())
+        opened = frozenset(message.opened)
+        wish = _Wish(message.listed, frozenset(message.measured), opened, before.told if message.listed else None)
+        wish.due = {topic for topic in opened if topic in self._gauges and self._gauges[topic].last}
+        self._wishes[page] = wish
+        self._keep(page)
+        if message.listed:
+            self._send_lists()
+
+    def page_gone(self, page: Page) -> None:
+        """Forget the page's requests."""
+        if self._wishes.pop(page, None) is not None:
+            self._keep()
+
+    def close(self) -> None:
+        """End all subscriptions."""
+        self._wishes.clear()
+        self._keep()
+
+    def came(self, topic: str) -> None:
+        """A message of a topic came."""
+        for wish in self._wishes.values():
+            if topic in wish.opened:
+                wish.due.add(topic)
+                self._messages.ask()
+
+    def measure_soon(self) -> None:
+        """Something about a topic is to be told with the next figures."""
+        self._figures.ask()
+
+    def _keep(self, page: Page | None = None) -> None:
+        """Have the subscriptions that pages want, and no others; tell the page that has new wishes."""
+        wishes = self._wishes.values()
+        wanted = set[str]().union(*(wish.measured | wish.opened for wish in wishes))
+        for topic in self._gauges.keys() - wanted:
+            self._gauges.pop(topic).tap.close()
+        for topic in sorted(wanted - self._gauges.keys()):
+            self._gauges[topic] = _Gauge(self, self.context, topic)
+        if any(wish.listed for wish in wishes):
+            self.context.graph_changes.listen(self._send_lists)
+        else:
+            self.context.graph_changes.ignore(self._send_lists)
+        if not wanted:
+            self._figures.cancel()
+            self._messages.cancel()
+            return
+        self._figures.ask()
+        if page is not None and self._wishes[page].due:
+            self._messages.ask()
+
+    def _send_lists(self) -> None:
+        listed = TopicList(self._rows())
+        for page, wish in self._wishes.items():
+            if wish.listed and wish.told != listed:
+                wish.told = listed
+                page.send(listed)
+
+    def _rows(self) -> list[TopicRow]:
+        rows: dict[str, TopicRow] = {}
+        for endpoint in self.context.node.graph.endpoints():
+            if endpoint.kind not in (EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION):
+                continue
+            row = rows.setdefault(endpoint.name, TopicRow(endpoint.name, [], 0, 0))
+            if endpoint.type_name not in row.types:
+                row.types.append(endpoint.type_name)
+                row.types.sort()
+            if endpoint.kind is EndpointKind.PUBLISHER:
+                row.publishers += 1
+            else:
+                row.subscribers += 1
+        return [rows[name] for name in sorted(rows)]
+
+    def _send_figures(self) -> None:
+        for page, wish in self._wishes.items():
+            gauges = self._in_order(wish.measured | wish.opened)
+            if gauges:
+                page.send(TopicFigures([gauge.traffic() for gauge in gauges]))
+        if self._gauges:
+            self._figures.ask()
+
+    def _send_messages(self) -> None:
+        messages: dict[str, TopicMessage | None] = {}
+        for page, wish in self._wishes.items():
+            for gauge in self._in_order(wish.due):
+                if gauge.topic not in messages:
+                    messages[gauge.topic] = gauge.message()
+                message = messages[gauge.topic]
+                if message is not None:
+                    page.send(message)
+            wish.due.clear()
+
+    def _in_order(self, topics: Iterable[str]) -> list[_Gauge]:
+        return [self._gauges[topic] for topic in sorted(topics)]

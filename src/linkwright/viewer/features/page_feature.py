@@ -1,0 +1,83 @@
+"""The base class of page features: what pages can ask for besides displays."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, ClassVar, Protocol
+
+from linkwright.diagnostics import Diagnostic
+from linkwright.viewer.context import ViewerContext
+from linkwright.viewer.protocol.message import ServerMessage
+from linkwright.viewer.visualization.manager import VisualizationManager
+from linkwright.viewer.visualization.managers import Managers
+from linkwright.viewer.web.audience import Page
+from linkwright.viewer.web.outbox import Payload
+
+
+class FeatureHost(Protocol):
+    """The viewer, as its features see it.
+
+    Attributes:
+        context: what all of the viewer works with.
+        managers: what pages see: one configuration that they share, and those of single pages.
+    """
+
+    context: ViewerContext
+    managers: Managers
+
+    def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
+        """The messages of all features about a configuration."""
+
+    def opening_messages(self, manager: VisualizationManager) -> tuple[list[ServerMessage], list[Payload]]:
+        """Messages for a page that begins to see a configuration, the frame table last; and binary frames."""
+
+
+class PageFeature:
+    """Answers some of the messages of pages.
+
+    A feature must cost nothing while no page uses it: keep what a page subscribed to per page, and drop it in
+    `page_gone`.
+
+    Args:
+        viewer: that it belongs to.
+    """
+
+    RECEIVES: ClassVar[tuple[type, ...]] = ()
+    """The messages of pages that come to `receive`."""
+
+    def __init__(self, viewer: FeatureHost) -> None:
+        self.viewer = viewer
+        self.context = viewer.context
+        self.managers = viewer.managers
+
+    def start(self) -> None:
+        """The viewer listens now."""
+
+    def opening(self) -> list[ServerMessage]:
+        """Messages for a page that opens now."""
+        return []
+
+    def configured(self, manager: VisualizationManager) -> list[ServerMessage]:  # noqa: ARG002
+        """Messages about a configuration, for a page that opens, or for all its pages when another file was opened."""
+        return []
+
+    def edited(self, manager: VisualizationManager) -> None:
+        """Undo, redo or whether something of a configuration is unsaved may be another."""
+
+    def manager_closed(self, manager: VisualizationManager) -> None:
+        """A manager was closed: drop what is kept for it."""
+
+    def robot_changed(self) -> None:
+        """A display has another robot."""
+
+    def diagnostics_changed(self, diagnostics: Sequence[Diagnostic]) -> None:
+        """The findings about the description have changed; an empty list when it is in order."""
+
+    def receive(self, page: Page, message: Any) -> None:
+        """Do what a page asks for; the message is of one of the classes in `RECEIVES`."""
+
+    def page_gone(self, page: Page) -> None:
+        """A page was closed."""
+
+    def close(self) -> None:
+        """End for good."""

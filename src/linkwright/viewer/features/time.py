@@ -1,0 +1,144 @@
+"""The Time panel: pause, synchronization, clocks and Reset."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from linkwright.graph import Duration, JumpThreshold, TimeJump
+from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
+from linkwright.viewer.protocol.message import ServerMessage
+from linkwright.viewer.protocol.time import Clock, ResetTime, SetTime, TimeReset, TimeState, WatchClock
+from linkwright.viewer.web.audience import Page
+
+if TYPE_CHECKING:
+    from linkwright.graph import JumpHandle
+    from linkwright.viewer.visualization.manager import VisualizationManager
+
+_PERIOD = 0.1
+"""Seconds between two looks at clocks that pages cannot count on by themselves."""
+
+
+@dataclass(slots=True)
+class _Since:
+    """When elapsed time began, nanoseconds."""
+
+    ros: int
+    wall: int
+
+
+class TimeFeature(PageFeature):
+    """Time, for the pages that show it.
+
+    Clocks that go as the wall clock does are told once, and pages count on; others are told while they change.
+    """
+
+    RECEIVES: ClassVar[tuple[type, ...]] = (SetTime, ResetTime, WatchClock)
+
+    def __init__(self, viewer: FeatureHost) -> None:
+        super().__init__(viewer)
+        self._since: dict[VisualizationManager, _Since] = {}
+        self._watching: dict[Page, Clock | None] = {}
+        self._timer: asyncio.TimerHandle | None = None
+        self._jumps: JumpHandle | None = None
+        self._loop = asyncio.get_running_loop()
+
+    def start(self) -> None:
+        """Begin anew whenever simulated time goes back, as RViz does."""
+        threshold = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1), on_clock_change=True)
+        self._jumps = self.context.node.get_clock().create_jump_callback(threshold, post_callback=self._jumped)
+
+    def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
+        """How time goes."""
+        self._begin(manager)
+        return [_state(manager)]
+
+    def manager_closed(self, manager: VisualizationManager) -> None:
+        """Forget when its time began."""
+        self._since.pop(manager, None)
+
+    def receive(self, page: Page, message: Any) -> None:
+        """Do what a page asks for."""
+        manager = self.managers.of(page)
+        if isinstance(message, SetTime):
+            manager.set_time(paused=message.paused, mode=message.mode, source=message.source)
+            self._tell_all()
+        elif isinstance(message, ResetTime):
+            self._reset(manager)
+        elif isinstance(message, WatchClock):
+            if message.watching:
+                self._watching.setdefault(page, None)
+                self._tick()
+            else:
+                self.page_gone(page)
+
+    def page_gone(self, page: Page) -> None:
+        """Stop sending it clocks."""
+        self._watching.pop(page, None)
+
+    def close(self) -> None:
+        """Tell nothing more."""
+        if self._timer is not None:
+            self._timer.cancel()
+        if self._jumps is not None:
+            self._jumps.unregister()
+
+    # -----------------------------------------------------------------------------------------------------------
+
+    def _begin(self, manager: VisualizationManager) -> _Since:
+        if manager not in self._since:
+            self._since[manager] = _Since(manager.time.now_ns(), time.time_ns())
+        return self._since[manager]
+
+    def _reset(self, manager: VisualizationManager) -> None:
+        manager.reset_time()
+        self._since.pop(manager, None)
+        self._begin(manager)
+        manager.publish(TimeReset())
+        self._tell_all()
+
+    def _jumped(self, jump: TimeJump) -> None:  # noqa: ARG002  # whichever: what is shown is of another time
+        def reset() -> None:
+            for manager in self.managers.all():
+                self._reset(manager)
+
+        # The clock is moved in whatever thread a message of /clock comes in.
+        self._loop.call_soon_threadsafe(reset)
+
+    def _tell_all(self) -> None:
+        for page in self._watching:
+            self._watching[page] = None
+        self._tick()
+
+    def _tick(self) -> None:
+        """Tell each page that watches the clocks, unless it counts them itself."""
+        if self._timer is not None:
+            self._timer.cancel()
+            self._timer = None
+        moving = False
+        for page, told in list(self._watching.items()):
+            clock = self._clock(self.managers.of(page))
+            moving = moving or not clock.running
+            if told is None or (not clock.running and clock.ros != told.ros) or clock.running != told.running:
+                page.send(clock)
+                self._watching[page] = clock
+        if moving:
+            self._timer = self._loop.call_later(_PERIOD, self._tick)
+
+    def _clock(self, manager: VisualizationManager) -> Clock:
+        since, control = self._begin(manager), manager.time
+        simulated = self.context.node.get_clock().ros_time_is_active
+        return Clock(
+            ros=control.now_ns() / 1e9,
+            ros_start=since.ros / 1e9,
+            wall=time.time(),
+            wall_start=since.wall / 1e9,
+            running=not (simulated or control.paused or control.mode == "Exact"),
+        )
+
+
+def _state(manager: VisualizationManager) -> TimeState:
+    control = manager.time
+    return TimeState(control.paused, control.mode, control.source, list(control.sources))

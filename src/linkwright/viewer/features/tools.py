@@ -1,0 +1,228 @@
+"""What pages do with tools: their settings, and the messages that some of them publish."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from linkwright.graph import InvalidTopicNameError, Publisher
+from linkwright.messages import get_message
+from linkwright.viewer.config.tool_classes import TOOL_KINDS, tool_name
+from linkwright.viewer.config.tools import ToolEntry, ToolsConfig
+from linkwright.viewer.config.topic_properties import qos_of
+from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
+from linkwright.viewer.protocol.message import ServerMessage
+from linkwright.viewer.protocol.tools import (
+    AddTool,
+    PointChosen,
+    PoseChosen,
+    RemoveTool,
+    SetToolProperty,
+    Tool,
+    ToolClass,
+    ToolPropertyChanged,
+    Tools,
+)
+from linkwright.viewer.web.audience import Page
+
+if TYPE_CHECKING:
+    from linkwright.viewer.visualization.manager import VisualizationManager
+
+_TOPIC = "Topic"
+_INITIAL_POSE = "rviz_default_plugins/SetInitialPose"
+_POSE_TOOLS = {_INITIAL_POSE: "estimate", "rviz_default_plugins/SetGoal": "goal"}
+_POINT_TOOL = "rviz_default_plugins/PublishPoint"
+
+
+@dataclass(slots=True)
+class _Shelf:
+    """The tools of one configuration, and what they publish with, by their ids."""
+
+    config: ToolsConfig
+    publishers: dict[str, Publisher[Any]] = field(default_factory=dict)
+
+
+class ToolsFeature(PageFeature):
+    """The tools of a configuration, for the pages that see it.
+
+    Publishers are made at the start, as RViz makes them: whoever listens is found before the first message.
+    """
+
+    RECEIVES: ClassVar[tuple[type, ...]] = (SetToolProperty, AddTool, RemoveTool, PoseChosen, PointChosen)
+
+    def __init__(self, viewer: FeatureHost) -> None:
+        super().__init__(viewer)
+        self._shelves: dict[VisualizationManager, _Shelf] = {}
+
+    def start(self) -> None:
+        """Announce what the tools publish."""
+        for manager in self.managers.all():
+            self._shelf(manager)
+
+    def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
+        """The tools."""
+        return [_told(self._shelf(manager))]
+
+    def manager_closed(self, manager: VisualizationManager) -> None:
+        """Stop publishing for it."""
+        shelf = self._shelves.pop(manager, None)
+        if shelf is not None:
+            self._clear(shelf)
+
+    def receive(self, page: Page, message: Any) -> None:
+        """Do what a page asks for; tools that are gone are passed over."""
+        manager = self.managers.of(page)
+        shelf = self._shelf(manager)
+        if isinstance(message, SetToolProperty):
+            self._set(page, manager, message)
+        elif isinstance(message, AddTool):
+            self._add(manager, message)
+        elif isinstance(message, RemoveTool):
+            if shelf.config.find(message.id) is not None:
+                shelf.config.remove(message.id)
+                self._withdraw(shelf, message.id)
+                self._changed(manager)
+        elif isinstance(message, PoseChosen):
+            self._publish_pose(manager, message)
+        elif isinstance(message, PointChosen):
+            self._publish_point(manager, message)
+
+    def close(self) -> None:
+        """Stop publishing."""
+        for manager in list(self._shelves):
+            self.manager_closed(manager)
+
+    def _shelf(self, manager: VisualizationManager) -> _Shelf:
+        """The tools of a manager; those of another configuration than the last time are announced anew."""
+        shelf = self._shelves.get(manager)
+        if shelf is None or shelf.config is not manager.config.tools:
+            if shelf is not None:
+                self._clear(shelf)
+            shelf = self._shelves[manager] = _Shelf(manager.config.tools)
+            for entry in shelf.config.entries:
+                self._try_announce(shelf, entry)
+        return shelf
+
+    def _try_announce(self, shelf: _Shelf, entry: ToolEntry) -> None:
+        try:
+            self._announce(shelf, entry)
+        except InvalidTopicNameError as error:
+            self.context.node.get_logger().error(f"{tool_name(entry.cls)}: {error}")
+
+    def _clear(self, shelf: _Shelf) -> None:
+        for identity in list(shelf.publishers):
+            self._withdraw(shelf, identity)
+
+    # --- settings ----------------------------------------------------------------------------------------------
+
+    def _changed(self, manager: VisualizationManager) -> None:
+        manager.edited()
+        manager.publish(_told(self._shelves[manager]))
+
+    def _add(self, manager: VisualizationManager, message: AddTool) -> None:
+        shelf = self._shelves[manager]
+        try:
+            entry = shelf.config.add(message.cls)
+        except ValueError as error:
+            self.context.node.get_logger().warning(str(error))
+            return
+        self._announce(shelf, entry)
+        self._changed(manager)
+
+    def _set(self, page: Page, manager: VisualizationManager, message: SetToolProperty) -> None:
+        shelf = self._shelves[manager]
+        entry = shelf.config.find(message.id.partition("/")[0])
+        path = entry.properties.find(message.id) if entry else None
+        if entry is None or path is None:
+            return
+        before = entry.properties.get(*path)
+        try:
+            entry.properties.check(path, message.value)
+            shelf.config.list_all()
+            value = entry.properties.set(path, message.value)
+            if path[0] == _TOPIC:
+                self._announce(shelf, entry)
+        except (ValueError, InvalidTopicNameError) as error:
+            self.context.node.get_logger().warning(f"{tool_name(entry.cls)}: {error}")
+            entry.properties.set(path, before)
+            page.send(ToolPropertyChanged(message.id, before))
+            return
+        manager.edited()
+        manager.publish(ToolPropertyChanged(message.id, value))
+
+    # --- what is published ---------------------------------------------------------------------------------------
+
+    def _announce(self, shelf: _Shelf, entry: ToolEntry) -> None:
+        """Recreate the publisher; without a topic there is none."""
+        kind = TOOL_KINDS.get(entry.cls)
+        if kind is None or kind.publishes is None:
+            return
+        topic = entry.properties.text(_TOPIC).strip()
+        if not topic:
+            self._withdraw(shelf, entry.id)
+            return
+        made: Publisher[Any] = self.context.node.create_publisher(kind.publishes, topic, qos_of(entry.properties))
+        self._withdraw(shelf, entry.id)
+        shelf.publishers[entry.id] = made
+
+    def _withdraw(self, shelf: _Shelf, identity: str) -> None:
+        publisher = shelf.publishers.pop(identity, None)
+        if publisher is not None:
+            self.context.node.destroy_publisher(publisher)
+
+    def _find(
+        self, manager: VisualizationManager, identity: str, classes: Collection[str]
+    ) -> tuple[ToolEntry, Publisher[Any]] | None:
+        """A tool of one of some classes, and its publisher."""
+        shelf = self._shelves[manager]
+        entry, publisher = shelf.config.find(identity), shelf.publishers.get(identity)
+        return None if entry is None or publisher is None or entry.cls not in classes else (entry, publisher)
+
+    def _publish_pose(self, manager: VisualizationManager, chosen: PoseChosen) -> None:
+        found = self._find(manager, chosen.tool, _POSE_TOOLS)
+        if found is None:
+            return
+        entry, publisher = found
+        message = self._stamped(manager, entry)
+        pose = message.pose
+        if entry.cls == _INITIAL_POSE:
+            for index, axis in ((0, "x"), (7, "y"), (35, "yaw")):
+                message.pose.covariance[index] = entry.properties.number(f"Covariance {axis}")
+            pose = message.pose.pose
+        pose.position.x, pose.position.y = chosen.x, chosen.y
+        pose.orientation.z, pose.orientation.w = math.sin(chosen.yaw / 2), math.cos(chosen.yaw / 2)
+        self.context.node.get_logger().info(
+            f"Setting {_POSE_TOOLS[entry.cls]} pose: Frame:{message.header.frame_id}, "
+            f"Position({chosen.x:g}, {chosen.y:g}, 0), "
+            f"Orientation(0, 0, {pose.orientation.z:g}, {pose.orientation.w:g}) = Angle: {chosen.yaw:g}"
+        )
+        publisher.publish(message)
+
+    def _publish_point(self, manager: VisualizationManager, chosen: PointChosen) -> None:
+        found = self._find(manager, chosen.tool, (_POINT_TOOL,))
+        if found is None:
+            return
+        entry, publisher = found
+        message = self._stamped(manager, entry)
+        message.point.x, message.point.y, message.point.z = chosen.x, chosen.y, chosen.z
+        publisher.publish(message)
+
+    def _stamped(self, manager: VisualizationManager, entry: ToolEntry) -> Any:
+        kind = TOOL_KINDS[entry.cls]
+        assert kind.publishes is not None
+        message = get_message(kind.publishes)()
+        message.header.frame_id = manager.fixed_frame
+        message.header.stamp = self.context.node.get_clock().now().to_msg()
+        return message
+
+
+def _told(shelf: _Shelf) -> Tools:
+    return Tools(
+        [
+            Tool(entry.id, entry.cls, tool_name(entry.cls), entry.cls in TOOL_KINDS, entry.properties.rows())
+            for entry in shelf.config.entries
+        ],
+        [ToolClass(cls, kind.name) for cls, kind in TOOL_KINDS.items()],
+    )

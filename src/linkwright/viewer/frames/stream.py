@@ -1,0 +1,301 @@
+"""Sends transforms from the graph to the pages: at most at the Frame Rate, at once after a pause, and only changes."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Hashable
+from contextlib import suppress
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.graph import (
+    STATIC_TF_SUBSCRIPTION_QOS,
+    TF_QOS,
+    FrameSnapshot,
+    Node,
+    TransformBuffer,
+    TransformException,
+)
+from linkwright.messages import TFMessage
+from linkwright.viewer.frames.history import FrameHistory
+from linkwright.viewer.frames.time_control import TimeControl
+from linkwright.viewer.frames.view import FrameView
+from linkwright.viewer.protocol.frames import FrameTable, pack_transforms
+
+_SHORTEST_PAUSE = 0.004
+"""Seconds between two looks at the buffer that find nothing new, so that a flood of equal transforms costs little."""
+
+_AHEAD = 0.8
+_HURRY = 0.95
+"""Parts of the time between two updates: by which one may come too early, and after which the next one is due.
+
+Transforms that come at the very rate, but at other moments than updates are due, so hardly have to wait: each of them
+waits a little shorter than the one before.
+"""
+
+_AGE_PERIOD = 0.25
+"""Seconds between looks when nothing arrives: frames that are heard of no more must fade."""
+
+_FADE_STEP = 0.02
+"""Part of the Frame Timeout by which an age must differ to be sent anew; younger than a third of it all look alike."""
+
+_IDENTITY = np.array([[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]])
+
+
+class FrameAudience(Protocol):
+    """The pages that are told where frames are."""
+
+    def __len__(self) -> int:
+        """How many there are; for none nothing is worked out."""
+
+    def publish(self, message: FrameTable, /) -> None:
+        """Send a new frame table, before transforms that need it."""
+
+    def send_transforms(self, frame: bytes, /) -> None:
+        """Send a binary frame."""
+
+
+class FrameStream:
+    """Keeps the tf buffer of the viewer and sends what changed in it.
+
+    A robot of a single link has no transforms, so tf does not know its frame. When that is the Fixed Frame it is sent
+    all the same, as the identity: RViz places a frame in itself without asking tf.
+
+    Args:
+        node: to subscribe with.
+        pages: those that see the result.
+        time: whether frames stay where they are, and the time at which they are shown.
+        history: where frames were, for a time other than the latest.
+        on_frames: called when frames came or went, or can be placed now or no more.
+        fade_time: gives the shortest Frame Timeout of the displays, seconds; None when no display shows ages.
+        own_frames: gives the frames that robots have links for, which tf may not know.
+
+    Attributes:
+        fixed_frame: the Fixed Frame.
+        rate: most updates a second, hertz.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        pages: FrameAudience,
+        time: TimeControl,
+        history: FrameHistory,
+        *,
+        on_frames: Callable[[FrameView], None],
+        fade_time: Callable[[], float | None],
+        own_frames: Callable[[], frozenset[str]],
+    ) -> None:
+        self.fixed_frame = ""
+        self.rate = 30.0
+        self._node = node
+        self._pages = pages
+        self._time = time
+        self._history = history
+        self._on_frames = on_frames
+        self._fade_time = fade_time
+        self._own_frames = own_frames
+        self._clock = node.get_clock()
+        self._buffer = TransformBuffer(node.get_logger().warning)
+        self._loop = asyncio.get_running_loop()
+        self._next_look = node.create_guard_condition(self._look_if_wanted)
+        self._wanted = False
+        self._later: asyncio.TimerHandle | None = None
+        self._ageing: asyncio.Handle | None = None
+        self._due = self._looked_at = float("-inf")
+        self._stamp_ns = 0
+        self._structure: tuple[Any, ...] = ()
+        self._table = FrameTable(0, [], [])
+        self._poses: NDArray[np.float32] = np.empty((0, 7), dtype=np.float32)
+        self._ages: NDArray[np.float64] = np.empty(0)
+        self._placed = b""
+        self._frame = b""
+        self._release: Callable[[], None] | None = None
+        self._held: dict[Hashable, tuple[TFMessage, bool]] = {}
+        self._paused_ns: int | None = None
+
+    def start(self) -> None:
+        """Subscribe, and begin."""
+        self._node.create_subscription(TFMessage, "/tf", lambda message: self._take(message, False), TF_QOS)
+        self._node.create_subscription(
+            TFMessage, "/tf_static", lambda message: self._take(message, True), STATIC_TF_SUBSCRIPTION_QOS
+        )
+        self._age()
+
+    def close(self) -> None:
+        """Stop sending."""
+        for handle in (self._later, self._ageing):
+            if handle is not None:
+                handle.cancel()
+        self._later = self._ageing = None
+        self._next_look.destroy()
+        if self._release is not None:
+            self._release()
+            self._release = None
+
+    def time_changed(self) -> None:
+        """Time stands still, goes on, or another time is to be shown: look."""
+        if self._time.paused:
+            self._paused_ns = self._paused_ns or self._clock.now_ns()
+        else:
+            self._paused_ns = None
+            held = list(self._held.values())
+            self._held.clear()
+            for message, static in held:
+                self._take(message, static)
+        self.refresh()
+
+    def forget(self) -> None:
+        """Forget all moving transforms: time begins anew."""
+        self._held.clear()
+        self._buffer.clear()
+        self.refresh()
+
+    def look_soon(self) -> None:
+        """Look as soon as the rate allows."""
+        self._wake()
+
+    def robot_changed(self, gone: set[str]) -> None:
+        """Forget the frames that a new robot lacks, and look whether it has one that tf does not know."""
+        known = gone.intersection(self._buffer.frames())
+        if known:
+            self._buffer.remove(known)
+        self._wake()
+
+    def refresh(self) -> None:
+        """Look now, whoever watches: the Fixed Frame or the robot is another, or a page opens."""
+        if self._later is not None:
+            self._later.cancel()
+        self._look()
+
+    @property
+    def opening(self) -> tuple[FrameTable, bytes]:
+        """The frame table and the last binary frame, for a page that opens; empty before there is one."""
+        return self._table, self._frame
+
+    def _take(self, message: TFMessage, static: bool) -> None:
+        batch = message.batch
+        if self._time.paused:
+            key = (batch.parents, batch.children, static)
+            self._held.pop(key, None)
+            self._held[key] = (message, static)
+            return
+        self._buffer.update(TFMessage(batch=batch), static=static, now_ns=self._clock.now_ns())
+        self._stamp_ns = max(self._stamp_ns, batch.stamp_ns)
+        self._wake()
+
+    def _wake(self) -> None:
+        if self._wanted or not len(self._pages):
+            return
+        self._wanted = True
+        ahead = _AHEAD / self.rate
+        due = max(self._due - ahead, self._looked_at + _SHORTEST_PAUSE)
+        if due <= self._loop.time():
+            self._next_look.trigger()
+        else:
+            self._later = self._loop.call_at(due, self._look)
+
+    def _age(self) -> None:
+        self._ageing = self._loop.call_later(_AGE_PERIOD, self._age)
+        quiet = self._loop.time() - self._looked_at > _AGE_PERIOD / 2
+        if quiet and self._fade_time() is not None and self._ages.any():
+            self._wake()
+
+    def _look_if_wanted(self) -> None:
+        if self._wanted:
+            self._look()
+
+    def _look(self) -> None:
+        self._wanted, self._later = False, None
+        self._looked_at = self._loop.time()
+        fixed_frame = self.fixed_frame
+        snapshot = self._buffer.snapshot(fixed_frame, self._paused_ns or self._clock.now_ns())
+        poses, ages = self._poses_then(snapshot, fixed_frame), snapshot.ages
+        alone = fixed_frame not in snapshot.names and fixed_frame in self._own_frames()
+        if alone:
+            poses, ages = np.concatenate([poses, _IDENTITY]), np.append(ages, 0.0)
+        changed = self._compare_structure(snapshot, fixed_frame if alone else None)
+        rows = poses.astype(np.float32)
+        if changed or self._is_news(rows, ages):
+            self._send(rows, ages)
+        self._tell_displays(snapshot, rows, fixed_frame, changed)
+
+    def _poses_then(self, snapshot: FrameSnapshot, fixed_frame: str) -> NDArray[np.float64]:
+        """Where frames are at the time to be shown; where nothing is known of that time, where they are now."""
+        stamp_ns = self._time.lookup_ns()
+        self._follow(stamp_ns is not None)
+        if stamp_ns is None:
+            return snapshot.poses
+        poses: NDArray[np.float64] = snapshot.poses.copy()
+        for row, name in enumerate(snapshot.names):
+            with suppress(TransformException):
+                poses[row] = self._history.pose(fixed_frame, name, stamp_ns)
+        return poses
+
+    def _follow(self, needed: bool) -> None:
+        """Keep the history while another time than the latest is shown."""
+        if needed and self._release is None:
+            self._release = self._history.use(lambda: None)
+        elif not needed and self._release is not None:
+            self._release()
+            self._release = None
+
+    def _compare_structure(self, snapshot: FrameSnapshot, alone: str | None) -> bool:
+        structure = (snapshot.revision, alone)
+        if structure == self._structure:
+            return False
+        self._structure = structure
+        names, parents = list(snapshot.names), list(snapshot.parents)
+        if alone is not None:
+            names.append(alone)
+            parents.append(-1)
+        self._table = FrameTable(self._table.revision + 1, names, parents)
+        self._pages.publish(self._table)
+        return True
+
+    def _is_news(self, poses: NDArray[np.float32], ages: NDArray[np.float64]) -> bool:
+        if poses.tobytes() != self._poses.tobytes():
+            return True
+        fade_time = self._fade_time()
+        if fade_time is None:
+            return False
+        if ((ages < fade_time) != (self._ages < fade_time)).any():
+            return True
+        looks = np.clip(ages, fade_time / 3, fade_time) - np.clip(self._ages, fade_time / 3, fade_time)
+        return bool(np.abs(looks).max(initial=0.0) > _FADE_STEP * fade_time)
+
+    def _send(self, poses: NDArray[np.float32], ages: NDArray[np.float64]) -> None:
+        self._poses, self._ages = poses, ages
+        self._due = self._next_due()
+        self._frame = pack_transforms(self._table.revision, self._stamp_ns / 1e9, poses, ages)
+        self._pages.send_transforms(self._frame)
+
+    def _next_due(self) -> float:
+        """When the next update may be sent.
+
+        What is sent a little late does not make the next one later: transforms that come at the rate would else wait
+        longer and longer, until one of them is left out.
+        """
+        period = _HURRY / self.rate
+        in_time = self._looked_at - self._due < period / 2
+        return (self._due if in_time else self._looked_at) + period
+
+    def _tell_displays(
+        self, snapshot: FrameSnapshot, poses: NDArray[np.float32], fixed_frame: str, changed: bool
+    ) -> None:
+        has_pose = ~np.isnan(poses[:, 0])
+        placed = has_pose.tobytes() + fixed_frame.encode()
+        if not changed and placed == self._placed:
+            return
+        self._placed = placed
+        names = self._table.names
+        self._on_frames(
+            FrameView(
+                fixed_frame=fixed_frame,
+                names=snapshot.names,
+                parents=snapshot.parents,
+                placed=frozenset(names[row] for row in np.flatnonzero(has_pose)) | {fixed_frame},
+            )
+        )

@@ -1,0 +1,59 @@
+"""A snapshot of a model file, without a browser."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from dataclasses import replace
+
+from linkwright.descriptions import DescriptionLibrary
+from linkwright.graph import DESCRIPTION_QOS, STATIC_TF_PUBLISHER_QOS, TF_QOS, Graph
+from linkwright.messages import String, TFMessage
+from linkwright.nodes.joint_layout import layout_of
+from linkwright.nodes.joint_settings import JointSettings
+from linkwright.nodes.robot_transforms import RobotTransforms
+from linkwright.packages import PackageFinder
+from linkwright.urdf import Robot
+from linkwright.viewer.config.rviz_config import RvizConfig
+from linkwright.viewer.features.export.snapshot import Snapshot, snapshot_of
+from linkwright.viewer.viewer import Viewer
+
+_VIEW_DISTANCE = 3.0
+
+
+def snapshot_of_model(text: str, robot: Robot, library: DescriptionLibrary, finder: PackageFinder) -> Snapshot:
+    """What `linkwright view` would show of a model, its joints at zero or as near as their limits allow.
+
+    Args:
+        text: the description.
+        robot: what it says.
+        library: knows where its parts were written.
+        finder: finds its meshes.
+    """
+    return asyncio.run(_take(text, robot, library, finder))
+
+
+async def _take(text: str, robot: Robot, library: DescriptionLibrary, finder: PackageFinder) -> Snapshot:
+    graph = Graph(on_log=lambda _: None)
+    config = RvizConfig.for_model(robot.root, distance=_VIEW_DISTANCE)
+    for display in config.displays:
+        display.checked = not display.cls.endswith("/TF")  # one tick away, and without it the robot is seen better
+    viewer = Viewer(graph, library=library, finder=finder, config=config, title=robot.name)
+    viewer.manager.start()
+    node = graph.create_node("robot_state_publisher")
+    node.create_publisher(String, "robot_description", DESCRIPTION_QOS).publish(String(text))
+    now = time.time_ns()
+    transforms = RobotTransforms(robot, "")
+    layout = layout_of(robot, JointSettings())
+    zeros = {joint.name: joint.zero for joint in layout.free}
+    moving = transforms.recipe(list(zeros)).batch(list(zeros.values()), now)
+    node.create_publisher(TFMessage, "/tf_static", STATIC_TF_PUBLISHER_QOS).publish(
+        TFMessage(batch=transforms.fixed(now))
+    )
+    node.create_publisher(TFMessage, "/tf", TF_QOS).publish(TFMessage(batch=moving))
+    await graph.settle()
+    try:
+        return replace(snapshot_of(viewer, viewer.manager), fit=True)
+    finally:
+        await viewer.close()
+        await graph.close()

@@ -1,0 +1,347 @@
+"""What one set of pages sees: a configuration, its displays, and what was edited in it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import TYPE_CHECKING, Protocol
+
+from linkwright.diagnostics import phrase
+from linkwright.viewer.config.property_store import Path, PropertyStore
+from linkwright.viewer.config.rviz_config import RvizConfig
+from linkwright.viewer.config.time import Synchronization, read_synchronization, write_synchronization
+from linkwright.viewer.context import ViewerContext
+from linkwright.viewer.displays.base.display import ViewerDisplay, worst
+from linkwright.viewer.displays.robot_model import RobotModelDisplay
+from linkwright.viewer.displays.tf import TfDisplay
+from linkwright.viewer.frames.stream import FrameStream
+from linkwright.viewer.frames.time_control import TimeControl
+from linkwright.viewer.frames.view import FrameView
+from linkwright.viewer.protocol.configuration import EditName
+from linkwright.viewer.protocol.displays import DisplayStatus, PropertyChanged, Tree
+from linkwright.viewer.protocol.frames import FrameTable
+from linkwright.viewer.protocol.message import ServerMessage
+from linkwright.viewer.protocol.parts import StatusRow
+from linkwright.viewer.protocol.time import SyncMode, TimeState
+from linkwright.viewer.visualization.display_tree import DisplayTree
+from linkwright.viewer.visualization.history import Edit, History
+from linkwright.viewer.web.audience import Page, PageGroup
+
+if TYPE_CHECKING:
+    from linkwright.viewer.config.yaml_tree import Memory
+    from linkwright.viewer.web.outbox import Payload
+
+GLOBAL = "global"
+"""The owner of the Global Options, where others have the id of a display."""
+
+_FIXED_FRAME = "Fixed Frame"
+_FRAME_RATE = "Frame Rate"
+
+
+class ManagerOwner(Protocol):
+    """Who keeps managers, and is told of what happens to them."""
+
+    def edited(self, manager: VisualizationManager) -> None:
+        """Undo, redo or whether something is unsaved may have changed."""
+
+    def robot_changed(self) -> None:
+        """A display has another robot."""
+
+    def fixed_frame_changed(self, manager: VisualizationManager) -> None:
+        """The Fixed Frame has changed."""
+
+    def manager_closed(self, manager: VisualizationManager) -> None:
+        """A manager was closed."""
+
+
+class VisualizationManager:
+    """A configuration, its displays and their frames, for the pages that see them.
+
+    Args:
+        context: what all of the viewer works with.
+        config: displays, options and view.
+        owner: told of what happens.
+
+    Attributes:
+        context: what all of the viewer works with.
+        pages: those that see it.
+        view: where the camera of a page that opens is, wherever others have gone.
+        config: the configuration now.
+        opened: counts the configurations that it has had.
+        frames: the frames now.
+        time: whether time stands still, and what leads it.
+        tree: the displays, and what is done to them.
+        history: what was edited.
+    """
+
+    def __init__(self, context: ViewerContext, config: RvizConfig, owner: ManagerOwner) -> None:
+        self.context = context
+        self.pages = PageGroup()
+        self.config = config
+        self.view = config.views.current
+        self.opened = 1
+        self.history = History(lambda: owner.edited(self))
+        self._owner = owner
+        self._global_status: list[StatusRow] = []
+        self.time = TimeControl(context.node.get_clock(), self._time_changed, self._time_signalled)
+        self._stream = FrameStream(
+            context.node,
+            self.pages,
+            self.time,
+            context.transforms,
+            on_frames=self._frames_changed,
+            fade_time=self._fade_time,
+            own_frames=self._own_frames,
+        )
+        self._read_options()
+        self.frames = FrameView(fixed_frame=self.fixed_frame)
+        self.tree = DisplayTree(config, self, self.history, rearranged=self._rearranged)
+
+    # --- life --------------------------------------------------------------------------------------------------
+
+    def start(self) -> None:
+        """Subscribe, and begin."""
+        self._warn()
+        self._stream.start()
+        self.tree.start()
+        self._stream.refresh()
+        self._synchronize()
+
+    def close(self) -> None:
+        """End for good."""
+        self._stream.close()
+        self.tree.stop()
+
+    def open(self, config: RvizConfig) -> None:
+        """Show another configuration; what was edited in the one before is forgotten."""
+        self.tree.stop()
+        self.config = config
+        self.view = config.views.current
+        self.opened += 1
+        self._read_options()
+        self._warn()
+        self.tree.fill(config)
+        self.publish(self.tree_message())
+        self.tree.start()
+        self._stream.refresh()
+        self._synchronize()
+        self._owner.fixed_frame_changed(self)
+        self.history.clear()
+
+    def _warn(self) -> None:
+        for warning in self.config.warnings:
+            self.context.report(warning)
+
+    def _read_options(self) -> None:
+        """Read the Fixed Frame and the Frame Rate."""
+        options = self.config.options
+        options.offer_frames(lambda: sorted(self.frames.names))
+        self._stream.fixed_frame, self._stream.rate = options.text(_FIXED_FRAME), options.number(_FRAME_RATE)
+
+    # --- pages -------------------------------------------------------------------------------------------------
+
+    def publish(self, message: ServerMessage) -> None:
+        """Send a message to the pages that see this configuration."""
+        self.pages.publish(message)
+
+    def opening(self) -> tuple[list[ServerMessage], FrameTable, list[Payload]]:
+        """What a new page is sent: messages, then the frame table, then binary frames."""
+        self._stream.refresh()
+        table, transforms = self._stream.opening
+        messages: list[ServerMessage] = [self.tree_message()]
+        for display in self.displays:
+            messages += display.messages()
+        data: list[Payload] = [frame for display in self.displays for frame in display.data()]
+        return messages, table, [*([transforms] if transforms else []), *data]
+
+    def tree_message(self) -> Tree:
+        """The Displays panel, for pages."""
+        return Tree(
+            global_options=self.config.options.rows(),
+            global_status=self._global_status,
+            global_level=worst(self._global_status),
+            displays=[display.row() for display in self.displays],
+        )
+
+    # --- displays and their properties -------------------------------------------------------------------------
+
+    @property
+    def displays(self) -> list[ViewerDisplay]:
+        """Every display, each group before what is in it."""
+        return self.tree.displays
+
+    def display(self, identity: str) -> ViewerDisplay | None:
+        """The display with an id."""
+        return self.tree.find(identity)
+
+    def robot_models(self) -> list[RobotModelDisplay]:
+        """The displays that show robots."""
+        return [display for display in self.displays if isinstance(display, RobotModelDisplay)]
+
+    def store(self, owner: str) -> PropertyStore:
+        """The properties of a display, or the Global Options.
+
+        Raises:
+            KeyError: there is no such display.
+        """
+        if owner == GLOBAL:
+            return self.config.options
+        display = self.display(owner)
+        if display is None:
+            raise KeyError(owner)
+        return display.properties
+
+    def set_property(self, page: Page, identity: str, value: object) -> None:
+        """Take a value from a page; one that is refused is answered with that which stands."""
+        owner, _, rest = identity.partition("/")
+        display = self.display(owner)
+        if display is None and owner != GLOBAL:
+            return  # it was removed since
+        if display is not None and rest == "Enabled":
+            if not isinstance(value, bool):
+                page.send(PropertyChanged(identity, display.config.checked))
+            else:
+                self.tree.check(display, value)
+            return
+        store = self.store(owner)
+        path = store.find(identity)
+        if path is None:
+            return  # rows of a robot or frame that has gone since
+        before = store.get(*path)
+        try:
+            self._edit(identity, path, lambda: self._set(display, path, value))
+        except ValueError as error:
+            self.context.node.get_logger().warning(phrase("'{identity}': {error}", identity=identity, error=error))
+            page.send(PropertyChanged(identity, before))
+
+    def _set(self, display: ViewerDisplay | None, path: Path, value: object) -> None:
+        if display is not None:
+            display.set_property(path, value)
+        else:
+            self._set_option(path[0], value)
+
+    def _edit(self, identity: str, path: Path, change: Callable[[], None]) -> None:
+        """Change a property so that it can be undone; of a drag only the first step is remembered."""
+        if self.history.is_at(identity):
+            change()
+            self.history.prolong()
+            return
+        owner = identity.partition("/")[0]
+        with self.store(owner).recording() as before:
+            change()
+        if before:
+            self.history.add(Edit(EditName("set", path[-1]), partial(self._swap_values, owner), before, identity))
+
+    def set_fixed_frame(self, frame: str) -> None:
+        """Change the Fixed Frame, as a page would, so that it can be undone."""
+        path = (_FIXED_FRAME,)
+        self._edit(self.config.options.identity(path), path, lambda: self._set_option(_FIXED_FRAME, frame))
+
+    def _swap_values(self, owner: str, memories: list[Memory]) -> list[Memory]:
+        """Restore what the file had for some properties, missing keys included; returns what it has now."""
+        now = self.store(owner).memories(memories)
+        self._recall(owner, memories)
+        return now
+
+    def _recall(self, owner: str, memories: list[Memory]) -> None:
+        display = self.display(owner)
+        if display is not None:
+            display.recall(memories)
+        elif owner == GLOBAL:
+            for path in self.config.options.recall(memories):
+                self._option_changed(path[0])
+
+    def edited(self) -> None:
+        """Something of the file was changed that undo does not know of."""
+        self.history.touch()
+
+    # --- time --------------------------------------------------------------------------------------------------
+
+    def set_time(self, *, paused: bool, mode: SyncMode, source: str) -> None:
+        """Pause or go on, and follow the messages of a display, or none."""
+        self.time.set(paused=paused, mode=mode, source=source)
+        if write_synchronization(self.config.document, Synchronization(mode, source)):
+            self.edited()
+        self._stream.time_changed()
+        for display in self.displays:
+            display.time_changed()
+
+    def reset_time(self) -> None:
+        """Reset time: displays forget messages, and moving frames are forgotten until they are published again."""
+        self.time.reset()
+        self.context.transforms.forget()
+        self._stream.forget()
+        for display in self.displays:
+            display.time_reset()
+
+    def _synchronize(self) -> None:
+        """Begin with what the file says of time, and not paused."""
+        wanted = read_synchronization(self.config.document)
+        self.set_time(paused=False, mode=wanted.mode, source=wanted.source)
+
+    def _time_changed(self) -> None:
+        time = self.time
+        self.publish(TimeState(time.paused, time.mode, time.source, list(time.sources)))
+
+    def _time_signalled(self) -> None:
+        self._stream.look_soon()
+
+    # --- options and frames ------------------------------------------------------------------------------------
+
+    @property
+    def fixed_frame(self) -> str:
+        """The frame that everything is shown in."""
+        return self._stream.fixed_frame
+
+    def _set_option(self, name: str, value: object) -> None:
+        self.config.options.set((name,), value)
+        self._option_changed(name)
+
+    def _option_changed(self, name: str) -> None:
+        options = self.config.options
+        self.publish(PropertyChanged(options.identity((name,)), options.get(name)))
+        if name == _FRAME_RATE:
+            self._stream.rate = options.number(_FRAME_RATE)
+        elif name == _FIXED_FRAME:
+            self._stream.fixed_frame = options.text(_FIXED_FRAME)
+            self._stream.refresh()
+            self._owner.fixed_frame_changed(self)
+
+    def _rearranged(self) -> None:
+        self.publish(self.tree_message())
+
+    def _frames_changed(self, frames: FrameView) -> None:
+        others = frames.names != self.frames.names
+        self.frames = frames
+        for display in self.displays:
+            display.frames_changed()
+        if others:
+            stores = [self.config.options, *(display.properties for display in self.displays)]
+            for change in (change for store in stores for change in store.frame_changes()):
+                self.publish(change)
+        self._show_global_status()
+
+    def _show_global_status(self) -> None:
+        frame, names = self.frames.fixed_frame, self.frames.names
+        missing = f"Frame [{frame}] does not exist"
+        if frame in names:
+            row = StatusRow("Fixed Frame", "ok", "OK")
+        elif names:
+            row = StatusRow("Fixed Frame", "error", missing)
+        else:
+            row = StatusRow("Fixed Frame", "warn", f"No tf data.  Actual error: {missing}")
+        if [row] != self._global_status:
+            self._global_status = [row]
+            self.publish(DisplayStatus(GLOBAL, row.level, [row]))
+
+    def robot_changed(self, gone: set[str]) -> None:
+        """A display has another robot; `gone` are the frames that only the one before had."""
+        self._stream.robot_changed(gone - self._own_frames())
+        self._owner.robot_changed()
+
+    def _own_frames(self) -> frozenset[str]:
+        return frozenset(link.frame for robot in self.robot_models() for link in robot.scene.links)
+
+    def _fade_time(self) -> float | None:
+        shown = (display for display in self.displays if isinstance(display, TfDisplay) and display.enabled)
+        return min((display.properties.number("Frame Timeout") for display in shown), default=None)

@@ -1,0 +1,116 @@
+"""Who may talk to the server: those who know the token, under a name that is this machine's, from its own pages.
+
+The token is in the address that the program prints; the page then has it as a cookie. Names are checked because a
+stranger's site can give its own name this machine's address (DNS rebinding) and would then be of one origin with us.
+"""
+
+from __future__ import annotations
+
+import hmac
+import ipaddress
+import re
+import secrets
+import socket
+from collections.abc import Mapping
+from urllib.parse import urlsplit
+
+_PLAIN_HOST = re.compile(r"[A-Za-z0-9_.\-]+(:\d+)?|\[[0-9A-Fa-f:.]+\](:\d+)?")
+
+TOKEN_PARAMETER = "token"  # noqa: S105 - the name of a query parameter
+
+
+class Gate:
+    """Checks requests.
+
+    Args:
+        host: what the server is bound to; that name is good too.
+        port: for the cookie's name, so that two servers on one machine do not take each other's place.
+    """
+
+    def __init__(self, host: str, port: int) -> None:
+        self.token = secrets.token_urlsafe(24)
+        self.cookie = f"linkwright_{port}"
+        self.cookie_value = secrets.token_urlsafe(24)
+        """Not the token: browsers send cookies to whatever else listens on this machine, whichever its port."""
+        machine = socket.gethostname().lower()
+        self._names = {"localhost", host.lower(), machine, f"{machine}.local"}
+
+    def refusal(
+        self, headers: Mapping[str, str], cookies: Mapping[str, str], query: Mapping[str, str]
+    ) -> tuple[int, str] | None:
+        """HTTP status and reason for which a request is refused; None when it may pass."""
+        host = headers.get("Host", "")
+        if not self.knows(host):
+            return 403, (
+                f"this server does not answer to the name '{host[:200]}': open the address that linkwright printed"
+            )
+        origin = headers.get("Origin")
+        if origin is not None and not _same(origin, host):
+            return 403, f"requests from pages of '{origin[:200]}' are refused"
+        known = _is_same(query.get(TOKEN_PARAMETER), self.token) or any(
+            _is_same(cookies.get(name), self.cookie_value) for name in (self.cookie, self.cookie_name(https=True))
+        )
+        if not known:
+            return 401, "the token is missing or wrong: open the address that linkwright printed, token included"
+        return None
+
+    def knows(self, host_header: str) -> bool:
+        """Whether a Host header names this machine: a bare address, localhost, or its own name."""
+        if not _PLAIN_HOST.fullmatch(host_header):
+            return False
+        try:
+            name = urlsplit(f"//{host_header}").hostname or ""
+        except ValueError:
+            return False
+        try:
+            ipaddress.ip_address(name)
+        except ValueError:
+            return name.removesuffix(".") in self._names
+        return True  # an IP address is not looked up, so it cannot have been rebound
+
+    def cookie_name(self, *, https: bool) -> str:
+        """The name of the cookie; over HTTPS one that browsers take and send by HTTPS and from this host only."""
+        return f"__Host-{self.cookie}" if https else self.cookie
+
+
+def _same(origin: str, host: str) -> bool:
+    try:
+        parts = urlsplit(origin)
+    except ValueError:
+        return False
+    return parts.scheme in ("http", "https") and parts.netloc.lower() == host.lower()
+
+
+def security_headers(host: str) -> dict[str, str]:
+    """Headers for every answer.
+
+    Scripts come from files of ours only. They may evaluate text: ours never do, but browser automation waits for a
+    condition on ``window.linkwright`` that way, and without inline scripts there is no text of a stranger's to
+    evaluate. Styles may stand inline, which the dock and the property grid need; images and workers may also be made
+    by the page itself.
+    """
+    policy = {
+        "default-src": "'none'",
+        "script-src": "'self' 'unsafe-eval'",
+        "style-src": "'self' 'unsafe-inline'",
+        "img-src": "'self' data: blob:",
+        "font-src": "'self' data:",
+        "connect-src": f"'self' ws://{host} wss://{host} data: blob:",
+        "worker-src": "'self' blob:",
+        "manifest-src": "'self'",
+        "base-uri": "'none'",
+        "form-action": "'none'",
+        "frame-ancestors": "'none'",
+    }
+    return {
+        "Content-Security-Policy": "; ".join(f"{name} {value}" for name, value in policy.items()),
+        "Cross-Origin-Opener-Policy": "same-origin",
+        "Cross-Origin-Resource-Policy": "same-origin",
+        "Referrer-Policy": "no-referrer",
+        "Server": "linkwright",
+        "X-Content-Type-Options": "nosniff",
+    }
+
+
+def _is_same(given: str | None, secret: str) -> bool:
+    return given is not None and hmac.compare_digest(given.encode(errors="replace"), secret.encode())

@@ -1,0 +1,276 @@
+"""The open pages: what each is sent, and what it sends."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from functools import partial
+from typing import TYPE_CHECKING
+
+from linkwright.graph import run_logged
+from linkwright.viewer.protocol.codec import BadMessageError, decode, encode, redundancy_key
+from linkwright.viewer.protocol.message import PageMessage, ServerMessage
+from linkwright.viewer.protocol.session import Received
+from linkwright.viewer.web.in_pieces import InPieces
+from linkwright.viewer.web.line import BULK, Line, Pace
+from linkwright.viewer.web.outbox import TRANSFORMS, Made, Outbox, Payload
+from linkwright.viewer.web.scaled_data import ScaledData
+
+if TYPE_CHECKING:
+    from aiohttp.web import WebSocketResponse
+
+    from linkwright.graph import Logger
+
+MAXIMUM_PAGES = 32
+"""Open at once; more are refused."""
+
+_PATIENCE = 20
+"""Messages outside of the protocol that a page may send before it is cut off."""
+
+_QUIET = 0.3
+"""Seconds of an idle line after which a page is sent all of what it has only a part of."""
+
+
+class Page:
+    """One open page: its socket and its outbox.
+
+    Args:
+        socket: of the page.
+        own: by what the page names displays of its own; empty for one that shares those of all.
+    """
+
+    def __init__(self, socket: WebSocketResponse, own: str = "") -> None:
+        self.outbox = Outbox()
+        self.own = own
+        self.line = Line(asyncio.get_running_loop().time)
+        self._socket = socket
+        self._reduced: dict[str, tuple[ScaledData, int]] = {}
+        self._opening: list[Payload] = []
+        self._completing: asyncio.TimerHandle | None = None
+        self._completion: InPieces | None = None
+        self._completions = 0
+
+    def open(self, opening: Iterable[Payload]) -> None:
+        """Say what is sent first."""
+        self._opening = list(opening)
+
+    def send(self, message: ServerMessage) -> None:
+        """Have a message sent to this page only."""
+        self.outbox.put(redundancy_key(message), encode(message))
+
+    async def write(self) -> None:
+        """Send the opening messages, then whatever comes into the outbox, until the socket is gone."""
+        try:
+            for payload in self._opening:
+                made = self.outbox.make(payload)
+                if made is not None:
+                    await self._send(made)
+            self._opening.clear()
+            while True:
+                await self._send(await self.outbox.take())
+        except ConnectionError:
+            pass  # the reading side sees the end too, and tidies up
+
+    def received(self, count: int) -> None:
+        """The page says how many messages it has."""
+        self.line.received(count)
+        self._line_changed()
+
+    def close(self) -> None:
+        """Cancel what is scheduled."""
+        if self._completing is not None:
+            self._completing.cancel()
+            self._completing = None
+
+    async def _send(self, payload: Made | ScaledData) -> None:
+        if not isinstance(payload, (str, bytes)):
+            payload = await self._fitted(payload)
+        size = len(payload)
+        began = self.line.sending(size)
+        if isinstance(payload, bytes):
+            await self._socket.send_bytes(payload)
+        else:
+            await self._socket.send_str(payload)
+        self.line.sent(size, began)
+        self._line_changed()
+
+    async def _fitted(self, payload: ScaledData) -> bytes:
+        """As much of a content as the line carries; all of it follows when the line has nothing else to carry."""
+        room = self.line.room
+        frame = await payload.fitting(room)
+        if frame is payload.whole:
+            self._reduced.pop(payload.key, None)
+        else:
+            self._reduced[payload.key] = (payload, room)
+        return frame
+
+    def _line_changed(self) -> None:
+        self.outbox.hold(self.line.is_full)
+        if self._completion is not None and self._completion.done:
+            self._completed(self._completion)
+        room = self.line.room
+        for key, (payload, was) in list(self._reduced.items()):
+            if payload.gone:
+                del self._reduced[key]
+            elif room >= 2 * was and key not in self.outbox and not self._completes(payload):
+                del self._reduced[key]
+                self.outbox.put(key, payload)
+        if self._completion is not None:
+            if self._completion.key not in self.outbox:
+                self.outbox.put(self._completion.key, self._completion)
+        elif not self.line.is_idle:
+            self.close()
+        elif self._reduced and self._completing is None:
+            self._completing = asyncio.get_running_loop().call_later(_QUIET, self._complete)
+
+    def _complete(self) -> None:
+        """Begin to send all of something that comes seldom, in pieces, however slow the line is."""
+        self._completing = None
+        for payload, _ in self._reduced.values():
+            if payload.key not in self.outbox:
+                self._completions += 1
+                self._completion = InPieces(payload, self._completions, self._piece)
+                self.outbox.put(payload.key, self._completion)
+                return
+
+    def _completes(self, payload: ScaledData) -> bool:
+        return self._completion is not None and self._completion.payload is payload
+
+    def _completed(self, completion: InPieces) -> None:
+        self._completion = None
+        if self._reduced.get(completion.key, (None,))[0] is completion.payload:
+            del self._reduced[completion.key]
+
+    def _piece(self) -> int:
+        """Bytes of which two are on the line at most."""
+        return max(BULK, self.line.room // 2)
+
+
+class PageGroup:
+    """Pages that are sent the same messages."""
+
+    def __init__(self) -> None:
+        self._pages: dict[Page, None] = {}
+
+    def __len__(self) -> int:
+        return len(self._pages)
+
+    def __contains__(self, page: Page) -> bool:
+        return page in self._pages
+
+    def add(self, page: Page) -> None:
+        """Send to a page too, from now on."""
+        self._pages[page] = None
+
+    def discard(self, page: Page) -> None:
+        """Send to a page no longer."""
+        self._pages.pop(page, None)
+
+    def publish(self, message: ServerMessage) -> None:
+        """Send a message to every page."""
+        if self._pages:
+            key, text = redundancy_key(message), encode(message)
+            for page in self._pages:
+                page.outbox.put(key, text)
+
+    def send_data(self, key: str, payload: Payload) -> None:
+        """Send what a display draws to every page; what waits under its key is dropped."""
+        for page in self._pages:
+            page.outbox.put(key, payload)
+
+    def send_transforms(self, frame: bytes) -> None:
+        """Send a binary frame to every page."""
+        for page in self._pages:
+            page.outbox.put(TRANSFORMS, frame)
+
+
+class Audience(PageGroup):
+    """All open pages.
+
+    Args:
+        opening: what a page is sent first, the whole state as it is.
+        receive: called with each message of a page.
+        gone: called when a page has closed.
+        logger: for messages that are none.
+    """
+
+    def __init__(
+        self,
+        opening: Callable[[Page], list[Payload]],
+        receive: Callable[[Page, PageMessage], None],
+        gone: Callable[[Page], None],
+        logger: Logger,
+    ) -> None:
+        super().__init__()
+        self._opening = opening
+        self._receive = receive
+        self._gone = gone
+        self._logger = logger
+        self._sockets: set[WebSocketResponse] = set()
+        self._expected = 0
+
+    @property
+    def is_full(self) -> bool:
+        """Whether no more pages may come."""
+        return len(self) + self._expected >= MAXIMUM_PAGES
+
+    @contextmanager
+    def expecting(self) -> Iterator[None]:
+        """Reserve a place for a page whose socket is being opened; `attend` takes it."""
+        self._expected += 1
+        try:
+            yield
+        finally:
+            self._expected -= 1
+
+    async def attend(self, socket: WebSocketResponse, own: str = "") -> None:
+        """Serve a page until it goes; `own` is by what it names displays of its own."""
+        page = Page(socket, own)
+        page.open(self._opening(page))
+        self.add(page)
+        self._sockets.add(socket)
+        writer = asyncio.get_running_loop().create_task(page.write())
+        try:
+            await self._listen(page, socket)
+        finally:
+            self.discard(page)
+            self._sockets.discard(socket)
+            self._gone(page)
+            page.close()
+            writer.cancel()
+            await asyncio.gather(writer, return_exceptions=True)
+
+    async def close(self) -> None:
+        """Close the connection to every page (1001, going away)."""
+        goodbyes = (socket.close(code=1001, message=b"the viewer is closing") for socket in list(self._sockets))
+        await asyncio.gather(*goodbyes, return_exceptions=True)
+
+    async def _listen(self, page: Page, socket: WebSocketResponse) -> None:
+        from aiohttp import WSMsgType
+
+        patience = _PATIENCE
+        pace = Pace(asyncio.get_running_loop().time)
+        async for message in socket:
+            if message.type is WSMsgType.BINARY:
+                await socket.close(code=1003, message=b"pages send text only")
+                return
+            if message.type is not WSMsgType.TEXT:
+                continue
+            if (pause := pace.wait()) > 0:
+                await asyncio.sleep(pause)
+            try:
+                decoded = decode(message.data)
+            except BadMessageError as error:
+                self._logger.warning(f"A page sent what is no message: {error}")
+                patience -= 1
+                if patience == 0:
+                    await socket.close(code=1008, message=b"too many messages outside of the protocol")
+                    return
+            else:
+                if isinstance(decoded, Received):
+                    page.received(decoded.count)
+                else:
+                    run_logged(
+                        self._logger, f"'{type(decoded).__name__}' of a page", partial(self._receive, page, decoded)
+                    )

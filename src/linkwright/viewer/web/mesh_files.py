@@ -1,0 +1,196 @@
+"""Which files of the disk a page may read: meshes that a description names, and what lies beside them.
+
+A description may come from a stranger, and so may a request. A page is served only meshes and images, only from
+folders that a description shown now names, and only where the real path, links followed, is still inside.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+from dataclasses import dataclass, field
+from pathlib import Path, PurePosixPath
+from urllib.parse import quote
+
+from linkwright.diagnostics import LinkwrightError, phrase
+from linkwright.packages import PackageFinder, PackageNotFoundError, enclosing_package
+
+MESH_TYPES = {
+    ".stl": "model/stl",
+    ".dae": "model/vnd.collada+xml",
+    ".obj": "model/obj",
+    ".glb": "model/gltf-binary",
+    ".gltf": "model/gltf+json",
+}
+IMAGE_TYPES = {
+    ".png": "image/png",
+    ".jpg": "image/jpeg",
+    ".jpeg": "image/jpeg",
+    ".bmp": "image/bmp",
+    ".gif": "image/gif",
+    ".webp": "image/webp",
+    ".tga": "image/x-tga",
+    ".tif": "image/tiff",
+    ".tiff": "image/tiff",
+    ".dds": "image/vnd-ms.dds",
+    ".ktx2": "image/ktx2",
+}
+CONTENT_TYPES = {**MESH_TYPES, **IMAGE_TYPES, ".mtl": "model/mtl", ".bin": "application/octet-stream"}
+
+_PACKAGE_URI = re.compile(r"package://([^/%]+)/")
+
+_LOOSE_DEPTH = 2
+"""A mesh outside of any package opens its folder and the folders in that, no more."""
+
+
+@dataclass(frozen=True, slots=True)
+class ServedFolder:
+    """A folder that pages may read from: a package's, or for `package` None that of a loose mesh."""
+
+    root: Path
+    package: str | None
+
+    @property
+    def key(self) -> str:
+        """What stands for it in addresses: telling, yet nothing of the path above it."""
+        name = re.sub(r"[^A-Za-z0-9_.-]", "_", self.package or self.root.name)
+        return f"{name}-{hashlib.sha256(os.fsencode(self.root)).hexdigest()[:8]}"
+
+
+@dataclass(frozen=True, slots=True)
+class Located:
+    """Where a file named by a description is: an address for the page, or why there is none."""
+
+    url: str | None
+    problem: str | None = None
+
+
+class FileRefusedError(Exception):
+    """A request for a file is refused.
+
+    Attributes:
+        status: the HTTP status, 403 or 404.
+    """
+
+    def __init__(self, status: int, text: str) -> None:
+        super().__init__(text)
+        self.status = status
+
+
+@dataclass(slots=True)
+class MeshIndex:
+    """Finds the files that one description names, and collects the folders they are in."""
+
+    finder: PackageFinder
+    folders: dict[str, ServedFolder] = field(default_factory=dict)
+    _unknown: dict[str, Located] = field(default_factory=dict)
+
+    def locate(self, uri: str, base: Path | None, types: dict[str, str]) -> Located:
+        """The address of a file.
+
+        Args:
+            uri: as the description has it: ``package://``, ``file://`` or a path.
+            base: the folder that a relative path starts from, that of the file the URI is written in.
+            types: the endings that are understood.
+        """
+        package = _PACKAGE_URI.match(uri)
+        if package and package[1] in self._unknown:
+            return self._unknown[package[1]]  # a robot names a package it lacks many times, and each search is long
+        try:
+            path = Path(os.path.normpath(self.finder.resolve(uri, base)))
+        except PackageNotFoundError as error:
+            return self._unknown.setdefault(error.name, Located(None, error.diagnostics[0].message))
+        except LinkwrightError as error:
+            return Located(None, error.diagnostics[0].message)
+        except ValueError:
+            return Located(None, "its path holds a character that no path can hold")
+        if not path.is_file():
+            return Located(None, f"no file '{path}'")
+        if path.suffix.lower() not in types:
+            known = ", ".join(sorted(suffix[1:].upper() for suffix in types))
+            return Located(None, f"'{path}' is of no format that is shown: {known}")
+        folder = self._folder_of(uri, path)
+        relative = path.relative_to(folder.root)
+        try:
+            resolve(folder, relative.as_posix())
+        except FileRefusedError as error:
+            return Located(None, phrase("'{path}': {error}", path=path, error=error))
+        self.folders[folder.key] = folder
+        version = path.stat().st_mtime_ns
+        return Located(f"/mesh/{folder.key}/{quote(relative.as_posix())}?v={version:x}")
+
+    def _folder_of(self, uri: str, path: Path) -> ServedFolder:
+        named = _PACKAGE_URI.match(uri)
+        share = self.finder.find(named[1]) if named else None
+        if named and share and path.is_relative_to(share):
+            return ServedFolder(share, named[1])
+        package = enclosing_package(path.parent)
+        return ServedFolder(package[1], package[0]) if package else ServedFolder(path.parent, None)
+
+
+class MeshFolders:
+    """The folders that pages may read from now, by key; each display brings those of its description."""
+
+    def __init__(self) -> None:
+        self._folders: dict[str, dict[str, ServedFolder]] = {}
+
+    def replace(self, owner: str, folders: dict[str, ServedFolder]) -> None:
+        """Make these the folders of one display, in place of those it had."""
+        self._folders[owner] = folders
+
+    def copy(self) -> MeshFolders:
+        """The folders as they are now, whatever becomes of the displays."""
+        made = MeshFolders()
+        made._folders.update(self._folders)
+        return made
+
+    def file(self, key: str, relative: str) -> Path:
+        """The real path of a file asked for.
+
+        Args:
+            key: of a folder.
+            relative: the path below it, percent-decoded.
+
+        Raises:
+            FileRefusedError: 404 where there is no such folder or file, 403 where it may not be read.
+        """
+        folder = next((folders[key] for folders in self._folders.values() if key in folders), None)
+        if folder is None:
+            raise FileRefusedError(404, "no description shown now names this folder")
+        return resolve(folder, relative)
+
+
+def resolve(folder: ServedFolder, relative: str) -> Path:
+    """The real path of a file below a folder, links followed and checked.
+
+    A link may lead out of a package's folder only into another folder of the same package: that is how
+    ``colcon build --symlink-install`` lays share folders out.
+
+    Raises:
+        FileRefusedError: 404 where there is no such file, 403 where it may not be read.
+    """
+    parts = relative.split("/")
+    if any(part in ("", ".", "..") or "\\" in part or "\0" in part for part in parts):
+        raise FileRefusedError(403, "the path leads out of its folder")
+    if PurePosixPath(relative).suffix.lower() not in CONTENT_TYPES:
+        raise FileRefusedError(403, "only meshes and images are served")
+    if folder.package is None and len(parts) > _LOOSE_DEPTH:
+        raise FileRefusedError(403, "too deep below a mesh that is in no package")
+    try:
+        real = (folder.root / relative).resolve(strict=True)
+        root = folder.root.resolve(strict=True)
+    except (OSError, RuntimeError, ValueError):
+        raise FileRefusedError(404, "no such file") from None
+    if not real.is_file():
+        raise FileRefusedError(404, "no such file")
+    if real.suffix.lower() not in CONTENT_TYPES:
+        raise FileRefusedError(403, "only meshes and images are served")
+    if not real.is_relative_to(root) and not _of_package(real, folder.package):
+        raise FileRefusedError(403, "a link leads out of the package")
+    return real
+
+
+def _of_package(path: Path, name: str | None) -> bool:
+    package = enclosing_package(path.parent)
+    return package is not None and package[0] == name

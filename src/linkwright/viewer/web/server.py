@@ -1,0 +1,250 @@
+"""The web server: the page, its WebSocket, and the meshes that descriptions name."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import re
+import stat
+from pathlib import Path
+from typing import TYPE_CHECKING, cast
+from urllib.parse import quote
+
+from aiohttp import web
+
+from linkwright.viewer.web.access import TOKEN_PARAMETER, Gate, security_headers
+from linkwright.viewer.web.admission import Admission
+from linkwright.viewer.web.line import MOST_UNSENT, keep_short
+from linkwright.viewer.web.listening import url_of
+from linkwright.viewer.web.mesh_files import CONTENT_TYPES, FileRefusedError, MeshFolders
+
+if TYPE_CHECKING:
+    import socket
+    from collections.abc import Awaitable, Callable
+
+    from linkwright.viewer.web.audience import Audience
+    from linkwright.viewer.web.downloads import Downloads
+
+PAGE_FOLDER = Path(__file__).parent.parent / "page"
+"""Where ``frontend/`` is built to."""
+
+MAXIMUM_MESSAGE = 1024 * 1024
+"""Longest message taken from a page, bytes: a configuration file. A longer one ends the connection (1009)."""
+
+_OWN_KEY = re.compile(r"[0-9A-Za-z-]{8,64}")
+_HEARTBEAT = 15.0
+_IDLE = 30.0
+"""Seconds that a connection may wait for its next request."""
+
+_BACKLOG = 128
+_GOODBYE = 0.5
+"""Seconds a page has to answer a closing handshake, and a request to end."""
+
+_NOT_BUILT = """\
+The page of this viewer has not been built.
+
+In a checkout of Linkwright run
+
+    make page
+
+and reload. An installed wheel carries the page; if you see this there, the wheel was built without it.
+"""
+_PAGE_TYPES = {
+    ".html": "text/html; charset=utf-8",
+    ".js": "text/javascript; charset=utf-8",
+    ".css": "text/css; charset=utf-8",
+    ".json": "application/json",
+    ".map": "application/json",
+    ".svg": "image/svg+xml",
+    ".png": "image/png",
+    ".ico": "image/x-icon",
+    ".woff2": "font/woff2",
+    ".woff": "font/woff",
+    ".wasm": "application/wasm",
+    ".webmanifest": "application/manifest+json",
+    ".txt": "text/plain; charset=utf-8",
+}
+
+
+class WebServer:
+    """Serves one viewer.
+
+    Args:
+        gate: who may come in.
+        audience: takes the WebSockets.
+        meshes: the folders that may be read.
+        downloads: files that were made for pages.
+        page_folder: the built page.
+    """
+
+    def __init__(
+        self,
+        gate: Gate,
+        audience: Audience,
+        meshes: MeshFolders,
+        downloads: Downloads,
+        page_folder: Path = PAGE_FOLDER,
+    ) -> None:
+        self._gate = gate
+        self._audience = audience
+        self._meshes = meshes
+        self._downloads = downloads
+        self._page_folder = page_folder
+        self._runner: web.AppRunner | None = None
+        self._listening: asyncio.Server | None = None
+        self._admission: Admission | None = None
+
+    async def start(self, listener: socket.socket) -> str:
+        """Serve on a listening socket; the address to open, token included."""
+        application = web.Application(middlewares=[self._guard])
+        application.on_response_prepare.append(self._add_headers)
+        application.router.add_get("/", self._index)
+        application.router.add_get("/ws", self._socket, allow_head=False)
+        application.router.add_get("/mesh/{key}/{path:.+}", self._mesh)
+        application.router.add_get("/export/{key}/{name}", self._export, allow_head=False)
+        application.router.add_get("/{path:.+}", self._page_file)
+        self._runner = web.AppRunner(
+            application, handle_signals=False, access_log=None, shutdown_timeout=_GOODBYE, keepalive_timeout=_IDLE
+        )
+        await self._runner.setup()
+        loop = asyncio.get_running_loop()
+        self._admission = Admission(cast("web.Server", self._runner.server))
+        self._listening = await loop.create_server(self._admission, sock=listener, backlog=_BACKLOG)
+        return f"{url_of(listener)}?{TOKEN_PARAMETER}={self._gate.token}"
+
+    async def close(self) -> None:
+        """Close the connections to pages and stop."""
+        if self._listening is not None:
+            self._listening.close()
+            self._listening = None
+        await self._audience.close()
+        if self._runner is not None:
+            await self._runner.cleanup()
+            self._runner = None
+
+    # --- every request -----------------------------------------------------------------------------------------
+
+    @web.middleware
+    async def _guard(
+        self, request: web.Request, handler: Callable[[web.Request], Awaitable[web.StreamResponse]]
+    ) -> web.StreamResponse:
+        refusal = self._gate.refusal(request.headers, request.cookies, request.query)
+        if refusal is not None:
+            status, reason = refusal
+            response = web.Response(status=status, text=reason[0].upper() + reason[1:] + ".\n")
+            response.force_close()
+            return response
+        if self._admission is not None:
+            self._admission.admit(request.protocol)
+        return await handler(request)
+
+    async def _add_headers(self, request: web.Request, response: web.StreamResponse) -> None:
+        host = request.host if self._gate.knows(request.host) else "localhost"
+        response.headers.update(security_headers(host))
+        response.headers.setdefault("Cache-Control", "no-store")
+
+    # --- answers -----------------------------------------------------------------------------------------------
+
+    async def _index(self, request: web.Request) -> web.StreamResponse:
+        index = self._page_folder / "index.html"
+        if not index.is_file():
+            return web.Response(status=503, text=_NOT_BUILT)
+        response = await _file_response(request, index, _PAGE_TYPES[".html"], "no-cache")
+        https = request.secure or request.headers.get("X-Forwarded-Proto") == "https"
+        name, value = self._gate.cookie_name(https=https), self._gate.cookie_value
+        response.set_cookie(name, value, httponly=True, samesite="Strict", path="/", secure=https)
+        return response
+
+    async def _page_file(self, request: web.Request) -> web.StreamResponse:
+        path = request.match_info["path"]
+        parts = path.split("/")
+        content_type = _PAGE_TYPES.get(Path(parts[-1]).suffix)
+        if content_type is None or any(part in ("", ".", "..") or "\0" in part or "\\" in part for part in parts):
+            raise web.HTTPNotFound(text="There is no such page.\n")
+        hashed = parts[0] == "assets"  # Vite names these by their content
+        cache = "private, max-age=31536000, immutable" if hashed else "no-cache"
+        file = self._page_folder / path
+        packed = file.with_name(f"{file.name}.gz")
+        if not (hashed and _takes_gzip(request) and packed.is_file()):
+            return await _file_response(request, file, content_type, cache)
+        # A quarter of the bytes: over a slow line the page is there in seconds instead of tens of them.
+        response = await _file_response(request, packed, content_type, cache)
+        response.headers.update({"Content-Encoding": "gzip", "Vary": "Accept-Encoding"})
+        return response
+
+    async def _mesh(self, request: web.Request) -> web.StreamResponse:
+        key, relative = request.match_info["key"], request.match_info["path"]
+        try:
+            path = await asyncio.to_thread(self._meshes.file, key, relative)
+        except FileRefusedError as error:
+            return web.Response(status=error.status, text=f"Refused: {error}.\n")
+        return await _file_response(request, path, CONTENT_TYPES[path.suffix.lower()], "private, no-cache")
+
+    async def _export(self, request: web.Request) -> web.StreamResponse:
+        file = self._downloads.take(request.match_info["key"])
+        if file is None:
+            raise web.HTTPNotFound(text="There is no such file; it can be fetched once.\n")
+        attached = f"attachment; filename*=UTF-8''{quote(file.name)}"
+        return web.Response(
+            body=file.data, headers={"Content-Type": file.content_type, "Content-Disposition": attached}
+        )
+
+    async def _socket(self, request: web.Request) -> web.StreamResponse:
+        if self._audience.is_full:
+            return web.Response(status=503, text="Too many pages are open.\n")
+        socket = web.WebSocketResponse(
+            heartbeat=_HEARTBEAT,
+            timeout=_GOODBYE,
+            compress=False,
+            max_msg_size=MAXIMUM_MESSAGE,
+            writer_limit=MOST_UNSENT,
+        )
+        if not socket.can_prepare(request):
+            return web.Response(status=400, text="This address is for the page's WebSocket.\n")
+        with self._audience.expecting():
+            await socket.prepare(request)
+        if request.transport is not None:
+            keep_short(request.transport)
+        await self._audience.attend(socket, _own_displays(request))
+        return socket
+
+
+def _own_displays(request: web.Request) -> str:
+    """By what a page names displays of its own in the address of its socket; empty for one that shares those of all."""
+    key = request.query.get("own", "")
+    return key if _OWN_KEY.fullmatch(key) else ""
+
+
+def _takes_gzip(request: web.Request) -> bool:
+    offered = request.headers.get("Accept-Encoding", "").split(",")
+    return any(each.strip().lower() == "gzip" for each in offered)
+
+
+async def _file_response(request: web.Request, path: Path, content_type: str, cache: str) -> web.Response:
+    """A whole file, with an ETag that an edit changes; 304 where the browser has it already.
+
+    aiohttp's own FileResponse also looks for compressed files beside the one asked for, which nobody has checked.
+    """
+    known = request.headers.get("If-None-Match", "")
+    try:
+        tag, modified, body = await asyncio.to_thread(_read, path, known)
+    except OSError:
+        raise web.HTTPNotFound(text="There is no such file.\n") from None
+    headers = {"Cache-Control": cache, "ETag": tag}
+    if body is None:
+        return web.Response(status=304, headers=headers)
+    response = web.Response(body=body, headers={**headers, "Content-Type": content_type})
+    response.last_modified = modified
+    return response
+
+
+def _read(path: Path, known: str) -> tuple[str, float, bytes | None]:
+    """ETag, time of change (seconds) and content of a regular file; no content when its ETag is known."""
+    descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
+    with open(descriptor, "rb") as file:  # noqa: PTH123 - a descriptor, not a path
+        facts = os.fstat(descriptor)
+        if not stat.S_ISREG(facts.st_mode):
+            raise OSError("not a regular file")
+        tag = f'"{facts.st_mtime_ns:x}-{facts.st_size:x}"'
+        tags = {each.strip().removeprefix("W/") for each in known.split(",")}
+        return tag, facts.st_mtime, None if tag in tags else file.read()

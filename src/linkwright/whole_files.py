@@ -1,0 +1,136 @@
+"""Writing a file whole or not at all: whatever goes wrong, the file that was there is still there.
+
+All commands write their files by this. It imports little, because short commands load it: neither pathlib nor secrets.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import stat
+from contextlib import suppress
+
+NO_SPACE = frozenset({errno.ENOSPC, errno.EFBIG, errno.EIO, getattr(errno, "EDQUOT", errno.ENOSPC)})
+"""A disk that is full, a quota or limit that is reached, a disk that is broken: writing in place would only destroy."""
+
+_LONGEST_NAME = 200  # bytes; a draft's name gets some more, and 255 are allowed
+
+
+def write_whole_file(path: str | os.PathLike[str], data: str | bytes, *, mode: int | None = None) -> None:
+    """Write a file beside the one that is there and put it in its place; a link stays a link.
+
+    Where the folder does not allow that, or the file is a mount of its own, as Docker makes them, the file is written
+    in place, with a copy of what was in it beside it or in the folder for temporary files until that is done.
+
+    Args:
+        path: the file; its folder must exist. Devices and pipes are written to as they are.
+        data: what it shall hold; a text is written as UTF-8, with its own line ends.
+        mode: its permissions; when left out those it has, or the usual ones of a new file.
+
+    Raises:
+        OSError: it cannot be written; then it holds what it held before.
+    """
+    content = data.encode("utf-8") if isinstance(data, str) else data
+    target = os.path.realpath(os.fspath(path))
+    kept = _permissions(target)
+    if kept is None and os.path.exists(target):
+        with open(target, "wb", buffering=0) as device:
+            _write_all(device.fileno(), content)
+        return
+    mode = kept if mode is None else mode
+    try:
+        _replace(target, content, mode)
+    except OSError as error:
+        if kept is None or error.errno in NO_SPACE:
+            raise
+        _write_in_place(target, content)
+
+
+def _permissions(path: str) -> int | None:
+    """Those of a file that is there; None where there is none, or something else."""
+    try:
+        facts = os.stat(path)
+    except OSError:
+        return None
+    return stat.S_IMODE(facts.st_mode) if stat.S_ISREG(facts.st_mode) else None
+
+
+def _replace(target: str, content: bytes, mode: int | None) -> None:
+    draft = _beside(target, "draft")
+    _create(draft, content)
+    try:
+        if mode is not None:
+            os.chmod(draft, mode)
+        os.replace(draft, target)
+    except BaseException:
+        _remove(draft)
+        raise
+
+
+def _write_in_place(target: str, content: bytes) -> None:
+    """Write over a file; when that fails, what was in it is written back, and stays in the copy if that fails too."""
+    with open(target, "r+b", buffering=0) as file:
+        before = file.readall()
+        copy = _copy(target, before)
+        try:
+            _overwrite(file.fileno(), content)
+        except BaseException as error:
+            try:
+                _overwrite(file.fileno(), before)
+            except OSError:
+                if isinstance(error, OSError):
+                    error.strerror = f"{error.strerror}; what was in it is now in '{copy}'"
+                raise error from None
+            _remove(copy)
+            raise
+        _remove(copy)
+
+
+def _copy(target: str, content: bytes) -> str:
+    import tempfile
+
+    copy = _beside(target, "before")
+    try:
+        _create(copy, content)
+    except OSError:
+        copy = os.path.join(tempfile.gettempdir(), os.path.basename(copy))
+        _create(copy, content)
+    return copy
+
+
+def _beside(target: str, what: str) -> str:
+    folder, name = os.path.split(target)
+    name = os.fsdecode(os.fsencode(name)[:_LONGEST_NAME])
+    return os.path.join(folder, f".{name}.{what}-{os.urandom(4).hex()}")
+
+
+def _create(path: str, content: bytes) -> None:
+    """Make a file that is on the disk when this returns, or not there when it fails."""
+    descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o666)
+    try:
+        try:
+            _write_all(descriptor, content)
+            os.fsync(descriptor)
+        finally:
+            os.close(descriptor)
+    except BaseException:
+        _remove(path)
+        raise
+
+
+def _overwrite(descriptor: int, content: bytes) -> None:
+    os.lseek(descriptor, 0, os.SEEK_SET)
+    _write_all(descriptor, content)
+    os.ftruncate(descriptor, len(content))
+    os.fsync(descriptor)
+
+
+def _write_all(descriptor: int, content: bytes) -> None:
+    rest = memoryview(content)
+    while rest:
+        rest = rest[os.write(descriptor, rest) :]
+
+
+def _remove(path: str) -> None:
+    with suppress(OSError):
+        os.unlink(path)

@@ -1,0 +1,275 @@
+"""The C interface of Eclipse Cyclone DDS, as far as it is used here, bound to the library of the `cyclonedds` wheel.
+
+The Python classes of `cyclonedds` are built over the same functions. Two of their habits do not fit a process that
+publishes from the thread of an event loop: `DataWriter.write` keeps Python's global lock while it waits for slow
+readers, and every entity's `__del__` deletes it in whatever thread the garbage collector runs. So only what has no
+equal in C is taken from there: topics for types described in Python, and taking samples as bytes.
+
+Functions that may wait are called with the global lock released, the quick ones with it held: giving it up costs up to
+five milliseconds each time when another thread computes.
+"""
+
+from __future__ import annotations
+
+import ctypes as c
+from functools import lru_cache
+from typing import Any
+
+INFINITY = 0x7FFF_FFFF_FFFF_FFFF
+"""DDS_INFINITY, nanoseconds."""
+
+TIMEOUT = -10
+
+BUILTIN_PARTICIPANTS = 0x7FFF_0001
+BUILTIN_PUBLICATIONS = 0x7FFF_0003
+BUILTIN_SUBSCRIPTIONS = 0x7FFF_0004
+"""Topics that Cyclone makes from what discovery says (DDS_BUILTIN_TOPIC_DCPS...)."""
+
+ANY_STATE = 0x7F
+"""Sample, view and instance states: everything (DDS_ANY_STATE)."""
+
+INSTANCE_ALIVE = 16
+
+LOG_ERRORS = 3
+"""DDS_LC_FATAL and DDS_LC_ERROR."""
+
+OFFERED_INCOMPATIBLE_QOS = 1 << 3
+REQUESTED_INCOMPATIBLE_QOS = 1 << 4
+SAMPLE_LOST = 1 << 5
+DATA_AVAILABLE = 1 << 8
+LIVELINESS_CHANGED = 1 << 10
+PUBLICATION_MATCHED = 1 << 11
+SUBSCRIPTION_MATCHED = 1 << 12
+
+
+class Sample(c.Structure):
+    """What a writer of a type described in Python is given: serialised bytes."""
+
+    _fields_ = (("data", c.c_char_p), ("size", c.c_size_t))
+
+
+class MatchedStatus(c.Structure):
+    """dds_publication_matched_status_t and dds_subscription_matched_status_t."""
+
+    _fields_ = (
+        ("total_count", c.c_uint32),
+        ("total_count_change", c.c_int32),
+        ("current_count", c.c_uint32),
+        ("current_count_change", c.c_int32),
+        ("last_handle", c.c_uint64),
+    )
+
+
+class CountStatus(c.Structure):
+    """dds_sample_lost_status_t."""
+
+    _fields_ = (("total_count", c.c_uint32), ("total_count_change", c.c_int32))
+
+
+class LivelinessChangedStatus(c.Structure):
+    """dds_liveliness_changed_status_t."""
+
+    _fields_ = (
+        ("alive_count", c.c_uint32),
+        ("not_alive_count", c.c_uint32),
+        ("alive_count_change", c.c_int32),
+        ("not_alive_count_change", c.c_int32),
+        ("last_handle", c.c_uint64),
+    )
+
+
+_QOS = c.c_void_p
+_ENTITY = c.c_int32
+_HANDLES = c.POINTER(c.c_uint64)
+
+_QUICK: dict[str, tuple[Any, tuple[Any, ...]]] = {
+    "dds_create_qos": (_QOS, ()),
+    "dds_delete_qos": (None, (_QOS,)),
+    "dds_free": (None, (c.c_void_p,)),
+    "dds_alloc": (c.c_void_p, (c.c_size_t,)),
+    "dds_qset_history": (None, (_QOS, c.c_int, c.c_int32)),
+    "dds_qset_reliability": (None, (_QOS, c.c_int, c.c_int64)),
+    "dds_qset_durability": (None, (_QOS, c.c_int)),
+    "dds_qset_durability_service": (
+        None,
+        (_QOS, c.c_int64, c.c_int, c.c_int32, c.c_int32, c.c_int32, c.c_int32),
+    ),
+    "dds_qset_lifespan": (None, (_QOS, c.c_int64)),
+    "dds_qset_deadline": (None, (_QOS, c.c_int64)),
+    "dds_qset_liveliness": (None, (_QOS, c.c_int, c.c_int64)),
+    "dds_qset_ignorelocal": (None, (_QOS, c.c_int)),
+    "dds_qset_userdata": (None, (_QOS, c.c_char_p, c.c_size_t)),
+    "dds_qset_writer_data_lifecycle": (None, (_QOS, c.c_bool)),
+    "dds_qset_data_representation": (None, (_QOS, c.c_uint32, c.POINTER(c.c_int16))),
+    "dds_qset_entity_name": (None, (_QOS, c.c_char_p)),
+    "dds_qget_history": (c.c_bool, (_QOS, c.POINTER(c.c_int), c.POINTER(c.c_int32))),
+    "dds_qget_reliability": (c.c_bool, (_QOS, c.POINTER(c.c_int), c.POINTER(c.c_int64))),
+    "dds_qget_durability": (c.c_bool, (_QOS, c.POINTER(c.c_int))),
+    "dds_qget_deadline": (c.c_bool, (_QOS, c.POINTER(c.c_int64))),
+    "dds_qget_lifespan": (c.c_bool, (_QOS, c.POINTER(c.c_int64))),
+    "dds_qget_liveliness": (c.c_bool, (_QOS, c.POINTER(c.c_int), c.POINTER(c.c_int64))),
+    "dds_qget_userdata": (c.c_bool, (_QOS, c.POINTER(c.c_void_p), c.POINTER(c.c_size_t))),
+    "dds_qget_entity_name": (c.c_bool, (_QOS, c.POINTER(c.c_void_p))),
+    "dds_get_guid": (c.c_int32, (_ENTITY, c.c_char_p)),
+    "dds_get_entity_sertype": (c.c_int32, (_ENTITY, c.POINTER(c.c_void_p))),
+    "ddsi_sertype_ref": (c.c_void_p, (c.c_void_p,)),
+    "dds_set_status_mask": (c.c_int32, (_ENTITY, c.c_uint32)),
+    "dds_take_status": (c.c_int32, (_ENTITY, c.POINTER(c.c_uint32), c.c_uint32)),
+    "dds_get_publication_matched_status": (c.c_int32, (_ENTITY, c.POINTER(MatchedStatus))),
+    "dds_get_subscription_matched_status": (c.c_int32, (_ENTITY, c.POINTER(MatchedStatus))),
+    "dds_get_sample_lost_status": (c.c_int32, (_ENTITY, c.POINTER(CountStatus))),
+    "dds_get_liveliness_changed_status": (c.c_int32, (_ENTITY, c.POINTER(LivelinessChangedStatus))),
+    "dds_set_guardcondition": (c.c_int32, (_ENTITY, c.c_bool)),
+    "dds_take_guardcondition": (c.c_int32, (_ENTITY, c.POINTER(c.c_bool))),
+    "dds_get_matched_publication_data": (c.c_void_p, (_ENTITY, c.c_uint64)),
+    "dds_builtintopic_free_endpoint": (None, (c.c_void_p,)),
+    "dds_set_log_mask": (None, (c.c_uint32,)),
+    "dds_strretcode": (c.c_char_p, (c.c_int32,)),
+}
+
+_WAITING: dict[str, tuple[Any, tuple[Any, ...]]] = {
+    "dds_create_domain": (_ENTITY, (c.c_uint32, c.c_char_p)),
+    "dds_create_participant": (_ENTITY, (c.c_uint32, _QOS, c.c_void_p)),
+    "dds_create_topic_sertype": (
+        _ENTITY,
+        (_ENTITY, c.c_char_p, c.POINTER(c.c_void_p), _QOS, c.c_void_p, c.c_void_p),
+    ),
+    "ddsi_sertype_unref": (None, (c.c_void_p,)),
+    "ddsi_sertype_free": (None, (c.c_void_p,)),
+    "dds_create_reader": (_ENTITY, (_ENTITY, _ENTITY, _QOS, c.c_void_p)),
+    "dds_create_writer": (_ENTITY, (_ENTITY, _ENTITY, _QOS, c.c_void_p)),
+    "dds_create_waitset": (_ENTITY, (_ENTITY,)),
+    "dds_create_guardcondition": (_ENTITY, (_ENTITY,)),
+    "dds_delete": (c.c_int32, (_ENTITY,)),
+    "dds_waitset_attach": (c.c_int32, (_ENTITY, _ENTITY, c.c_ssize_t)),
+    "dds_waitset_detach": (c.c_int32, (_ENTITY, _ENTITY)),
+    "dds_waitset_wait": (c.c_int32, (_ENTITY, c.POINTER(c.c_ssize_t), c.c_size_t, c.c_int64)),
+    "dds_write": (c.c_int32, (_ENTITY, c.POINTER(Sample))),
+    "dds_wait_for_acks": (c.c_int32, (_ENTITY, c.c_int64)),
+    "dds_assert_liveliness": (c.c_int32, (_ENTITY,)),
+    "dds_get_matched_subscriptions": (c.c_int32, (_ENTITY, _HANDLES, c.c_size_t)),
+    "dds_get_matched_publications": (c.c_int32, (_ENTITY, _HANDLES, c.c_size_t)),
+}
+
+
+class CycloneError(Exception):
+    """A call of Cyclone DDS failed.
+
+    Attributes:
+        code: its return code, below zero.
+    """
+
+    def __init__(self, code: int, what: str) -> None:
+        super().__init__(f"{what}: {describe(code)}")
+        self.code = code
+
+
+class Cyclone:
+    """The bound functions, under their names in C, and what is used of the Python package."""
+
+    def __init__(self) -> None:
+        # The order matters: the package loads the shared library that its wheel carries.
+        from cyclonedds import _clayer
+        from cyclonedds.internal import DDS
+
+        path = DDS._dll_handle._name
+        quick, waiting = c.PyDLL(path), c.CDLL(path)
+        for library, functions in ((quick, _QUICK), (waiting, _WAITING)):
+            for name, (result, arguments) in functions.items():
+                function = getattr(library, name)
+                function.restype, function.argtypes = result, arguments
+                setattr(self, name, function)
+        self.type_version: int | None = c.cast(quick.ddsi_sertype_v0, c.c_void_p).value
+        self.take_bytes = _clayer.ddspy_take
+        self.take_participants = _clayer.ddspy_take_participant
+        self.take_endpoints = _clayer.ddspy_take_endpoint
+        self.create_topic = _clayer.ddspy_topic_create
+
+    def __getattr__(self, name: str) -> Any:
+        raise AttributeError(f"'{name}' of Cyclone DDS is not bound")
+
+    def guid(self, entity: int) -> bytes:
+        """The globally unique identifier of an entity, 16 bytes."""
+        buffer = c.create_string_buffer(16)
+        checked(self.dds_get_guid(entity, buffer), "asking for an identifier")
+        return buffer.raw
+
+    def matched(self, entity: int, *, writer: bool) -> list[int]:
+        """Instance handles of the remote endpoints that a writer or a reader is connected with."""
+        function = self.dds_get_matched_subscriptions if writer else self.dds_get_matched_publications
+        size = 64
+        while True:
+            handles = (c.c_uint64 * size)()
+            count: int = function(entity, handles, size)
+            if count <= size:
+                return list(handles[: max(count, 0)])
+            size = count + 16
+
+    def writer_guid(self, reader: int, handle: int) -> bytes:
+        """The globally unique identifier of a remote writer that a reader is connected with; empty when it left."""
+        data = self.dds_get_matched_publication_data(reader, handle)
+        if not data:
+            return b""
+        try:
+            return c.string_at(data, 16)
+        finally:
+            self.dds_builtintopic_free_endpoint(data)
+
+    def user_data(self, qos: int) -> bytes:
+        """The USER_DATA of a set of policies."""
+        value, size = c.c_void_p(), c.c_size_t()
+        if not self.dds_qget_userdata(qos, c.byref(value), c.byref(size)) or not value.value:
+            return b""
+        try:
+            return c.string_at(value.value, size.value)
+        finally:
+            self.dds_free(value)
+
+    def entity_name(self, qos: int) -> str:
+        """The name that a participant gave itself; empty when it did not."""
+        value = c.c_void_p()
+        if not self.dds_qget_entity_name(qos, c.byref(value)) or not value.value:
+            return ""
+        try:
+            return c.string_at(value.value).decode(errors="replace")
+        finally:
+            self.dds_free(value)
+
+
+@lru_cache(maxsize=1)
+def load() -> Cyclone:
+    """The library, loaded on first use."""
+    return Cyclone()
+
+
+def checked(code: int, what: str) -> int:
+    """What a call gave back.
+
+    Raises:
+        CycloneError: it failed; `what` says what was attempted.
+    """
+    if code < 0:
+        raise CycloneError(code, what)
+    return code
+
+
+def describe(code: int) -> str:
+    """A return code in words."""
+    text: bytes = load().dds_strretcode(code)
+    return text.decode(errors="replace") if text else f"error {code}"
+
+
+def write(writer: int, data: bytes) -> int:
+    """Write a sample; may wait for slow readers, with Python's global lock released.
+
+    Args:
+        writer: the writer.
+        data: CDR with its header; it is filled up to a multiple of four as RTPS wants.
+
+    Returns:
+        Zero, or Cyclone's return code.
+    """
+    if len(data) & 3:
+        data += bytes(-len(data) & 3)
+    code: int = load().dds_write(writer, c.byref(Sample(data, len(data))))
+    return code

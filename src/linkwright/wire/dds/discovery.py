@@ -1,0 +1,198 @@
+"""Discovery: Cyclone's builtin topics and ``ros_discovery_info``."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from linkwright.graph.qos.profile import DurabilityPolicy, HistoryPolicy, QoSProfile
+from linkwright.wire.dds.cyclone import (
+    ANY_STATE,
+    BUILTIN_PARTICIPANTS,
+    BUILTIN_PUBLICATIONS,
+    BUILTIN_SUBSCRIPTIONS,
+    DATA_AVAILABLE,
+    INSTANCE_ALIVE,
+    load,
+    write,
+)
+from linkwright.wire.dds.discovery_info import (
+    GID_SIZE,
+    OLD_GID_SIZE,
+    NodeEntities,
+    ParticipantEntities,
+    decode,
+    encode,
+)
+from linkwright.wire.dds.discovery_requests import DiscoveryRequests
+from linkwright.wire.dds.names import DISCOVERY_TOPIC, parse_user_data
+from linkwright.wire.dds.participant import Participant
+from linkwright.wire.dds.qos import endpoint_qos, profile_of
+from linkwright.wire.dds.remote import RemoteEndpoint, RemoteGraph, RemoteParticipant
+from linkwright.wire.dds.type_descriptions import WireTypes
+from linkwright.wire.dds.waiting import WaitingThread
+
+DISCOVERY_TYPE_HASH = "RIHS01_91a0593bacdcc50ea9bdcf849a938b128412cc1ea821245c663bcd26f83c295e"
+"""Of ``rmw_dds_common/msg/ParticipantEntitiesInfo``, Iron and later."""
+
+_AT_ONCE = 256
+_SPEAKER_QOS = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+_LISTENER_QOS = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL, history=HistoryPolicy.KEEP_ALL)
+
+
+class Discovery:
+    """Fills the tables of what is outside and publishes what is inside.
+
+    A gid has 24 bytes for ROS 2 up to Humble and 16 from Iron on, and the wrong size harms who hears it. Ours has the
+    size that the first ROS 2 node heard uses; where both are heard, that of the older, whose ``ros2 node list`` would
+    fail as a whole. Other processes of Linkwright understand both and give no evidence.
+
+    Args:
+        participant: ours.
+        thread: where everything of this class happens.
+        remote: the tables.
+        types: descriptions of types.
+        gid_size: the gid's size as long as no ROS 2 node was heard.
+    """
+
+    def __init__(
+        self, participant: Participant, thread: WaitingThread, remote: RemoteGraph, types: WireTypes, gid_size: int
+    ) -> None:
+        self._dds = load()
+        self._participant = participant
+        self._remote = remote
+        self._types = types
+        self.gid_size = gid_size
+        self.changed = False
+        """Whether something outside has changed since somebody last looked and set it back."""
+        self._nodes: Sequence[NodeEntities] = ()
+        self._evidence: dict[bytes, int] = {}
+        self._participants = self._builtin(BUILTIN_PARTICIPANTS)
+        self._publications = self._builtin(BUILTIN_PUBLICATIONS)
+        self._subscriptions = self._builtin(BUILTIN_SUBSCRIPTIONS)
+        self._listener = self._new_listener()
+        self._thread = thread
+        self._requests = DiscoveryRequests(self._listen_again)
+        self._speaker = self._new_speaker()
+        for reader, handler in (
+            (self._participants, self._take_participants),
+            (self._publications, lambda: self._take_endpoints(self._publications, is_writer=True)),
+            (self._subscriptions, lambda: self._take_endpoints(self._subscriptions, is_writer=False)),
+            (self._listener[1], lambda: self._take_entities(self._listener[1])),
+        ):
+            self._dds.dds_set_status_mask(reader, DATA_AVAILABLE)
+            thread.attach(reader, handler)
+            handler()
+
+    def publish(self, nodes: Sequence[NodeEntities]) -> None:
+        """Tell everybody which nodes there are and which endpoints each has."""
+        self._nodes = nodes
+        info = ParticipantEntities(self._participant.guid, nodes)
+        write(self._speaker[1], encode(info, self.gid_size))
+
+    # --- hearing ---------------------------------------------------------------------------------------------------
+
+    def _builtin(self, topic: int) -> int:
+        return self._participant.create_reader(topic, None)
+
+    def _new_listener(self) -> tuple[int, int]:
+        topic = self._participant.create_topic(DISCOVERY_TOPIC, self._types.discovery())
+        with endpoint_qos(_LISTENER_QOS) as qos:
+            return topic, self._participant.create_reader(topic, qos)
+
+    def _take_participants(self) -> bool:
+        taken = self._dds.take_participants(self._participants, _AT_ONCE, self._participant_sample, _pointer)
+        return isinstance(taken, list) and len(taken) == _AT_ONCE
+
+    def _take_endpoints(self, reader: int, *, is_writer: bool) -> bool:
+        def sample(
+            guid: bytes, owner: bytes, _: int, topic: str, type_name: str, qos: int, info: Any, *__: Any
+        ) -> None:
+            self._endpoint_sample(guid, owner, topic, type_name, qos, info, is_writer)
+
+        taken = self._dds.take_endpoints(reader, _AT_ONCE, sample, _pointer)
+        return isinstance(taken, list) and len(taken) == _AT_ONCE
+
+    def _participant_sample(self, guid: bytes, qos: int, info: Any) -> None:
+        if guid == self._participant.guid:
+            return
+        self.changed = True
+        if info.instance_state != INSTANCE_ALIVE:
+            self._remote.participant_went(guid)
+            self._forget_evidence(guid)
+            return
+        facts = parse_user_data(self._dds.user_data(qos))
+        self._remote.participant_came(RemoteParticipant(guid, facts.get("enclave", "/"), self._dds.entity_name(qos)))
+
+    def _endpoint_sample(
+        self, guid: bytes, owner: bytes, topic: str, type_name: str, qos: int, info: Any, is_writer: bool
+    ) -> None:
+        if owner == self._participant.guid:
+            return
+        self.changed = True
+        if info.instance_state != INSTANCE_ALIVE:
+            self._remote.endpoint_went(guid)
+            return
+        facts = parse_user_data(self._dds.user_data(qos))
+        endpoint = RemoteEndpoint(
+            guid, info.instance_handle, owner, is_writer, topic, type_name, profile_of(qos), facts
+        )
+        self._remote.endpoint_came(endpoint)
+        if is_writer and topic == DISCOVERY_TOPIC:
+            self._note_evidence(endpoint)
+
+    def _take_entities(self, reader: int) -> bool:
+        samples = self._dds.take_bytes(reader, ANY_STATE, _AT_ONCE)
+        if not isinstance(samples, list):
+            return False
+        for data, info in samples:
+            entities = decode(data) if info.valid_data else None
+            if entities is not None:
+                self._remote.entities_told(entities)
+                self.changed = True
+        return len(samples) == _AT_ONCE
+
+    def ask_silent(self) -> float | None:
+        """Have those tell their nodes who have not; seconds after which to call this again, or None."""
+        return self._requests.review(is_complete=self._remote.all_told())
+
+    def _listen_again(self) -> Callable[[], None]:
+        topic, reader = self._new_listener()
+
+        def stop() -> None:
+            self._thread.detach(reader)
+            self._participant.delete(reader, topic)
+
+        self._dds.dds_set_status_mask(reader, DATA_AVAILABLE)
+        self._thread.attach(reader, lambda: self._take_entities(reader))
+        return stop
+
+    # --- telling -----------------------------------------------------------------------------------------------------
+
+    def review_gid_size(self) -> None:
+        """Use the gid size that the other participants understand."""
+        ours = {each.guid for each in self._remote.participants() if each.is_ours}
+        sizes = {size for owner, size in self._evidence.items() if owner not in ours}
+        size = max(sizes, default=self.gid_size)
+        if size != self.gid_size:
+            self.gid_size = size
+            self._participant.delete(self._speaker[1], self._speaker[0])
+            self._speaker = self._new_speaker()
+            self.publish(self._nodes)
+
+    def _new_speaker(self) -> tuple[int, int]:
+        topic = self._participant.create_topic(DISCOVERY_TOPIC, self._types.discovery())
+        facts = f"typehash={DISCOVERY_TYPE_HASH};".encode() if self.gid_size == GID_SIZE else b""
+        with endpoint_qos(_SPEAKER_QOS, facts) as qos:
+            return topic, self._participant.create_writer(topic, qos)
+
+    def _note_evidence(self, speaker: RemoteEndpoint) -> None:
+        self._evidence[speaker.participant] = GID_SIZE if "typehash" in speaker.facts else OLD_GID_SIZE
+
+    def _forget_evidence(self, participant: bytes) -> None:
+        self._evidence.pop(participant, None)
+
+
+def _pointer(qos: int) -> int:
+    """Policies are read where they are needed, as long as the sample is on loan."""
+    return qos

@@ -1,0 +1,26 @@
+"""A DDS domain as readers and writers use it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from linkwright.wire.dds.participant import Participant
+from linkwright.wire.dds.remote import RemoteGraph
+from linkwright.wire.dds.type_descriptions import WireTypes
+
+
+@dataclass(frozen=True, slots=True)
+class Domain:
+    """The DDS domain, as the process takes part in it.
+
+    Attributes:
+        participant: ours.
+        remote: who is outside.
+        types: descriptions of types.
+        said: what was logged of the domain as a whole, once.
+    """
+
+    participant: Participant
+    remote: RemoteGraph
+    types: WireTypes
+    said: set[str] = field(default_factory=set)

@@ -1,0 +1,271 @@
+"""Makes, feeds and deletes what mirrors the endpoints of this process in a domain.
+
+Two threads do the work. One makes and deletes readers and writers in the order in which they were asked for, and keeps
+the tables of what is outside; the other takes samples and hands them on.
+"""
+
+from __future__ import annotations
+
+import time
+import traceback
+from collections import deque
+from collections.abc import Callable
+from typing import Any
+
+from linkwright.graph.log.logger import Logger
+from linkwright.graph.names.identity import NodeIdentity
+from linkwright.wire.dds.cyclone import CycloneError
+from linkwright.wire.dds.discovery import Discovery
+from linkwright.wire.dds.discovery_info import NodeEntities
+from linkwright.wire.dds.domain import Domain
+from linkwright.wire.dds.participant import Participant
+from linkwright.wire.dds.remote import RemoteGraph
+from linkwright.wire.dds.services import IncomingService, OutsideServer
+from linkwright.wire.dds.settings import Settings
+from linkwright.wire.dds.topics import IncomingTopic, OutgoingTopic
+from linkwright.wire.dds.waiting import WaitingThread
+
+CLOSING_TIME = 1.0
+"""Seconds that leaving may take until what was sent reliably is acknowledged."""
+
+_LOOK_AGAIN = 0.01
+_WORK_SPAN = 0.02
+"""Seconds after which work on the own endpoints makes room for news from outside."""
+
+_NAMED_WITHIN = 1.0
+"""Seconds within which a participant will have said which node an endpoint belongs to."""
+
+_TELL_SPAN = 0.1
+"""Seconds after which new nodes are announced though more of them are being made."""
+
+
+class Engine:
+    """One participant with its readers and writers.
+
+    Args:
+        settings: the domain and how to join it.
+        remote: the tables to fill.
+        work: what there is to do, called with the engine; others append to it and `wake`.
+        logger: for what there is to tell.
+
+    Raises:
+        LinkwrightError: the domain cannot be joined.
+    """
+
+    def __init__(
+        self, settings: Settings, remote: RemoteGraph, work: deque[Callable[[Engine], None]], logger: Logger
+    ) -> None:
+        self._remote = remote
+        self._work = work
+        self._logger = logger
+        self._participant = Participant(settings)
+        types = self._participant.types
+        self._domain = Domain(self._participant, remote, types)
+        owner = self._participant.entity
+        self._control = WaitingThread("linkwright-dds", owner, self._report, self._idle)
+        self._reception = WaitingThread("linkwright-dds-receive", owner, self._report)
+        self._discovery = Discovery(self._participant, self._control, remote, types, settings.gid_size)
+        self._nodes: dict[NodeIdentity, int] = {}
+        self._outgoing: dict[Any, OutgoingTopic] = {}
+        self._incoming: dict[Any, IncomingTopic] = {}
+        self._services: dict[Any, IncomingService] = {}
+        self._clients: dict[Any, OutsideServer] = {}
+        self._leaving: dict[OutgoingTopic, float] = {}
+        self._is_told = False
+        self._told_at = 0.0
+        self._matches_changed = False
+        self._mismatched: dict[OutgoingTopic | IncomingTopic, float] = {}
+
+    def start(self) -> None:
+        """Begin."""
+        self._control.start()
+        self._reception.start()
+
+    def wake(self) -> None:
+        """Look at the work soon; from any thread."""
+        self._control.wake()
+
+    def close(self) -> None:
+        """End: what was sent reliably is acknowledged first, or a second has passed."""
+        self._control.stop(CLOSING_TIME)
+        self._reception.stop(CLOSING_TIME)
+        while self._work:
+            self._do(self._work.popleft())
+        self.abandon()
+        deadline = time.monotonic() + CLOSING_TIME
+        for topic in (*self._outgoing.values(), *self._leaving):
+            if not topic.acknowledged(max(0, int((deadline - time.monotonic()) * 1e9))):
+                break
+        self._participant.close()
+
+    def abandon(self) -> None:
+        """Send nothing any more, without calling Cyclone."""
+        for topic in self._outgoing.values():
+            topic.abandon()
+        for client in self._clients.values():
+            client.abandon()
+
+    # --- work, in the thread that makes and deletes ------------------------------------------------------------------
+
+    def add_node(self, node: NodeIdentity) -> None:
+        """Make a node known."""
+        self._nodes[node] = self._nodes.get(node, 0) + 1
+        self._is_told = False
+
+    def remove_node(self, node: NodeIdentity) -> None:
+        """Take a node back."""
+        count = self._nodes.pop(node, 0) - 1
+        if count > 0:
+            self._nodes[node] = count
+        self._is_told = False
+
+    def open_publisher(self, publisher: Any) -> None:
+        """Mirror a publisher."""
+        try:
+            topic = OutgoingTopic(publisher, self._domain, self._on_mismatch)
+        except BaseException:
+            publisher.set_outside(None)
+            raise
+        self._outgoing[publisher] = topic
+        self._control.attach(topic.entity, topic.on_status)
+        self._is_told = False
+
+    def close_publisher(self, publisher: Any) -> None:
+        """Take a publisher back when everybody has what it sent."""
+        topic = self._outgoing.pop(publisher, None)
+        if topic is not None:
+            self._control.detach(topic.entity)
+            topic.abandon()
+            self._leaving[topic] = time.monotonic() + CLOSING_TIME
+            self._is_told = False
+
+    def open_subscription(self, subscription: Any) -> None:
+        """Mirror a subscription."""
+        topic = IncomingTopic(subscription, self._domain, self._on_mismatch)
+        self._incoming[subscription] = topic
+        self._reception.attach(topic.entity, topic.on_status)
+        self._is_told = False
+
+    def open_service(self, service: Any) -> None:
+        """Mirror a service."""
+        incoming = IncomingService(service, self._domain, self._control.wake)
+        self._services[service] = incoming
+        self._reception.attach(incoming.pair.reader, incoming.on_data)
+        self._is_told = False
+
+    def open_client(self, client: Any) -> None:
+        """Mirror a client."""
+        outside = OutsideServer(client, self._domain, self._on_match)
+        self._clients[client] = outside
+        self._reception.attach(outside.pair.reader, outside.on_data)
+        self._control.attach(outside.pair.writer, outside.on_writer_status)
+        self._is_told = False
+
+    def close_endpoint(self, endpoint: Any) -> None:
+        """Take a subscription, a service or a client back."""
+        self._is_told = False
+        topic = self._incoming.pop(endpoint, None)
+        if topic is not None:
+            self._reception.detach(topic.entity)
+            topic.close()
+        for pairs in (self._services, self._clients):
+            pair = pairs.pop(endpoint, None)
+            if pair is not None:
+                self._reception.detach(pair.pair.reader)
+                self._control.detach(pair.pair.writer)
+                pair.close()
+
+    # --- between the work --------------------------------------------------------------------------------------------
+
+    def _idle(self) -> float | None:
+        """Do what there is to do; seconds after which to look again, or None."""
+        self._work_for(_WORK_SPAN)
+        self._look_outside()
+        self._end_leaving()
+        late = self._review_replies()
+        self._tell_mismatches()
+        self._tell()
+        asking = self._discovery.ask_silent()
+        if self._work:
+            return 0.0
+        return _LOOK_AGAIN if self._leaving or self._mismatched or late else asking
+
+    def _work_for(self, seconds: float) -> None:
+        until = time.monotonic() + seconds
+        while self._work and time.monotonic() < until:
+            self._do(self._work.popleft())
+
+    def _do(self, work: Callable[[Engine], None]) -> None:
+        try:
+            work(self)
+        except Exception as error:  # noqa: BLE001 - the rest of the graph is to be made all the same
+            self._report(error)
+
+    def _report(self, error: Exception) -> None:
+        """Say that something was left out: in words for what Cyclone refuses, with the traceback of a fault of ours."""
+        lines = [str(error)] if isinstance(error, CycloneError) else traceback.format_exception(error)
+        self._logger.error("A part of the graph is not seen outside of this process: " + "".join(lines).rstrip())
+
+    def _look_outside(self) -> None:
+        matches_changed, self._matches_changed = self._matches_changed, False
+        changed, self._discovery.changed = self._discovery.changed, False
+        if changed:
+            self._discovery.review_gid_size()
+        if changed or matches_changed:
+            for client in tuple(self._clients.values()):
+                client.review()
+        if changed:
+            self._remote.announce()
+
+    def _on_match(self) -> None:
+        self._matches_changed = True
+        self._control.wake()
+
+    def _on_mismatch(self, topic: OutgoingTopic | IncomingTopic) -> None:
+        self._mismatched[topic] = time.monotonic() + _NAMED_WITHIN
+        self._control.wake()
+
+    def _tell_mismatches(self) -> None:
+        """Name the nodes that do not go together: that is known a moment after the mismatch itself."""
+        for topic, due in tuple(self._mismatched.items()):
+            is_due = time.monotonic() >= due
+            topic.tell_mismatches(finally_=is_due)
+            if is_due:
+                self._mismatched.pop(topic, None)
+
+    def _review_replies(self) -> bool:
+        waiting = [each for each in tuple(self._services.values()) if each.has_late_replies]
+        for service in waiting:
+            service.review()
+        return any(service.has_late_replies for service in waiting)
+
+    def _end_leaving(self) -> None:
+        now = time.monotonic()
+        for topic, due in tuple(self._leaving.items()):
+            if now >= due or topic.acknowledged(0):
+                del self._leaving[topic]
+                topic.close()
+
+    def _tell(self) -> None:
+        """Tell others of our nodes, when something changed; not at each of many changes."""
+        if not self._is_told and (not self._work or time.monotonic() - self._told_at > _TELL_SPAN):
+            self._discovery.publish(self._described_nodes())
+            self._is_told = True
+            self._told_at = time.monotonic()
+
+    def _described_nodes(self) -> list[NodeEntities]:
+        readers: dict[NodeIdentity, list[bytes]] = {node: [] for node in self._nodes}
+        writers: dict[NodeIdentity, list[bytes]] = {node: [] for node in self._nodes}
+        for publisher, outgoing in self._outgoing.items():
+            writers.setdefault(publisher.node.identity, []).append(outgoing.guid)
+        for subscription, incoming in self._incoming.items():
+            readers.setdefault(subscription.node.identity, []).append(incoming.guid)
+        for pairs in (self._services, self._clients):
+            for endpoint, mirrored in pairs.items():
+                readers.setdefault(endpoint.node.identity, []).append(mirrored.pair.reader_guid)
+                writers.setdefault(endpoint.node.identity, []).append(mirrored.pair.writer_guid)
+        described = []
+        for node, count in self._nodes.items():
+            described.append(NodeEntities(node.namespace, node.name, readers[node], writers[node]))
+            described += [NodeEntities(node.namespace, node.name)] * (count - 1)
+        return described

@@ -1,0 +1,98 @@
+"""Names and types of ROS 2 in DDS (design article "Topic and service name mapping", rmw)."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from enum import Enum
+
+DISCOVERY_TOPIC = "ros_discovery_info"
+"""Where each participant says which nodes it has."""
+
+
+class Role(Enum):
+    """What a DDS topic carries."""
+
+    TOPIC = "rt"
+    REQUEST = "rq"
+    REPLY = "rr"
+
+
+_SUFFIXES = {Role.TOPIC: "", Role.REQUEST: "Request", Role.REPLY: "Reply"}
+_ROLES = {role.value: role for role in Role}
+_TYPE = re.compile(r"(?P<package>\w+)::(?P<kind>msg|srv|action)::dds_::(?P<name>\w+)_")
+
+
+@dataclass(frozen=True, slots=True)
+class RosName:
+    """A ROS name found in a DDS topic.
+
+    Attributes:
+        role: what the topic carries.
+        name: the absolute name of the topic or service.
+    """
+
+    role: Role
+    name: str
+
+
+def dds_topic(role: Role, name: str, *, plain: bool = False) -> str:
+    """The DDS topic of an absolute ROS name.
+
+    Args:
+        role: what the topic carries.
+        name: such as ``/joint_states``.
+        plain: QoS ``avoid_ros_namespace_conventions``: no prefix.
+    """
+    return ("" if plain else role.value) + name + _SUFFIXES[role]
+
+
+def ros_name(topic: str) -> RosName | None:
+    """The ROS name that a DDS topic stands for; None when it is none of ROS's."""
+    prefix, slash, rest = topic.partition("/")
+    role = _ROLES.get(prefix)
+    if role is None or not slash:
+        return None
+    suffix = _SUFFIXES[role]
+    if not rest.endswith(suffix) or len(rest) == len(suffix):
+        return None
+    return RosName(role, "/" + rest[: len(rest) - len(suffix)])
+
+
+def dds_type(type_name: str) -> str:
+    """The DDS name of a ROS type: ``std_msgs/msg/Header`` becomes ``std_msgs::msg::dds_::Header_``."""
+    package, kind, name = type_name.split("/")
+    return f"{package}::{kind}::dds_::{name}_"
+
+
+def ros_type(type_name: str) -> str | None:
+    """The ROS name of a message type on the wire; None when it is not written in ROS's way."""
+    match = _TYPE.fullmatch(type_name)
+    return f"{match['package']}/{match['kind']}/{match['name']}" if match else None
+
+
+def ros_service_type(type_name: str) -> str | None:
+    """The service type that a request or reply type belongs to; None when it is neither."""
+    name = ros_type(type_name)
+    if name is None:
+        return None
+    for suffix in ("_Request", "_Response"):
+        if name.endswith(suffix):
+            return name[: -len(suffix)]
+    return None
+
+
+def parse_user_data(data: bytes) -> dict[str, str]:
+    """The facts in USER_DATA, written ``key=value;key=value;`` (rmw ``parse_key_value``)."""
+    facts = {}
+    for item in data.decode("utf-8", errors="replace").split(";"):
+        key, equals, value = item.partition("=")
+        if equals and key.strip():
+            facts[key.strip()] = value.strip("\0 ")
+    return facts
+
+
+def endpoint_id(guid: bytes) -> str:
+    """How rmw_cyclonedds_cpp writes the id that joins the reader and the writer of a client or a service."""
+    first, *rest = guid
+    return f"{first:2x}" + "".join(f".{byte:x}" for byte in rest)

@@ -1,0 +1,115 @@
+"""The DDS domains that this process has open: each once, however many graphs are on it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from threading import Lock
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+from linkwright.wire.dds.cyclone import LOG_ERRORS, load
+from linkwright.wire.dds.settings import PARTICIPANTS, Settings
+from linkwright.wire.dds.topic_types import TopicTypes
+from linkwright.wire.dds.type_descriptions import WireTypes
+
+
+class OpenDomain:
+    """A domain with what its participants share.
+
+    Attributes:
+        number: the domain.
+        handle: Cyclone's.
+        users: how many participants are on it.
+        descriptions: of types.
+        types: of topics, as Cyclone has them.
+    """
+
+    def __init__(self, number: int, handle: int) -> None:
+        self.number = number
+        self.handle = handle
+        self.users = 0
+        self.descriptions = WireTypes()
+        self.types = TopicTypes()
+
+
+_opened: dict[int, OpenDomain] = {}
+
+_lock = Lock()
+
+
+def open_domain(settings: Settings) -> OpenDomain:
+    """A domain for one participant more, opened with the settings unless it is open.
+
+    Raises:
+        LinkwrightError: DDS102 or DDS103, Cyclone cannot open it.
+    """
+    with _lock:
+        domain = _opened.get(settings.domain_id)
+        if domain is None:
+            domain = _opened[settings.domain_id] = OpenDomain(settings.domain_id, _create_domain(settings))
+        domain.users += 1
+        return domain
+
+
+def close_domain(domain: OpenDomain) -> None:
+    """Take note that a participant is gone; with the last one go the domain, its sockets and its threads."""
+    with _lock:
+        domain.users -= 1
+        if not domain.users:
+            del _opened[domain.number]
+            if load().dds_delete(domain.handle) >= 0:
+                domain.types.free()
+
+
+def _create_domain(settings: Settings) -> int:
+    """The domain with the first configuration that Cyclone takes; it says by itself what it does not like in one.
+
+    Raises:
+        LinkwrightError: DDS102 or DDS103, it takes none.
+    """
+    code = _first_taken(settings.domain_id, settings.configurations)
+    if code >= 0:
+        if not settings.user_configuration:
+            # Warnings come for every broken or foreign packet, so anybody could flood the log.
+            load().dds_set_log_mask(LOG_ERRORS)
+        return code
+    if settings.user_configuration:
+        without = _first_taken(settings.domain_id, settings.own_configurations)
+        if without >= 0:
+            load().dds_delete(without)
+            raise LinkwrightError(
+                Diagnostic(
+                    code="DDS102",
+                    message=phrase(
+                        "Cyclone DDS refuses the configuration in CYCLONEDDS_URI '{user_configuration}'",
+                        user_configuration=settings.user_configuration,
+                    ),
+                    hint=phrase(
+                        "it is XML text or the URL of an XML file such as file:///home/me/cyclonedds.xml; "
+                        "Cyclone's own words about it are above"
+                    ),
+                )
+            )
+    raise LinkwrightError(
+        Diagnostic(
+            code="DDS103",
+            message=phrase(
+                "Cyclone DDS cannot open domain {domain_id}; its own words about it are above",
+                domain_id=settings.domain_id,
+            ),
+            hint=phrase(
+                "at most {most} processes may be on it, no other program may hold its ports"
+                " (7400 and what follows, 250 a domain), and a network interface must be up; another"
+                " ROS_DOMAIN_ID has other ports, CYCLONEDDS_URI can name an interface",
+                most=PARTICIPANTS,
+            ),
+        )
+    )
+
+
+def _first_taken(domain_id: int, configurations: Sequence[str]) -> int:
+    code = 0
+    for configuration in configurations:
+        code = load().dds_create_domain(domain_id, configuration.encode())
+        if code >= 0:
+            break
+    return code

@@ -1,0 +1,104 @@
+"""The DDS participant of this process, which makes readers and writers."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+from linkwright.wire.dds.cyclone import CycloneError, checked, load
+from linkwright.wire.dds.open_domains import close_domain, open_domain
+from linkwright.wire.dds.qos import participant_qos
+from linkwright.wire.dds.settings import Settings
+from linkwright.wire.dds.type_descriptions import WireTypes
+
+NAME = "linkwright"
+"""How our participants' entity names begin."""
+
+
+def entity_name() -> str:
+    """The name of a participant of this process: what it is, its process and the process namespace that counts in.
+
+    Others of ours see by it, on the same machine, that the process is gone before its lease has run out.
+    """
+    return f"{NAME}/{process_namespace()}/{os.getpid()}"
+
+
+def process_namespace() -> str:
+    """Tells processes with the same id in different containers apart; empty where that is not known."""
+    try:
+        return Path("/proc/self/ns/pid").readlink().name.strip("pid:[]")
+    except OSError:
+        return ""
+
+
+class Participant:
+    """A participant.
+
+    Args:
+        settings: the domain and the configuration.
+
+    Raises:
+        LinkwrightError: DDS102 to DDS104, it could not be made.
+    """
+
+    def __init__(self, settings: Settings) -> None:
+        self._dds = load()
+        self.closed = False
+        self._domain = open_domain(settings)
+        try:
+            with participant_qos(b"enclave=/;", entity_name()) as qos:
+                code = self._dds.dds_create_participant(self._domain.number, qos, None)
+            self.entity = checked(code, "joining the domain")
+        except CycloneError as error:
+            close_domain(self._domain)
+            raise _no_participant(settings, error) from error
+        self.guid: bytes = self._dds.guid(self.entity)
+
+    @property
+    def types(self) -> WireTypes:
+        """Descriptions of types for `create_topic`."""
+        return self._domain.descriptions
+
+    def create_topic(self, name: str, described_type: object) -> int:
+        """A topic of a type, announced by its name alone.
+
+        Args:
+            name: its DDS name.
+            described_type: the class that describes it (`WireTypes`).
+
+        Raises:
+            CycloneError: Cyclone refuses it.
+        """
+        return self._domain.types.create_topic(self.entity, name, described_type)
+
+    def create_reader(self, topic: int, qos: int | None) -> int:
+        """A reader of a topic or of one of Cyclone's own."""
+        return checked(self._dds.dds_create_reader(self.entity, topic, qos, None), "making a reader")
+
+    def create_writer(self, topic: int, qos: int) -> int:
+        """A writer of a topic."""
+        return checked(self._dds.dds_create_writer(self.entity, topic, qos, None), "making a writer")
+
+    def delete(self, *entities: int) -> None:
+        """Delete entities, readers and writers before their topics."""
+        for entity in entities:
+            self._dds.dds_delete(entity)
+
+    def close(self) -> None:
+        """Leave the domain; everything that was made goes with it, and with the last its sockets and threads."""
+        self.closed = True
+        self._dds.dds_delete(self.entity)
+        close_domain(self._domain)
+
+
+def _no_participant(settings: Settings, error: CycloneError) -> LinkwrightError:
+    return LinkwrightError(
+        Diagnostic(
+            code="DDS104",
+            message=phrase(
+                "DDS domain {domain_id} cannot be joined: {error}", domain_id=settings.domain_id, error=error
+            ),
+            hint=phrase("another ROS_DOMAIN_ID has ports of its own"),
+        )
+    )

@@ -1,0 +1,122 @@
+"""Quality of service in DDS: ROS profiles as DDS policies and back (as rmw_cyclonedds_cpp maps them)."""
+
+from __future__ import annotations
+
+import ctypes as c
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from linkwright.graph.qos.compatibility import limit_ns
+from linkwright.graph.qos.profile import (
+    DurabilityPolicy,
+    HistoryPolicy,
+    LivelinessPolicy,
+    QoSProfile,
+    ReliabilityPolicy,
+)
+from linkwright.graph.time.values import INFINITE, Duration
+from linkwright.wire.dds.cyclone import INFINITY, load
+
+UNLIMITED = -1
+
+MAX_BLOCKING_NS = 100_000_000
+"""How long a reliable write waits for readers that do not keep up: 100 ms."""
+
+_KEEP_LAST, _KEEP_ALL = 0, 1
+_BEST_EFFORT, _RELIABLE = 0, 1
+_VOLATILE, _TRANSIENT_LOCAL = 0, 1
+_AUTOMATIC, _MANUAL_BY_TOPIC = 0, 2
+_IGNORE_PARTICIPANT = 1
+_XCDR1 = 0
+
+
+@contextmanager
+def endpoint_qos(profile: QoSProfile, user_data: bytes = b"") -> Iterator[int]:
+    """The policies of a reader or writer, for as long as the block runs.
+
+    Samples of this participant do not come back to it: the bus of the process has delivered them.
+
+    Args:
+        profile: what is offered or asked for; what it leaves open is what Cyclone chooses for ROS.
+        user_data: facts for rmw's eyes.
+    """
+    dds = load()
+    qos: int = dds.dds_create_qos()
+    try:
+        kind = _KEEP_ALL if profile.history is HistoryPolicy.KEEP_ALL else _KEEP_LAST
+        depth = UNLIMITED if kind == _KEEP_ALL else max(profile.depth, 1)
+        dds.dds_qset_history(qos, kind, depth)
+        if profile.reliability is ReliabilityPolicy.BEST_EFFORT:
+            dds.dds_qset_reliability(qos, _BEST_EFFORT, 0)
+        else:
+            dds.dds_qset_reliability(qos, _RELIABLE, MAX_BLOCKING_NS)
+        if profile.durability is DurabilityPolicy.TRANSIENT_LOCAL:
+            dds.dds_qset_durability(qos, _TRANSIENT_LOCAL)
+            dds.dds_qset_durability_service(qos, 0, kind, depth, UNLIMITED, UNLIMITED, UNLIMITED)
+        else:
+            dds.dds_qset_durability(qos, _VOLATILE)
+        deadline, lifespan = limit_ns(profile.deadline), limit_ns(profile.lifespan)
+        if deadline is not None:
+            dds.dds_qset_deadline(qos, deadline)
+        if lifespan is not None:
+            dds.dds_qset_lifespan(qos, lifespan)
+        manual = profile.liveliness is LivelinessPolicy.MANUAL_BY_TOPIC
+        lease = limit_ns(profile.liveliness_lease_duration)
+        dds.dds_qset_liveliness(qos, _MANUAL_BY_TOPIC if manual else _AUTOMATIC, INFINITY if lease is None else lease)
+        dds.dds_qset_ignorelocal(qos, _IGNORE_PARTICIPANT)
+        dds.dds_qset_writer_data_lifecycle(qos, False)
+        dds.dds_qset_data_representation(qos, 1, (c.c_int16 * 1)(_XCDR1))
+        if user_data:
+            dds.dds_qset_userdata(qos, user_data, len(user_data))
+        yield qos
+    finally:
+        dds.dds_delete_qos(qos)
+
+
+@contextmanager
+def participant_qos(user_data: bytes, entity_name: str) -> Iterator[int]:
+    """The policies of a participant, for as long as the block runs."""
+    dds = load()
+    qos: int = dds.dds_create_qos()
+    try:
+        dds.dds_qset_userdata(qos, user_data, len(user_data))
+        dds.dds_qset_entity_name(qos, entity_name.encode())
+        yield qos
+    finally:
+        dds.dds_delete_qos(qos)
+
+
+def profile_of(qos: int) -> QoSProfile:
+    """The ROS profile of a remote endpoint's policies."""
+    dds = load()
+    kind, depth, duration = c.c_int(), c.c_int32(), c.c_int64()
+
+    def limit(getter: str) -> Duration:
+        found = getattr(dds, getter)(qos, c.byref(duration))
+        return Duration(nanoseconds=duration.value) if found and 0 < duration.value < INFINITY else INFINITE
+
+    history, length = HistoryPolicy.UNKNOWN, 0
+    if dds.dds_qget_history(qos, c.byref(kind), c.byref(depth)):
+        history = HistoryPolicy.KEEP_ALL if kind.value == _KEEP_ALL else HistoryPolicy.KEEP_LAST
+        length = 0 if history is HistoryPolicy.KEEP_ALL else max(depth.value, 1)
+    reliability = ReliabilityPolicy.UNKNOWN
+    if dds.dds_qget_reliability(qos, c.byref(kind), c.byref(duration)):
+        reliability = ReliabilityPolicy.RELIABLE if kind.value == _RELIABLE else ReliabilityPolicy.BEST_EFFORT
+    durability = DurabilityPolicy.UNKNOWN
+    if dds.dds_qget_durability(qos, c.byref(kind)):
+        durability = DurabilityPolicy.VOLATILE if kind.value == _VOLATILE else DurabilityPolicy.TRANSIENT_LOCAL
+    liveliness, lease = LivelinessPolicy.UNKNOWN, INFINITE
+    if dds.dds_qget_liveliness(qos, c.byref(kind), c.byref(duration)):
+        manual = kind.value == _MANUAL_BY_TOPIC
+        liveliness = LivelinessPolicy.MANUAL_BY_TOPIC if manual else LivelinessPolicy.AUTOMATIC
+        lease = Duration(nanoseconds=duration.value) if duration.value < INFINITY else INFINITE
+    return QoSProfile(
+        depth=length,
+        history=history,
+        reliability=reliability,
+        durability=durability,
+        deadline=limit("dds_qget_deadline"),
+        lifespan=limit("dds_qget_lifespan"),
+        liveliness=liveliness,
+        liveliness_lease_duration=lease,
+    )

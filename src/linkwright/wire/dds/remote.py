@@ -1,0 +1,302 @@
+"""The participants, nodes and endpoints of other processes."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from threading import Lock
+
+from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
+from linkwright.graph.names.identity import NodeIdentity
+from linkwright.graph.qos.profile import QoSProfile
+from linkwright.wire.dds.discovery_info import NodeEntities, ParticipantEntities
+from linkwright.wire.dds.names import (
+    DISCOVERY_TOPIC,
+    Role,
+    RosName,
+    ros_name,
+    ros_service_type,
+    ros_type,
+)
+from linkwright.wire.dds.participant import NAME, process_namespace
+
+_FAST_DDS = b"\x01\x0f"
+"""How the GUIDs of its entities begin."""
+
+_ENDPOINTS_WITHIN = 1.3
+"""Seconds within which a participant's first endpoint is heard of; Fast DDS repeats what was missed after 1 s."""
+
+_ALL_WITHIN = 3.0
+"""Seconds within which the endpoints are heard of that a participant says its nodes have."""
+
+
+@dataclass(slots=True)
+class RemoteParticipant:
+    """A process, or a part of one, that takes part in the domain.
+
+    Attributes:
+        guid: 16 bytes.
+        enclave: from its USER_DATA.
+        entity_name: what it calls itself.
+        entities: what it said in ``ros_discovery_info``; None as long as it has not.
+    """
+
+    guid: bytes
+    enclave: str = "/"
+    entity_name: str = ""
+    entities: ParticipantEntities | None = None
+    came_at: float = field(default_factory=time.monotonic)
+    """When it was heard of first, by the steady clock."""
+
+    def endpoints(self) -> set[bytes]:
+        """The GUIDs of the endpoints that it says its nodes have."""
+        return {gid for node in (self.entities.nodes if self.entities else ()) for gid in _gids(node)}
+
+    @property
+    def is_ours(self) -> bool:
+        """Whether it is one of Linkwright's, which says nothing about the distribution of ROS 2."""
+        return self.entity_name.startswith(NAME + "/")
+
+    def has_died(self) -> bool:
+        """Whether its process is gone though its lease still runs; known of ours on this machine alone."""
+        kind, _, rest = self.entity_name.partition("/")
+        namespace, _, process = rest.partition("/")
+        if kind != NAME or not namespace or namespace != process_namespace() or not process.isdecimal():
+            return False
+        try:
+            os.kill(int(process), 0)
+        except ProcessLookupError:
+            return True
+        except OSError:
+            pass
+        return False
+
+
+@dataclass(frozen=True, slots=True)
+class RemoteEndpoint:
+    """A reader or a writer of another participant.
+
+    Attributes:
+        guid: 16 bytes.
+        handle: what Cyclone calls it in this process.
+        participant: the GUID of its participant.
+        is_writer: whether it writes.
+        topic: its DDS topic.
+        type_name: its DDS type.
+        qos: its policies.
+        facts: from its USER_DATA.
+    """
+
+    guid: bytes
+    handle: int
+    participant: bytes
+    is_writer: bool
+    topic: str
+    type_name: str
+    qos: QoSProfile
+    facts: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def name(self) -> RosName | None:
+        """The ROS name of its topic."""
+        return ros_name(self.topic)
+
+    @property
+    def is_fast(self) -> bool:
+        """Whether it belongs to a participant of Fast DDS (RTPS vendor 1.15)."""
+        return is_fast(self.guid)
+
+
+class RemoteGraph:
+    """What discovery found; written by one thread, read by any."""
+
+    def __init__(self) -> None:
+        self._lock = Lock()
+        self._participants: dict[bytes, RemoteParticipant] = {}
+        self._endpoints: dict[bytes, RemoteEndpoint] = {}
+        self._by_handle: dict[int, RemoteEndpoint] = {}
+        self._early: dict[bytes, ParticipantEntities] = {}
+        self._dead: tuple[float, frozenset[bytes]] = (0.0, frozenset())
+        self._watchers: list[Callable[[], None]] = []
+        self.changed_at = time.monotonic()
+        """When something changed last, by the steady clock."""
+
+    # --- from discovery -----------------------------------------------------------------------------------------
+
+    def participant_came(self, participant: RemoteParticipant) -> None:
+        """Take note of a participant."""
+        with self._lock:
+            known = self._participants.get(participant.guid)
+            said = self._early.pop(participant.guid, None)
+            participant.entities = known.entities if known else said
+            participant.came_at = known.came_at if known else participant.came_at
+            self._participants[participant.guid] = participant
+
+    def participant_went(self, guid: bytes) -> None:
+        """Forget a participant and all it has."""
+        with self._lock:
+            self._participants.pop(guid, None)
+            self._early.pop(guid, None)
+            for endpoint in [each for each in self._endpoints.values() if each.participant == guid]:
+                self._forget(endpoint)
+
+    def endpoint_came(self, endpoint: RemoteEndpoint) -> None:
+        """Take note of a reader or writer."""
+        with self._lock:
+            self._endpoints[endpoint.guid] = endpoint
+            self._by_handle[endpoint.handle] = endpoint
+
+    def endpoint_went(self, guid: bytes) -> None:
+        """Forget a reader or writer."""
+        with self._lock:
+            endpoint = self._endpoints.get(guid)
+            if endpoint is not None:
+                self._forget(endpoint)
+
+    def entities_told(self, entities: ParticipantEntities) -> None:
+        """Take note of what a participant says of its nodes; it may be told before the participant is."""
+        with self._lock:
+            participant = self._participants.get(entities.participant)
+            if participant is None:
+                self._early[entities.participant] = entities
+            else:
+                participant.entities = entities
+
+    def announce(self) -> None:
+        """Tell those who watch that something has changed."""
+        self.changed_at = time.monotonic()
+        for watcher in tuple(self._watchers):
+            watcher()
+
+    def watch(self, changed: Callable[[], None]) -> None:
+        """Have something called, in the thread of discovery, after changes."""
+        self._watchers.append(changed)
+
+    def _forget(self, endpoint: RemoteEndpoint) -> None:
+        self._endpoints.pop(endpoint.guid, None)
+        self._by_handle.pop(endpoint.handle, None)
+
+    # --- asked by the transport ----------------------------------------------------------------------------------
+
+    def endpoint(self, handle: int) -> RemoteEndpoint | None:
+        """A reader or writer by its handle."""
+        return self._by_handle.get(handle)
+
+    def endpoints_of(self, topic: str, *, writers: bool) -> list[RemoteEndpoint]:
+        """The writers or the readers of a DDS topic."""
+        with self._lock:
+            return [each for each in self._endpoints.values() if each.topic == topic and each.is_writer is writers]
+
+    def participants(self) -> list[RemoteParticipant]:
+        """All participants."""
+        with self._lock:
+            return list(self._participants.values())
+
+    def all_told(self) -> bool:
+        """Whether each participant with a writer of ``ros_discovery_info`` has said which nodes it has."""
+        with self._lock:
+            speakers = {
+                each.participant
+                for each in self._endpoints.values()
+                if each.is_writer and each.topic == DISCOVERY_TOPIC
+            }
+            return all(
+                participant.entities is not None
+                for guid, participant in self._participants.items()
+                if guid in speakers or participant.is_ours
+            )
+
+    def is_complete(self) -> bool:
+        """Whether all have announced their nodes, and those nodes' endpoints are known.
+
+        Of who is there, and nothing else is known of it, something is awaited for a moment.
+        """
+        now = time.monotonic()
+        with self._lock:
+            known = {each.participant for each in self._endpoints.values()}
+            for guid, participant in self._participants.items():
+                age = now - participant.came_at
+                if guid not in known and age < _ENDPOINTS_WITHIN:
+                    return False
+                if age < _ALL_WITHIN and not self._endpoints.keys() >= participant.endpoints():
+                    return False
+        return self.all_told()
+
+    def nodes(self) -> list[NodeIdentity]:
+        """The nodes of other processes, one entry for each, in the order of their participants."""
+        dead = self._dead_participants()
+        with self._lock:
+            return [
+                NodeIdentity(node.name, node.namespace, participant.enclave)
+                for guid, participant in self._participants.items()
+                if guid not in dead and participant.entities is not None
+                for node in participant.entities.nodes
+            ]
+
+    def endpoints(self) -> list[EndpointInfo]:
+        """The topics' and services' endpoints of other processes, in ROS's terms."""
+        dead = self._dead_participants()
+        with self._lock:
+            owners = self._owners()
+            return [
+                info
+                for endpoint in self._endpoints.values()
+                if endpoint.participant not in dead
+                and (info := _described(endpoint, owners.get(endpoint.guid))) is not None
+            ]
+
+    def node_name(self, endpoint: RemoteEndpoint) -> str:
+        """The full name of the node that an endpoint belongs to; empty as long as it has not been told."""
+        with self._lock:
+            owner = self._owners().get(endpoint.guid)
+        return f"{owner.namespace.rstrip('/')}/{owner.name}" if owner else ""
+
+    def _owners(self) -> dict[bytes, NodeIdentity]:
+        return {
+            gid: NodeIdentity(node.name, node.namespace, participant.enclave)
+            for participant in self._participants.values()
+            if participant.entities is not None
+            for node in participant.entities.nodes
+            for gid in _gids(node)
+        }
+
+    def _dead_participants(self) -> frozenset[bytes]:
+        """Participants of ours whose process was killed; looked up again after a moment."""
+        now = time.monotonic()
+        looked_at, dead = self._dead
+        if now - looked_at > 0.25:
+            dead = frozenset(each.guid for each in self.participants() if each.has_died())
+            self._dead = (now, dead)
+        return dead
+
+
+def is_fast(guid: bytes) -> bool:
+    """Whether an entity belongs to a participant of Fast DDS (RTPS vendor 1.15)."""
+    return guid.startswith(_FAST_DDS)
+
+
+def _gids(node: NodeEntities) -> Iterator[bytes]:
+    yield from node.readers
+    yield from node.writers
+
+
+def _described(endpoint: RemoteEndpoint, node: NodeIdentity | None) -> EndpointInfo | None:
+    """An endpoint in ROS's terms; None for what is not ROS's, and for the second half of services and clients."""
+    name = endpoint.name
+    if name is None:
+        return None
+    if name.role is Role.TOPIC:
+        kind = EndpointKind.PUBLISHER if endpoint.is_writer else EndpointKind.SUBSCRIPTION
+        type_name = ros_type(endpoint.type_name)
+    elif name.role is Role.REQUEST:
+        kind = EndpointKind.CLIENT if endpoint.is_writer else EndpointKind.SERVICE
+        type_name = ros_service_type(endpoint.type_name)
+    else:
+        return None
+    if type_name is None:
+        return None
+    return EndpointInfo(
+        kind, node, name.name, type_name, endpoint.qos, endpoint.guid, endpoint.facts.get("typehash", "")
+    )

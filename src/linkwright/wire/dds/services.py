@@ -1,0 +1,297 @@
+"""Services and clients over DDS.
+
+A service is two topics. rmw_cyclonedds_cpp writes before each request who asks (64 bits) and the number of the request,
+and the server writes the same before its reply; all replies reach all clients of a service, and each picks its own. The
+USER_DATA of both endpoints of a client or a server name them as belonging together.
+
+rmw_fastrtps_cpp has the same beside the samples (inline QoS), which Cyclone neither hands on nor writes.
+Nothing goes between its clients and servers and ours, because each would take the other's header for content.
+"""
+
+from __future__ import annotations
+
+import ctypes as c
+import os
+import struct
+import time
+from collections import deque
+from collections.abc import Callable, Iterator
+from functools import partial
+from threading import Lock
+from typing import TYPE_CHECKING, Any
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph.endpoints.service_introspection import RequestId
+from linkwright.messages import deserialize, serialize, type_hash
+from linkwright.wire.dds.cyclone import (
+    ANY_STATE,
+    DATA_AVAILABLE,
+    PUBLICATION_MATCHED,
+    SUBSCRIPTION_MATCHED,
+    load,
+    write,
+)
+from linkwright.wire.dds.domain import Domain
+from linkwright.wire.dds.names import Role, dds_topic, endpoint_id
+from linkwright.wire.dds.qos import endpoint_qos
+from linkwright.wire.dds.remote import RemoteEndpoint, is_fast
+
+if TYPE_CHECKING:
+    from linkwright.graph.endpoints.base import Endpoint
+    from linkwright.graph.endpoints.client import Client
+    from linkwright.graph.endpoints.service import Service
+
+HEADER = struct.Struct("<Qq")
+"""Who asks, and the number of the request."""
+
+_ENCAPSULATION = 4
+_BODY = _ENCAPSULATION + HEADER.size
+_LITTLE_ENDIAN = b"\x00\x01\x00\x00"
+_AT_ONCE = 64
+_OUT_OF_REACH = (
+    "Service '{}' is offered by a node on Fast DDS (rmw_fastrtps_cpp), whose services cannot be called from here; "
+    "start that node with RMW_IMPLEMENTATION=rmw_cyclonedds_cpp"
+)
+_ASKED_IN_VAIN = (
+    "A node on Fast DDS (rmw_fastrtps_cpp) calls service '{}', and perhaps others; it cannot be answered from here: "
+    "start that node with RMW_IMPLEMENTATION=rmw_cyclonedds_cpp"
+)
+_REPLY_WAITS = 1.0
+"""Seconds for which a reply waits for the asker's reader to be known, before it is written all the same."""
+
+
+class _Pair:
+    """The reader and the writer that a client or a service consists of.
+
+    Args:
+        endpoint: the client or service.
+        domain: where the others are.
+        is_server: which of the two.
+    """
+
+    def __init__(self, endpoint: Endpoint, domain: Domain, *, is_server: bool) -> None:
+        self._dds = load()
+        self._participant = participant = domain.participant
+        self.name = endpoint.name
+        self.request_topic = dds_topic(Role.REQUEST, endpoint.name)
+        self.reply_topic = dds_topic(Role.REPLY, endpoint.name)
+        service = endpoint.interface
+        facts = _facts(os.urandom(16), service, is_server=is_server)
+        request = participant.create_topic(self.request_topic, domain.types.with_header(service.Request))
+        reply = participant.create_topic(self.reply_topic, domain.types.with_header(service.Response))
+        self._topics = (request, reply)
+        with endpoint_qos(endpoint.qos_profile, facts) as qos:
+            self.reader = participant.create_reader(request if is_server else reply, qos)
+            self.writer = participant.create_writer(reply if is_server else request, qos)
+        self.reader_guid = self._dds.guid(self.reader)
+        self.writer_guid = self._dds.guid(self.writer)
+        endpoint.gid = self.reader_guid if is_server else self.writer_guid
+        self._dds.dds_set_status_mask(self.reader, DATA_AVAILABLE | SUBSCRIPTION_MATCHED)
+        self._dds.dds_set_status_mask(self.writer, PUBLICATION_MATCHED)
+
+    def has_matched(self, entity: int) -> bool:
+        """Whether something came to the reader or writer, or left it, since this was asked last."""
+        mask = SUBSCRIPTION_MATCHED if entity == self.reader else PUBLICATION_MATCHED
+        status = c.c_uint32()
+        self._dds.dds_take_status(entity, c.byref(status), mask)
+        return bool(status.value)
+
+    def samples(self) -> Iterator[tuple[int, int, bytes, Any]]:
+        """What has come: who asks, the number, the body as CDR, and Cyclone's information on the sample."""
+        taken = self._dds.take_bytes(self.reader, ANY_STATE, _AT_ONCE)
+        for data, info in taken if isinstance(taken, list) else ():
+            if info.valid_data and len(data) >= _BODY:
+                asker, number = HEADER.unpack_from(data, _ENCAPSULATION)
+                yield asker, number, data[:_ENCAPSULATION] + data[_BODY:], info
+
+    def write(self, asker: int, number: int, message: Any) -> None:
+        """Write a request or a reply."""
+        write(self.writer, _LITTLE_ENDIAN + HEADER.pack(asker, number) + serialize(message)[_ENCAPSULATION:])
+
+    def close(self) -> None:
+        """Take both back."""
+        self._participant.delete(self.reader, self.writer, *self._topics)
+
+
+class OutsideServer:
+    """Servers outside, as a client of this process asks them (`transport.OutsideService`).
+
+    Args:
+        client: the client.
+        domain: where the others are.
+        matched: called when something connected or left, in the thread that receives.
+    """
+
+    def __init__(self, client: Client[Any, Any], domain: Domain, matched: Callable[[], None]) -> None:
+        self._client = client
+        self._matched = matched
+        self._remote = domain.remote
+        self._dds = load()
+        self.pair = _Pair(client, domain, is_server=False)
+        self._asker = int.from_bytes(os.urandom(8), "little")
+        self._answers: dict[int, Callable[[Any], None]] = {}
+        self._is_ready = False
+        self._is_out_of_reach = False
+
+    def send(self, request: Any, answer: Callable[[Any], None], number: int) -> Callable[[], None]:
+        """Ask; what it returns forgets the request."""
+        self._answers[number] = answer
+        self.pair.write(self._asker, number, request)
+        return partial(self._forget, number)
+
+    def on_data(self) -> bool:
+        """Hand on the replies that are for this client; whether there are more."""
+        if self.pair.has_matched(self.pair.reader):
+            self._matched()
+        count = 0
+        for asker, number, body, _ in self.pair.samples():
+            count += 1
+            answer = self._answers.pop(number, None) if asker == self._asker else None
+            if answer is not None:
+                response = _read(body, self._client.srv_type.Response, self._client)
+                if response is not None:
+                    answer(response)
+        return count == _AT_ONCE
+
+    def on_writer_status(self) -> bool:
+        """Take note that something connected with the writer or left it."""
+        if self.pair.has_matched(self.pair.writer):
+            self._matched()
+        return False
+
+    def review(self) -> None:
+        """See whether a server is there with both of its ends, and connected with both of ours."""
+        is_ready = self._server_is_there()
+        if is_ready != self._is_ready:
+            self._is_ready = is_ready
+            self._client.set_outside(self if is_ready else None)
+        is_out_of_reach = not is_ready and self._server_is_fast()
+        if is_out_of_reach != self._is_out_of_reach:
+            self._is_out_of_reach = is_out_of_reach
+            self._client.set_unreachable(_OUT_OF_REACH.format(self._client.name) if is_out_of_reach else "")
+
+    def close(self) -> None:
+        """Leave; requests without a reply stay so."""
+        self._client.set_outside(None)
+        self._answers.clear()
+        self.pair.close()
+
+    def abandon(self) -> None:
+        """Ask nobody any more, without calling Cyclone."""
+        self._client.outside = None
+
+    def _forget(self, number: int) -> None:
+        self._answers.pop(number, None)
+
+    def _server_is_there(self) -> bool:
+        listening = [self._remote.endpoint(each) for each in self._dds.matched(self.pair.writer, writer=True)]
+        ours = [each for each in listening if each is not None and not each.is_fast]
+        replying = [self._remote.endpoint(each) for each in self._dds.matched(self.pair.reader, writer=False)]
+        return any(_belong_together(a, b, "serviceid") for a in ours for b in replying)
+
+    def _server_is_fast(self) -> bool:
+        """Whether a server is there that cannot be asked; to be known, it need not be connected."""
+        readers = self._remote.endpoints_of(self.pair.request_topic, writers=False)
+        return any(each.is_fast for each in readers)
+
+
+class IncomingService:
+    """A service of this process, as clients outside ask it.
+
+    Args:
+        service: the service.
+        domain: where the others are.
+        waits: called when a reply has to wait for its asker.
+    """
+
+    def __init__(self, service: Service[Any, Any], domain: Domain, waits: Callable[[], None]) -> None:
+        self._service = service
+        self._waits = waits
+        self._remote = domain.remote
+        self._dds = load()
+        self.pair = _Pair(service, domain, is_server=True)
+        self._said = domain.said
+        self._late: deque[tuple[float, RemoteEndpoint | None, int, int, Any]] = deque()
+        self._lock = Lock()
+
+    def on_data(self) -> bool:
+        """Have the requests answered that have come; whether there are more."""
+        if self.pair.has_matched(self.pair.reader):
+            self._tell_of_fast_clients()
+        count = 0
+        for asker, number, body, info in self.pair.samples():
+            count += 1
+            sender = self._remote.endpoint(info.publication_handle)
+            if sender is not None and sender.is_fast:
+                continue
+            request = _read(body, self._service.srv_type.Request, self._service)
+            if request is None:
+                continue
+            gid = bytes(16) if sender is None else sender.guid
+            self._service.receive(request, partial(self._reply, sender, asker, number), RequestId(gid, number))
+        return count == _AT_ONCE
+
+    def review(self) -> None:
+        """Send the replies whose asker can be reached by now, or could not for too long."""
+        with self._lock:
+            for _ in range(len(self._late)):
+                due, sender, asker, number, response = self._late.popleft()
+                if time.monotonic() >= due or self._can_reach(sender):
+                    self.pair.write(asker, number, response)
+                else:
+                    self._late.append((due, sender, asker, number, response))
+
+    @property
+    def has_late_replies(self) -> bool:
+        """Whether replies wait for their askers."""
+        return bool(self._late)
+
+    def close(self) -> None:
+        """Answer nobody outside any more."""
+        self.pair.close()
+
+    def _tell_of_fast_clients(self) -> None:
+        """Say once that some cannot be answered; what they ask may not even look like a request here."""
+        if _ASKED_IN_VAIN in self._said:
+            return
+        asking = self._dds.matched(self.pair.reader, writer=False)
+        if any(is_fast(self._dds.writer_guid(self.pair.reader, each)) for each in asking):
+            self._said.add(_ASKED_IN_VAIN)
+            self._service.node.logger.warning(_ASKED_IN_VAIN.format(self._service.name))
+
+    def _reply(self, sender: RemoteEndpoint | None, asker: int, number: int, response: Any) -> None:
+        if not self._service.destroyed:
+            if self._can_reach(sender):
+                self.pair.write(asker, number, response)
+            else:
+                with self._lock:
+                    self._late.append((time.monotonic() + _REPLY_WAITS, sender, asker, number, response))
+                self._waits()
+
+    def _can_reach(self, sender: RemoteEndpoint | None) -> bool:
+        """Whether the asker's reader of replies is connected with our writer: before that it would miss the reply."""
+        readers = (self._remote.endpoint(each) for each in self._dds.matched(self.pair.writer, writer=True))
+        return any(_belong_together(sender, reader, "clientid") for reader in readers)
+
+
+def _belong_together(a: RemoteEndpoint | None, b: RemoteEndpoint | None, key: str) -> bool:
+    """Whether two endpoints are those of one client or server: by its id where it has one, else by the participant."""
+    if a is None or b is None:
+        return False
+    if key in a.facts or key in b.facts:
+        return a.facts.get(key) == b.facts.get(key)
+    return a.participant == b.participant
+
+
+def _facts(identity: bytes, service: Any, *, is_server: bool) -> bytes:
+    key = "serviceid" if is_server else "clientid"
+    return f"{key}={endpoint_id(identity)};typehash={type_hash(service)};".encode()
+
+
+def _read(body: bytes, message_class: Any, endpoint: Any) -> Any:
+    """A request or response; None when it cannot be read, which is logged."""
+    try:
+        return deserialize(body, message_class)
+    except LinkwrightError as error:
+        endpoint.node.logger.warning(f"Dropped a malformed message of service '{endpoint.name}': {error}")
+        return None

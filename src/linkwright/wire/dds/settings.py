@@ -1,0 +1,199 @@
+"""The settings of DDS from the environment: the domain, the range of discovery, and Cyclone's configuration.
+
+Left to itself a process stays inside its machine; see `docs/decisions/0011-dds.md` for what the configuration is made
+of and why. As soon as ROS's own variables say how far to go, they are followed as rmw_cyclonedds_cpp follows them.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import Enum
+from xml.sax.saxutils import quoteattr
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, phrase
+from linkwright.wire.dds.discovery_info import GID_SIZE, OLD_GID_SIZE
+from linkwright.wire.dds.interfaces import own_addresses
+
+MAX_DOMAIN_ID = 232
+"""Beyond it the ports of RTPS (7400 + 250 a domain) do not exist."""
+
+PARTICIPANTS = 99
+"""How many processes on one machine find each other without multicast."""
+
+LEASE = 5
+"""Seconds of silence after which a process counts as gone, where the configuration is our own."""
+
+_OLD_DISTRIBUTIONS = ("dashing", "eloquent", "foxy", "galactic", "humble")
+_STATIC_PEERS_SEPARATOR = ";"
+
+
+class Range(Enum):
+    """How far participants are looked for (ROS_AUTOMATIC_DISCOVERY_RANGE)."""
+
+    MACHINE = "machine"
+    """Our own default: this machine, on all its ways."""
+
+    LOCALHOST = "LOCALHOST"
+    SUBNET = "SUBNET"
+    OFF = "OFF"
+    SYSTEM_DEFAULT = "SYSTEM_DEFAULT"
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """What a participant is made with.
+
+    Attributes:
+        domain_id: the DDS domain.
+        range: how far others are looked for.
+        configurations: fragments for Cyclone, of which the first that it takes is used.
+        gid_size: the gid's bytes in ``ros_discovery_info`` as long as no ROS 2 node was heard.
+        warnings: what the user may want to know.
+        user_configuration: the value of CYCLONEDDS_URI.
+        own_configurations: the fragments without that.
+    """
+
+    domain_id: int
+    range: Range
+    configurations: tuple[str, ...]
+    gid_size: int
+    warnings: tuple[str, ...] = ()
+    user_configuration: str = ""
+    own_configurations: tuple[str, ...] = ()
+
+
+def read_settings(environment: Mapping[str, str] | None = None, *, domain_id: int | None = None) -> Settings:
+    """The settings of an environment.
+
+    Args:
+        environment: the variables; those of the process when left out.
+        domain_id: takes the place of ROS_DOMAIN_ID.
+
+    Raises:
+        LinkwrightError: DDS101, the domain is not one.
+    """
+    variables = os.environ if environment is None else environment
+    warnings: list[str] = []
+    reach = _range(variables, warnings)
+    peers = [peer for peer in variables.get("ROS_STATIC_PEERS", "").split(_STATIC_PEERS_SEPARATOR) if peer]
+    if peers and reach in (Range.OFF, Range.SYSTEM_DEFAULT):
+        warnings.append(f"{len(peers)} static peers were specified, but discovery is {reach.value}: they are ignored")
+    user = variables.get("CYCLONEDDS_URI", "")
+    distribution = variables.get("ROS_DISTRO", "").lower()
+    own = tuple(_fragments(reach, peers))
+    return Settings(
+        domain_id=_domain(variables, domain_id),
+        range=reach,
+        configurations=tuple(",".join(part for part in (each, user) if part) for each in own),
+        gid_size=OLD_GID_SIZE if not distribution or distribution in _OLD_DISTRIBUTIONS else GID_SIZE,
+        warnings=tuple(warnings),
+        user_configuration=user,
+        own_configurations=own,
+    )
+
+
+def _domain(variables: Mapping[str, str], domain_id: int | None) -> int:
+    text = variables.get("ROS_DOMAIN_ID", "") if domain_id is None else str(domain_id)
+    if not text.strip():
+        return 0
+    if text.strip().isdecimal() and int(text) <= MAX_DOMAIN_ID:
+        return int(text)
+    raise LinkwrightError(
+        Diagnostic(
+            code="DDS101",
+            message=phrase("'{text}' is not a DDS domain", text=text),
+            hint=phrase(
+                "ROS_DOMAIN_ID is a number from 0 to {highest}; up to 101 is safe on every system",
+                highest=MAX_DOMAIN_ID,
+            ),
+        )
+    )
+
+
+def _range(variables: Mapping[str, str], warnings: list[str]) -> Range:
+    """How far to look: ROS_LOCALHOST_ONLY goes before ROS_AUTOMATIC_DISCOVERY_RANGE, as in rcl."""
+    localhost_only = variables.get("ROS_LOCALHOST_ONLY", "")
+    if localhost_only == "1":
+        return Range.LOCALHOST
+    named = variables.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "")
+    if named:
+        choices = [each.value for each in Range if each is not Range.MACHINE]
+        if named in choices:
+            return Range(named)
+        hint = did_you_mean(named, choices)
+        warnings.append(
+            f"Invalid value '{named}' specified for 'ROS_AUTOMATIC_DISCOVERY_RANGE', assuming localhost only"
+            + (f" ({hint})" if hint else "")
+        )
+        return Range.LOCALHOST
+    if localhost_only or variables.get("CYCLONEDDS_URI") or variables.get("ROS_STATIC_PEERS"):
+        return Range.SUBNET
+    return Range.MACHINE
+
+
+_AUTO_INDEX = "<ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>{0}</MaxAutoParticipantIndex>"
+
+_BUFFERS = (
+    "<Internal><Watermarks><WhcHigh>16 MB</WhcHigh><WhcHighInit>1 MB</WhcHighInit></Watermarks>"
+    "<SocketReceiveBufferSize max='8 MB'/></Internal>"
+)
+"""More than Cyclone's half megabyte may wait for acknowledgement: an image alone is larger."""
+
+_OWN_ADDRESSES = 3
+"""At how many addresses besides loopback others of this machine are looked for."""
+
+_LOOPBACK = '<NetworkInterface address="127.0.0.1" multicast="true"/>'
+_OTHERS = '<NetworkInterface autodetermine="true"/>'
+
+
+def _machine(interfaces: str, addresses: list[str], *, multicast: bool) -> str:
+    """Discovery on this machine: by unicast to each index at its own addresses, by multicast that never leaves (TTL 0).
+
+    Multicast is listened to on loopback alone, so that no announcement of another machine is heard.
+    """
+    peers = "".join(f'<Peer address="{address}"/>' for address in ("127.0.0.1", *addresses))
+    by_multicast = (
+        "<AllowMulticast>spdp</AllowMulticast><MulticastTimeToLive>0</MulticastTimeToLive>"
+        "<MulticastRecvNetworkInterfaceAddresses>127.0.0.1</MulticastRecvNetworkInterfaceAddresses>"
+        if multicast
+        else "<AllowMulticast>false</AllowMulticast>"
+    )
+    return (
+        f"<CycloneDDS><Domain><General><Interfaces>{interfaces}</Interfaces>{by_multicast}"
+        "<MaxMessageSize>65000 B</MaxMessageSize><FragmentSize>60000 B</FragmentSize></General>"
+        f"<Discovery>{_AUTO_INDEX.format(PARTICIPANTS)}<LeaseDuration>{LEASE} s</LeaseDuration>"
+        f"<Peers>{peers}</Peers></Discovery>"
+        f"{_BUFFERS}</Domain></CycloneDDS>"
+    )
+
+
+def _fragments(reach: Range, peers: list[str]) -> list[str]:
+    """Configurations in the order of preference, without the user's own."""
+    if reach is Range.MACHINE:
+        addresses = own_addresses()[:_OWN_ADDRESSES]
+        loopback_alone = [
+            _machine(_LOOPBACK, [], multicast=True),
+            _machine('<NetworkInterface address="127.0.0.1"/>', [], multicast=False),
+        ]
+        on_network = [_machine(_LOOPBACK + _OTHERS, addresses, multicast=True)] if addresses else []
+        return on_network + loopback_alone
+    if reach is Range.SYSTEM_DEFAULT:
+        return [""]
+    if reach is Range.OFF:
+        off = (
+            "<CycloneDDS><Domain><General><AllowMulticast>false</AllowMulticast></General>"
+            "<Discovery><ParticipantIndex>none</ParticipantIndex>"
+            f"<Tag>ros_discovery_off_{os.getpid()}</Tag></Discovery></Domain></CycloneDDS>"
+        )
+        return [off]
+    local = reach is Range.LOCALHOST
+    listed = "".join(f"<Peer address={quoteattr(peer)}/>" for peer in (["localhost"] if local else []) + peers)
+    return [
+        "<CycloneDDS><Domain>"
+        + ("<General><AllowMulticast>false</AllowMulticast></General>" if local else "")
+        + f"<Discovery>{_AUTO_INDEX.format(32)}"
+        + (f"<Peers>{listed}</Peers>" if listed else "")
+        + "</Discovery></Domain></CycloneDDS>"
+    ]

@@ -1,0 +1,297 @@
+"""Publishers and subscriptions over DDS."""
+
+from __future__ import annotations
+
+import ctypes as c
+import time
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, cast
+
+from linkwright.graph.endpoints.info import MessageInfo
+from linkwright.graph.endpoints.matching import tell_publisher, tell_subscription, what_sides_say
+from linkwright.graph.qos.compatibility import incompatible_policies
+from linkwright.graph.qos.profile import DurabilityPolicy, HistoryPolicy
+from linkwright.messages import InterfaceNotFoundError, serialize, type_hash
+from linkwright.wire.dds.cyclone import (
+    ANY_STATE,
+    DATA_AVAILABLE,
+    LIVELINESS_CHANGED,
+    OFFERED_INCOMPATIBLE_QOS,
+    PUBLICATION_MATCHED,
+    REQUESTED_INCOMPATIBLE_QOS,
+    SAMPLE_LOST,
+    SUBSCRIPTION_MATCHED,
+    TIMEOUT,
+    CountStatus,
+    LivelinessChangedStatus,
+    MatchedStatus,
+    Sample,
+    describe,
+    load,
+)
+from linkwright.wire.dds.domain import Domain
+from linkwright.wire.dds.names import Role, dds_topic
+from linkwright.wire.dds.qos import endpoint_qos
+from linkwright.wire.dds.settings import LEASE
+
+if TYPE_CHECKING:
+    from linkwright.graph.endpoints.base import TopicEndpoint
+    from linkwright.graph.endpoints.publisher import Publisher
+    from linkwright.graph.endpoints.subscription import Subscription
+
+_PATIENCE = 2 * LEASE
+"""Seconds for which a publisher that keeps everything waits for readers."""
+
+_NAMELESS = "a node that is not known by name"
+
+AT_ONCE = 256
+"""How many samples are taken before other readers have their turn."""
+
+
+def type_facts(message_class: Any) -> bytes:
+    """The type's hash as ROS 2 from Iron on tells it in USER_DATA; older ones do not look."""
+    return f"typehash={type_hash(message_class)};".encode()
+
+
+class _MirroredTopic(ABC):
+    """A reader or a writer that stands for an endpoint of the process.
+
+    Args:
+        endpoint: the subscription or publisher.
+        domain: where the others are.
+        mismatch: called when somebody outside asks for more than is offered, or offers less than is asked for.
+    """
+
+    _STATUS: int
+    """Called with changes."""
+
+    def __init__(self, endpoint: TopicEndpoint[Any], domain: Domain, mismatch: Callable[[Any], None]) -> None:
+        self._dds = load()
+        self._mismatch = mismatch
+        self._participant = domain.participant
+        self._remote = domain.remote
+        profile = endpoint.qos_profile
+        self.topic_name = dds_topic(Role.TOPIC, endpoint.name, plain=profile.avoid_ros_namespace_conventions)
+        described, facts = self._describe_type(endpoint, domain)
+        self._topic = self._participant.create_topic(self.topic_name, described)
+        with endpoint_qos(profile, facts) as qos:
+            self.entity = self._create(qos)
+        self.guid = self._dds.guid(self.entity)
+        endpoint.gid = self.guid
+        self._dds.dds_set_status_mask(self.entity, self._STATUS)
+        self._told = _Told()
+
+    def _describe_type(self, endpoint: TopicEndpoint[Any], domain: Domain) -> tuple[Any, bytes]:
+        """The type's description for Cyclone, and its hash for others in USER_DATA."""
+        return domain.types.message(endpoint.interface), type_facts(endpoint.interface)
+
+    @abstractmethod
+    def _create(self, qos: Any) -> int:
+        """Make the reader or the writer."""
+
+
+class OutgoingTopic(_MirroredTopic):
+    """A publisher's writer; see `_MirroredTopic` for the arguments."""
+
+    _STATUS = PUBLICATION_MATCHED | OFFERED_INCOMPATIBLE_QOS
+
+    def __init__(self, publisher: Publisher[Any], domain: Domain, mismatch: Callable[[Any], None]) -> None:
+        super().__init__(publisher, domain, mismatch)
+        self._publisher = publisher
+        publisher.assert_outside = self._assert_liveliness
+        self._always = publisher.qos_profile.durability is DurabilityPolicy.TRANSIENT_LOCAL
+        self._send = self._sender()
+        self.on_status()
+
+    def on_status(self) -> bool:
+        """See who matches, and what else has happened."""
+        status = c.c_uint32()
+        self._dds.dds_take_status(self.entity, c.byref(status), self._STATUS)
+        matched = MatchedStatus()
+        if self._dds.dds_get_publication_matched_status(self.entity, c.byref(matched)) >= 0:
+            listened_to = self._always or matched.current_count > 0
+            self._publisher.set_outside(self._send if listened_to else None, self._acknowledged)
+            self._publisher.set_outside_count(matched.current_count)
+        if status.value & OFFERED_INCOMPATIBLE_QOS:
+            self._mismatch(self)
+        return False
+
+    def acknowledged(self, nanoseconds: int) -> bool:
+        """Wait until everybody has what was written reliably; whether they have."""
+        code: int = self._dds.dds_wait_for_acks(self.entity, nanoseconds)
+        return code >= 0
+
+    def close(self) -> None:
+        """Take the writer back."""
+        self._publisher.set_outside(None)
+        self._participant.delete(self.entity, self._topic)
+
+    def abandon(self) -> None:
+        """Send nothing any more, without calling Cyclone."""
+        self._publisher.outside = None
+        self._publisher.assert_outside = None
+
+    def _create(self, qos: Any) -> int:
+        return self._participant.create_writer(self._topic, qos)
+
+    def _assert_liveliness(self) -> None:
+        self._dds.dds_assert_liveliness(self.entity)
+
+    def _acknowledged(self, seconds: float | None) -> bool:
+        return self.acknowledged(0x7FFF_FFFF_FFFF_FFFF if seconds is None else int(seconds * 1e9))
+
+    def _sender(self) -> Callable[[Any], None]:
+        write, writer, reference = self._dds.dds_write, self.entity, c.byref
+        keeps_all = self._publisher.qos_profile.history is HistoryPolicy.KEEP_ALL
+
+        def send(message: Any) -> None:
+            data = message if type(message) is bytes else _bytes_of(message)
+            if len(data) & 3:
+                data += bytes(-len(data) & 3)
+            sample = Sample(data, len(data))
+            code = write(writer, reference(sample))
+            if code < 0:
+                self._failed(self._insist(sample) if code == TIMEOUT and keeps_all else code)
+
+        return send
+
+    def _insist(self, sample: Sample) -> int:
+        """Write on, where everything is to be kept, until slow readers have caught up and dead ones are gone."""
+        until = time.monotonic() + _PATIENCE
+        code = TIMEOUT
+        while code == TIMEOUT and time.monotonic() < until and not self._participant.closed:
+            code = self._dds.dds_write(self.entity, c.byref(sample))
+        return code
+
+    def _failed(self, code: int) -> None:
+        """Say once, and again after some time, that messages do not get through."""
+        if code >= 0 or self._participant.closed or self._publisher.destroyed or not self._told.is_due("failed"):
+            return
+        reason = "who listens outside does not keep up" if code == TIMEOUT else describe(code)
+        self._publisher.node.logger.warning(
+            f"A message of topic '{self._publisher.name}' was not sent out of this process: {reason}"
+        )
+
+    def tell_mismatches(self, *, finally_: bool) -> None:
+        """Report the subscriptions outside that ask for more than this offers.
+
+        Args:
+            finally_: whether to tell even of those whose node is not known by name yet.
+        """
+        offered = self._publisher.qos_profile
+        for reader in self._remote.endpoints_of(self.topic_name, writers=False):
+            policies = incompatible_policies(offered, reader.qos)
+            name = self._remote.node_name(reader)
+            if policies and (name or finally_) and self._told.is_new(reader.guid):
+                sides = what_sides_say(self._publisher.node_name, offered, name or _NAMELESS, reader.qos, policies)
+                tell_publisher(self._publisher, policies[-1].name, sides)
+
+
+class IncomingTopic(_MirroredTopic):
+    """A subscription's reader; see `_MirroredTopic` for the arguments."""
+
+    _STATUS = DATA_AVAILABLE | SUBSCRIPTION_MATCHED | REQUESTED_INCOMPATIBLE_QOS | SAMPLE_LOST | LIVELINESS_CHANGED
+
+    def __init__(self, subscription: Subscription[Any], domain: Domain, mismatch: Callable[[Any], None]) -> None:
+        super().__init__(subscription, domain, mismatch)
+        self._subscription = subscription
+
+    def on_status(self) -> bool:
+        """Hand on what has come, and tell what else has happened; whether there is more."""
+        status = c.c_uint32()
+        self._dds.dds_take_status(self.entity, c.byref(status), self._STATUS & ~DATA_AVAILABLE)
+        if status.value:
+            self._on_change(status.value)
+        return self._take()
+
+    def close(self) -> None:
+        """Take the reader back."""
+        self._participant.delete(self.entity, self._topic)
+
+    def _describe_type(self, endpoint: TopicEndpoint[Any], domain: Domain) -> tuple[Any, bytes]:
+        """As it is; a type that no package here has goes by its name, where the bytes alone are wanted."""
+        try:
+            return super()._describe_type(endpoint, domain)
+        except InterfaceNotFoundError:
+            if not cast("Subscription[Any]", endpoint).raw:
+                raise
+            return domain.types.by_name(endpoint.type_name), b""
+
+    def _create(self, qos: Any) -> int:
+        return self._participant.create_reader(self._topic, qos)
+
+    def _take(self) -> bool:
+        samples = self._dds.take_bytes(self.entity, ANY_STATE, AT_ONCE)
+        if not isinstance(samples, list):
+            return False
+        receive, received = self._subscription.receive, time.time_ns()
+        publisher, gid = None, bytes(16)
+        for data, info in samples:
+            if info.valid_data:
+                if info.publication_handle != publisher:
+                    publisher = info.publication_handle
+                    gid = self._gid_of(publisher)
+                receive(data, MessageInfo(info.source_timestamp, received, gid, True))
+        return len(samples) == AT_ONCE
+
+    def _gid_of(self, handle: int) -> bytes:
+        endpoint = self._remote.endpoint(handle)
+        return endpoint.guid if endpoint is not None else bytes(16)
+
+    def _on_change(self, changed: int) -> None:
+        if changed & SUBSCRIPTION_MATCHED:
+            matched = MatchedStatus()
+            self._dds.dds_get_subscription_matched_status(self.entity, c.byref(matched))
+            self._subscription.set_outside_count(matched.current_count)
+        if changed & SAMPLE_LOST:
+            lost = CountStatus()
+            self._dds.dds_get_sample_lost_status(self.entity, c.byref(lost))
+            if lost.total_count_change > 0:
+                self._subscription.lost_outside(lost.total_count_change)
+        if changed & LIVELINESS_CHANGED:
+            lives = LivelinessChangedStatus()
+            self._dds.dds_get_liveliness_changed_status(self.entity, c.byref(lives))
+            # Publishers that come and go alive are counted as matches already.
+            if lives.not_alive_count_change and self._subscription.events is not None:
+                self._subscription.events.liveliness(lives.alive_count_change, lives.not_alive_count_change)
+        if changed & REQUESTED_INCOMPATIBLE_QOS:
+            self._mismatch(self)
+
+    def tell_mismatches(self, *, finally_: bool) -> None:
+        """Report the publishers outside that offer less than this asks for; see `OutgoingTopic.tell_mismatches`."""
+        requested = self._subscription.qos_profile
+        for writer in self._remote.endpoints_of(self.topic_name, writers=True):
+            policies = incompatible_policies(writer.qos, requested)
+            name = self._remote.node_name(writer)
+            if policies and (name or finally_) and self._told.is_new(writer.guid):
+                sides = what_sides_say(name or _NAMELESS, writer.qos, self._subscription.node_name, requested, policies)
+                tell_subscription(self._subscription, policies[-1].name, sides)
+
+
+class _Told:
+    """What has been said already."""
+
+    _AGAIN_AFTER = 30.0
+
+    def __init__(self) -> None:
+        self._guids: set[bytes] = set()
+        self._said: dict[str, float] = {}
+
+    def is_new(self, guid: bytes) -> bool:
+        """Whether nothing was said of an endpoint; from now on something was."""
+        is_new = guid not in self._guids
+        self._guids.add(guid)
+        return is_new
+
+    def is_due(self, what: str) -> bool:
+        """Whether it is time to say something, the first time or again."""
+        now = time.monotonic()
+        is_due = now - self._said.get(what, -self._AGAIN_AFTER) >= self._AGAIN_AFTER
+        if is_due:
+            self._said[what] = now
+        return is_due
+
+
+def _bytes_of(message: Any) -> bytes:
+    return bytes(message) if isinstance(message, bytearray) else serialize(message)

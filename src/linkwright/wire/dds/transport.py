@@ -1,0 +1,232 @@
+"""The DDS transport: mirrors the graph of this process in a DDS domain."""
+
+from __future__ import annotations
+
+import atexit
+import os
+import threading
+import time
+import weakref
+from collections import deque
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
+from linkwright.diagnostics import LinkwrightError, render
+from linkwright.graph.endpoints.info import EndpointInfo
+from linkwright.graph.log.logger import Logger
+from linkwright.graph.names.identity import NodeIdentity
+from linkwright.wire.dds.remote import RemoteGraph
+from linkwright.wire.dds.settings import Settings
+
+if TYPE_CHECKING:
+    from linkwright.graph.endpoints.client import Client
+    from linkwright.graph.endpoints.publisher import Publisher
+    from linkwright.graph.endpoints.service import Service
+    from linkwright.graph.endpoints.subscription import Subscription
+    from linkwright.wire.dds.engine import Engine
+
+SETTLED_AFTER = 0.3
+"""Seconds without news after which discovery counts as complete."""
+
+_CLOSED_WITHIN = 0.05
+"""Seconds after which who waits sees that the domain was left."""
+
+
+class DdsTransport:
+    """The graph of this process on the wire (`linkwright.graph.endpoints.transport.Transport`).
+
+    Threads of its own do the work, so that nothing here blocks but what says so; none of them runs a user's callback. A
+    process that is forked off has no part in it: there, nothing goes out and nothing comes in.
+
+    Args:
+        settings: the domain and how to join it.
+        logger: for what there is to tell.
+    """
+
+    def __init__(self, settings: Settings, logger: Logger) -> None:
+        self._settings = settings
+        self._logger = logger
+        self._remote = RemoteGraph()
+        self._engine: Engine | None = None
+        self._work: deque[Callable[[Engine], None]] = deque()
+        self._decided = threading.Event()
+        self._closed = False
+        self._joined_at = 0.0
+        self.problem: LinkwrightError | None = None
+        """Why the domain could not be joined; None when it could, or was not tried yet."""
+        self._starter = threading.Thread(target=self._join, name="linkwright-dds-join", daemon=True)
+        _open_transports.add(self)
+        self._starter.start()
+
+    # --- for whoever joined ------------------------------------------------------------------------------------------
+
+    @property
+    def domain_id(self) -> int:
+        """The DDS domain."""
+        return self._settings.domain_id
+
+    def wait_until_ready(self, timeout: float | None = None) -> bool:
+        """Block until the domain is joined and all that was asked for so far is made.
+
+        Args:
+            timeout: seconds at most; None for any time.
+
+        Returns:
+            Whether it is so; False at once when the domain cannot be joined, or was left.
+        """
+        deadline = None if timeout is None else time.monotonic() + timeout
+        if not self._decided.wait(timeout) or self._engine is None:
+            return False
+        done = threading.Event()
+        self._do(lambda _: done.set())
+        while not self._closed and (deadline is None or time.monotonic() < deadline):
+            if done.wait(_CLOSED_WITHIN if deadline is None else min(_CLOSED_WITHIN, deadline - time.monotonic())):
+                break
+        return done.is_set()
+
+    def wait_for_discovery(self, timeout: float = 5.0) -> bool:
+        """Block until discovery has settled: every participant has announced its nodes, and nothing is new.
+
+        Args:
+            timeout: seconds at most.
+
+        Returns:
+            Whether discovery has settled.
+        """
+        deadline = time.monotonic() + timeout
+        if not self.wait_until_ready(timeout):
+            return False
+        while time.monotonic() < deadline and not self._closed:
+            quiet = time.monotonic() - max(self._remote.changed_at, self._joined_at)
+            if quiet >= SETTLED_AFTER and self._remote.is_complete():
+                return True
+            time.sleep(0.01)
+        return False
+
+    # --- for the graph -----------------------------------------------------------------------------------------------
+
+    def open_node(self, node: NodeIdentity) -> None:
+        """Make a node known."""
+        self._do(lambda engine: engine.add_node(node))
+
+    def close_node(self, node: NodeIdentity) -> None:
+        """Take a node back."""
+        self._do(lambda engine: engine.remove_node(node))
+
+    def open_publisher(self, publisher: Publisher[Any]) -> None:
+        """Mirror a publisher."""
+        if self._engine is not None:
+            publisher.hold_for_outside(self.wait_until_ready)
+        self._do(lambda engine: engine.open_publisher(publisher))
+
+    def close_publisher(self, publisher: Publisher[Any]) -> None:
+        """Take a publisher back once what it sent reliably has been acknowledged, or nobody is there to do so."""
+        self._do(lambda engine: engine.close_publisher(publisher))
+
+    def open_subscription(self, subscription: Subscription[Any]) -> None:
+        """Mirror a subscription."""
+        self._do(lambda engine: engine.open_subscription(subscription))
+
+    def close_subscription(self, subscription: Subscription[Any]) -> None:
+        """Take a subscription back."""
+        self._do(lambda engine: engine.close_endpoint(subscription))
+
+    def open_service(self, service: Service[Any, Any]) -> None:
+        """Mirror a service."""
+        self._do(lambda engine: engine.open_service(service))
+
+    def close_service(self, service: Service[Any, Any]) -> None:
+        """Take a service back."""
+        self._do(lambda engine: engine.close_endpoint(service))
+
+    def open_client(self, client: Client[Any, Any]) -> None:
+        """Mirror a client."""
+        self._do(lambda engine: engine.open_client(client))
+
+    def close_client(self, client: Client[Any, Any]) -> None:
+        """Take a client back."""
+        self._do(lambda engine: engine.close_endpoint(client))
+
+    def remote_nodes(self) -> Sequence[NodeIdentity]:
+        """The nodes of other processes, as far as discovery has come."""
+        return self._remote.nodes()
+
+    def remote_endpoints(self) -> Sequence[EndpointInfo]:
+        """The endpoints of other processes, as far as discovery has come."""
+        return self._remote.endpoints()
+
+    def watch(self, changed: Callable[[], None]) -> None:
+        """Have something called, from any thread, whenever nodes or endpoints outside come or go."""
+        self._remote.watch(changed)
+
+    def close(self) -> None:
+        """Leave the domain once what was sent reliably is acknowledged, or a second has passed."""
+        if self._closed:
+            return
+        self._closed = True
+        _open_transports.discard(self)
+        if self._starter.ident is not None:  # Ctrl-C may have come before it was started
+            self._starter.join()
+        if self._engine is not None:
+            self._engine.close()
+            self._engine = None
+        self._work.clear()
+
+    # --- inside ------------------------------------------------------------------------------------------------------
+
+    def abandon(self) -> None:
+        """In a process that was forked off: take no part."""
+        self._closed = True
+        if self._engine is not None:
+            self._engine.abandon()
+            self._engine = None
+
+    def _do(self, work: Callable[[Engine], None]) -> None:
+        """Have something done in the thread that makes and deletes, in the order of asking."""
+        if self._closed or self.problem is not None:
+            return
+        self._work.append(work)
+        engine = self._engine
+        if engine is not None:
+            engine.wake()
+
+    def _join(self) -> None:
+        try:
+            # Imported in this thread because loading Cyclone takes 0.15 s.
+            from linkwright.wire.dds.engine import Engine
+
+            self._engine = Engine(self._settings, self._remote, self._work, self._logger)
+            self._joined_at = time.monotonic()
+            self._engine.start()
+            self._engine.wake()
+        except LinkwrightError as error:
+            self.problem = error
+            self._work.clear()
+            log_join_failure(self._logger, error)
+        finally:
+            self._decided.set()
+
+
+_open_transports: weakref.WeakSet[DdsTransport] = weakref.WeakSet()
+
+
+def _close_all() -> None:
+    for transport in tuple(_open_transports):
+        transport.close()
+
+
+def _abandon_all() -> None:
+    for transport in tuple(_open_transports):
+        transport.abandon()
+    _open_transports.clear()
+
+
+atexit.register(_close_all)
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_abandon_all)
+
+
+def log_join_failure(logger: Logger, error: LinkwrightError) -> None:
+    """Log why a domain is not joined."""
+    findings = "\n".join(render(each) for each in error.diagnostics)
+    logger.error(f"{findings}\nThis process goes on by itself: nobody outside sees its nodes.")

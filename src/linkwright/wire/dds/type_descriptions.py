@@ -1,0 +1,122 @@
+"""Descriptions of ROS types for Cyclone, which checks samples against them and tells other tools about them.
+
+Cyclone compares types structurally when both sides describe theirs, so they are described member by member, as
+rmw_cyclonedds_cpp does where it does (final, keyless; ``byte`` and ``char`` are unsigned octets; an empty message has
+the member that rosidl gives it). The content of samples never goes through these classes: it is CDR from
+`linkwright.messages`.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from threading import RLock
+from typing import Any
+
+from linkwright.messages import definition_of, get_message
+from linkwright.messages.definition import Container, FieldType, Structure
+from linkwright.wire.dds.names import dds_type
+
+HEADER_MEMBERS = ("client_guid", "sequence_number")
+"""What rmw_cyclonedds_cpp puts before requests and replies: an unsigned and a signed integer of 64 bits."""
+
+_OCTETS = ("byte", "char")
+
+DISCOVERY_TYPE = "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_"
+
+
+class UndescribableError(Exception):
+    """A type has a member that Cyclone's Python package has no word for (wide strings)."""
+
+
+class WireTypes:
+    """Makes the descriptions, each once; may be used from any thread."""
+
+    def __init__(self) -> None:
+        self._made: dict[tuple[str, object], Any] = {}
+        self._lock = RLock()
+
+    def message(self, message_class: type[Any]) -> Any:
+        """The description of a message type."""
+        return self._described("", definition_of(message_class))
+
+    def with_header(self, message_class: type[Any]) -> Any:
+        """The description of a request or reply with the header that goes before it."""
+        return self._described("header", definition_of(message_class))
+
+    def discovery(self) -> Any:
+        """The description of ``rmw_dds_common/msg/ParticipantEntitiesInfo``: its name, and nothing of its contents.
+
+        Those differ with the distribution (`discovery_info`), and Cyclone would reject what does not fit.
+        """
+        return self._named(DISCOVERY_TYPE)
+
+    def by_name(self, type_name: str) -> Any:
+        """The description of a message type of which nothing but its name is known."""
+        return self._named(dds_type(type_name))
+
+    def _named(self, name: str) -> Any:
+        with self._lock:
+            if ("", name) not in self._made:
+                self._made["", name] = struct_class(name, {})
+            return self._made["", name]
+
+    def _described(self, variant: str, structure: Structure) -> Any:
+        key = (variant, structure)
+        with self._lock:
+            if key not in self._made:
+                self._made[key] = struct_class(dds_type(structure.type_name), self._members(structure, variant))
+            return self._made[key]
+
+    def _members(self, structure: Structure, variant: str) -> dict[str, Any]:
+        types = _idl_types()
+        members: dict[str, Any] = {}
+        if variant == "header":
+            members = dict(zip(HEADER_MEMBERS, (types.uint64, types.int64), strict=True))
+        try:
+            for field in structure.wire_fields:
+                members[field.name] = self._member(field.type)
+        except UndescribableError:
+            return {}  # goes by its name alone with what does not describe itself either, such as real ROS 2 nodes
+        return members
+
+    def _member(self, field: FieldType) -> Any:
+        types = _idl_types()
+        element = self._element(field)
+        if field.container is Container.ARRAY:
+            return types.array[element, field.size]
+        if field.container is Container.SEQUENCE:
+            return types.sequence[element] if field.size is None else types.sequence[element, field.size]
+        return element
+
+    def _element(self, field: FieldType) -> Any:
+        types = _idl_types()
+        if field.base == "string":
+            return str if field.string_bound is None else types.bounded_str[field.string_bound]
+        if field.base == "wstring":
+            raise UndescribableError(field.base)
+        if field.base == "bool":
+            return bool
+        if "/" in field.base:
+            return self.message(get_message(field.base))
+        return getattr(types, "uint8" if field.base in _OCTETS else field.base)
+
+
+def struct_class(type_name: str, members: dict[str, Any]) -> Any:
+    """A class that describes a structure.
+
+    Args:
+        type_name: its DDS name.
+        members: their names and `cyclonedds.idl.types`.
+    """
+    from cyclonedds.idl import make_idl_struct
+
+    short = type_name.rpartition("::")[2]
+    described: Any = make_idl_struct(short, type_name.replace("::", "."), members, dataclassify=False)
+    described.__idl__.populate()
+    described.__idl__.fill_type_data()
+    return described
+
+
+def _idl_types() -> Any:
+    """`cyclonedds.idl.types`, whose classes are subscripted in ways of their own."""
+    return import_module("cyclonedds.idl.types")

@@ -1,0 +1,104 @@
+"""Threads that wait for Cyclone and call what was attached."""
+
+from __future__ import annotations
+
+import ctypes as c
+import threading
+import time
+from collections.abc import Callable
+from typing import TypeVar
+
+from linkwright.wire.dds.cyclone import INFINITY, checked, load
+
+Handler = Callable[[], bool]
+"""Does what there is to do; True when there is more, so that others get their turn first."""
+
+R = TypeVar("R")
+
+_AT_ONCE = 64
+
+
+class WaitingThread(threading.Thread):
+    """Calls handlers when the entities they were attached for have something.
+
+    Args:
+        name: of the thread.
+        owner: the participant.
+        report: called with the error when a callback fails; the thread goes on.
+        idle: called after the handlers, and whenever `wake` was called; gives the seconds after which it wants to be
+            called again, or None.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        owner: int,
+        report: Callable[[Exception], None],
+        idle: Callable[[], float | None] | None = None,
+    ) -> None:
+        super().__init__(name=name, daemon=True)
+        self._dds = load()
+        self._waitset = checked(self._dds.dds_create_waitset(owner), "making a waitset")
+        self._guard = checked(self._dds.dds_create_guardcondition(owner), "making a guard condition")
+        checked(self._dds.dds_waitset_attach(self._waitset, self._guard, 0), "attaching the guard condition")
+        self._handlers: dict[int, Handler] = {}
+        self._report = report
+        self._idle = idle
+        self._stopping = False
+
+    def attach(self, entity: int, handler: Handler) -> None:
+        """Have a handler called whenever an enabled status of an entity is set."""
+        self._handlers[entity] = handler
+        checked(self._dds.dds_waitset_attach(self._waitset, entity, entity), "attaching")
+
+    def detach(self, entity: int) -> None:
+        """Call its handler no more; it may still be running."""
+        self._handlers.pop(entity, None)
+        self._dds.dds_waitset_detach(self._waitset, entity)
+
+    def wake(self) -> None:
+        """Have `idle` called soon; from any thread."""
+        self._dds.dds_set_guardcondition(self._guard, True)
+
+    def stop(self, timeout: float) -> bool:
+        """End the thread; whether it has ended within the seconds given."""
+        self._stopping = True
+        self.wake()
+        if threading.current_thread() is not self and self.is_alive():
+            self.join(timeout)
+        return not self.is_alive()
+
+    def run(self) -> None:
+        """Wait and call until `stop`."""
+        triggered = (c.c_ssize_t * _AT_ONCE)()
+        taken = c.c_bool()
+        unfinished: set[int] = set()
+        due: float | None = None
+        while not self._stopping:
+            timeout = 0 if unfinished else _nanoseconds_until(due)
+            count = self._dds.dds_waitset_wait(self._waitset, triggered, _AT_ONCE, timeout)
+            if count < 0:
+                return  # the participant was deleted
+            entities = unfinished.union(triggered[: min(count, _AT_ONCE)])
+            unfinished = set()
+            if 0 in entities:
+                entities.discard(0)
+                self._dds.dds_take_guardcondition(self._guard, c.byref(taken))
+            for entity in entities:
+                handler = self._handlers.get(entity)
+                if handler is not None and self._guarded(handler):
+                    unfinished.add(entity)
+            if self._idle is not None and not self._stopping:
+                seconds = self._guarded(self._idle)
+                due = None if seconds is None else time.monotonic() + seconds
+
+    def _guarded(self, call: Callable[[], R]) -> R | None:
+        try:
+            return call()
+        except Exception as error:  # noqa: BLE001 - everything else depends on this thread
+            self._report(error)
+            return None
+
+
+def _nanoseconds_until(due: float | None) -> int:
+    return INFINITY if due is None else max(0, int((due - time.monotonic()) * 1e9))

@@ -1,0 +1,183 @@
+"""Python's own functions where a single call of them could take hours.
+
+An expression pays for what it does step by step, and between two steps the clock is looked at; nothing can end one
+call of a function that is written in C. So each that some arguments make slow is listed here with a bound: keys that
+have one hash, searches from the right, texts stripped of many characters, codecs, numbers of many bits.
+"""
+
+from __future__ import annotations
+
+import codecs
+import math
+import re
+from collections import Counter
+from collections.abc import Callable, Collection, Iterable
+from typing import Any
+
+from linkwright.diagnostics import phrase
+from linkwright.xacro.refusal import RefusalError
+
+_MOST_ALIKE = 1_000
+"""Python compares each of the keys that have one hash with each."""
+_MOST_COMPARED = 200_000_000
+"""Characters, in one call."""
+_MOST_NUMBERS = 1_000
+_QUICK_CODECS = frozenset({"utf-8", "utf-16", "utf-32", "ascii", "iso8859-1", "iso8859-15", "cp1252", "unicode-escape"})
+_MOST_CODED = 10_000
+"""Characters."""
+_SECONDS = 0.5
+"""What a regular expression may take, as for those of other files (decision 0020)."""
+
+HASHING = frozenset(
+    {
+        *("set", "frozenset", "dict", "update", "union", "difference", "intersection", "symmetric_difference"),
+        *("difference_update", "intersection_update", "issubset", "issuperset", "isdisjoint", "dotify"),
+    }
+)
+"""Names of functions that put all items of an argument into a table."""
+
+
+def keys(value: Any) -> Any:
+    """What a set or dict may be made of: the value itself, or its items where they come one by one.
+
+    Raises:
+        RefusalError: too many of its items, or of the first of its pairs, have the same hash.
+    """
+    if isinstance(value, (str, bytes, dict, set, frozenset, range)) or not hasattr(value, "__iter__"):
+        return value
+    items = value if isinstance(value, (list, tuple)) else list(value)
+    if len(items) > _MOST_ALIKE:
+        check_keys(items)
+        check_keys([item[0] for item in items if isinstance(item, (list, tuple)) and item])
+    return items
+
+
+def check_keys(items: Collection[Any]) -> None:
+    """Refuse keys of which too many have the same hash.
+
+    Raises:
+        RefusalError: more than a thousand of them that differ.
+    """
+    for alike, count in Counter(map(_hash_of, items)).items():
+        if count > _MOST_ALIKE and len({repr(item) for item in items if _hash_of(item) == alike}) > _MOST_ALIKE:
+            raise RefusalError(
+                phrase("more than {count:,} of the keys have the same hash, as no real ones do", count=_MOST_ALIKE)
+            )
+
+
+def _hash_of(item: Any) -> int:
+    try:
+        return hash(item)
+    except TypeError:  # a list, which is no key and is refused in a moment
+        return id(item)
+
+
+def _backwards(name: str) -> Callable[..., Any]:
+    def search(text: Any, wanted: Any, *rest: Any) -> Any:
+        if isinstance(wanted, (str, bytes)) and len(wanted) * len(text) > _MOST_COMPARED:
+            raise RefusalError(phrase("the texts are too long for '{name}'", name=name))
+        return getattr(text, name)(wanted, *rest)
+
+    return search
+
+
+def _rsplit(text: str, sep: str | None = None, maxsplit: int = -1) -> list[str]:
+    return text.rsplit() if sep is None and maxsplit == -1 else _backwards("rsplit")(text, sep, maxsplit)
+
+
+def _stripped(name: str) -> Callable[..., Any]:
+    def strip(text: str, characters: str | None = None) -> Any:
+        if isinstance(characters, str):
+            characters = "".join(dict.fromkeys(characters))
+            if len(characters) * len(text) > _MOST_COMPARED:
+                raise RefusalError(phrase("the texts are too long for '{name}'", name=name))
+        return getattr(text, name)(characters)
+
+    return strip
+
+
+def check_codec(value: Any, encoding: str) -> None:
+    """Refuse to encode or decode a long value with a codec whose time grows with the square of the length.
+
+    Raises:
+        RefusalError: it is too long.
+    """
+    name = codecs.lookup(encoding).name
+    if name in _QUICK_CODECS or not isinstance(value, (str, bytes)):
+        return
+    longest = max(map(len, value.split("."))) if name == "idna" and isinstance(value, str) else len(value)
+    if longest > _MOST_CODED:
+        raise RefusalError(phrase("the text is too long for the encoding '{encoding}'", encoding=encoding))
+
+
+def _coded(name: str) -> Callable[..., Any]:
+    def code(value: Any, encoding: str = "utf-8", errors: str = "strict") -> Any:
+        check_codec(value, encoding)
+        return getattr(value, name)(encoding, errors)
+
+    return code
+
+
+METHODS: dict[tuple[type, str], Callable[..., Any]] = {
+    **{(str, name): _backwards(name) for name in ("rfind", "rindex", "rpartition")},
+    (str, "rsplit"): _rsplit,
+    **{(str, name): _stripped(name) for name in ("strip", "lstrip", "rstrip")},
+    (str, "encode"): _coded("encode"),
+    (bytes, "decode"): _coded("decode"),
+}
+"""Methods that are bounded: what they are of, and the name -> the function to call instead."""
+
+
+def _of_few(name: str) -> Callable[..., Any]:
+    function = getattr(math, name)
+
+    def guarded(*numbers: Any) -> Any:
+        if len(numbers) > _MOST_NUMBERS:
+            raise RefusalError(phrase("'{name}' of more than {count:,} numbers", name=name, count=_MOST_NUMBERS))
+        return function(*numbers)
+
+    return guarded
+
+
+def _sumprod(left: Iterable[Any], right: Iterable[Any]) -> Any:
+    pairs = list(zip(left, right, strict=True))
+    if len(pairs) > _MOST_NUMBERS and not all(isinstance(number, float) for pair in pairs for number in pair):
+        raise RefusalError(phrase("'{name}' of more than {count:,} numbers", name="sumprod", count=_MOST_NUMBERS))
+    return sum(one * other for one, other in pairs)
+
+
+MATHEMATICS: dict[str, Any] = {
+    "gcd": _of_few("gcd"),
+    **({"sumprod": _sumprod} if hasattr(math, "sumprod") else {}),
+}
+"""Functions of ``math`` that are bounded."""
+
+_CLASS_BEGINS = re.compile(r"\[\^?\]?")
+_WRITTEN = re.compile(r"\\.|\]", re.DOTALL)
+
+
+def split(pattern: str, text: str) -> list[str]:
+    """The parts of a text between what a class of characters finds.
+
+    Args:
+        pattern: begins with ``[`` and ends with ``]``, as it is put together by ros/xacro; where another ``]`` ends the
+            class before that, it is any expression at all.
+        text: what is to be split.
+
+    Raises:
+        re.error: it is no expression.
+        RefusalError: it takes too long.
+    """
+    begins = _CLASS_BEGINS.match(pattern)
+    ends = next((each.end() for each in _WRITTEN.finditer(pattern, begins.end() if begins else 0) if each[0] == "]"), 0)
+    if ends == len(pattern):
+        return re.split(pattern, text)
+    import regex
+
+    re.compile(pattern)  # says what is wrong with it in the words that ros/xacro has
+    try:
+        return regex.split(pattern, text, timeout=_SECONDS)
+    except regex.error as error:
+        raise re.error(str(error)) from None
+    except TimeoutError:
+        raise RefusalError(phrase("the characters to split at are an expression that takes too long")) from None

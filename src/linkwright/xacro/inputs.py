@@ -1,0 +1,46 @@
+"""What an expansion starts from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.xacro.includes import xml_hint
+from linkwright.xacro.limits import Limits
+from linkwright.xacro.session import PackageSource, Session
+from linkwright.xmltree import Document, Overlay, parse
+
+
+class Inputs(NamedTuple):
+    """What an expansion starts from; see `linkwright.xacro.expand`."""
+
+    name: str
+    arguments: Mapping[str, str]
+    packages: PackageSource = None
+    text: str | None = None
+    limits: Limits = Limits()
+    root_dir: str = ""
+    overlay: Overlay | None = None
+
+    def session(self) -> Session:
+        """A session in its initial state."""
+        return Session(self.name, self.arguments, self.packages, self.limits, self.root_dir, self.overlay)
+
+
+def main_document(session: Session, text: str | None = None) -> Document:
+    """The document that a session begins with: that of its file, or of a text that stands for it.
+
+    Raises:
+        LinkwrightError: it cannot be read, or is not XML.
+    """
+    try:
+        return session.read(session.file) if text is None else parse(text, session.file)
+    except LinkwrightError as error:
+        found = error.diagnostics[0]
+        hint = xml_hint(found)
+        if hint == found.hint:
+            raise
+        raise LinkwrightError(
+            Diagnostic(found.code, found.message, found.span, notes=found.notes, hint=hint, source=found.source)
+        ) from None

@@ -1,0 +1,121 @@
+"""What a description takes and where its parts come from, for who wants to know more than its expansion.
+
+What finds that out is imported when somebody asks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, phrase
+from linkwright.xacro.engine import expand
+from linkwright.xacro.inputs import Inputs
+from linkwright.xacro.limits import Limits
+from linkwright.xacro.session import PackageSource
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from linkwright.xacro.arguments import Argument
+    from linkwright.xacro.provenance import Provenance
+    from linkwright.xmltree import Element
+
+_SHOWN_NAMES = 5
+
+
+def arguments_of(
+    path: str | Path,
+    arguments: Mapping[str, str] | None = None,
+    *,
+    packages: PackageSource = None,
+    text: str | None = None,
+    limits: Limits | None = None,
+    root_dir: str | Path | None = None,
+) -> tuple[Argument, ...]:
+    """The arguments that a file and those that it includes take, in the order in which they are met.
+
+    The file need not be one that can be expanded without arguments.
+
+    Args:
+        path: the file; for this and the rest see `linkwright.xacro.expand`.
+        arguments: name -> value of arguments that may decide which files are included.
+        packages: where ``$(find name)`` looks.
+        text: the text to take for that of the file.
+        limits: bounds for the expansion.
+        root_dir: the folder that relative paths are in.
+
+    Raises:
+        LinkwrightError: the file cannot be read or is not XML.
+    """
+    from linkwright.xacro.arguments import examine_arguments
+
+    inputs = Inputs(str(path), arguments or {}, packages, text, limits or Limits(), str(root_dir or ""))
+    return examine_arguments(inputs).arguments
+
+
+def explain(
+    path: str | Path,
+    name: str,
+    arguments: Mapping[str, str] | None = None,
+    *,
+    packages: PackageSource = None,
+    text: str | None = None,
+    limits: Limits | None = None,
+    root_dir: str | Path | None = None,
+) -> tuple[Provenance, ...]:
+    """The provenance of the elements of an expansion that have a name: links, joints, or any other.
+
+    Args:
+        path: the file; for this and the rest see `linkwright.xacro.expand`.
+        name: the value of the attribute ``name``.
+        arguments: name -> value of the arguments.
+        packages: where ``$(find name)`` looks.
+        text: the text to take for that of the file.
+        limits: bounds for the expansion.
+        root_dir: the folder that relative paths are in.
+
+    Returns:
+        That of at least one element: of those directly inside the root or, when there are none, of those deeper down.
+
+    Raises:
+        LinkwrightError: what is wrong with the file, or XAC801 when no element has the name.
+    """
+    inputs = Inputs(str(path), arguments or {}, packages, text, limits or Limits(), str(root_dir or ""))
+    return provenance_of_named(inputs, name)
+
+
+def provenance_of_named(inputs: Inputs, name: str) -> tuple[Provenance, ...]:
+    """The provenance of the elements of an expansion that have a name; see `explain`."""
+    from linkwright.xacro.provenance import Tracer
+
+    path, arguments, packages, text, limits, root_dir, overlay = inputs
+    expansion = expand(path, arguments, packages=packages, text=text, limits=limits, root_dir=root_dir, overlay=overlay)
+    root = expansion.document.root
+    named = [element for element in root.elements() if element.attributes.get("name") == name]
+    if not named:
+        named = [element for element in root.walk() if element.attributes.get("name") == name]
+    if not named:
+        raise LinkwrightError(_unknown(name, path, root))
+    tracer = Tracer(inputs, root)
+    return tuple(tracer.trace(element) for element in named)
+
+
+def _unknown(name: str, file: str, root: Element) -> Diagnostic:
+    known = {
+        element.attributes["name"]: None
+        for element in root.elements()
+        if element.tag in ("link", "joint") and "name" in element.attributes
+    }
+    hint = did_you_mean(name, known)
+    if hint is None and known:
+        hint = phrase(
+            "there are {count} links and joints, such as {known}",
+            count=len(known),
+            known=", ".join(list(known)[:_SHOWN_NAMES]),
+        )
+    elif hint is None:
+        hint = phrase("the file has neither links nor joints")
+    return Diagnostic(
+        "XAC801", phrase("'{file}' expands to no link or joint named '{name}'", file=file, name=name), hint=hint
+    )

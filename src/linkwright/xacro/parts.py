@@ -1,0 +1,212 @@
+"""Expanding what can be expanded of a description that has mistakes.
+
+`linkwright.xacro.expand` stops at the first mistake after which nothing can be relied on. Who edits a file wants to
+know more: here a tag that fails is left out, and the walk goes on. Two things keep what comes out true:
+
+- **Gaps are known.** An element whose attribute or text failed, or inside which a tag was left out, is no part of the
+  result; neither is the element around it.
+- **Consequences are not told.** What is left out may have defined names. From then on a name that is missing is no
+  mistake, and a value may be another than meant: whatever depends on one is left out in silence, too.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.xacro.calls import call_macro
+from linkwright.xacro.directives import DIRECTIVES
+from linkwright.xacro.expander import Directive, Expander, Site, is_final
+from linkwright.xacro.expansion import Expansion
+from linkwright.xacro.faults import Fault
+from linkwright.xacro.inputs import Inputs, main_document
+from linkwright.xacro.limits import room_for
+from linkwright.xacro.macros import MacroTable
+from linkwright.xacro.plan import PREFIX, plan_of
+from linkwright.xacro.scope import Scope
+from linkwright.xacro.session import Session
+from linkwright.xmltree import Document, Element, Text
+
+_GAP = "\0"
+"""Name of the attribute, and content of the text, that mark a gap; XML allows neither."""
+_DEFINITIONS = frozenset({"xacro:arg", "xacro:insert_block", "xacro:macro", "xacro:property"})
+_FIXED = re.compile(r"\$\((?:find|env|optenv|cwd|dirname)\b[^()$]*\)")
+"""Substitutions that no name of the description has a part in."""
+_DECLARATIONS = frozenset({"xacro:arg", "xacro:include", "xacro:macro", "xacro:property"})
+_TRUE_BY_THEMSELVES = frozenset({"XAC101", "XAC102", "XAC301", "XAC304", "XAC407", "XAC412"})
+"""Mistakes in the text of a tag or expression, whatever the names in it stand for."""
+_OF_THE_DEFINITION = frozenset({"XAC402", "XAC403", "XAC404", "XAC405", "XAC408", "XAC409"})
+"""Mistakes of a call that may as well be one of the macro's definition; all calls have it then, and one tells it."""
+_OUTER_PROPERTY = re.compile(r"""<xacro:property\s[^>]*?\bscope\s*=""")
+
+
+def expand_parts(inputs: Inputs, error: LinkwrightError) -> Expansion:
+    """What a description expands to but for the parts that have mistakes.
+
+    Args:
+        inputs: what the expansion starts from.
+        error: why there is no whole.
+
+    Returns:
+        An expansion whose `problems` say what is wrong. Its document holds the elements of the root that are as they
+        would be in the whole.
+
+    Raises:
+        LinkwrightError: `error`; nothing can be had: the file is no XML, or the expansion has to be stopped.
+    """
+    if any(map(is_final, error.diagnostics)):
+        raise error
+    session = inputs.session()
+    try:
+        document = main_document(session, inputs.text)
+    except LinkwrightError:
+        raise error from None
+    expander = _PartsExpander(session)
+    with room_for(inputs.limits):
+        expanded = expander.walk(document)
+    if expanded is None:
+        raise error
+    remarks = session.diagnostics[: expander.remarks_to_trust]
+    session.close()
+    return Expansion(
+        _without_gaps(expanded), session.dependencies, session.arguments, tuple(remarks), inputs, expander.errors
+    )
+
+
+class _LeftOutError(Exception):
+    """A tag depends on what was left out before."""
+
+
+class _PartsExpander(Expander):
+    """Leaves out what fails.
+
+    Attributes:
+        trusted: whether all names still stand for what they would in the whole.
+        remarks_to_trust: how many of the session's warnings were given while they did; None for all.
+    """
+
+    def __init__(self, session: Session) -> None:
+        directives: Mapping[str, Directive] = {tag: self._leaving_out(each) for tag, each in DIRECTIVES.items()}
+        super().__init__(session, directives, self._leaving_out(call_macro))
+        self.trusted = True
+        self.remarks_to_trust: int | None = None
+        self._failures = 0
+        self._definitions_told: set[tuple[str, str]] = set()
+
+    def attributes(self, node: Element, scope: Scope) -> dict[str, str]:
+        """The attributes that could be evaluated, and a mark where others could not."""
+        before = self._failures
+        result = super().attributes(node, scope)
+        if self._failures > before or not self.trusted:
+            for name in plan_of(node).evaluated:
+                if "$" in node.attributes[name]:
+                    result[_GAP] = ""
+                    if result[name] == node.attributes[name]:
+                        del result[name]
+        return result
+
+    def blocks(self, node: Element, scope: Scope, macros: MacroTable) -> Element:
+        """What the elements inside of a call expand to; a call that lacks some of them is left out."""
+        container = super().blocks(node, scope, macros)
+        if _GAP in container.attributes:
+            raise _LeftOutError
+        return container
+
+    def note(self, fault: Fault) -> None:
+        """Keep a mistake in an attribute or text."""
+        self._failures += 1
+        diagnostic = self._diagnostic(fault)
+        if self.trusted or diagnostic.code in _TRUE_BY_THEMSELVES or is_final(diagnostic):
+            self.keep(diagnostic)
+
+    def _text(self, node: Text, scope: Scope) -> Text:
+        before = self._failures
+        text = super()._text(node, scope)
+        if self._failures == before and (self.trusted or text is node):
+            return text
+        return Text(_GAP, node.source, node.offset)
+
+    def _leaving_out(self, directive: Directive) -> Directive:
+        """A directive that marks a gap where it fails."""
+
+        def expand(expander: Expander, site: Site) -> None:
+            session, nesting = self.session, self._nesting
+            frame, file = session.frame, session.file
+            told: list[Diagnostic] = []
+            if self.trusted or not _depends_on_values(site.node):
+                try:
+                    directive(expander, site)
+                except LinkwrightError as error:
+                    if self.has_too_many_errors or any(map(is_final, error.diagnostics)):
+                        raise
+                    told = [found for found in error.diagnostics if self._is_told(found, site.node)]
+                except _LeftOutError:
+                    pass
+                else:
+                    return
+            self._nesting, session.frame, session.file = nesting, frame, file
+            site.parent.attributes[_GAP] = ""
+            if self._may_define_names(site.node):
+                self._trust_no_more()
+            for found in told:
+                self.keep(found)
+
+        return expand
+
+    def _is_told(self, found: Diagnostic, node: Element) -> bool:
+        if found.code in _OF_THE_DEFINITION:
+            if (found.code, found.message) in self._definitions_told:
+                return False
+            self._definitions_told.add((found.code, found.message))
+        if self.trusted or found.code in _TRUE_BY_THEMSELVES:
+            return True
+        return found.code.startswith(("XML", "PKG")) and node.tag == "xacro:include"
+
+    def _trust_no_more(self) -> None:
+        if self.trusted:
+            self.trusted = False
+            self.remarks_to_trust = len(self.session.diagnostics)
+
+    def _may_define_names(self, node: Element) -> bool:
+        """Whether a tag that is left out might have defined a name for what comes after it."""
+        tags = {element.tag for element in node.walk()}
+        if tags & _DECLARATIONS:
+            return True
+        calls = any(tag.startswith(PREFIX) and tag not in DIRECTIVES for tag in tags)
+        return (calls or "xacro:call" in tags) and self._macros_define_outside()
+
+    def _macros_define_outside(self) -> bool:
+        """Whether a macro of the files read so far defines properties of its callers."""
+        for path in self.session.dependencies:
+            try:
+                source = self.session.read(path).source
+            except LinkwrightError:
+                continue  # a YAML file, or the one that is missing
+            if source is not None and _OUTER_PROPERTY.search(source.text):
+                return True
+        return False
+
+
+def _depends_on_values(node: Element) -> bool:
+    """Whether what a tag does depends on properties or arguments; of macro calls, only what is in them does."""
+    if node.tag not in DIRECTIVES or node.tag in _DEFINITIONS:
+        return False
+    return any("$" in _FIXED.sub("", value) for value in node.attributes.values())
+
+
+def _without_gaps(document: Document) -> Document:
+    """The document with those elements of the root that have no gap."""
+    root = document.root
+    root.attributes.pop(_GAP, None)
+    root.children = [child for child in root.children if not (isinstance(child, Element) and _has_gap(child))]
+    root.children = [child for child in root.children if not _is_gap(child)]
+    return document
+
+
+def _has_gap(element: Element) -> bool:
+    return any(_GAP in each.attributes or any(map(_is_gap, each.children)) for each in element.walk())
+
+
+def _is_gap(node: object) -> bool:
+    return isinstance(node, Text) and node.data == _GAP

@@ -1,0 +1,182 @@
+"""The provenance of an element of an expansion: where each part was written, by which calls, with which values."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Span, phrase
+from linkwright.xacro.inputs import Inputs
+from linkwright.xacro.limits import room_for
+from linkwright.xacro.origin import Frame, frames
+from linkwright.xacro.recorder import Moment, Recorder
+from linkwright.xacro.references import Value, written_attribute
+from linkwright.xacro.traced import TracedSession, expand_traced
+from linkwright.xmltree import Element, Text
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """A macro call or an include on the way to an element.
+
+    Attributes:
+        macro: the macro's name, or None for an include.
+        span: the tag that calls or includes.
+        parameters: the parameters of the call with their values; blocks are left out.
+    """
+
+    macro: str | None
+    span: Span | None
+    parameters: tuple[Value, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class AttributeProvenance:
+    """Where an attribute comes from.
+
+    Attributes:
+        name: its name.
+        value: its value in the result.
+        written: its text in the source, such as ``${prefix}_link``.
+        span: the place of that text.
+        values: what the text refers to, with the values it had.
+        calls: the calls and includes around that place, innermost first; they are others than the element's when
+            ``<xacro:attribute>`` has set the attribute.
+    """
+
+    name: str
+    value: str
+    written: str
+    span: Span | None
+    values: tuple[Value, ...]
+    calls: tuple[Call, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class TextProvenance:
+    """Where a text inside an element comes from.
+
+    Attributes:
+        value: the text in the result, without the blanks around it.
+        written: the text in the source.
+        span: its place.
+        values: what it refers to, with the values it had.
+    """
+
+    value: str
+    written: str
+    span: Span | None
+    values: tuple[Value, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Provenance:
+    """Where an element of an expansion comes from.
+
+    Attributes:
+        element: the element as it is in the result.
+        span: where it is written.
+        calls: the macro calls and includes that brought it where it is, innermost first.
+        attributes: the provenance of each attribute, in document order.
+        texts: the provenance of each text directly inside, blank ones left out.
+        children: the provenance of the elements inside.
+    """
+
+    element: Element
+    span: Span | None
+    calls: tuple[Call, ...]
+    attributes: tuple[AttributeProvenance, ...]
+    texts: tuple[TextProvenance, ...]
+    children: tuple[Provenance, ...]
+
+    def walk(self) -> Iterator[Provenance]:
+        """This provenance and those of all elements inside, in document order."""
+        pending = [self]
+        while pending:
+            provenance = pending.pop()
+            yield provenance
+            pending.extend(reversed(provenance.children))
+
+
+def provenance_of(inputs: Inputs, root: Element, element: Element) -> Provenance:
+    """The provenance of an element of an expansion; see `linkwright.xacro.Expansion.provenance`."""
+    return Tracer(inputs, root).trace(element)
+
+
+class Tracer:
+    """Expands once more with a recorder, and tells what that has seen.
+
+    Args:
+        inputs: what the expansion starts from.
+        root: the root of what came out the first time.
+    """
+
+    def __init__(self, inputs: Inputs, root: Element) -> None:
+        self._inputs = inputs
+        self._recorder = Recorder(inputs.arguments)
+        session = TracedSession(inputs)
+        self._again = expand_traced(inputs, session, self._recorder.directives, self._recorder.call)
+        self._twins: dict[int, Element] = {}
+        for ours, theirs in zip(root.walk(), self._again.root.walk(), strict=False):
+            if ours.tag != theirs.tag or ours.attributes != theirs.attributes:
+                break
+            self._twins[id(ours)] = theirs
+
+    def trace(self, element: Element) -> Provenance:
+        """The provenance of an element of what came out the first time.
+
+        Raises:
+            LinkwrightError: XAC802 when something else came out now.
+        """
+        with room_for(self._inputs.limits):
+            return self._trace(element)
+
+    def _trace(self, element: Element) -> Provenance:
+        twin = self._twins.get(id(element))
+        if twin is None:
+            message = phrase(
+                "the element '{tag}' is not what '{name}' expands to", tag=element.tag, name=self._inputs.name
+            )
+            hint = phrase("the file has changed; expand it again")
+            raise LinkwrightError(Diagnostic("XAC802", message, element.span(), hint=hint, source=element.source))
+        moment = self._recorder.moment(twin) or Moment(element, None)
+        calls = self._calls(moment.frame)
+        return Provenance(
+            element=element,
+            span=element.span(),
+            calls=calls,
+            attributes=tuple(self._attribute(twin, name, moment, calls) for name in element.attributes),
+            texts=tuple(_texts(element, moment)),
+            children=tuple(self._trace(child) for child in element.elements()),
+        )
+
+    def _attribute(self, element: Element, name: str, moment: Moment, calls: tuple[Call, ...]) -> AttributeProvenance:
+        value = element.attributes[name]
+        setting = self._recorder.setting(element, name)
+        node, attribute = (setting.node, "value") if setting else (moment.node, name)
+        written = written_attribute(node, attribute)
+        return AttributeProvenance(
+            name=name,
+            value=value,
+            written=value if written is None else written,
+            span=node.attribute_span(attribute),
+            values=setting.values if setting else moment.values.get(name, ()),
+            calls=self._calls(setting.frame) if setting else calls,
+        )
+
+    def _calls(self, frame: Frame | None) -> tuple[Call, ...]:
+        return tuple(Call(each.macro, each.site.span(), self._recorder.parameters(each)) for each in frames(frame))
+
+
+def _texts(element: Element, moment: Moment) -> Iterator[TextProvenance]:
+    evaluated = {_where(text): (text, values) for text, values in moment.texts}
+    for child in element.children:
+        if isinstance(child, Text) and not child.data.isspace() and child.data:
+            text, values = evaluated.get(_where(child), (child, ()))
+            start = text.offset + len(text.data) - len(text.data.lstrip())
+            span = text.source.span(start, start + len(text.data.strip())) if text.source else None
+            yield TextProvenance(child.data.strip(), text.data.strip(), span, values)
+
+
+def _where(text: Text) -> tuple[str, int]:
+    return (text.source.name if text.source else "", text.offset)

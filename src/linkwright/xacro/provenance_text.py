@@ -1,0 +1,157 @@
+"""The provenance of elements as text for a terminal and as plain data."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from linkwright.diagnostics import Span, display_path
+from linkwright.xacro.provenance import AttributeProvenance, Call, Provenance, TextProvenance
+from linkwright.xacro.references import Value
+from linkwright.xmltree import Element, write_element
+
+_OUTSIDE = {
+    "argument": "given on the command line",
+    "package": "where the package is",
+    "variable": "from the environment",
+}
+"""What is said of a value that no file gives."""
+
+
+def provenance_text(provenance: Provenance) -> str:
+    """For a terminal: the element as it comes out, the calls that brought it there, and what was evaluated."""
+    return "\n".join([write_element(provenance.element).rstrip("\n"), "", *provenance_lines(provenance)]) + "\n"
+
+
+def provenance_lines(provenance: Provenance) -> list[str]:
+    """What `provenance_text` says after the element itself."""
+    lines = [f"written at {place(provenance.span)}"]
+    lines += [f"  {line}" for call in provenance.calls for line in _call_lines(call)]
+    evaluated = [line for part in provenance.walk() for line in _element_lines(part, provenance)]
+    if evaluated:
+        lines += ["", *evaluated]
+    return lines
+
+
+def provenance_data(provenance: Provenance) -> dict[str, Any]:
+    """JSON-ready data; places are 1-based, absent ones are None."""
+    return {
+        "tag": provenance.element.tag,
+        "xml": write_element(provenance.element),
+        **_span_data(provenance.span),
+        "calls": [_call_data(call) for call in provenance.calls],
+        "attributes": [_attribute_data(attribute, provenance) for attribute in provenance.attributes],
+        "texts": [_text_data(text) for text in provenance.texts],
+        "children": [provenance_data(child) for child in provenance.children],
+    }
+
+
+def place(span: Span | None) -> str:
+    """A place as ``file:line:column``."""
+    if span is None:
+        return "(no file)"
+    file = span.file if span.file.startswith("<") else display_path(span.file)
+    return f"{file}:{span.line}:{span.column}"
+
+
+# text
+
+
+def _call_lines(call: Call) -> Iterator[str]:
+    if call.macro is None:
+        yield f"included at {place(call.span)}"
+        return
+    yield f"in macro '{call.macro}' called at {place(call.span)}"
+    yield from (f"    {line}" for line in _table([_value_row(value) for value in call.parameters]))
+
+
+def _element_lines(provenance: Provenance, around: Provenance) -> Iterator[str]:
+    attributes = [attribute for attribute in provenance.attributes if _is_told(attribute, provenance)]
+    texts = [text for text in provenance.texts if text.written != text.value]
+    other = provenance is not around and provenance.calls != around.calls
+    if not attributes and not texts and not other:
+        return
+    yield f"<{provenance.element.tag}> at {place(provenance.span)}"
+    if other:
+        yield from (f"  {line}" for call in provenance.calls for line in _call_lines(call))
+    for attribute in attributes:
+        what = f"  {attribute.name}={_quoted(attribute.value)}"
+        if attribute.calls != provenance.calls or not _is_inside(attribute, provenance):
+            what += f" set by <xacro:attribute> at {place(attribute.span)}"
+        yield what if attribute.written == attribute.value else f"{what} from {_quoted(attribute.written)}"
+        yield from (f"    {line}" for line in _table([_value_row(value) for value in attribute.values]))
+    for text in texts:
+        yield f"  text {_quoted(text.value)} from {_quoted(text.written)}"
+        yield from (f"    {line}" for line in _table([_value_row(value) for value in text.values]))
+
+
+def _value_row(value: Value) -> tuple[str, str, str]:
+    told = value.kind
+    if value.span is not None:
+        told += f" {place(value.span)}"
+        if value.written is not None and "$" in value.written:
+            told += f" {_quoted(value.written)}"
+    elif value.kind in _OUTSIDE:
+        told += f", {_OUTSIDE[value.kind]}"
+    return value.name, value.value, told
+
+
+def _table(rows: list[tuple[str, str, str]]) -> Iterator[str]:
+    first = max((len(name) for name, _, _ in rows), default=0)
+    second = min(max((len(value) for _, value, _ in rows), default=0), 30)
+    for name, value, told in rows:
+        yield f"{name:{first}} = {value:{second}}  ({told})"
+
+
+def _is_told(attribute: AttributeProvenance, provenance: Provenance) -> bool:
+    return attribute.written != attribute.value or not _is_inside(attribute, provenance)
+
+
+def _is_inside(attribute: AttributeProvenance, provenance: Provenance) -> bool:
+    """Whether an attribute is written on its element, and not by a tag elsewhere."""
+    element: Element = provenance.element
+    return attribute.span is None or element.attribute_span(attribute.name) == attribute.span
+
+
+def _quoted(text: str) -> str:
+    return f'"{" ".join(text.split())}"'
+
+
+# data
+
+
+def _call_data(call: Call) -> dict[str, Any]:
+    parameters = [_value_data(value) for value in call.parameters]
+    return {"macro": call.macro, **_span_data(call.span), "parameters": parameters}
+
+
+def _attribute_data(attribute: AttributeProvenance, provenance: Provenance) -> dict[str, Any]:
+    return {
+        "name": attribute.name,
+        "value": attribute.value,
+        "written": attribute.written,
+        **_span_data(attribute.span),
+        "values": [_value_data(value) for value in attribute.values],
+        **({} if attribute.calls == provenance.calls else {"calls": [_call_data(call) for call in attribute.calls]}),
+    }
+
+
+def _text_data(text: TextProvenance) -> dict[str, Any]:
+    values = [_value_data(value) for value in text.values]
+    return {"value": text.value, "written": text.written, **_span_data(text.span), "values": values}
+
+
+def _value_data(value: Value) -> dict[str, Any]:
+    return {
+        "name": value.name,
+        "kind": value.kind,
+        "value": value.value,
+        "written": value.written,
+        **_span_data(value.span),
+    }
+
+
+def _span_data(span: Span | None) -> dict[str, Any]:
+    if span is None:
+        return {"file": None, "line": None, "column": None}
+    return {"file": span.file, "line": span.line, "column": span.column}

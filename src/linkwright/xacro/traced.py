@@ -1,0 +1,126 @@
+"""Expansions that are traced: for explanations and logs, at no cost to those that are not.
+
+The trees are copied with a probe at the beginning of every element and macro, and before every text with a dollar. A
+probe is a tag of the language like any other: whoever watches says what it does, and sees the element that is being
+made, the scope, and the calls and includes around it. Probes stay in what comes out, since a block is expanded twice,
+and are taken away at the end.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from linkwright.xacro.calls import call_macro
+from linkwright.xacro.expander import Directive, Expander
+from linkwright.xacro.inputs import Inputs, main_document
+from linkwright.xacro.limits import room_for
+from linkwright.xacro.session import Session
+from linkwright.xmltree import Document, Element, Node, Text
+
+_PREFIX = "xacro:"
+
+PROBE = "xacro:.probe"
+"""The tag of probes, which no file can hold: its name is none that XML allows."""
+
+
+class TracedSession(Session):
+    """A session whose files are read with probes in them.
+
+    Args:
+        inputs: what the expansion starts from.
+        probes: whether to put them in.
+    """
+
+    def __init__(self, inputs: Inputs, *, probes: bool = True) -> None:
+        super().__init__(inputs.name, inputs.arguments, inputs.packages, inputs.limits, inputs.root_dir, inputs.overlay)
+        self._probes = probes
+        self._documents: dict[str, Document] = {}
+
+    def read(self, path: str) -> Document:
+        """The document of a file; see `Session.read`."""
+        if not self._probes:
+            return super().read(path)
+        document = self._documents.get(path)
+        if document is None:
+            document = self._documents[path] = with_probes(super().read(path))
+        return document
+
+
+def expand_traced(
+    inputs: Inputs,
+    session: Session,
+    directives: Mapping[str, Directive],
+    call: Directive = call_macro,
+) -> Document:
+    """Expand with other directives than usual; no banner, and no warning of unused arguments.
+
+    Args:
+        inputs: what the expansion starts from.
+        session: its session.
+        directives: tag -> what expands it; that of `PROBE` is one of them when there are probes.
+        call: what expands macro calls.
+
+    Raises:
+        LinkwrightError: what is wrong with the description.
+    """
+    document = main_document(session, inputs.text)
+    if inputs.text is not None and PROBE in directives:
+        document = with_probes(document)
+    with room_for(inputs.limits):
+        return without_probes(Expander(session, directives, call).document(document))
+
+
+def with_probes(document: Document) -> Document:
+    """A copy with probes; the `origin` of a probe is the element or text of the original that it stands in front of."""
+    root = Element(document.root.tag, document.root.attributes, document.root.source, document.root.offset)
+    pending = [(document.root, root)]
+    while pending:
+        original, copy = pending.pop()
+        if _is_watched(original):
+            copy.children.append(_probe(original))
+        for child in original.children:
+            if isinstance(child, Element):
+                twin = Element(child.tag, child.attributes, child.source, child.offset)
+                pending.append((child, twin))
+                copy.children.append(twin)
+                continue
+            if isinstance(child, Text) and "$" in child.data and not child.cdata:
+                copy.children.append(_probe(child))
+            copy.children.append(child)
+    return _around(document, root)
+
+
+def without_probes(document: Document) -> Document:
+    """The document, its probes taken away in place."""
+    pending = [document.root]
+    while pending:
+        element = pending.pop()
+        kept: list[Node] = []
+        for child in element.children:
+            if isinstance(child, Element):
+                if child.tag == PROBE:
+                    continue
+                pending.append(child)
+            kept.append(child)
+        element.children = kept
+    return document
+
+
+def echo(memory: object) -> Element:
+    """A probe that is left in what comes out; its `origin` is what is remembered of the element that it is in."""
+    return Element(PROBE, origin=memory)
+
+
+def _probe(original: Element | Text) -> Element:
+    return Element(PROBE, source=original.source, offset=original.offset, origin=original)
+
+
+def _is_watched(element: Element) -> bool:
+    return not element.tag.startswith(_PREFIX) or element.tag in ("xacro:element", "xacro:macro")
+
+
+def _around(document: Document, root: Element) -> Document:
+    result = Document(root, document.source)
+    result.prolog, result.epilog = document.prolog, document.epilog
+    result.doctype, result.doctype_index = document.doctype, document.doctype_index
+    return result

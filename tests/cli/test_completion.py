@@ -1,0 +1,188 @@
+"""What TAB completes: commands, options, packages, launch files, names of the graph; in the shell itself, too."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from linkwright.cli import main
+from linkwright.cli.command import VERBS
+from linkwright.cli.completion import graph_names
+from linkwright.cli.completion.candidates import complete, divided
+from linkwright.cli.completion.scripts import FILES, script, shell_script
+from linkwright.graph import Graph
+from linkwright.messages import get_message
+
+PACKAGE = "<package format='3'><name>{}</name><version>1.0.0</version></package>"
+PYTHON_LAUNCH = "DeclareLaunchArgument('gui', default_value='1')\nDeclareLaunchArgument(\n    name=\"speed\")\n"
+XML_LAUNCH = '<launch><arg name="gui"/><arg default="1" name="speed"/></launch>'
+YAML_LAUNCH = "launch:\n- arg:\n    name: gui\n- arg:\n    name: 'speed'\n"
+
+
+@pytest.fixture(autouse=True)
+def _workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("arm", "hand"):
+        folder = tmp_path / "src" / name
+        folder.mkdir(parents=True)
+        (folder / "package.xml").write_text(PACKAGE.format(name))
+    arm = tmp_path / "src" / "arm"
+    (arm / "launch").mkdir()
+    (arm / "msg").mkdir()
+    (arm / "msg" / "Grip.msg").write_text("float64 width\n")
+    (arm / "setup.py").write_text(
+        "from setuptools import setup\nsetup(name='arm', entry_points={'console_scripts': ['move = arm.move:main']})\n"
+    )
+    for name, text in (("a.launch.py", PYTHON_LAUNCH), ("b.launch.xml", XML_LAUNCH), ("c_launch.yaml", YAML_LAUNCH)):
+        (arm / "launch" / name).write_text(text)
+    (arm / "arm.urdf.xacro").write_text('<robot xmlns:xacro="x"><xacro:arg name="side" default="left"/></robot>')
+    monkeypatch.chdir(tmp_path / "src")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    monkeypatch.setenv("ROS_DOMAIN_ID", "87")
+    monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
+
+
+def after(line: str) -> list[str]:
+    return complete(divided(line))
+
+
+def test_commands() -> None:
+    assert after("linkwright ")[: len(VERBS)] == list(VERBS)
+    assert after("linkwright la") == ["launch"]
+    assert "launch" in after("/some/bin/ros2 ")
+    assert "view" not in after("ros2 ")
+    assert after("linkwright topic e") == ["echo"]
+    assert after("linkwright nonsense ") == []
+
+
+def test_options_and_what_they_take() -> None:
+    assert "--no-open" in after("linkwright launch arm a.launch.py --")
+    assert after("linkwright topic echo --qos-reliability best") == ["best_effort", "best_available"]
+    assert "--times" in after("ros2 topic pub /a std_msgs/msg/String '{}' --t")
+    assert after("linkwright topic pub --rate ") == []
+    assert after("linkwright topic pub --rate 5 /a std_msgs/msg/Str") == ["std_msgs/msg/String"]
+    assert after("linkwright completion ") == ["bash", "zsh", "fish"]
+
+
+def test_packages_and_executables() -> None:
+    assert after("linkwright pkg prefix ar") == ["arm"]
+    assert after("ros2 run arm ") == ["move"]
+    assert after("ros2 run demo_nodes_cpp ta") == ["talker"]
+    assert {"arm", "hand", "demo_nodes_cpp"} <= set(after("ros2 run "))
+
+
+def test_launch_files_and_their_arguments() -> None:
+    assert after("ros2 launch ar") == ["arm", FILES]
+    assert after("ros2 launch arm ") == ["a.launch.py", "b.launch.xml", "c_launch.yaml"]
+    for file in ("a.launch.py", "b.launch.xml", "c_launch.yaml"):
+        assert after(f"ros2 launch arm {file} ") == ["gui:=", "speed:="]
+        assert after(f"linkwright launch arm/launch/{file} gui:=1 s") == ["speed:="]
+    assert after("linkwright launch nowhere ") == []
+
+
+def test_types() -> None:
+    assert after("linkwright topic pub /a arm") == ["arm/msg/Grip"]
+    assert after("linkwright service call /a std_srvs/srv/T") == ["std_srvs/srv/Trigger"]
+    assert after("linkwright interface show action_tutorials_interfaces/action/F") == [
+        "action_tutorials_interfaces/action/Fibonacci"
+    ]
+
+
+def test_files_and_arguments_of_descriptions() -> None:
+    assert after("linkwright view ") == [FILES]
+    assert after("linkwright view arm/arm.urdf.xacro ") == ["side:="]
+
+
+def test_names_of_the_graph_are_those_of_the_last_look(monkeypatch: pytest.MonkeyPatch) -> None:
+    begun: list[object] = []
+    monkeypatch.setattr(subprocess, "Popen", lambda *words, **_: begun.append(words))
+    assert after("linkwright topic echo /") == []
+    assert len(begun) == 1
+    assert after("linkwright topic echo /") == []
+    assert len(begun) == 1  # which is still under way
+    path = graph_names._path()
+    path.write_text(json.dumps({"topics": ["/tf"], "nodes": ["/talker"], "services": ["/go"], "actions": ["/turn"]}))
+    assert after("ros2 topic echo /t") == ["/tf"]
+    assert after("ros2 node info ") == ["/talker"]
+    assert after("ros2 service call ") == ["/go"]
+    assert after("ros2 action info ") == ["/turn"]
+    assert len(begun) == 1  # it is fresh
+    os.utime(path, (1.0, 1.0))
+    path.with_suffix(".begun").unlink()
+    assert after("ros2 topic echo /t") == []
+    assert len(begun) == 2
+
+
+def test_a_look_at_the_graph(in_graph: Callable[[Callable[[Graph], object]], None]) -> None:
+    def make(graph: Graph) -> None:
+        node = graph.create_node("talker", namespace="left")
+        node.create_publisher(get_message("std_msgs/msg/String"), "chatter", 1)
+
+    in_graph(make)
+    assert graph_names.look() == 0
+    assert "/left/talker" in graph_names.names_of("nodes")
+    assert "/left/chatter" in graph_names.names_of("topics")
+    assert "/left/talker/get_parameters" in graph_names.names_of("services")
+    assert graph_names.names_of("actions") == []
+
+
+def test_nothing_heavy_is_loaded() -> None:
+    """A completion is there in less than a tenth of a second."""
+    line = "ros2 launch arm a.launch.py "
+    program = (
+        "import sys\nfrom linkwright.cli.completion.candidates import complete, divided\n"
+        f"complete(divided({line!r})); print(*sorted(sys.modules), sep='\\n')"
+    )
+    loaded = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout.split()
+    heavy = ("argparse", "asyncio", "linkwright.graph", "linkwright.launch", "linkwright.messages", "numpy", "yaml")
+    assert [name for name in heavy if name in loaded] == []
+
+
+@pytest.mark.skipif(shutil.which("bash") is None, reason="there is no bash")
+@pytest.mark.parametrize(
+    ("line", "offered"),
+    [
+        ("linkwright lau", ["launch"]),
+        ("linkwright launch arm a.launch.py s", ["speed:="]),
+        ("linkwright view arm/p", ["arm/package.xml"]),
+        ("linkwright 'open quote", []),
+    ],
+)
+def test_in_bash(line: str, offered: list[str]) -> None:
+    program = (
+        script("bash", sys.executable, ["linkwright"])
+        + f'COMP_LINE="{line}"; COMP_POINT=${{#COMP_LINE}}; _linkwright_complete 2>/dev/null\n'
+        + "printf '%s\\n' \"${COMPREPLY[@]}\"; complete -p linkwright >&2"
+    )
+    done = subprocess.run(["bash", "-c", program], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == offered
+    assert "_linkwright_complete" in done.stderr
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_each_shell_accepts_its_script(shell: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["completion", shell]) == 0
+    text = capsys.readouterr().out
+    assert text == script(shell, sys.executable, ["linkwright"])
+    if shutil.which(shell):
+        whole = shell_script(shell, sys.executable, "LINKWRIGHT_SHELL", ["rosdep", "rqt"])
+        subprocess.run([shell, "-n"], input=text + whole, text=True, check=True)
+
+
+@pytest.mark.skipif(shutil.which("bash") is None, reason="there is no bash")
+def test_programs_of_ros_that_are_not_here_say_what_to_use() -> None:
+    program = "command_not_found_handle() { echo other $1; return 9; }\n"
+    program += shell_script("bash", sys.executable, "LINKWRIGHT_SHELL", ["rosdep", "gazebo"])
+    program += "rosdep install; echo $?; gazebo --verbose; no_such_program; echo $?"
+    environment = {**os.environ, "LINKWRIGHT_SHELL": "/nowhere", "LINKWRIGHT_LANG": "en"}
+    done = subprocess.run(["bash", "-c", program], capture_output=True, text=True, check=False, env=environment)
+    assert done.stdout.split("\n") == ["127", "other no_such_program", "9", ""]
+    assert "there is no command 'rosdep'" in done.stderr
+    assert "put the sources of one that is missing into the workspace's src folder" in done.stderr
+    assert "there is no simulation here" in done.stderr

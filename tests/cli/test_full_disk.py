@@ -1,0 +1,275 @@
+"""Commands on a full disk, and with standard streams that are full or closed: one message, and nothing is lost."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+
+import pytest
+
+from linkwright.bag import STORAGES, BagReader, BagWriter
+from linkwright.cli import main
+from linkwright.cli.command import VERBS
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph import Graph
+from linkwright.messages import String, serialize
+from linkwright.viewer import RvizConfig
+from linkwright.viewer.config.places import RecentFiles
+from tests.full_disk import full_disk, needs_limits
+from tests.places import REPOSITORY
+
+ROBOT = """<robot name="r">
+  <link name="a"><visual><geometry><box size="1 1 1"/></geometry></visual>
+    <collision><geometry><box size="1 1 1"/></geometry></collision></link>
+</robot>
+"""
+OLD = "what was there before"
+ROOM = 50  # less than any command writes here
+
+
+@pytest.fixture
+def robot(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    path = tmp_path / "r.urdf"
+    path.write_text(ROBOT, encoding="utf-8")
+    return path
+
+
+def files(folder: Path) -> dict[str, bytes]:
+    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+WRITING = {
+    "xacro": ["xacro", "r.urdf", "-o", "out"],
+    "export html": ["export", "out.html", "r.urdf"],
+    "export glb": ["export", "out.glb", "r.urdf"],
+    "diagram": ["diagram", "r.urdf", "out"],
+    "inertia": ["inertia", "r.urdf", "--write"],
+    "check": ["check", "r.urdf", "--unsafe-fixes", "--select", "URDF,LW,INR,XAC"],
+}
+
+
+@needs_limits
+@pytest.mark.parametrize("words", WRITING.values(), ids=WRITING)
+def test_a_command_on_a_full_disk_leaves_every_file_as_it_was(
+    words: Sequence[str], robot: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    if words[0] == "check":  # what it mends
+        robot.write_text(ROBOT.replace('name="a"', 'name="a" nmae="b"').replace("<robot ", "<robot version='1' "))
+    for name in ("out", "out.html", "out.glb", "out.gv", "out.pdf"):
+        (robot.parent / name).write_text(OLD)
+    before = files(robot.parent)
+    with full_disk(ROOM):
+        status = main(list(words))
+    printed = capsys.readouterr().err
+    assert files(robot.parent) == before
+    if words[0] != "check" or "cannot write" in printed:
+        assert status == 1
+        assert "cannot write" in printed or "cannot be written" in printed
+        assert "File too large" in printed
+
+
+@needs_limits
+def test_a_package_is_made_whole_or_not_at_all(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    words = ["pkg", "create", "fine", "--license", "Apache-2.0"]
+    with full_disk(2000):  # the licence does not fit
+        assert main(words) == 1
+    assert "File too large" in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
+    assert main(words) == 0
+
+
+@needs_limits
+def test_a_configuration_that_cannot_be_saved_stays_as_it_was(tmp_path: Path) -> None:
+    path = tmp_path / "a.rviz"
+    path.write_text("Panels: []\nVisualization Manager:\n  Displays: []\n")
+    before = path.read_bytes()
+    config = RvizConfig.load(path)
+    with full_disk(10), pytest.raises(LinkwrightError) as caught:
+        config.save(path)
+    assert caught.value.diagnostics[0].code == "RVIZ104"
+    assert path.read_bytes() == before
+    recent = RecentFiles(tmp_path / "recent")
+    recent.add(path)
+    with full_disk(10):
+        recent.add(tmp_path / "other.rviz")
+    assert RecentFiles(tmp_path / "recent").paths == [str(path)]
+
+
+@needs_limits
+@pytest.mark.parametrize("storage", STORAGES)
+def test_a_recording_on_a_full_disk_ends_once_and_keeps_what_it_has(tmp_path: Path, storage: str) -> None:
+    path = tmp_path / "bag"
+    writer = BagWriter(path, storage)
+    writer.add_topic("/chatter", "std_msgs/msg/String")
+    said = serialize(String(data="x" * 1000))
+    for stamp in range(10):
+        writer.write("/chatter", stamp, said)
+    writer.flush()
+
+    def fill() -> None:
+        for stamp in range(10, 100_000):
+            writer.write("/chatter", stamp, said)
+            writer.flush()
+
+    with full_disk(120_000), pytest.raises(LinkwrightError) as caught:
+        fill()
+    assert [each.code for each in caught.value.diagnostics] == ["BAG108"]
+    assert "ends here: " in str(caught.value)
+    writer.write("/chatter", 1, said)  # nothing more is written, and nothing said again
+    writer.flush()
+    writer.close()
+    with BagReader(path) as bag:
+        assert sum(1 for _ in bag.messages()) >= 10
+
+
+@needs_limits
+def test_bag_record_says_once_that_the_disk_is_full(
+    in_graph: Callable[[Callable[[Graph], object]], None],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    def talk(graph: Graph) -> None:
+        node = graph.create_node("talker")
+        publisher = node.create_publisher(String, "chatter", 10)
+        node.create_timer(0.001, lambda: publisher.publish(String(data="x" * 1000)))
+
+    monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "log"))
+    in_graph(talk)
+    with full_disk(20_000):
+        assert main(["bag", "record", "-a", "-o", str(tmp_path / "bag")]) == 1
+    printed = capsys.readouterr().err
+    assert printed.count("ends here: File too large") == 1
+    assert "Traceback" not in printed
+    with BagReader(tmp_path / "bag") as bag:
+        list(bag.messages())
+
+
+QUICK = {
+    "version": ["--version"],
+    "help": ["--help"],
+    **{f"{verb} --help": [verb, "--help"] for verb in VERBS},
+    "check": ["check", "r.urdf"],
+    "check json": ["check", "r.urdf", "--format", "json"],
+    "xacro": ["xacro", "r.urdf"],
+    "explain": ["explain", "URDF101"],
+    "inertia": ["inertia", "r.urdf"],
+    "export": ["export", "out.glb", "r.urdf"],
+    "pkg list": ["pkg", "list"],
+    "interface show": ["interface", "show", "std_msgs/msg/Header"],
+}
+
+_MANY = """
+import os, sys
+from linkwright.cli import main
+failed = []
+for words in {commands!r}:
+    child = os.fork()
+    if child == 0:
+        sys.argv[1:] = words
+        status = main()
+        try:
+            sys.stdout.flush()
+        except OSError:
+            status = 99  # Python would complain as it ends
+        os._exit(status)
+    failed.append(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
+sys.stderr.write(repr(failed))
+"""
+
+
+def statuses(commands: Mapping[str, Sequence[str]], folder: Path, redirection: str) -> tuple[dict[str, int], str]:
+    """The exit statuses of commands, a process each, with streams that a shell redirects, and what they said."""
+    program = _MANY.format(commands=[list(words) for words in commands.values()])
+    environment = {**os.environ, "PYTHONPATH": str(REPOSITORY / "src")}
+    done = subprocess.run(
+        ["sh", "-c", f'exec "$@" {redirection}', "sh", sys.executable, "-c", program],
+        cwd=folder,
+        env=environment,
+        stderr=subprocess.PIPE,
+        stdout=subprocess.DEVNULL,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+    printed, _, found = done.stderr.rpartition("[")
+    return dict(zip(commands, map(int, found.rstrip("]").split(",")), strict=True)), printed
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="/dev/full is Linux's")
+@pytest.mark.parametrize(("redirection", "reason"), [(">/dev/full", "No space left"), (">&-", "Bad file descriptor")])
+def test_output_that_takes_nothing_is_one_error(robot: Path, redirection: str, reason: str) -> None:
+    found, printed = statuses(QUICK, robot.parent, redirection)
+    assert found == dict.fromkeys(QUICK, 1)
+    assert printed.count(f"error[CLI202]: cannot write to standard output: {reason}") == len(QUICK)
+    assert "bug of ours" not in printed
+    assert "Exception ignored" not in printed
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there is no fork")
+def test_an_input_that_is_closed_is_an_empty_one(robot: Path) -> None:
+    commands = {**QUICK, "check -": ["xacro", "-"], "pub": ["interface", "show", "-"]}
+    found, printed = statuses(commands, robot.parent, "<&-")
+    assert {name for name, status in found.items() if status} == {"check -", "pub"}
+    assert "bug of ours" not in printed
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="/dev/full is Linux's")
+@pytest.mark.parametrize("redirection", ["2>/dev/full", "2>&-"])
+def test_messages_that_nobody_can_read_change_no_status(robot: Path, redirection: str) -> None:
+    for words, status in ((["check", "r.urdf"], 0), (["check", "missing.urdf"], 1)):
+        program = f'"$0" -m linkwright {" ".join(words)} {redirection}'
+        environment = {**os.environ, "PYTHONPATH": str(REPOSITORY / "src")}
+        done = subprocess.run(
+            ["sh", "-c", program, sys.executable],
+            cwd=robot.parent,
+            env=environment,
+            stdout=subprocess.PIPE,
+            timeout=60,
+            check=False,
+        )
+        assert done.returncode == status, words
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows keeps folders that are in use")
+def test_a_folder_that_was_removed_under_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    robot = tmp_path / "r.urdf"
+    robot.write_text(ROBOT)
+    here = Path.cwd()
+    for words in (
+        ["check", str(robot)],
+        ["check", "."],
+        ["xacro", str(robot)],
+        ["view", str(robot), "--no-open"],
+        ["export", "a.glb", str(robot)],
+        ["diagram", str(robot)],
+        ["inertia", str(robot)],
+        ["pkg", "create", "some_robot"],
+        ["launch", "a.launch.py", "--print"],
+    ):
+        gone = tmp_path / "gone"
+        gone.mkdir()
+        os.chdir(gone)
+        shutil.rmtree(gone)
+        try:
+            done = subprocess.run(
+                [sys.executable, "-m", "linkwright", *words],
+                env={**os.environ, "PYTHONPATH": str(REPOSITORY / "src"), "ROS_LOG_DIR": str(tmp_path / "log")},
+                capture_output=True,
+                text=True,
+                timeout=60,
+                check=False,
+            )
+        finally:
+            os.chdir(here)
+        assert "bug of ours" not in done.stderr, words
+        assert done.returncode in (0, 1), (words, done.stderr)
+        assert done.returncode == 0 or "error[" in done.stderr, words

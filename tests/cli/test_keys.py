@@ -1,0 +1,54 @@
+"""Keys that a recording and a player listen to, typed on a terminal of the test's own."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from linkwright.cli.bag.keys import SPACE, UP, listening
+from tests.waiting import eventually
+
+pty = pytest.importorskip("pty")
+termios = pytest.importorskip("termios")
+
+
+@pytest.fixture
+def keyboard(monkeypatch: pytest.MonkeyPatch) -> Iterator[int]:
+    """The end of a terminal that types; standard input is the other one."""
+    main, terminal = pty.openpty()
+    with os.fdopen(terminal) as stdin:
+        monkeypatch.setattr(sys, "stdin", stdin)
+        monkeypatch.setattr(os, "tcgetpgrp", lambda _: os.getpgrp())
+        yield main
+    os.close(main)
+
+
+async def test_keys_do_what_they_stand_for_and_the_terminal_is_as_it_was(keyboard: int) -> None:
+    before = termios.tcgetattr(sys.stdin)
+    pressed: list[str] = []
+    actions = {SPACE: lambda: pressed.append("space"), UP: lambda: pressed.append("up")}
+    with listening(actions) as listens:
+        assert listens
+        for key in (SPACE, "x", UP):
+            os.write(keyboard, key.encode())
+            count = len(pressed) + (key != "x")
+            await eventually(lambda count=count: len(pressed) == count)
+    assert pressed == ["space", "up"]
+    assert termios.tcgetattr(sys.stdin) == before
+
+
+async def test_in_the_background_the_terminal_is_left_alone(keyboard: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(os, "tcgetpgrp", lambda _: os.getpgrp() + 1)
+    with listening({}) as listens:
+        assert not listens
+
+
+async def test_without_a_terminal_there_are_no_keys(monkeypatch: pytest.MonkeyPatch) -> None:
+    with Path(os.devnull).open() as nothing:  # noqa: ASYNC230  # which does not block
+        monkeypatch.setattr(sys, "stdin", nothing)
+        with listening({}) as listens:
+            assert not listens

@@ -1,0 +1,56 @@
+"""``linkwright pkg list``, ``prefix``, ``executables`` and ``xml``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from linkwright.cli import main
+
+MANIFEST = (
+    "<package><name>arm</name><version>1.2.0</version><license>MIT</license><depend>xacro</depend>"
+    "<depend>urdf</depend></package>\n"
+)
+
+
+@pytest.fixture(autouse=True)
+def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    folder = tmp_path / "ws" / "src" / "arm"
+    folder.mkdir(parents=True)
+    (folder / "package.xml").write_text(MANIFEST)
+    monkeypatch.chdir(folder)
+    return folder
+
+
+def said(capsys: pytest.CaptureFixture[str], *words: str, status: int = 0) -> str:
+    assert main(["pkg", *words]) == status
+    captured = capsys.readouterr()
+    return captured.err if status else captured.out
+
+
+def test_the_list_has_packages_of_the_workspace_and_ours(capsys: pytest.CaptureFixture[str]) -> None:
+    names = said(capsys, "list").splitlines()
+    assert names == sorted(names)
+    assert {"arm", "robot_state_publisher"} <= set(names)
+
+
+def test_where_a_package_is(capsys: pytest.CaptureFixture[str], package: Path) -> None:
+    assert said(capsys, "prefix", "--share", "arm") == f"{package}\n"
+    assert said(capsys, "prefix", "arm").strip()
+    assert "arm" in said(capsys, "prefix", "armm", status=1)
+
+
+def test_executables_of_one_package_and_of_all(capsys: pytest.CaptureFixture[str]) -> None:
+    assert "demo_nodes_cpp talker" in said(capsys, "executables", "demo_nodes_cpp").splitlines()
+    assert "demo_nodes_cpp talker" in said(capsys, "executables").splitlines()
+    assert "demo_nodes_cpp talker" not in said(capsys, "executables", "--full-path", "demo_nodes_cpp").splitlines()
+
+
+def test_the_manifest_and_parts_of_it(capsys: pytest.CaptureFixture[str]) -> None:
+    assert said(capsys, "xml", "arm") == MANIFEST
+    assert said(capsys, "xml", "arm", "-t", "depend") == "xacro\nurdf\n"
+    error = said(capsys, "xml", "arm", "-t", "licence", status=1)
+    assert "package.xml of 'arm' has no element <licence>" in error
+    assert "did you mean 'license'?" in error
+    assert "there are" in said(capsys, "xml", "arm", "-t", "zzzzzz", status=1)

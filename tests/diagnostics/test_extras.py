@@ -1,0 +1,107 @@
+"""Libraries that are installed when asked for."""
+
+from __future__ import annotations
+
+import re
+import sys
+
+import numpy as np
+import pytest
+
+from linkwright.bag import BagReader, BagWriter
+from linkwright.cli.tools.programs import main
+from linkwright.diagnostics import LinkwrightError, Severity
+from linkwright.diagnostics.extras import EXTRAS, install_hint, missing_extra
+from linkwright.geometry.meshes import read_mesh
+from linkwright.lint.engine import examine
+from linkwright.urdf.diagram import render
+from linkwright.viewer.features.export.mesh_parts import read_parts
+from linkwright.viewer.images import BadImageError
+from linkwright.viewer.images.image_files import file_pixels
+from tests.places import REPOSITORY
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+
+@pytest.fixture
+def without(monkeypatch):
+    """Make a library one that is not installed."""
+
+    def hide(module: str) -> None:
+        for name in [name for name in sys.modules if name.partition(".")[0] == module]:
+            monkeypatch.delitem(sys.modules, name)
+        monkeypatch.setitem(sys.modules, module, None)
+
+    return hide
+
+
+def test_the_table_is_what_the_distribution_declares():
+    extras = tomllib.loads((REPOSITORY / "pyproject.toml").read_text())["project"]["optional-dependencies"]
+    assert set(re.findall(r"\w+", extras["all"][0])) == {"linkwright", *EXTRAS}
+    assert EXTRAS.keys() <= extras.keys()
+
+
+@pytest.mark.parametrize(
+    ("extra", "use"),
+    [
+        ("bag", BagReader),
+        ("bag", lambda folder: BagWriter(folder / "new")),
+        ("diagram", lambda folder: render("digraph G {}", folder / "robot.pdf")),
+        ("mesh", lambda folder: read_mesh(small_mesh(folder))),
+        ("mesh", lambda folder: read_parts(small_mesh(folder), resolver=None)),
+    ],
+)
+def test_what_is_missing_is_asked_for_by_name(extra, use, without, tmp_path):
+    without(EXTRAS[extra])
+    with pytest.raises(LinkwrightError, match=f"'{EXTRAS[extra]}' is not installed") as caught:
+        use(tmp_path)
+    assert caught.value.diagnostics[0].hint == install_hint(extra)
+
+
+def small_mesh(folder):
+    """A tetrahedron in an STL file."""
+    corners = ((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1))
+    faces = ((0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2))
+    lines = [" ".join(["vertex", *map(str, corners[corner])]) for face in faces for corner in face]
+    facets = [
+        "facet normal 0 0 0 outer loop " + " ".join(lines[at : at + 3]) + " endloop endfacet" for at in (0, 3, 6, 9)
+    ]
+    path = folder / "tetrahedron.stl"
+    path.write_text("solid t\n" + "\n".join(facets) + "\nendsolid t\n")
+    return path
+
+
+ROBOT = """<robot name="r"><link name="base"><inertial><mass value="1"/>
+  <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
+  <visual><geometry><mesh filename="tetrahedron.stl"/></geometry></visual>
+  <collision><geometry><mesh filename="tetrahedron.stl"/></geometry></collision></link></robot>"""
+
+
+def test_a_check_says_once_that_it_did_not_look_into_meshes(without, tmp_path):
+    small_mesh(tmp_path)
+    path = tmp_path / "robot.urdf"
+    path.write_text(ROBOT)
+    assert "INR104" not in [each.code for each in examine(path).diagnostics]
+    without("trimesh")
+    unread = [each for each in examine(path).diagnostics if each.code == "INR104"]
+    assert [(each.severity, each.hint) for each in unread] == [(Severity.INFO, install_hint("mesh"))]
+
+
+def test_an_image_display_asks_for_what_unpacks_files(without):
+    without("PIL")
+    with pytest.raises(BadImageError, match=r"linkwright\[image\]"):
+        file_pixels(np.frombuffer(b"\x89PNG\r\n\x1a\n", np.uint8))
+
+
+def test_modules_of_no_extra_are_not_asked_for():
+    with pytest.raises(ModuleNotFoundError, match="another"):
+        missing_extra("BAG107", ModuleNotFoundError("another", name="another.module"))
+
+
+def test_colcon_is_asked_for_by_name(without, capsys):
+    without("colcon_core")
+    assert main("colcon", ["build"]) == 1
+    assert "pip install 'linkwright[colcon]'" in capsys.readouterr().err

@@ -1,0 +1,20 @@
+"""The page of names is what the tables say."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+from tests.docs.pages import DOCS
+
+
+def test_the_pages_are_current():
+    tool = DOCS.parent / "tools" / "compatibility.py"
+    subprocess.run([sys.executable, tool, "--check"], check=True, timeout=60)
+
+
+def test_names_that_came_later_are_told_from_humbles():
+    page = (DOCS / "compatibility.md").read_text()
+    section = page.partition("### launch.actions\n")[2].partition("###")[0]
+    assert "`ExecuteProcess`" in section.partition("- Since")[0]
+    assert "- Since Kilted: `ForEach`, `ForLoop`" in section

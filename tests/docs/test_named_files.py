@@ -1,0 +1,75 @@
+"""Files, folders and modules that the documentation for developers names exist."""
+
+from __future__ import annotations
+
+import functools
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.docs.pages import DOCS
+from tests.places import REPOSITORY
+
+PAGES = [
+    REPOSITORY / "CONTRIBUTING.md",
+    DOCS / "architecture.md",
+    DOCS / "zh" / "architecture.md",
+    REPOSITORY / "frontend" / "README.md",
+    REPOSITORY / "fuzz" / "README.md",
+    REPOSITORY / "tests" / "corpus" / "README.md",
+]
+FOLDERS = (".github", "benchmarks", "docs", "frontend/src", "frontend/test", "fuzz", "robots", "src", "tests", "tools")
+MADE = [line.strip("/") for line in (REPOSITORY / ".gitignore").read_text(encoding="utf-8").split()]
+"""What make makes, which a fresh clone lacks."""
+
+_FENCE = re.compile(r"^```.*?^```$", re.MULTILINE | re.DOTALL)
+_WORDS = re.compile(r"`([^`\n]+)`")
+_PATH = re.compile(r"[\w.@*-]+(?:/[\w.@*-]+)+/?|[\w-]+/|[\w-]+\.(?:py|ts|toml|md|sh|yml)")
+_PLACEHOLDER = re.compile(r"(?<![A-Za-z])[A-Z]{3,}(?![A-Za-z])")
+_MODULE = re.compile(r"linkwright(?:\.\w+)+")
+
+
+def named(page: Path) -> Iterator[str]:
+    """The paths and modules in a page's inline code; placeholders like NAME.py and what make makes are none."""
+    for words in _WORDS.findall(_FENCE.sub("", page.read_text(encoding="utf-8"))):
+        for word in words.split():
+            made = word.split("/")[0] in MADE or any(f"/{path}".endswith(f"/{word.strip('/')}") for path in MADE)
+            path = _PATH.fullmatch(word) and not (made or _PLACEHOLDER.search(word) or "/msg/" in word)
+            if path or _MODULE.fullmatch(word):
+                yield word
+
+
+@functools.cache
+def tree() -> list[Path]:
+    """All files and folders of the repository that somebody wrote."""
+    inside = [
+        path for folder in FOLDERS for path in (REPOSITORY / folder).rglob("*") if "__pycache__" not in path.parts
+    ]
+    return [*inside, *(REPOSITORY / folder for folder in FOLDERS), *REPOSITORY.glob("*.*"), *REPOSITORY.glob(".ci/*")]
+
+
+@functools.cache
+def other_names() -> str:
+    """Where names are declared that look like files or modules: groups of entry points, packages of npm."""
+    return "".join(
+        (REPOSITORY / name).read_text(encoding="utf-8") for name in ("pyproject.toml", "frontend/package.json")
+    )
+
+
+def exists(word: str) -> bool:
+    """Whether there is such a module, or a file or folder whose path ends so: the text before may give the room."""
+    if f'"{word}"' in other_names() or f'"{word.split("/")[0]}":' in other_names():
+        return True
+    if _MODULE.fullmatch(word):
+        folder = REPOSITORY / "src" / Path(*word.split("."))
+        return any(path.exists() for path in (folder, folder.with_suffix(".py"), folder.parent.with_suffix(".py")))
+    return any(path.match(word.rstrip("/")) for path in tree())
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(REPOSITORY)))
+def test_what_is_named_exists(page: Path) -> None:
+    words = list(named(page))
+    assert words
+    assert [word for word in words if not exists(word)] == []

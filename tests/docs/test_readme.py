@@ -1,0 +1,107 @@
+"""What a visitor sees first holds: badges, picture, the README on a package index, and `make demo`."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+
+import pytest
+from PIL import Image
+
+from tests.docs.pages import READMES
+from tests.places import REPOSITORY
+from tests.repository_tools import load_tool
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+PROJECT = tomllib.loads((REPOSITORY / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+PICTURE = REPOSITORY / "docs" / "images" / "mbot.webp"
+
+
+@pytest.mark.parametrize("page", READMES, ids=lambda page: page.name)
+def test_badges_say_what_the_project_says(page):
+    labels = re.findall(r"^\[!\[([^\]]+)\]", page.read_text(encoding="utf-8"), re.MULTILINE)
+    pythons = re.findall(r"Python :: (3\.\d+)", "\n".join(PROJECT["classifiers"]))
+    status = next(line.split(" - ")[1] for line in PROJECT["classifiers"] if line.startswith("Development Status"))
+    assert labels == [
+        f"Python {pythons[0]} to {pythons[-1]}",
+        f"License: {PROJECT['license']}",
+        f"Status: {status.lower()}",
+    ]
+
+
+def test_the_picture_moves_for_ten_seconds_and_is_small():
+    assert PICTURE.stat().st_size < 2_000_000
+    with Image.open(PICTURE) as picture:
+        durations = []
+        for number in range(picture.n_frames):
+            picture.seek(number)
+            picture.load()
+            durations.append(picture.info["duration"])
+    assert len(durations) > 20
+    assert 8_000 <= sum(durations) <= 12_000
+
+
+def test_the_readme_of_a_package_has_no_links_into_the_repository():
+    text = load_tool("package_readme").without_relative_links(READMES[0].read_text(encoding="utf-8"))
+    prose = re.sub(r"^```.*?^```$", "", text, flags=re.MULTILINE | re.DOTALL)
+    assert [target for target in re.findall(r"\]\(([^)]*)\)", prose) if not target.startswith("https://")] == []
+    assert "a tutorial, pages about the viewer" in " ".join(prose.split())
+
+
+def script(path, text):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(f"#!/bin/sh\n{text}\n", encoding="utf-8")
+    path.chmod(0o755)
+    return path
+
+
+def make_demo(folder, *variables):
+    """`make demo` in a folder of its own and, as in a terminal, a process group of its own."""
+    if shutil.which("make") is None or os.name == "nt":
+        pytest.skip("there is no make here")
+    shutil.copy(REPOSITORY / "Makefile", folder)
+    (folder / "frontend").mkdir()
+    own = ("MAKEFLAGS", "MAKELEVEL", "MFLAGS", "VERSION")  # of the make that runs the tests
+    return subprocess.run(
+        ["make", "demo", *variables],
+        check=False,
+        cwd=folder,
+        env={name: value for name, value in os.environ.items() if name not in own},
+        capture_output=True,
+        text=True,
+        start_new_session=True,
+    )
+
+
+def installed(folder, linkwright):
+    """Variables and options with which make takes the program for installed."""
+    script(folder / "bin" / "linkwright", linkwright)
+    return [f"BIN={folder / 'bin'}", "VENV=.", "-o", "./.ready", f"PYTHON={sys.executable}"]
+
+
+def test_make_says_in_a_line_that_python_does_not_fit(tmp_path):
+    old = script(tmp_path / "old", 'echo "is 3.8"')
+    done = make_demo(tmp_path, f"PYTHON={old}")
+    assert done.returncode == 2
+    assert done.stdout == ""
+    (line,) = done.stderr.splitlines()
+    assert f"Linkwright needs Python 3.10 to 3.13, and {old} is 3.8" in line
+
+
+def test_make_demo_ends_on_interrupt_without_an_error_of_makes(tmp_path):
+    """Ctrl-C reaches make, its shell and the program."""
+    program = "trap 'echo ended; exit 130' INT\nkill -INT 0\nwhile :; do sleep 0.1; done"
+    done = make_demo(tmp_path, *installed(tmp_path, program))
+    assert "ended" in done.stdout
+    assert done.stderr == ""
+
+
+def test_make_demo_reports_a_failure(tmp_path):
+    assert make_demo(tmp_path, *installed(tmp_path, "exit 1")).returncode == 2

@@ -1,0 +1,371 @@
+"""What the doctor says of a record: each trouble is found where it is, and nothing is said of a graph that is well."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from linkwright.diagnostics import Severity
+from linkwright.diagnostics.translation import translate
+from linkwright.doctor import (
+    ClockSeen,
+    DescriptionSeen,
+    FixedFrame,
+    JointSeen,
+    Observation,
+    StampSeen,
+    TransformSeen,
+    examine,
+)
+from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
+from linkwright.graph.names.identity import NodeIdentity
+from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+
+ROBOT = """\
+<robot name="mbot">
+  <link name="base"/><link name="wheel"/><link name="mast"/><link name="copy"/>
+  <joint name="spin" type="continuous"><parent link="base"/><child link="wheel"/></joint>
+  <joint name="stand" type="fixed"><parent link="base"/><child link="mast"/></joint>
+  <joint name="follow" type="continuous"><parent link="base"/><child link="copy"/><mimic joint="spin"/></joint>
+</robot>
+"""
+RSP, JSP = "/robot_state_publisher", "/joint_state_publisher"
+JOINT_STATE, TF = "sensor_msgs/msg/JointState", "tf2_msgs/msg/TFMessage"
+
+
+def endpoint(kind: str, node: str, name: str, type_name: str, qos: QoSProfile | None = None) -> EndpointInfo:
+    namespace, _, bare = node.rpartition("/")
+    identity = NodeIdentity(bare, namespace or "/")
+    return EndpointInfo(EndpointKind(kind), identity, name, type_name, qos or QoSProfile(10), bytes(16))
+
+
+def publisher(node: str, name: str, type_name: str, qos: QoSProfile | None = None) -> EndpointInfo:
+    return endpoint("publisher", node, name, type_name, qos)
+
+
+def subscription(node: str, name: str, type_name: str, qos: QoSProfile | None = None) -> EndpointInfo:
+    return endpoint("subscription", node, name, type_name, qos)
+
+
+WELL = Observation(
+    seconds=3.0,
+    nodes=(RSP, JSP),
+    endpoints=(
+        publisher(RSP, "/tf", TF),
+        publisher(RSP, "/tf_static", TF),
+        publisher(JSP, "/joint_states", JOINT_STATE),
+        subscription(RSP, "/joint_states", JOINT_STATE),
+    ),
+    transforms=(
+        TransformSeen("base", "wheel", (RSP,)),
+        TransformSeen("base", "copy", (RSP,)),
+        TransformSeen("base", "mast", (RSP,), static=True),
+    ),
+    joints=(JointSeen("spin", (JSP,)),),
+    descriptions=(DescriptionSeen("/robot_description", RSP, ROBOT),),
+    sim_time={RSP: False, JSP: False},
+)
+
+
+def codes(seen: Observation) -> list[str]:
+    return [each.code for each in examine(seen)]
+
+
+def only(seen: Observation, code: str):
+    found = examine(seen)
+    assert [each.code for each in found] == [code], found
+    return found[0]
+
+
+def without(seen: Observation, *children: str) -> Observation:
+    return replace(seen, transforms=tuple(each for each in seen.transforms if each.child not in children))
+
+
+def more(seen: Observation, *endpoints: EndpointInfo) -> Observation:
+    return replace(seen, endpoints=(*seen.endpoints, *endpoints))
+
+
+def test_a_graph_that_is_well_has_no_findings():
+    assert examine(WELL) == []
+
+
+def test_nobody_is_there():
+    found = only(Observation(seconds=2.0, environment={"ROS_DOMAIN_ID": "7"}), "DOC801")
+    assert "domain 7" in found.notes[0].message
+    assert "ROS_AUTOMATIC_DISCOVERY_RANGE" in found.hint
+
+
+def test_a_domain_that_may_not_work():
+    assert codes(replace(WELL, environment={"ROS_DOMAIN_ID": "150"})) == ["DOC803"]
+    assert codes(replace(WELL, environment={"ROS_DOMAIN_ID": "101"})) == []
+
+
+# frames
+
+
+def test_no_state_publisher_at_all():
+    seen = replace(WELL, transforms=(), endpoints=())
+    found = only(seen, "DOC301")
+    assert found.message == "there is no transform of 3 frames, 'wheel', 'mast', 'copy': nobody publishes transforms"
+
+
+def test_nobody_publishes_joint_states():
+    seen = replace(
+        without(WELL, "wheel", "copy"),
+        joints=(),
+        endpoints=tuple(each for each in WELL.endpoints if each.name != "/joint_states"),
+    )
+    found = only(seen, "DOC401")
+    assert found.message == "nobody publishes joint states, so there is no transform of 2 frames, 'wheel', 'copy'"
+    assert "joint_state_publisher" in found.hint
+
+
+def test_joint_states_stay_away():
+    found = only(replace(without(WELL, "wheel", "copy"), joints=()), "DOC402")
+    assert found.message.startswith("'/joint_state_publisher' did not publish joint states in 3 s")
+
+
+def test_a_joint_is_missing_from_the_joint_states_and_its_misspelling_is_named():
+    seen = replace(without(WELL, "wheel", "copy"), joints=(JointSeen("spinn", (JSP,)),))
+    found = {each.code: each for each in examine(seen)}
+    assert set(found) == {"DOC403", "DOC405"}
+    missing = found["DOC403"]
+    assert (
+        missing.message
+        == "joint 'spin' is not in the joint states, so there is no transform of 2 frames, 'wheel', 'copy'"
+    )
+    assert missing.hint == "did you mean 'spinn'?"
+    assert found["DOC405"].hint == "did you mean 'spin'?"
+
+
+def test_a_static_transform_was_never_published():
+    found = only(without(WELL, "mast"), "DOC304")
+    assert found.message == "there is no transform of frame 'mast': no static transform of it was published"
+    assert "'stand'" in found.notes[0].message
+
+
+def test_a_joint_has_states_that_nobody_turns_into_transforms():
+    seen = replace(
+        without(WELL, "wheel", "copy"),
+        joints=(JointSeen("spin", (JSP,), ("/arm/joint_states",)),),
+        endpoints=(*WELL.endpoints, publisher(JSP, "/arm/joint_states", JOINT_STATE)),
+    )
+    found = only(seen, "DOC305")
+    assert "remap robot_state_publisher" in found.hint
+
+
+def test_frames_with_a_prefix_are_the_robots():
+    named = tuple(replace(each, parent=f"r1/{each.parent}", child=f"r1/{each.child}") for each in WELL.transforms)
+    assert examine(replace(WELL, transforms=named)) == []
+
+
+def test_two_nodes_publish_one_transform():
+    doubled = replace(WELL.transforms[0], senders=("/driver", RSP))
+    found = only(replace(WELL, transforms=(doubled, *WELL.transforms[1:])), "DOC302")
+    assert found.message == ("2 nodes publish the transform of frame 'wheel': '/driver', '/robot_state_publisher'")
+
+
+def test_a_frame_with_two_parents():
+    other = TransformSeen("odom", "base", ("/a",)), TransformSeen("map", "base", ("/b",))
+    found = [each for each in examine(replace(WELL, transforms=(*WELL.transforms, *other))) if each.code == "DOC303"]
+    assert found[0].message == "frame 'base' has 2 parents, 'map', 'odom', and jumps between them"
+
+
+def test_two_trees():
+    apart = TransformSeen("camera", "lens", ("/camera_driver",))
+    found = only(replace(WELL, transforms=(*WELL.transforms, apart)), "DOC308")
+    assert "--frame-id base --child-frame-id camera" in found.hint
+
+
+def test_parents_in_a_circle():
+    circle = TransformSeen("a", "b", ("/x",)), TransformSeen("b", "a", ("/y",))
+    assert "DOC307" in codes(replace(WELL, transforms=(*WELL.transforms, *circle)))
+
+
+def test_a_transform_that_is_no_transform():
+    broken = replace(WELL.transforms[0], valid=False)
+    assert codes(replace(WELL, transforms=(broken, *WELL.transforms[1:]))) == ["DOC306"]
+
+
+def test_a_fixed_frame_that_does_not_exist():
+    found = only(replace(WELL, fixed_frames=(FixedFrame("map", "mbot.rviz"),)), "DOC309")
+    assert found.message == "the fixed frame 'map' of mbot.rviz does not exist, so nothing is shown"
+    assert found.hint == "choose another Fixed Frame; the root of all frames is 'base'"
+    assert codes(replace(WELL, fixed_frames=(FixedFrame("base", "mbot.rviz"),))) == []
+    mapped = (*WELL.transforms, TransformSeen("map", "base", ("/localization",), static=True))
+    found = only(replace(WELL, transforms=mapped, fixed_frames=(FixedFrame("odom", "x"),)), "DOC309")
+    assert found.hint == "choose another Fixed Frame; the root of all frames is 'map'"
+    near = only(replace(WELL, fixed_frames=(FixedFrame("bse", "x"),)), "DOC309")
+    assert near.hint == "did you mean 'base'?"
+
+
+def test_the_root_of_a_robot_of_one_link_is_a_frame():
+    lonely = DescriptionSeen("/robot_description", RSP, '<robot name="r"><link name="only"/></robot>')
+    seen = replace(WELL, transforms=(), joints=(), descriptions=(lonely,), fixed_frames=(FixedFrame("only", "x"),))
+    assert examine(seen) == []
+
+
+def test_a_fixed_frame_that_does_not_exist_beside_several_trees():
+    apart = (*WELL.transforms, TransformSeen("camera", "lens", ("/camera",)))
+    found = examine(replace(WELL, transforms=apart, fixed_frames=(FixedFrame("odom", "x"),)))
+    (hint,) = [each.hint for each in found if each.code == "DOC309"]
+    assert hint == "choose another Fixed Frame; the roots of the trees of frames are 'base', 'camera'"
+
+
+def test_frames_are_listed_with_chinese_quotes_in_chinese():
+    joints = "".join(
+        f'<link name="l{i}"/><joint name="j{i}" type="continuous"><parent link="base"/><child link="l{i}"/></joint>'
+        for i in range(8)
+    )
+    robot = DescriptionSeen("/robot_description", RSP, f'<robot name="r"><link name="base"/>{joints}</robot>')
+    seen = replace(WELL, descriptions=(robot,), joints=(), endpoints=(publisher(RSP, "/tf", TF),))
+    (found,) = [each for each in examine(seen) if each.code == "DOC401"]
+    names = "“l0”、“l1”、“l2”、“l3”、“l4”、“l5”和另外 2 个"
+    assert translate(found, "zh").message == f"没有人发布关节状态，所以 8 个坐标系（{names}）没有变换"
+
+
+# descriptions and joints
+
+
+def test_a_description_that_is_a_files_name():
+    wrong = DescriptionSeen("/robot_description", RSP, "mbot.urdf")
+    found = only(replace(WELL, descriptions=(wrong,), joints=()), "DOC501")
+    assert "not a file's name" in found.hint
+
+
+@pytest.mark.parametrize(("text", "severity"), [(ROBOT, Severity.WARNING), (ROBOT + " ", Severity.ERROR)])
+def test_two_descriptions_on_one_topic(text, severity):
+    second = DescriptionSeen("/robot_description", "/other", text)
+    found = only(replace(WELL, descriptions=(*WELL.descriptions, second)), "DOC502")
+    assert found.severity is severity
+
+
+def test_two_nodes_publish_one_joint():
+    found = only(replace(WELL, joints=(JointSeen("spin", ("/driver", JSP)),)), "DOC404")
+    assert found.message.startswith("2 nodes publish the state of joint 'spin' on '/joint_states'")
+
+
+# topics, services, nodes
+
+
+def test_nodes_of_one_name():
+    found = only(replace(WELL, nodes=(RSP, RSP, JSP)), "DOC101")
+    assert found.message == "2 nodes have the name '/robot_state_publisher'"
+
+
+def test_a_topic_with_two_types():
+    seen = more(
+        WELL, publisher("/a", "/chat", "std_msgs/msg/String"), subscription("/b", "/chat", "std_msgs/msg/Int32")
+    )
+    found = only(seen, "DOC201")
+    assert [note.message for note in found.notes] == [
+        "std_msgs/msg/Int32 is subscribed to by '/b'",
+        "std_msgs/msg/String is published by '/a'",
+    ]
+
+
+def test_twist_against_twist_stamped():
+    seen = more(
+        WELL,
+        publisher("/teleop", "/cmd_vel", "geometry_msgs/msg/Twist"),
+        subscription("/diff_drive", "/cmd_vel", "geometry_msgs/msg/TwistStamped"),
+    )
+    assert "stamped:=true" in only(seen, "DOC202").hint
+
+
+def test_quality_of_service_that_does_not_match_names_policy_and_sides():
+    seen = more(
+        WELL,
+        publisher("/lidar", "/scan", "sensor_msgs/msg/LaserScan", QoSProfile(5, ReliabilityPolicy.BEST_EFFORT)),
+        subscription(
+            "/rviz",
+            "/scan",
+            "sensor_msgs/msg/LaserScan",
+            QoSProfile(5, ReliabilityPolicy.RELIABLE, DurabilityPolicy.TRANSIENT_LOCAL),
+        ),
+    )
+    found = only(seen, "DOC203")
+    assert found.message == ("'/rviz' gets nothing from '/lidar' on topic '/scan': their quality of service differs")
+    assert [note.message for note in found.notes] == [
+        "reliability: '/lidar' offers BEST_EFFORT, '/rviz' requests RELIABLE",
+        "durability: '/lidar' offers VOLATILE, '/rviz' requests TRANSIENT_LOCAL",
+    ]
+
+
+@pytest.mark.parametrize("published", ["/robot1/scan", "/scann"])
+def test_a_topic_that_nobody_publishes_and_one_that_may_be_meant(published):
+    scan = "sensor_msgs/msg/LaserScan"
+    found = only(more(WELL, subscription("/slam", "/scan", scan), publisher("/lidar", published, scan)), "DOC204")
+    assert f"-r /scan:={published}" in found.hint
+
+
+def test_a_topic_that_nobody_publishes_is_no_trouble_by_itself():
+    assert examine(more(WELL, subscription("/slam", "/scan", "sensor_msgs/msg/LaserScan"))) == []
+
+
+def test_a_service_that_nobody_serves():
+    seen = more(
+        WELL,
+        endpoint("client", "/planner", "/map_server/map", "nav_msgs/srv/GetMap"),
+        endpoint("service", "/map_server", "/map", "nav_msgs/srv/GetMap"),
+    )
+    assert "'/map' is served with that type" in only(seen, "DOC206").hint
+
+
+def test_a_service_of_another_type():
+    seen = more(
+        WELL,
+        endpoint("client", "/a", "/go", "std_srvs/srv/Trigger"),
+        endpoint("service", "/b", "/go", "std_srvs/srv/SetBool"),
+    )
+    assert codes(seen) == ["DOC205"]
+
+
+# time
+
+
+def test_simulated_time_for_some():
+    clock = publisher("/gazebo", "/clock", "rosgraph_msgs/msg/Clock")
+    seen = replace(more(WELL, clock), sim_time={RSP: True, JSP: False, "/gazebo": False}, clock=ClockSeen(9, 1, 9))
+    found = only(seen, "DOC601")
+    assert found.message == (
+        "use_sim_time is true for '/robot_state_publisher', but false for '/joint_state_publisher'"
+    )
+
+
+def test_simulated_time_without_a_clock():
+    assert codes(replace(WELL, sim_time={RSP: True, JSP: True})) == ["DOC602"]
+
+
+@pytest.mark.parametrize("clock", [None, ClockSeen(9, 5, 5)])
+def test_a_clock_that_stands_still(clock):
+    seen = more(WELL, publisher("/gazebo", "/clock", "rosgraph_msgs/msg/Clock"))
+    assert codes(replace(seen, sim_time={RSP: True, JSP: True}, clock=clock)) == ["DOC603"]
+
+
+def test_two_clocks():
+    kind = "rosgraph_msgs/msg/Clock"
+    seen = more(WELL, publisher("/gazebo", "/clock", kind), publisher("/bag", "/clock", kind))
+    assert codes(seen) == ["DOC604"]
+
+
+@pytest.mark.parametrize(("behind_s", "said"), [(3600, "3600.0 s behind"), (-60, "60.0 s ahead of")])
+def test_stamps_far_from_now(behind_s, said):
+    stamp = StampSeen("/scan", "/lidar", behind_s * 10**9)
+    assert f"are {said} the clock here" in only(replace(WELL, stamps=(stamp,)), "DOC605").message
+
+
+def test_stamps_that_were_never_set():
+    assert codes(replace(WELL, stamps=(StampSeen("/joint_states", JSP, 0, zero=True),))) == ["DOC606"]
+
+
+def test_managed_nodes_that_wait():
+    found = only(replace(WELL, lifecycle={"/camera": "inactive", "/lidar": "active"}), "DOC701")
+    assert found.message == "managed node '/camera' is inactive, so it does nothing yet"
+    assert found.hint == "bring it up: ros2 lifecycle set /camera activate"
+
+
+def test_errors_come_before_warnings():
+    seen = replace(WELL, nodes=(RSP, RSP), transforms=(replace(WELL.transforms[0], valid=False), *WELL.transforms[1:]))
+    assert codes(seen) == ["DOC306", "DOC101"]

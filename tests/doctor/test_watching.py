@@ -1,0 +1,73 @@
+"""What the doctor writes down of a graph that others are coming into while it looks."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections.abc import AsyncIterator
+from dataclasses import replace
+
+import pytest
+
+from linkwright.doctor import Observation, observe
+from linkwright.graph import EndpointInfo, EndpointKind, Graph, NodeIdentity, QoSProfile
+from linkwright.graph.endpoints.transport import Transport
+
+TWIST, TWIST_STAMPED = "geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"
+TELEOP = EndpointInfo(EndpointKind.PUBLISHER, NodeIdentity("teleop", "/"), "/cmd_vel", TWIST, QoSProfile(10), bytes(16))
+LATE = EndpointInfo(EndpointKind.SUBSCRIPTION, None, "/cmd_vel", TWIST_STAMPED, QoSProfile(10), bytes(16))
+
+
+class Outside(Transport):
+    """What other processes have, as a test says."""
+
+    def __init__(self, *endpoints: EndpointInfo) -> None:
+        self.endpoints = list(endpoints)
+
+    def remote_nodes(self) -> list[NodeIdentity]:
+        return list({each.node for each in self.endpoints if each.node is not None})
+
+    def remote_endpoints(self) -> list[EndpointInfo]:
+        return self.endpoints
+
+    def watch(self, changed: object) -> None:
+        pass
+
+    def close(self) -> None:
+        pass
+
+    def _mirror(self, what: object) -> None:
+        pass
+
+    open_node = close_node = open_publisher = close_publisher = open_subscription = close_subscription = _mirror
+    open_service = close_service = open_client = close_client = _mirror
+
+
+@pytest.fixture
+async def joined() -> AsyncIterator[Graph]:
+    graph = Graph()
+    yield graph
+    await graph.close()
+
+
+async def seen_of(graph: Graph, outside: Outside, seconds: float = 0.05) -> Observation:
+    graph.attach(outside)
+    return await observe(graph, graph.create_node("_ros2cli_1"), seconds, environment={})
+
+
+async def test_a_command_that_has_just_come_is_known_as_one_before_anything_is_said_of_it(joined: Graph) -> None:
+    outside = Outside(TELEOP, LATE)
+
+    def name() -> None:
+        outside.endpoints = [TELEOP, replace(LATE, node=NodeIdentity("_ros2cli_2", "/"))]
+
+    asyncio.get_running_loop().call_later(0.2, name)
+    seen = await seen_of(joined, outside)
+    assert seen.endpoints == (TELEOP,)
+
+
+async def test_an_endpoint_of_no_node_is_waited_for_no_longer_than_a_second(joined: Graph) -> None:
+    begun = time.monotonic()
+    seen = await seen_of(joined, Outside(TELEOP, LATE))
+    assert seen.endpoints == (TELEOP, LATE)
+    assert time.monotonic() - begun > 0.9

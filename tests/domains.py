@@ -1,0 +1,38 @@
+"""ROS domains that nobody else on this machine uses: other checkouts, other workers of a parallel run."""
+
+from __future__ import annotations
+
+import functools
+import random
+import socket
+
+_LAST = 100
+"""Beyond 101 the ports of a domain are among those that Linux gives to whoever asks for any."""
+_FIRST_PORT = 27_000
+
+_locks: list[socket.socket] = []
+"""Held until this process ends, however it ends."""
+
+
+@functools.cache
+def own_domain(which: int = 0) -> int:
+    """A ROS_DOMAIN_ID for this process and what it starts.
+
+    Taken by listening on a port of its number, which only one process at a time can do.
+
+    Args:
+        which: for tests that need domains of which none hears of the others.
+    """
+    domains = list(range(1, _LAST + 1))
+    random.SystemRandom().shuffle(domains)
+    for number in domains:
+        lock = socket.socket()
+        try:
+            lock.bind(("127.0.0.1", _FIRST_PORT + number))
+            lock.listen()
+        except OSError:
+            lock.close()
+            continue
+        _locks.append(lock)
+        return number
+    raise RuntimeError("other test runs use all ROS domains")

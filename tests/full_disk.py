@@ -1,0 +1,24 @@
+"""A disk that is full: no file may grow beyond a limit, and the system refuses the rest."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import pytest
+
+needs_limits = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no limits for files")
+
+
+@contextmanager
+def full_disk(room: int) -> Iterator[None]:
+    """While this is entered, no file of this process can have more than so many bytes."""
+    import resource
+
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (room, hard))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))

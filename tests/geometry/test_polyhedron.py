@@ -1,0 +1,115 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import trimesh
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from linkwright.geometry.hull import convex_hull
+from linkwright.geometry.polyhedron import is_closed, merged, polyhedron_properties
+
+coordinates = st.floats(-10, 10, width=32)
+clouds = st.lists(st.tuples(coordinates, coordinates, coordinates), min_size=4, max_size=60)
+
+
+@pytest.mark.parametrize(
+    "mesh",
+    [
+        trimesh.creation.torus(1.0, 0.3),
+        trimesh.creation.icosphere(2, 0.5),
+        trimesh.creation.annulus(0.2, 0.5, 0.1),
+        trimesh.creation.cone(0.3, 1.0),
+    ],
+    ids=["torus", "ball", "ring", "cone"],
+)
+@pytest.mark.parametrize("shift", [(0, 0, 0), (100, -50, 30)], ids=["near", "far"])
+def test_trimesh_finds_the_same(mesh, shift):
+    mesh = mesh.copy()
+    mesh.apply_translation(shift)
+    body = polyhedron_properties(mesh.vertices, mesh.faces, 5.0)
+    mesh.density = 5.0
+    assert body.mass == pytest.approx(mesh.mass)
+    assert np.allclose(body.center, mesh.center_mass)
+    assert np.allclose(body.inertia, mesh.moment_inertia, rtol=1e-4, atol=1e-6)
+
+
+def test_it_does_not_matter_which_way_the_triangles_turn():
+    mesh = trimesh.creation.cone(0.3, 1.0)
+    outward = polyhedron_properties(mesh.vertices, mesh.faces)
+    inward = polyhedron_properties(mesh.vertices, mesh.faces[:, ::-1])
+    assert inward.mass == pytest.approx(outward.mass)
+    assert np.allclose(inward.inertia, outward.inertia)
+
+
+def test_a_flat_surface_has_no_mass():
+    square = np.array(((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)), dtype=float)
+    assert polyhedron_properties(square, np.array(((0, 1, 2), (0, 2, 3)))).mass == 0
+    assert polyhedron_properties(square, np.zeros((0, 3), dtype=np.int64)).mass == 0
+
+
+def test_corners_at_one_place_become_one():
+    mesh = trimesh.creation.icosphere(1)
+    loose = mesh.vertices[mesh.faces].reshape(-1, 3)
+    vertices, faces = merged(loose, np.arange(len(loose)).reshape(-1, 3))
+    assert len(vertices) == len(mesh.vertices)
+    assert is_closed(faces)
+
+
+def test_triangles_without_area_are_dropped():
+    vertices = np.array(((0, 0, 0), (1, 0, 0), (1, 0, 0), (0, 1, 0)), dtype=float)
+    assert len(merged(vertices, np.array(((0, 1, 2), (0, 1, 3))))[1]) == 1
+    assert len(merged(np.zeros((3, 3)), np.array(((0, 1, 2),)))[1]) == 0
+
+
+def test_a_hole_or_a_turned_triangle_opens_a_surface():
+    faces = trimesh.creation.box().faces.astype(np.int64)
+    assert is_closed(faces)
+    assert not is_closed(faces[1:])
+    turned = faces.copy()
+    turned[0] = turned[0][::-1]
+    assert not is_closed(turned)
+    assert not is_closed(faces[:0])
+
+
+@given(clouds)
+@settings(max_examples=150)
+def test_the_hull_is_closed_convex_and_holds_every_point(cloud):
+    points = np.array(cloud, dtype=np.float64)
+    faces = convex_hull(points)
+    size = np.ptp(points, axis=0).max()
+    if faces is None:
+        assert np.linalg.matrix_rank(points - points[0], tol=1e-6 * max(size, 1e-30)) < 3
+        return
+    assert is_closed(faces)
+    a, b, c = (points[faces[:, corner]] for corner in range(3))
+    normals = np.cross(b - a, c - a)
+    areas = np.linalg.norm(normals, axis=1)
+    for normal, area, corner in zip(normals, areas, a, strict=True):
+        if area > 1e-6 * size * size:  # a sliver's direction is rounding
+            assert ((points - corner) @ (normal / area)).max() <= 1e-6 * size
+    assert polyhedron_properties(points, faces).mass >= 0
+
+
+def test_the_hull_of_a_grid_is_its_box():
+    grid = np.stack(np.meshgrid(*[np.arange(6.0)] * 3), -1).reshape(-1, 3)
+    faces = convex_hull(grid)
+    assert faces is not None
+    assert polyhedron_properties(grid, faces).mass == pytest.approx(125.0)
+
+
+def test_the_hull_of_points_on_a_sphere_has_all_of_them():
+    ball = trimesh.creation.icosphere(3)
+    faces = convex_hull(np.asarray(ball.vertices))
+    assert faces is not None
+    assert len(np.unique(faces)) == len(ball.vertices)
+    assert polyhedron_properties(ball.vertices, faces).mass == pytest.approx(ball.volume)
+
+
+@pytest.mark.parametrize(
+    "points",
+    [np.zeros((3, 3)), np.zeros((9, 3)), np.outer(np.arange(9.0), (1, 2, 3)), np.eye(3)[[0, 1, 2, 0, 1]]],
+    ids=["few", "one", "line", "plane"],
+)
+def test_what_lies_in_a_plane_has_no_hull(points):
+    assert convex_hull(points) is None

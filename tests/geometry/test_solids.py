@@ -1,0 +1,84 @@
+"""The closed formulae against numeric integration, and against meshes of the shapes."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import trimesh
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from linkwright.geometry.polyhedron import polyhedron_properties
+from linkwright.geometry.solids import half_extents, shape_properties
+from linkwright.urdf import Box, Capsule, Cylinder, Sphere
+
+sizes = st.floats(0.01, 2.0)
+
+
+def integrate_discs(radius_at, half_height, steps=20_000):
+    """Volume and moments of a body of revolution about z, as a pile of thin discs."""
+    dz = 2 * half_height / steps
+    z = -half_height + dz * (np.arange(steps) + 0.5)
+    r2 = radius_at(z) ** 2
+    mass = np.pi * r2 * dz
+    along = (mass * r2 / 2).sum()
+    across = (mass * (r2 / 4 + z**2)).sum()
+    return mass.sum(), across, along
+
+
+@given(sizes, sizes)
+@settings(max_examples=30)
+def test_capsule_against_integration(radius, length):
+    def radius_at(z):
+        beyond = np.maximum(np.abs(z) - length / 2, 0.0)
+        return np.sqrt(np.maximum(radius**2 - beyond**2, 0.0))
+
+    volume, across, along = integrate_discs(radius_at, length / 2 + radius)
+    body = shape_properties(Capsule(radius, length))
+    assert body.mass == pytest.approx(volume, rel=1e-4)
+    assert np.allclose(np.diag(body.inertia), (across, across, along), rtol=1e-4)
+
+
+@given(sizes)
+@settings(max_examples=30)
+def test_sphere_against_integration(radius):
+    volume, across, along = integrate_discs(lambda z: np.sqrt(np.maximum(radius**2 - z**2, 0.0)), radius)
+    body = shape_properties(Sphere(radius))
+    assert body.mass == pytest.approx(volume, rel=1e-4)
+    assert np.allclose(np.diag(body.inertia), (across, across, along), rtol=1e-4)
+
+
+@given(sizes, sizes)
+@settings(max_examples=30)
+def test_cylinder_against_integration(radius, length):
+    volume, across, along = integrate_discs(lambda z: np.full_like(z, radius), length / 2)
+    body = shape_properties(Cylinder(radius, length))
+    assert body.mass == pytest.approx(volume, rel=1e-6)
+    assert np.allclose(np.diag(body.inertia), (across, across, along), rtol=1e-4)
+
+
+@given(sizes, sizes, sizes)
+def test_a_box_is_its_mesh(a, b, c):
+    mesh = trimesh.creation.box((a, b, c))
+    body, solid = shape_properties(Box((a, b, c)), 3.0), polyhedron_properties(mesh.vertices, mesh.faces, 3.0)
+    assert solid.mass == pytest.approx(body.mass)
+    assert np.allclose(solid.center, 0, atol=1e-12)
+    assert np.allclose(solid.inertia, body.inertia, rtol=1e-9, atol=1e-15)
+
+
+def test_a_capsule_without_cylinder_is_a_sphere():
+    capsule, sphere = shape_properties(Capsule(0.3, 0.0)), shape_properties(Sphere(0.3))
+    assert capsule.mass == pytest.approx(sphere.mass)
+    assert np.allclose(capsule.inertia, sphere.inertia)
+
+
+@pytest.mark.parametrize("shape", [Box((1, 0, 1)), Box((1, -1, 1)), Sphere(0), Cylinder(-1, 1), Capsule(1, -1)])
+def test_a_size_that_is_not_positive_has_no_mass(shape):
+    assert shape_properties(shape, 1000.0).mass == 0
+
+
+def test_extents():
+    assert np.allclose(half_extents(Box((1, 2, 3))), (0.5, 1, 1.5))
+    assert np.allclose(half_extents(Cylinder(1, 4)), (1, 1, 2))
+    assert np.allclose(half_extents(Capsule(1, 4)), (1, 1, 3))
+    assert np.allclose(half_extents(Sphere(2)), (2, 2, 2))

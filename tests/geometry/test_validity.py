@@ -1,0 +1,69 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from linkwright.geometry import validity
+from linkwright.geometry.mass import MassProperties, combine
+from linkwright.geometry.solids import shape_properties
+from linkwright.urdf import Box, Cylinder, Pose, Sphere
+
+places = st.tuples(*[st.floats(-2.0, 2.0)] * 3)
+angles = st.tuples(*[st.floats(-3.0, 3.0)] * 3)
+shapes = st.one_of(
+    st.builds(Box, st.tuples(*[st.floats(0.01, 3.0)] * 3)),
+    st.builds(Cylinder, st.floats(0.01, 2.0), st.floats(0.01, 2.0)),
+    st.builds(Sphere, st.floats(0.01, 2.0)),
+)
+bodies = st.lists(st.tuples(shapes, st.builds(Pose, places, angles), st.floats(1, 2e4)), min_size=1, max_size=4)
+
+
+@given(bodies)
+def test_every_real_body_is_valid(parts):
+    body = combine(shape_properties(shape, density).moved(pose) for shape, pose, density in parts)
+    assert validity.excessive_products(body.inertia) == []
+    assert validity.problems(body) == []
+
+
+def test_a_disc_is_just_possible_and_beyond_it_nothing_is():
+    assert validity.triangle_excess(np.diag((1.0, 1.0, 2.0))) == pytest.approx(0.0)
+    assert validity.triangle_excess(np.diag((1.0, 1.0, 2.1))) > validity.TOLERANCE
+    assert validity.triangle_excess(np.diag((1.0, 1.0, 4.0))) == pytest.approx(0.5)
+    assert validity.triangle_excess(np.diag((1.0, 1.0, 1.0))) < 0
+
+
+def test_a_product_is_bounded_by_the_moments():
+    tensor = np.array(((1.0, 0.6, 0.0), (0.6, 1.0, 0.0), (0.0, 0.0, 1.0)))
+    assert validity.excessive_products(tensor) == [("ixy", 0.5)]
+    tensor[0, 1] = tensor[1, 0] = 0.5
+    assert validity.excessive_products(tensor) == []
+    tensor = np.array(((1.0, 0.0, 0.0), (0.0, 1.0, -3.0), (0.0, -3.0, 9.0)))
+    assert validity.excessive_products(tensor) == [("iyz", 0.5)]
+
+
+@given(bodies)
+def test_no_body_has_more_than_the_largest_moment_within_its_box(parts):
+    moved = [shape_properties(shape, density).moved(pose) for shape, pose, density in parts]
+    corners = np.array([pose.xyz for _, pose, _ in parts])
+    # Every shape here is within 3 m of its place.
+    low, high = corners.min(axis=0) - 3.0, corners.max(axis=0) + 3.0
+    body = combine(moved)
+    limit = validity.largest_moment_within(body.center, low, high, body.mass)
+    assert np.diag(body.inertia).max() <= limit
+
+
+def test_distance_outside_a_box():
+    low, high = np.zeros(3), np.ones(3)
+    assert validity.distance_outside(np.array((0.5, 0.5, 0.5)), low, high) == 0
+    assert validity.distance_outside(np.array((4.0, 5.0, 0.5)), low, high) == pytest.approx(5.0)
+
+
+def test_problems_in_words():
+    assert validity.problems(MassProperties(0.0)) == [
+        "the mass is not positive",
+        "the inertia tensor is not positive definite",
+    ]
+    body = MassProperties(1.0, np.zeros(3), np.diag((1.0, 1.0, 5.0)))
+    assert validity.problems(body) == ["one principal moment of inertia is larger than the sum of the other two"]

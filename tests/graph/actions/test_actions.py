@@ -1,0 +1,333 @@
+import asyncio
+import threading
+import time
+
+import pytest
+
+from linkwright.graph import (
+    ActionClient,
+    ActionServer,
+    CancelResponse,
+    GoalResponse,
+    GoalStatus,
+    Graph,
+)
+from linkwright.graph.actions.server import ERROR_GOAL_TERMINATED, ERROR_NONE, ERROR_REJECTED, ERROR_UNKNOWN_GOAL_ID
+from linkwright.graph.executors import MultiThreadedExecutor
+from linkwright.messages import get_action, get_message
+
+Fibonacci = get_action("example_interfaces/action/Fibonacci")
+Time = get_message("builtin_interfaces/msg/Time")
+
+
+def sequence(order):
+    numbers = [0, 1]
+    while len(numbers) <= order:
+        numbers.append(numbers[-1] + numbers[-2])
+    return numbers[: order + 1]
+
+
+def fibonacci(goal):
+    for order in range(1, goal.request.order + 1):
+        goal.publish_feedback(Fibonacci.Feedback(sequence=sequence(order)))
+    goal.succeed()
+    return Fibonacci.Result(sequence=sequence(goal.request.order))
+
+
+class Stage:
+    def __init__(self, graph):
+        self.graph = graph
+        self.server_node, self.client_node = graph.create_node("server"), graph.create_node("client")
+        self.client = ActionClient(self.client_node, Fibonacci, "fibonacci")
+        self.handles = []
+
+    def serve(self, execute=fibonacci, **options):
+        self.server = ActionServer(self.server_node, Fibonacci, "fibonacci", execute, **options)
+        return self.server
+
+    def defer(self, **options):
+        """A server that leaves goals to the test."""
+        return self.serve(handle_accepted_callback=self.handles.append, **options)
+
+    async def send(self, order=4, **options):
+        return await self.client.send_goal_async(Fibonacci.Goal(order=order), **options)
+
+
+@pytest.fixture
+def stage(graph):
+    return Stage(graph)
+
+
+async def test_a_goal_is_reached(stage):
+    stage.serve()
+    assert stage.client.server_is_ready()
+    assert stage.client.wait_for_server(0.1)
+    seen = []
+    handle = await stage.send(4, feedback_callback=lambda message: seen.append(list(message.feedback.sequence)))
+    assert handle.accepted
+    response = await handle.get_result_async()
+    assert list(response.result.sequence) == [0, 1, 1, 2, 3]
+    assert response.status == GoalStatus.SUCCEEDED
+    assert seen == [[0, 1], [0, 1, 1], [0, 1, 1, 2], [0, 1, 1, 2, 3]]
+    await stage.graph.settle()
+    assert handle.status == GoalStatus.SUCCEEDED
+
+
+async def test_without_a_server_nothing_is_ready(stage):
+    assert not stage.client.server_is_ready()
+    assert not stage.client.wait_for_server(0.01)
+    server = stage.serve()
+    assert stage.client.server_is_ready()
+    server.destroy()
+    assert not stage.client.server_is_ready()
+
+
+async def test_work_in_a_coroutine_lets_the_others_go_on(stage, clock):
+    rate = stage.server_node.create_rate(10.0)
+
+    async def work(goal):
+        for _ in range(goal.request.order):
+            await rate.wait()
+        goal.succeed()
+        return Fibonacci.Result()
+
+    stage.serve(work)
+    short, long = await stage.send(2), await stage.send(5)
+    results = [handle.get_result_async() for handle in (short, long)]
+    await clock.advance(0.21)
+    assert [result.done() for result in results] == [True, False]
+    await clock.advance(0.31)
+    assert [result.done() for result in results] == [True, True]
+
+
+async def test_goals_are_rejected(stage, log):
+    stage.serve(goal_callback=lambda goal: GoalResponse.ACCEPT if goal.order < 10 else GoalResponse.REJECT)
+    assert not (await stage.send(10)).accepted
+    assert (await stage.send(9)).accepted
+    stage.server.register_goal_callback(lambda _goal: True)
+    assert not (await stage.send(1)).accepted
+    assert log[-1].text == "Goal request callback did not return a GoalResponse type. Rejecting goal."
+
+
+async def test_the_same_goal_is_taken_once(stage):
+    stage.defer()
+    first = await stage.send()
+    again = await stage.send(goal_uuid=first.goal_id)
+    assert first.accepted
+    assert not again.accepted
+
+
+async def test_work_is_canceled(stage, clock):
+    rate = stage.server_node.create_rate(1.0)
+
+    async def work(goal):
+        while not goal.is_cancel_requested:
+            await rate.wait()
+        goal.canceled()
+        return Fibonacci.Result(sequence=[7])
+
+    stage.serve(work, cancel_callback=lambda _goal: CancelResponse.ACCEPT)
+    handle = await stage.send()
+    answer = await handle.cancel_goal_async()
+    assert answer.return_code == ERROR_NONE
+    assert [bytes(info.goal_id.uuid) for info in answer.goals_canceling] == [bytes(handle.goal_id.uuid)]
+    result = handle.get_result_async()
+    await clock.advance(1.1)
+    assert (await result).status == GoalStatus.CANCELED
+    assert list((await result).result.sequence) == [7]
+    assert (await handle.cancel_goal_async()).return_code == ERROR_GOAL_TERMINATED
+
+
+async def test_canceling_is_refused_unless_it_is_provided_for(stage):
+    stage.defer()
+    handle = await stage.send()
+    answer = await handle.cancel_goal_async()
+    assert answer.return_code == ERROR_REJECTED
+    assert list(answer.goals_canceling) == []
+    assert stage.handles[0].status == GoalStatus.ACCEPTED
+
+
+async def test_an_unknown_goal_cannot_be_canceled(stage):
+    stage.defer()
+    handle = await stage.send()
+    stage.server.destroy()
+    stage.defer()
+    assert (await handle.cancel_goal_async()).return_code == ERROR_UNKNOWN_GOAL_ID
+    assert (await handle.get_result_async()).status == GoalStatus.UNKNOWN
+
+
+async def test_a_request_to_cancel_may_mean_many_goals(stage, clock):
+    stage.defer(cancel_callback=lambda _goal: CancelResponse.ACCEPT)
+    for _ in range(3):
+        await stage.send()
+        await clock.advance(1.0)
+    client = stage.client_node.create_client(Fibonacci.Impl.CancelGoalService, "fibonacci/_action/cancel_goal")
+    request = Fibonacci.Impl.CancelGoalService.Request()
+    request.goal_info.stamp = Time(sec=stage.handles[1].goal_info.stamp.sec, nanosec=0)
+    assert len((await client.call_async(request)).goals_canceling) == 2
+    assert [goal.is_cancel_requested for goal in stage.handles] == [True, True, False]
+    assert len((await client.call_async(Fibonacci.Impl.CancelGoalService.Request())).goals_canceling) == 1
+    assert all(goal.is_cancel_requested for goal in stage.handles)
+
+
+async def test_a_newer_goal_preempts_an_older_one(stage, clock):
+    """The pattern of the public example: one goal at a time, begun by handle_accepted_callback."""
+    current = None
+    beat = stage.server_node.create_rate(10.0)
+
+    def begin(goal):
+        nonlocal current
+        if current is not None and current.is_active:
+            current.abort()
+        current = goal
+        goal.execute()
+
+    async def work(goal):
+        for _ in range(20):
+            if not goal.is_active:
+                return Fibonacci.Result()
+            await beat.wait()
+        goal.succeed()
+        return Fibonacci.Result()
+
+    stage.serve(work, handle_accepted_callback=begin)
+    results = [(await stage.send()).get_result_async() for _ in range(2)]
+    await clock.advance(3.0)
+    assert [(await result).status for result in results] == [GoalStatus.ABORTED, GoalStatus.SUCCEEDED]
+
+
+async def test_work_that_fails_or_forgets_to_end_is_aborted(stage, log):
+    def fail(_goal):
+        raise ZeroDivisionError("no")
+
+    stage.serve(fail)
+    response = await (await stage.send()).get_result_async()
+    assert response.status == GoalStatus.ABORTED
+    assert "ZeroDivisionError: no" in log[-2].text
+    assert log[-1].text.startswith("Goal state not set, assuming aborted. Goal ID: ")
+    stage.server.register_execute_callback(lambda _goal: Fibonacci.Result(sequence=[5]))
+    response = await (await stage.send()).get_result_async()
+    assert (response.status, list(response.result.sequence)) == (GoalStatus.ABORTED, [5])
+
+
+async def test_a_result_of_the_wrong_type_is_told(stage, log):
+    def work(goal):
+        goal.succeed()
+        return [1, 2]
+
+    stage.serve(work)
+    response = await (await stage.send()).get_result_async()
+    assert (response.status, list(response.result.sequence)) == (GoalStatus.SUCCEEDED, [])
+    assert "gave <class 'list'>, not" in log[-1].text
+
+
+async def test_the_result_may_come_with_the_end(stage):
+    gate = asyncio.Event()
+
+    async def work(goal):
+        goal.succeed(Fibonacci.Result(sequence=[3]))
+        await gate.wait()
+        return Fibonacci.Result(sequence=[4])
+
+    stage.serve(work)
+    response = await (await stage.send()).get_result_async()
+    assert list(response.result.sequence) == [3]
+    gate.set()
+    await stage.graph.settle()
+
+
+async def test_states_change_only_as_the_protocol_allows(stage):
+    stage.defer()
+    await stage.send()
+    (goal,) = stage.handles
+    with pytest.raises(RuntimeError, match="invalid transition from state ACCEPTED with event SUCCEED"):
+        goal.succeed()
+    with pytest.raises(RuntimeError, match="with event CANCELED"):
+        goal.canceled()
+    goal.execute()
+    await stage.graph.settle()
+    with pytest.raises(RuntimeError, match="invalid transition from state SUCCEEDED with event ABORT"):
+        goal.abort()
+    goal.destroy()
+    assert goal.status == GoalStatus.UNKNOWN
+    goal.abort()
+
+
+async def test_states_are_published_to_late_comers_too(stage):
+    stage.defer()
+    handle = await stage.send()
+    stage.handles[0].execute(lambda goal: (goal.succeed(), Fibonacci.Result())[1])
+    await stage.graph.settle()
+    seen = []
+    stage.client_node.create_subscription(
+        Fibonacci.Impl.GoalStatusMessage, "fibonacci/_action/status", seen.append, stage.client._status.qos_profile
+    )
+    await stage.graph.settle()
+    (status,) = seen[-1].status_list
+    assert bytes(status.goal_info.goal_id.uuid) == bytes(handle.goal_id.uuid)
+    assert status.status == GoalStatus.SUCCEEDED
+
+
+@pytest.mark.parametrize(("timeout", "kept"), [(10, [2, 2, 1, 0]), (-1, [2, 2, 2, 2])])
+async def test_results_are_kept_for_a_while(stage, clock, timeout, kept):
+    stage.serve(result_timeout=timeout)
+    await (await stage.send()).get_result_async()
+    await clock.advance(5.0)
+    await (await stage.send()).get_result_async()
+    counts = []
+    for seconds in (0.0, 4.9, 0.2, 5.0):
+        await clock.advance(seconds)
+        counts.append(len(stage.server._goal_handles))
+    assert counts == kept
+
+
+async def test_mistakes_are_told(stage):
+    with pytest.raises(TypeError, match="not callable"):
+        stage.serve(None)
+    stage.serve()
+    with pytest.raises(TypeError, match="Fibonacci_Goal"):
+        stage.client.send_goal_async(Fibonacci.Result())
+    with pytest.raises(TypeError, match="Expected type ClientGoalHandle"):
+        stage.client.cancel("goal")
+
+
+async def test_actions_are_listed_by_their_names(stage):
+    stage.serve()
+    graph, name = stage.graph, "example_interfaces/action/Fibonacci"
+    assert graph.get_action_names_and_types() == [("/fibonacci", [name])]
+    assert graph.get_action_server_names_and_types_by_node("server", "/") == [("/fibonacci", [name])]
+    assert graph.get_action_server_names_and_types_by_node("client", "/") == []
+    assert graph.get_action_client_names_and_types_by_node("client", "/") == [("/fibonacci", [name])]
+
+
+async def test_destroyed_with_the_node(stage):
+    stage.serve()
+    stage.server_node.destroy_node()
+    stage.client_node.destroy_node()
+    assert stage.graph.topics() == {}
+
+
+def test_work_in_threads():
+    """A server whose work blocks, as most of the tutorials' do, under a multi-threaded executor."""
+    graph = Graph(threads=True, on_log=print)
+    nodes = graph.create_node("server"), graph.create_node("client")
+
+    def work(goal):
+        time.sleep(0.05)
+        return fibonacci(goal)
+
+    ActionServer(nodes[0], Fibonacci, "fibonacci", work)
+    client = ActionClient(nodes[1], Fibonacci, "fibonacci")
+    executor = MultiThreadedExecutor(3)
+    for node in nodes:
+        executor.add_node(node)
+    thread = threading.Thread(target=executor.spin)
+    thread.start()
+    try:
+        assert client.wait_for_server(60.0)
+        response = client.send_goal(Fibonacci.Goal(order=3), timeout_sec=60.0)
+        assert list(response.result.sequence) == [0, 1, 1, 2]
+    finally:
+        executor.shutdown()
+        thread.join(60.0)
+        graph.close_now()

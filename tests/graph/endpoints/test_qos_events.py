@@ -1,0 +1,134 @@
+import pytest
+
+from linkwright.graph import (
+    DurabilityPolicy,
+    Duration,
+    LivelinessPolicy,
+    PublisherEventCallbacks,
+    QoSPolicyKind,
+    QoSProfile,
+    ReliabilityPolicy,
+    SubscriptionEventCallbacks,
+)
+from linkwright.messages import String
+
+BEST_EFFORT = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
+
+
+@pytest.fixture
+def node(graph):
+    return graph.create_node("node")
+
+
+def nothing(_message):
+    pass
+
+
+async def test_mismatches(graph, node, log):
+    events = []
+    node.create_publisher(
+        String, "topic", BEST_EFFORT, event_callbacks=PublisherEventCallbacks(incompatible_qos=events.append)
+    )
+    for _ in range(2):
+        node.create_subscription(
+            String,
+            "topic",
+            nothing,
+            QoSProfile(5, durability=DurabilityPolicy.TRANSIENT_LOCAL),
+            event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
+        )
+    assert events == []
+    await graph.settle()
+    assert [(event.total_count, event.total_count_change) for event in events] == [(1, 1), (2, 1)]
+    assert events[0].last_policy_kind == QoSPolicyKind.DURABILITY
+    assert log == []
+
+
+async def test_matches(graph, node):
+    published, subscribed = [], []
+    publisher = node.create_publisher(
+        String, "topic", 1, event_callbacks=PublisherEventCallbacks(matched=published.append)
+    )
+    subscription = node.create_subscription(
+        String, "topic", nothing, 1, event_callbacks=SubscriptionEventCallbacks(matched=subscribed.append)
+    )
+    subscription.set_outside_count(2)
+    await graph.settle()
+    node.destroy_publisher(publisher)
+    await graph.settle()
+
+    def numbers(event):
+        return event.total_count, event.total_count_change, event.current_count, event.current_count_change
+
+    assert [numbers(event) for event in published] == [(1, 1, 1, 1)]
+    assert [numbers(event) for event in subscribed] == [(1, 1, 1, 1), (3, 2, 3, 2), (3, 0, 2, -1)]
+
+
+async def test_missed_deadlines(graph, node, clock):
+    offered, requested = [], []
+    qos = QoSProfile(depth=1, deadline=Duration(seconds=1.0))
+    publisher = node.create_publisher(
+        String, "topic", qos, event_callbacks=PublisherEventCallbacks(deadline=offered.append)
+    )
+    node.create_subscription(
+        String, "topic", nothing, qos, event_callbacks=SubscriptionEventCallbacks(deadline=requested.append)
+    )
+    for _ in range(10):
+        publisher.publish(String())
+        await clock.advance(0.9)
+    assert (offered, requested) == ([], [])
+    await clock.advance(2.5)
+    assert [event.total_count for event in offered] == [1, 2, 3]
+    assert [event.total_count for event in requested] == [1, 2, 3]
+    node.destroy_node()
+    await clock.advance(10.0)
+    assert len(offered) == 3
+
+
+async def test_liveliness(graph, node, clock):
+    lost, changed = [], []
+    qos = QoSProfile(
+        depth=1, liveliness=LivelinessPolicy.MANUAL_BY_TOPIC, liveliness_lease_duration=Duration(seconds=1.0)
+    )
+    publisher = node.create_publisher(
+        String, "topic", qos, event_callbacks=PublisherEventCallbacks(liveliness=lost.append)
+    )
+    node.create_subscription(
+        String, "topic", nothing, qos, event_callbacks=SubscriptionEventCallbacks(liveliness=changed.append)
+    )
+    for _ in range(3):
+        publisher.assert_liveliness()
+        await clock.advance(0.9)
+    assert lost == []
+    await clock.advance(5.0)
+    assert [event.total_count for event in lost] == [1]
+    publisher.publish(String())
+    await graph.settle()
+    assert [(event.alive_count, event.not_alive_count) for event in changed] == [(1, 0), (0, 1), (1, 0)]
+
+
+async def test_lost_messages(graph, node):
+    lost = []
+    subscription = node.create_subscription(
+        String, "topic", nothing, 2, event_callbacks=SubscriptionEventCallbacks(message_lost=lost.append)
+    )
+    publisher = node.create_publisher(String, "topic", 10)
+    for _ in range(5):
+        publisher.publish(String())
+    subscription.lost_outside(4)
+    await graph.settle()
+    assert [(event.total_count, event.total_count_change) for event in lost] == [(1, 1), (2, 1), (3, 1), (7, 4)]
+
+
+async def test_a_message_is_worth_nothing_after_its_lifespan(graph, clock):
+    node = graph.create_node("node")
+    received = []
+    node.create_subscription(String, "topic", received.append, 10)
+    publisher = node.create_publisher(String, "topic", QoSProfile(depth=10, lifespan=Duration(seconds=1.0)))
+    node.handle.set_dispatcher(None)
+    publisher.publish(String("old"))
+    await clock.advance(1.5)
+    publisher.publish(String("new"))
+    node.handle.set_dispatcher(graph.dispatcher)
+    await graph.settle()
+    assert [message.data for message in received] == ["new"]

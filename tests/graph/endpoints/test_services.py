@@ -1,0 +1,192 @@
+import asyncio
+import threading
+
+import pytest
+
+from linkwright.graph import Graph, InvalidHandleError, InvalidServiceNameError
+from linkwright.graph.executors import MultiThreadedExecutor, SingleThreadedExecutor
+from linkwright.messages import get_service
+
+AddTwoInts = get_service("example_interfaces/srv/AddTwoInts")
+SetBool = get_service("std_srvs/srv/SetBool")
+
+
+def add(request, response):
+    response.sum = request.a + request.b
+    return response
+
+
+@pytest.fixture
+def nodes(graph):
+    return graph.create_node("server", namespace="robot"), graph.create_node("client", namespace="robot")
+
+
+async def test_a_request_is_answered(graph, nodes):
+    server, user = nodes
+    service = server.create_service(AddTwoInts, "add", add)
+    client = user.create_client(AddTwoInts, "add")
+    assert (service.service_name, client.srv_name) == ("/robot/add", "/robot/add")
+    assert client.service_is_ready()
+    future = client.call_async(AddTwoInts.Request(a=2, b=3))
+    assert not future.done()
+    assert (await future).sum == 5
+    assert future.done()
+
+
+async def test_many_requests_are_answered_each_by_its_own_response(graph, nodes):
+    server, user = nodes
+    server.create_service(AddTwoInts, "add", add)
+    client = user.create_client(AddTwoInts, "add")
+    futures = [client.call_async(AddTwoInts.Request(a=number, b=1)) for number in range(5)]
+    assert [response.sum for response in await asyncio.gather(*futures)] == [1, 2, 3, 4, 5]
+
+
+async def test_a_callback_may_be_a_coroutine_function(graph, nodes):
+    server, user = nodes
+    gate = asyncio.Event()
+
+    async def slow(request, response):
+        await gate.wait()
+        return add(request, response)
+
+    server.create_service(AddTwoInts, "add", slow)
+    future = user.create_client(AddTwoInts, "add").call_async(AddTwoInts.Request(a=1, b=1))
+    await graph.settle()
+    assert not future.done()
+    gate.set()
+    assert (await future).sum == 2
+
+
+async def test_an_answer_may_be_sent_later(graph, nodes):
+    server, user = nodes
+    replies = []
+    server.create_service(AddTwoInts, "add", lambda request, reply: replies.append(reply), replying=True)
+    future = user.create_client(AddTwoInts, "add").call_async(AddTwoInts.Request())
+    await graph.settle()
+    assert not future.done()
+    replies[0](AddTwoInts.Response(sum=7))
+    assert (await future).sum == 7
+
+
+async def test_a_request_waits_for_its_server(graph, nodes):
+    server, user = nodes
+    client = user.create_client(AddTwoInts, "add")
+    assert not client.service_is_ready()
+    assert not client.wait_for_service(timeout_sec=0.01)
+    future = client.call_async(AddTwoInts.Request(a=1, b=2))
+    server.create_service(AddTwoInts, "add", add)
+    assert client.wait_for_service(timeout_sec=0.01)
+    assert (await future).sum == 3
+
+
+async def test_a_request_that_was_given_up_gets_no_response(graph, nodes):
+    server, user = nodes
+    server.create_service(AddTwoInts, "add", add)
+    client = user.create_client(AddTwoInts, "add")
+    future = client.call_async(AddTwoInts.Request())
+    client.remove_pending_request(future)
+    await graph.settle()
+    assert not future.done()
+
+
+async def test_the_next_server_takes_over(graph, nodes):
+    server, user = nodes
+    first = server.create_service(AddTwoInts, "add", lambda _request, response: AddTwoInts.Response(sum=1))
+    server.create_service(AddTwoInts, "add", lambda _request, response: AddTwoInts.Response(sum=2))
+    client = user.create_client(AddTwoInts, "add")
+    assert (await client.call_async(AddTwoInts.Request())).sum == 1
+    first.destroy()
+    assert (await client.call_async(AddTwoInts.Request())).sum == 2
+
+
+async def test_a_service_of_another_type_is_none(graph, nodes):
+    server, user = nodes
+    server.create_service(SetBool, "add", lambda _request, response: response)
+    assert not user.create_client(AddTwoInts, "add").service_is_ready()
+
+
+async def test_mistakes_are_told(graph, nodes, log):
+    server, user = nodes
+    server.create_service(AddTwoInts, "add", lambda _request, _response: "five")
+    client = user.create_client(AddTwoInts, "add")
+    with pytest.raises(TypeError, match=r"the request of '/robot/add'"):
+        client.call_async(AddTwoInts.Response())
+    future = client.call_async(AddTwoInts.Request())
+    await graph.settle()
+    assert not future.done()
+    assert "callback of service '/robot/add' failed:" in log[-1].text
+    assert "got <class 'str'>" in log[-1].text
+    with pytest.raises(RuntimeError, match="would block the event loop"):
+        client.call(AddTwoInts.Request())
+    with pytest.raises(InvalidServiceNameError, match="must not contain characters"):
+        user.create_client(AddTwoInts, "a b")
+    with pytest.raises(AttributeError, match="is not an interface class"):
+        user.create_client(int, "add")
+    client.destroy()
+    with pytest.raises(InvalidHandleError):
+        client.call_async(AddTwoInts.Request())
+
+
+async def test_requests_are_remapped(graph):
+    server = graph.create_node("server", remappings=[("add", "sum"), ("rostopic://sum", "never")])
+    server.create_service(AddTwoInts, "add", add)
+    client = graph.create_node("client").create_client(AddTwoInts, "/sum")
+    assert (await client.call_async(AddTwoInts.Request(a=1, b=1))).sum == 2
+
+
+def test_a_call_blocks_while_another_thread_answers():
+    graph = Graph(threads=True, on_log=print)
+    server, user = graph.create_node("server"), graph.create_node("client")
+    server.create_service(AddTwoInts, "add", add)
+    client = user.create_client(AddTwoInts, "add")
+    executor = MultiThreadedExecutor(2)
+    executor.add_node(server)
+    executor.add_node(user)
+    thread = threading.Thread(target=executor.spin)
+    thread.start()
+    try:
+        assert client.call(AddTwoInts.Request(a=20, b=22), timeout_sec=60.0).sum == 42
+    finally:
+        executor.shutdown()
+        thread.join(60.0)
+        graph.close_now()
+    assert not thread.is_alive()
+
+
+def test_a_call_that_is_not_answered_in_time_ends():
+    graph = Graph(threads=True, on_log=print)
+    node = graph.create_node("node")
+    client = node.create_client(AddTwoInts, "add")
+    assert client.call(AddTwoInts.Request(), timeout_sec=0.01) is None
+    graph.close_now()
+
+
+def test_waiting_for_a_service_ends_with_the_graph():
+    graph = Graph(threads=True, on_log=print)
+    client = graph.create_node("node").create_client(AddTwoInts, "add")
+    found = []
+    thread = threading.Thread(target=lambda: found.append(_waits(client)))
+    thread.start()
+    graph.close_now()
+    thread.join(60.0)
+    assert found == [False]
+
+
+def _waits(client):
+    try:
+        return client.wait_for_service()
+    except InvalidHandleError:
+        return False
+
+
+def test_a_service_is_answered_by_the_executor_that_spins():
+    graph = Graph(threads=True, on_log=print)
+    node = graph.create_node("node")
+    node.create_service(AddTwoInts, "add", add)
+    future = node.create_client(AddTwoInts, "add").call_async(AddTwoInts.Request(a=1, b=2))
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    executor.spin_until_future_complete(future, timeout_sec=60.0)
+    assert future.result().sum == 3
+    executor.shutdown()
+    graph.close_now()

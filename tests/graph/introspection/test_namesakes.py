@@ -1,0 +1,55 @@
+"""Nodes of other processes that have the name of one of ours."""
+
+from __future__ import annotations
+
+from linkwright.graph import Graph, LogRecord
+from linkwright.graph.introspection.namesakes import Namesakes
+from linkwright.graph.names.identity import NodeIdentity
+
+
+def test_each_is_told_once_as_long_as_it_is_there():
+    log: list[LogRecord] = []
+    graph = Graph(threads=True, on_log=log.append)
+    graph.create_node("talker", namespace="/robot")
+    graph.create_node("listener")
+    namesakes = Namesakes()
+    there = [NodeIdentity("talker", "/robot", "/"), NodeIdentity("listener", "/robot", "/")]
+    namesakes.review(graph.nodes(), [])
+    namesakes.review(graph.nodes(), there)
+    namesakes.review(graph.nodes(), there)
+    (record,) = log
+    assert record.text.startswith("Another process has a node of the exact name '/robot/talker' too: ")
+    assert "ROS_DOMAIN_ID" in record.text
+    namesakes.review(graph.nodes(), [])
+    namesakes.review(graph.nodes(), there)
+    assert len(log) == 2
+    graph.close_now()
+
+
+def test_names_of_the_root_have_one_slash():
+    log: list[LogRecord] = []
+    graph = Graph(threads=True, on_log=log.append)
+    graph.create_node("talker")
+    Namesakes().review(graph.nodes(), [NodeIdentity("talker", "/", "/")])
+    assert "'/talker'" in log[0].text
+    graph.close_now()
+
+
+def test_who_asks_to_be_told_hears_of_each_change_and_nothing_is_logged():
+    log: list[LogRecord] = []
+    told: list[frozenset[str]] = []
+    graph = Graph(threads=True, on_log=log.append)
+    graph.create_node("talker")
+    graph.create_node("listener")
+    namesakes = Namesakes(told.append)
+    talker, listener = NodeIdentity("talker", "/", "/"), NodeIdentity("listener", "/", "/")
+    for there in ([], [talker], [talker, NodeIdentity("other", "/", "/")], [talker, listener], [listener], []):
+        namesakes.review(graph.nodes(), there)
+    assert told == [
+        frozenset({"/talker"}),
+        frozenset({"/talker", "/listener"}),
+        frozenset({"/listener"}),
+        frozenset(),
+    ]
+    assert not log
+    graph.close_now()

@@ -1,0 +1,56 @@
+from __future__ import annotations
+
+import pytest
+
+from linkwright.graph.introspection.traffic import TrafficWindow
+
+MS = 1_000_000
+SECOND = 1_000_000_000
+
+
+def filled(count: int, period_ns: int, size: int = 100, **options) -> TrafficWindow:
+    window = TrafficWindow(1000, **options)
+    for number in range(count):
+        window.add(number * period_ns, size + number)
+    return window
+
+
+def test_a_single_message_tells_nothing():
+    window = TrafficWindow(10)
+    assert window.traffic(0) is None
+    window.add(0, 5)
+    assert window.traffic(SECOND) is None
+
+
+def test_figures_of_a_steady_topic():
+    traffic = filled(11, 100 * MS).traffic(SECOND)
+    assert traffic is not None
+    assert traffic.messages_per_second == pytest.approx(10)
+    assert traffic.bytes_per_second == pytest.approx(sum(range(100, 111)))
+    assert (traffic.least_size, traffic.mean_size, traffic.most_size, traffic.count) == (100, 105, 110, 11)
+    assert traffic.age_ns == SECOND
+
+
+def test_between_two_messages_the_rate_stays():
+    window = filled(11, 100 * MS)
+    assert window.traffic(SECOND + 150 * MS).messages_per_second == pytest.approx(10)
+
+
+def test_in_silence_both_figures_fall():
+    window = filled(11, 100 * MS)
+    traffic = window.traffic(10 * SECOND)
+    assert traffic.messages_per_second == pytest.approx(1)
+    assert traffic.bytes_per_second < 120
+
+
+def test_old_messages_are_forgotten_but_for_the_last_two():
+    window = filled(101, 100 * MS, longest_ns=2 * SECOND)
+    assert window.traffic(10 * SECOND).count == 21
+    assert window.traffic(1000 * SECOND).count == 2
+
+
+def test_a_clock_that_goes_back_begins_anew():
+    window = filled(11, 100 * MS)
+    window.add(-5 * SECOND, 1)
+    assert window.traffic(-5 * SECOND) is None
+    assert window.traffic(SECOND) is None

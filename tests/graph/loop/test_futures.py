@@ -1,0 +1,118 @@
+import asyncio
+import threading
+
+import pytest
+
+from linkwright.graph import Future
+from linkwright.graph.loop.future import StepsByExecutor
+
+
+def test_a_result():
+    future, told = Future(), []
+    future.add_done_callback(told.append)
+    assert not future.done()
+    assert future.result() is None
+    future.set_result(3)
+    assert (future.done(), future.cancelled(), future.ended()) == (True, False, True)
+    assert future.result() == 3
+    assert future.exception() is None
+    future.add_done_callback(told.append)
+    assert told == [future, future]
+
+
+def test_an_exception():
+    future = Future()
+    future.set_exception(ValueError("no"))
+    assert future.done()
+    with pytest.raises(ValueError, match="no"):
+        future.result()
+    assert isinstance(future.exception(), ValueError)
+
+
+def test_an_exception_that_nobody_asks_for_is_told(capsys):
+    future = Future()
+    future.set_exception(ValueError("lost"))
+    del future
+    assert capsys.readouterr().err == "The following exception was never retrieved: lost\n"
+
+
+def test_cancelling():
+    future, told = Future(), []
+    future.add_done_callback(told.append)
+    future.cancel()
+    future.cancel()
+    assert (future.done(), future.cancelled(), future.ended()) == (False, True, True)
+    assert told == [future]
+    done = Future()
+    done.set_result(1)
+    done.cancel()
+    assert not done.cancelled()
+
+
+def test_callbacks_are_taken_back():
+    future, told = Future(), []
+    future.add_done_callback(told.append)
+    assert future.remove_done_callback(told.append) == 1
+    assert future.remove_done_callback(told.append) == 0
+    future.set_result(1)
+    assert told == []
+
+
+def test_an_executor_runs_the_callbacks():
+    tasks = []
+
+    class Executor:
+        def create_task(self, callback, *arguments):
+            tasks.append((callback, arguments))
+
+    future = Future(executor=Executor())
+    future.add_done_callback(print)
+    future.set_result(1)
+    assert tasks == [(print, (future,))]
+
+
+async def test_awaited_in_a_task():
+    future = Future()
+    asyncio.get_running_loop().call_later(0.001, future.set_result, 5)
+    assert await future == 5
+    assert await future == 5
+
+
+async def test_completed_by_another_thread():
+    future = Future()
+    threading.Timer(0.01, future.set_result, [7]).start()
+    assert await asyncio.wait_for(_value(future), 5.0) == 7
+
+
+async def test_a_task_that_waits_can_be_cancelled():
+    future = Future()
+    task = asyncio.ensure_future(_value(future))
+    await asyncio.sleep(0)
+    task.cancel()
+    with pytest.raises(asyncio.CancelledError):
+        await task
+    future.set_result(1)
+    await asyncio.sleep(0)
+
+
+async def _value(future):
+    return await future
+
+
+async def test_stepped_by_an_executor_inside_a_loop():
+    """A coroutine that rclpy's executors step gives them the future it waits for."""
+    future = Future()
+    coroutine = _value(future)
+    with StepsByExecutor():
+        assert coroutine.send(None) is future
+        future.set_result(4)
+        with pytest.raises(StopIteration) as ended:
+            coroutine.send(None)
+    assert ended.value.value == 4
+
+
+def test_a_thread_waits():
+    future = Future()
+    assert not future.wait(0.01)
+    threading.Timer(0.01, future.set_result, [1]).start()
+    assert future.wait(60.0)

@@ -1,0 +1,53 @@
+"""Regular expressions that cannot take forever: what they find, and that they give up."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.graph.names.expressions import Expression, ExpressionError, TooCostlyError
+
+ENDLESS = r"(a|aa)+$"
+
+
+@pytest.mark.parametrize(
+    ("expression", "found", "not_found"),
+    [
+        ("", ["", "a"], []),
+        (r"^camera_(left|right)_\w+_frame$", ["camera_left_optical_frame"], ["camera_front_optical_frame"]),
+        ("^(?!.*camera).*link$", ["base_link"], ["camera_link"]),
+        (r"\x61\u0062\.", ["ab."], ["abc"]),
+        ("[[:alpha:]]+_[0-9]{2,}", ["wheel_12"], ["wheel_1", "12_12"]),
+        (r"[\w-]/", ["a/", "-/"], ["/"]),
+    ],
+)
+def test_expressions_mean_what_they_mean_to_rviz(expression: str, found: list[str], not_found: list[str]) -> None:
+    assert Expression(expression).among(found + not_found) == set(found)
+
+
+def test_a_match_is_of_the_whole_name() -> None:
+    assert Expression("/scan.*").matches("/scan_front")
+    assert not Expression("/scan").matches("/scan_front")
+
+
+@pytest.mark.parametrize(
+    ("expression", "problem"),
+    [
+        ("(", "missing ) at position 1"),
+        ("*a", "nothing to repeat at position 0"),
+        ("[b-a]", "bad character range at position 4"),
+        ("a" * 2001, "it has 2001 characters, more than 2000"),
+    ],
+)
+def test_what_is_no_expression_is_said(expression: str, problem: str) -> None:
+    with pytest.raises(ExpressionError) as caught:
+        Expression(expression)
+    assert str(caught.value) == problem
+
+
+def test_a_search_that_takes_too_long_is_given_up() -> None:
+    endless = Expression(ENDLESS)
+    with pytest.raises(TooCostlyError):
+        endless.among(["a" * 200 + "!"])
+    with pytest.raises(TooCostlyError):
+        endless.matches("a" * 200 + "!")
+    assert endless.among(["1aa", "a1"]) == {"1aa"}

@@ -1,0 +1,167 @@
+import itertools
+
+import pytest
+
+from linkwright.graph import (
+    DEFAULT_QOS,
+    SENSOR_DATA_QOS,
+    DurabilityPolicy,
+    Duration,
+    HistoryPolicy,
+    InvalidQoSProfileError,
+    LivelinessPolicy,
+    QoSCompatibility,
+    QoSPolicyKind,
+    QoSPresetProfiles,
+    QoSProfile,
+    ReliabilityPolicy,
+    qos_check_compatible,
+)
+from linkwright.graph.qos.compatibility import best_available, incompatible_policies, resolved
+from linkwright.graph.qos.profile import BEST_AVAILABLE_QOS, SYSTEM_DEFAULT_QOS, qos_policy_name_from_kind
+from linkwright.graph.time.values import INFINITE
+
+RELIABLE, BEST_EFFORT = ReliabilityPolicy.RELIABLE, ReliabilityPolicy.BEST_EFFORT
+VOLATILE, TRANSIENT_LOCAL = DurabilityPolicy.VOLATILE, DurabilityPolicy.TRANSIENT_LOCAL
+BY_HAND = LivelinessPolicy.MANUAL_BY_TOPIC
+
+
+def seconds(value):
+    return Duration(seconds=value)
+
+
+class TestProfiles:
+    def test_history_or_depth_is_needed(self):
+        with pytest.raises(InvalidQoSProfileError, match="History and/or depth settings are required"):
+            QoSProfile()
+        with pytest.raises(InvalidQoSProfileError, match="KEEP_LAST without a depth"):
+            QoSProfile(history=HistoryPolicy.KEEP_LAST)
+        assert QoSProfile(history=HistoryPolicy.KEEP_ALL).queue_length is None
+        assert QoSProfile(depth=3).history is HistoryPolicy.KEEP_LAST
+
+    def test_a_depth_of_nothing_is_warned_of_and_keeps_one(self):
+        with pytest.warns(UserWarning, match="A zero depth with KEEP_LAST doesn't make sense"):
+            profile = QoSProfile(depth=0)
+        assert profile.queue_length == 1
+        with pytest.raises(ValueError, match="depth"):
+            QoSProfile(depth=-1)
+
+    def test_values_are_checked_and_numbers_accepted(self):
+        profile = QoSProfile(depth=1)
+        profile.reliability = 2
+        assert profile.reliability is BEST_EFFORT
+        with pytest.raises(AssertionError):
+            profile.durability = "volatile"
+        with pytest.raises(ValueError, match="7"):
+            profile.history = 7
+        with pytest.raises(AssertionError):
+            profile.deadline = 1.0
+
+    def test_equal_policies_make_equal_profiles(self):
+        assert QoSProfile(depth=5, reliability=BEST_EFFORT) == SENSOR_DATA_QOS
+        assert QoSProfile(depth=6, reliability=BEST_EFFORT) != SENSOR_DATA_QOS
+        assert DEFAULT_QOS != 10
+
+    def test_numbers_stand_for_depths(self):
+        assert QoSProfile.of(10) == DEFAULT_QOS
+        with pytest.raises(TypeError, match="Expected QoSProfile or int"):
+            QoSProfile.of("10")
+
+    def test_names_for_command_lines(self):
+        assert ReliabilityPolicy.short_keys() == [
+            "system_default",
+            "reliable",
+            "best_effort",
+            "unknown",
+            "best_available",
+        ]
+        assert DurabilityPolicy.get_from_short_key("Transient_Local") == TRANSIENT_LOCAL
+        assert LivelinessPolicy.MANUAL_BY_TOPIC.short_key == "manual_by_topic"
+        assert QoSPresetProfiles.get_from_short_key("sensor_data") == SENSOR_DATA_QOS
+        assert "services_default" in QoSPresetProfiles.short_keys()
+        assert qos_policy_name_from_kind(16) == "RELIABILITY"
+
+    def test_shown_as_rclpy_does(self):
+        assert str(SENSOR_DATA_QOS).startswith(
+            "QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=5, reliability=ReliabilityPolicy.BEST_EFFORT, "
+        )
+
+    def test_what_is_left_to_the_middleware_is_chosen(self):
+        chosen = resolved(SYSTEM_DEFAULT_QOS)
+        assert (chosen.history, chosen.depth) == (HistoryPolicy.KEEP_LAST, 1)
+        assert (chosen.reliability, chosen.durability) == (RELIABLE, VOLATILE)
+        assert chosen.liveliness is LivelinessPolicy.AUTOMATIC
+        assert chosen.deadline == chosen.lifespan == chosen.liveliness_lease_duration == INFINITE
+
+
+def profile(**policies):
+    return QoSProfile(depth=1, **policies)
+
+
+MISMATCHES = [
+    (profile(reliability=BEST_EFFORT), profile(), "RELIABILITY", "Best effort publisher and reliable subscription"),
+    (
+        profile(),
+        profile(durability=TRANSIENT_LOCAL),
+        "DURABILITY",
+        "Volatile publisher and transient local subscription",
+    ),
+    (profile(), profile(deadline=seconds(1)), "DEADLINE", "Subscription has a deadline, but publisher does not"),
+    (
+        profile(deadline=seconds(2)),
+        profile(deadline=seconds(1)),
+        "DEADLINE",
+        "Subscription deadline is less than publisher deadline",
+    ),
+    (
+        profile(liveliness=LivelinessPolicy.AUTOMATIC),
+        profile(liveliness=BY_HAND),
+        "LIVELINESS",
+        "Publisher's liveliness is automatic and subscription's is manual by topic",
+    ),
+    (
+        profile(),
+        profile(liveliness_lease_duration=seconds(1)),
+        "LIVELINESS",
+        "Subscription has a liveliness lease duration, but publisher does not",
+    ),
+    (
+        profile(liveliness_lease_duration=seconds(2)),
+        profile(liveliness_lease_duration=seconds(1)),
+        "LIVELINESS",
+        "Subscription liveliness lease duration is less than publisher",
+    ),
+]
+
+
+class TestCompatibility:
+    @pytest.mark.parametrize(("offered", "requested", "policy", "reason"), MISMATCHES)
+    def test_less_is_offered_than_asked_for(self, offered, requested, policy, reason):
+        assert incompatible_policies(offered, requested) == [QoSPolicyKind[policy]]
+        assert qos_check_compatible(offered, requested) == (QoSCompatibility.ERROR, f"ERROR: {reason};")
+        assert incompatible_policies(requested, offered) == []
+
+    def test_all_that_is_wrong_is_told(self):
+        verdict, reason = qos_check_compatible(
+            profile(reliability=BEST_EFFORT), profile(durability=TRANSIENT_LOCAL, deadline=seconds(1))
+        )
+        assert verdict is QoSCompatibility.ERROR
+        assert reason.count("ERROR: ") == 3
+
+    def test_what_is_not_known_is_warned_of(self):
+        unknown = profile(reliability=ReliabilityPolicy.UNKNOWN, liveliness=LivelinessPolicy.AUTOMATIC)
+        assert qos_check_compatible(unknown, profile(liveliness=LivelinessPolicy.AUTOMATIC)) == (
+            QoSCompatibility.WARNING,
+            "WARNING: Reliable subscription, but publisher is unknown;",
+        )
+
+    @pytest.mark.parametrize(
+        ("reliability", "durability"), [*itertools.product((RELIABLE, BEST_EFFORT), (VOLATILE, TRANSIENT_LOCAL))]
+    )
+    def test_the_best_that_is_available_goes_together(self, reliability, durability):
+        there = profile(reliability=reliability, durability=durability, deadline=seconds(3))
+        asked = best_available(BEST_AVAILABLE_QOS, [there], publisher=False)
+        assert (asked.reliability, asked.durability, asked.deadline) == (reliability, durability, seconds(3))
+        assert incompatible_policies(there, asked) == []
+        offered = best_available(BEST_AVAILABLE_QOS, [there], publisher=True)
+        assert incompatible_policies(offered, there) == []

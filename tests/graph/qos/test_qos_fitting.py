@@ -1,0 +1,33 @@
+from __future__ import annotations
+
+from linkwright.graph.qos.fitting import fit
+from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+
+WANTED = QoSProfile(depth=7, reliability=ReliabilityPolicy.BEST_EFFORT)
+RELIABLE = QoSProfile(depth=1)
+LASTING = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+WEAK = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+
+
+def test_without_publishers_it_is_what_is_wanted():
+    fitting = fit(WANTED, [])
+    assert fitting.profile == WANTED
+    assert fitting.profile is not WANTED
+
+
+def test_all_that_everybody_offers_is_asked_for():
+    fitting = fit(WANTED, [LASTING, LASTING])
+    assert fitting.profile.reliability is ReliabilityPolicy.RELIABLE
+    assert fitting.profile.durability is DurabilityPolicy.TRANSIENT_LOCAL
+    assert fitting.profile.depth == 7
+    assert fitting.mixed == ()
+
+
+def test_where_they_differ_the_weaker_is_taken_and_told():
+    fitting = fit(WANTED, [LASTING, RELIABLE, WEAK])
+    assert fitting.profile.reliability is ReliabilityPolicy.BEST_EFFORT
+    assert fitting.profile.durability is DurabilityPolicy.VOLATILE
+    assert [offered for offered, _ in fitting.mixed] == [
+        "QoSReliabilityPolicy.RELIABLE",
+        "QoSDurabilityPolicy.TRANSIENT_LOCAL",
+    ]

@@ -1,0 +1,43 @@
+"""What a test of a launch waits for: the launch goes on, or ends, once a condition holds, not after some time."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+from launch.actions import OpaqueFunction, Shutdown, TimerAction
+
+from launch import LaunchContext
+from tests.waiting import SECONDS
+
+_PAUSE = 0.02
+
+Condition = Callable[[LaunchContext], object]
+
+
+def when(condition: Condition, *actions: Any) -> OpaqueFunction:
+    """Do actions once a condition holds; after a minute all the same, so that the test says what is missing."""
+    limit = time.monotonic() + SECONDS
+
+    def look(context: LaunchContext) -> list[Any]:
+        if condition(context) or time.monotonic() > limit:
+            return list(actions)
+        return [TimerAction(period=_PAUSE, actions=[OpaqueFunction(function=look)])]
+
+    return OpaqueFunction(function=look)
+
+
+def ends_when(condition: Condition) -> OpaqueFunction:
+    """End the launch once a condition holds."""
+    return when(condition, Shutdown())
+
+
+def printed(*texts: str, times: int = 1) -> Condition:
+    """The condition that the launch has printed each of some texts, so many times."""
+
+    def holds(context: LaunchContext) -> bool:
+        output = "".join(stream.getvalue() for stream in context.session.log._streams.values())
+        return all(output.count(text) >= times for text in texts)
+
+    return holds

@@ -1,0 +1,89 @@
+"""What the guardian does when the launcher ends, in the process of the test: the real one cannot be looked into."""
+
+from __future__ import annotations
+
+import io
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from linkwright.launch.engine import guardian_program
+from tests.waiting import SECONDS
+
+pytestmark = pytest.mark.skipif(not hasattr(os, "killpg"), reason="there are no process groups here")
+MARK = "LINKWRIGHT_GUARDED"
+NUMBERS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+
+Start = Callable[..., "subprocess.Popen[str]"]
+
+
+@pytest.fixture(autouse=True)
+def _signals() -> Iterator[None]:
+    before = {number: signal.getsignal(number) for number in NUMBERS}
+    yield
+    for number, handler in before.items():
+        signal.signal(number, handler)
+
+
+@pytest.fixture
+def start() -> Iterator[Start]:
+    """Starts a program that stays, in a process group of its own."""
+    made: list[subprocess.Popen[str]] = []
+
+    def run(*ignored: str, **variables: str) -> subprocess.Popen[str]:
+        lines = ["import signal", *(f"signal.signal(signal.{name}, signal.SIG_IGN)" for name in ignored)]
+        program = "\n".join([*lines, "print('up', flush=True)", "while True: signal.pause()"])
+        process = subprocess.Popen(
+            [sys.executable, "-S", "-c", program],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            text=True,
+            start_new_session=True,
+            env={**os.environ, **variables},
+        )
+        made.append(process)
+        assert process.stdout is not None
+        assert process.stdout.readline() == "up\n"
+        return process
+
+    yield run
+    for process in made:
+        process.kill()
+        process.communicate(timeout=SECONDS)
+
+
+def guard(monkeypatch: pytest.MonkeyPatch, text: str, mark: str = "nobody") -> None:
+    monkeypatch.setattr(sys, "stdin", io.StringIO(text))
+    guardian_program.main(f"{MARK}={mark}")
+
+
+def test_what_was_started_is_ended_and_the_folder_goes(
+    start: Start, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    meek, stubborn, gone = start(), start("SIGINT", "SIGTERM"), start()
+    folder = tmp_path / "files of the launch"
+    folder.mkdir()
+    guard(monkeypatch, f"+{meek.pid}\n+{stubborn.pid}\n+{gone.pid}\n={folder}\n-{gone.pid}\n")
+    assert meek.wait(SECONDS) in (1, -signal.SIGINT)
+    assert stubborn.wait(SECONDS) == -signal.SIGKILL
+    assert gone.poll() is None
+    assert not folder.exists()
+
+
+def test_a_launch_that_ended_in_order_is_left_alone(start: Start, monkeypatch: pytest.MonkeyPatch) -> None:
+    process = start()
+    guard(monkeypatch, f"+{process.pid}\n.\n")
+    assert process.poll() is None
+
+
+@pytest.mark.skipif(not Path("/proc/self/environ").exists(), reason="other processes' environments cannot be read here")
+def test_what_it_was_not_told_of_is_found_by_its_mark(start: Start, monkeypatch: pytest.MonkeyPatch) -> None:
+    marked, other = start(**{MARK: "mine"}), start(**{MARK: "theirs"})
+    guard(monkeypatch, "", "mine")
+    assert marked.wait(SECONDS) in (1, -signal.SIGINT)
+    assert other.poll() is None

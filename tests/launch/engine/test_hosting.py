@@ -1,0 +1,244 @@
+"""Our own nodes: in the launcher's process, or isolated in processes of their own."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections.abc import Callable
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import pytest
+from launch.actions import (
+    LogInfo,
+    OpaqueCoroutine,
+    OpaqueFunction,
+    RegisterEventHandler,
+    SetLaunchConfiguration,
+    Shutdown,
+    TimerAction,
+)
+from launch.event_handlers import OnProcessExit, OnProcessStart
+from launch.events import Shutdown as ShutdownEvent
+from launch.substitutions import EnvironmentVariable
+from launch_ros.actions import Node, RosTimer, SetROSLogDir, SetUseSimTime
+
+from launch import LaunchContext
+from linkwright.launch.engine.network import Network
+from tests.domains import own_domain
+from tests.launch.ending import ends_when, printed
+
+Write = Callable[[str, str], Path]
+
+
+def talker(**options: Any) -> Node:
+    return Node(package="demo_nodes_cpp", executable="talker", **options)
+
+
+def prefixed(prefix: str, pattern: str) -> list[Any]:
+    given = {"launch-prefix": prefix, "launch-prefix-filter": pattern}
+    return [SetLaunchConfiguration(name, value) for name, value in given.items()]
+
+
+class TestWhere:
+    async def test_isolated_nodes_are_processes(self, launch) -> None:
+        started = RegisterEventHandler(
+            OnProcessExit(on_exit=lambda event, _: LogInfo(msg=f"{event.process_name} {event.returncode}"))
+        )
+        speaks = ends_when(printed("] [tk]: Publishing: 'Hello World: 1'"))
+        done = await launch(talker(name="tk"), started, speaks, session_options={"isolate": True})
+        assert "[INFO] [talker-1]: process started with pid [" in done.err
+        assert "[talker-1] [INFO] [" in done.err
+        assert "] [tk]: Publishing: 'Hello World: 1'" in done.err
+        assert done.messages == ["talker-1 0"]
+
+    @pytest.mark.parametrize(
+        ("options", "before"),
+        [
+            ({"prefix": "env LW=1"}, []),
+            ({"additional_env": {"ROS_DOMAIN_ID": str(own_domain())}}, []),
+            (
+                {},
+                [SetLaunchConfiguration("launch-prefix", "env"), SetLaunchConfiguration("launch-prefix-filter", "tal")],
+            ),
+        ],
+    )
+    async def test_what_only_a_process_can_have_makes_one(self, launch, options: Any, before: list[Any]) -> None:
+        done = await launch(*before, talker(**options), ends_when(printed("[talker-1]: process started")))
+        assert "[INFO] [talker-1]: process started with pid [" in done.err
+
+    @pytest.mark.parametrize(
+        ("options", "before"),
+        [
+            ({"additional_env": {"DISPLAY": ":1"}, "emulate_tty": True, "respawn": True}, []),
+            ({}, prefixed("env", "x")),
+        ],
+    )
+    async def test_what_makes_no_difference_to_our_nodes_does_not(
+        self, launch, options: Any, before: list[Any]
+    ) -> None:
+        done = await launch(*before, talker(**options), ends_when(printed("[talker-1]: started in")))
+        assert "[INFO] [talker-1]: started in the launcher's process" in done.err
+
+
+class TestOutput:
+    async def test_logs_go_where_the_action_says(self, launch, tmp_path: Path) -> None:
+        logs = {
+            "quiet-1-stderr.log": "[talker]: Publishing: 'Hello World: 1'",
+            "launch.log": "[loud]: Publishing: 'Hello",
+        }
+
+        def are_written(_: LaunchContext) -> bool:
+            folder = tmp_path / "ros_log" / "latest"
+            return all((folder / name).is_file() and text in (folder / name).read_text() for name, text in logs.items())
+
+        quiet, loud = talker(output="own_log", exec_name="quiet"), talker(name="loud", output="both")
+        done = await launch(quiet, loud, ends_when(are_written))
+        assert are_written(done.session.context)
+        assert "[quiet-1] [INFO]" not in done.err
+        assert "[talker-2] [INFO] [" in done.err
+
+    async def test_a_node_that_has_done_its_work_ends(self, launch) -> None:
+        node = Node(package="demo_nodes_py", executable="talker_qos", arguments=["--number_of_cycles", "1"])
+        done = await launch(
+            node, RegisterEventHandler(OnProcessExit(target_action=node, on_exit=[LogInfo(msg="over")]))
+        )
+        assert done.messages == ["over"]
+        assert "[INFO] [talker_qos-1]: has finished cleanly" in done.err
+        assert node.return_code == 0
+
+    async def test_a_node_that_has_done_its_work_respawns(self, launch) -> None:
+        node = Node(
+            package="demo_nodes_py",
+            executable="talker_qos",
+            arguments=["-n", "1"],
+            respawn=True,
+            respawn_delay=0.1,
+            respawn_max_retries=2,
+        )
+        done = await launch(node)
+        assert done.err.count("started in the launcher's process") == 3
+        assert done.err.count("[talker_qos-1]: has finished cleanly") == 3
+
+    async def test_a_respawn_that_waits_ends_with_the_launch(self, launch) -> None:
+        node = Node(
+            package="demo_nodes_py", executable="talker_qos", arguments=["-n", "1"], respawn=True, respawn_delay=60.0
+        )
+        began = time.monotonic()
+        done = await launch(node, ends_when(printed("has finished cleanly")))
+        assert done.err.count("started in the launcher's process") == 1
+        assert time.monotonic() - began < 60.0
+
+    async def test_its_command_line_may_be_wrong(self, launch) -> None:
+        node = Node(package="demo_nodes_py", executable="talker_qos", arguments=["--number_of_cycles", "x"])
+        done = await launch(node)
+        assert "error[NODE602]" in done.err
+        assert not done.succeeded
+
+
+class TestMany:
+    async def test_five_hundred_nodes_in_one_launch(self, launch) -> None:
+        up: list[int] = []
+
+        def look(context: LaunchContext) -> None:
+            up.append(len(context.session.host.graph.node_names()))
+
+        nodes = [
+            Node(
+                package="tf2_ros",
+                executable="static_transform_publisher",
+                name=f"n{number}",
+                arguments=["--frame-id", "a", "--child-frame-id", f"b{number}"],
+                output="log",
+            )
+            for number in range(500)
+        ]
+        last = OnProcessStart(target_action=nodes[-1], on_start=[OpaqueFunction(function=look), Shutdown()])
+        done = await launch(*nodes, RegisterEventHandler(last))
+        assert done.succeeded, done.err[-2000:]
+        assert done.err.count("has finished cleanly") == 500
+        assert up[0] >= 500
+
+    async def test_the_loop_gets_its_turn_between_nodes(self, launch) -> None:
+        found: list[int] = []
+
+        async def watch(context: LaunchContext) -> None:
+            while not found or found[-1] < 100:
+                found.append(sum(name.startswith("/n") for name in context.session.host.graph.node_names()))
+                await asyncio.sleep(0)
+            context.emit_event_sync(ShutdownEvent())
+
+        nodes = [talker(name=f"n{number}") for number in range(100)]
+        await launch(OpaqueCoroutine(coroutine=watch), *nodes)
+        assert all(later - before <= 1 for before, later in pairwise(found))
+
+
+class TestScope:
+    async def test_the_log_folder_of_processes(self, launch, tmp_path: Path) -> None:
+        done = await launch(
+            SetROSLogDir("inner"),
+            LogInfo(msg=EnvironmentVariable("ROS_LOG_DIR")),
+            SetROSLogDir("/elsewhere"),
+            LogInfo(msg=EnvironmentVariable("ROS_LOG_DIR")),
+        )
+        assert done.messages == [str(tmp_path / "ros_log" / "inner"), "/elsewhere"]
+
+    async def test_a_ros_timer(self, launch) -> None:
+        began = time.monotonic()
+        done = await launch(RosTimer(period=0.3, actions=[LogInfo(msg="now")]))
+        assert done.messages == ["now"]
+        assert time.monotonic() - began >= 0.3
+
+    async def test_a_ros_timer_can_be_cancelled(self, launch) -> None:
+        timer = RosTimer(period=60.0, actions=[LogInfo(msg="never")])
+        done = await launch(timer, TimerAction(period=0.1, actions=[OpaqueFunction(function=lambda _: timer.cancel())]))
+        assert done.messages == []
+
+    async def test_a_ros_timer_goes_by_simulated_time(self, launch) -> None:
+        def publish(context: LaunchContext) -> None:
+            from linkwright.messages import get_message
+
+            clock = get_message("rosgraph_msgs/msg/Clock")
+            node = context.session.host.graph.create_node("simulator")
+            publisher = node.create_publisher(clock, "/clock", 10)
+            now = [0]
+
+            def tick() -> None:
+                now[0] += 100
+                message = clock()
+                message.clock.sec = now[0]
+                publisher.publish(message)
+
+            node.create_timer(0.05, tick)
+
+        done = await launch(
+            OpaqueFunction(function=publish),
+            RosTimer(period=500.0, actions=[LogInfo(msg="simulated"), Shutdown()]),
+            SetUseSimTime(True),
+        )
+        assert done.messages == ["simulated"]
+
+
+class TestNetwork:
+    async def test_it_is_joined_only_where_nodes_are(self, launch, monkeypatch: pytest.MonkeyPatch) -> None:
+        joined: list[float] = []
+        monkeypatch.setattr(Network, "_join", lambda self: joined.append(time.monotonic()))
+        monkeypatch.delenv("LINKWRIGHT_DDS")
+        await launch(LogInfo(msg="no nodes"))
+        assert joined == []
+        speaks = printed("Publishing: 'Hello World: 1'")
+        await launch(talker(), ends_when(speaks))
+        assert len(joined) == 1
+        await launch(talker(), ends_when(speaks), session_options={"network": False})
+        monkeypatch.setenv("LINKWRIGHT_DDS", "0")
+        await launch(talker(), ends_when(speaks))
+        assert len(joined) == 1
+
+    async def test_the_page_comes_before_it(self, launch, monkeypatch: pytest.MonkeyPatch) -> None:
+        joined: list[float] = []
+        monkeypatch.setattr(Network, "_join", lambda self: joined.append(time.monotonic()))
+        monkeypatch.delenv("LINKWRIGHT_DDS")
+        began = time.monotonic()
+        await launch(talker(), Node(package="rviz2", executable="rviz2"), ends_when(lambda _: joined))
+        assert joined[0] - began > 0.7

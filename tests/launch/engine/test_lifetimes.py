@@ -1,0 +1,247 @@
+"""Nothing outlives a launch: no process, no thread, however and whenever it ends."""
+
+from __future__ import annotations
+
+import os
+import random
+import re
+import signal
+import sys
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import psutil
+import pytest
+from launch.actions import ExecuteProcess, OpaqueFunction, Shutdown, TimerAction
+from launch_ros.actions import Node
+
+from linkwright.launch.engine import guardian_program
+from linkwright.launch.engine.guardian import Guardian
+from tests.launch.launcher import Running, launch_file
+from tests.waiting import eventually
+
+Write = Callable[[str, str], Path]
+MARK = "LINKWRIGHT_LAUNCH"
+SLEEPS = "import time; print('up', flush=True); time.sleep(60)"
+TALKER = "Node(package='demo_nodes_cpp', executable='talker')"
+
+
+def process(program: str, **options: Any) -> ExecuteProcess:
+    return ExecuteProcess(cmd=[sys.executable, "-c", program], name="py", output="screen", **options)
+
+
+def sleeper(name: str) -> str:
+    return f"ExecuteProcess(cmd=[sys.executable, '-c', {SLEEPS!r}, '{name}'], output='screen', name='{name}')"
+
+
+def marked_by(launcher: int) -> list[psutil.Process]:
+    """The processes that a launcher has started, wherever they are now, and those below them."""
+    return [each for each in psutil.process_iter() if _is_marked(each, f"launcher_{launcher}")]
+
+
+def _is_marked(process: psutil.Process, mark: str) -> bool:
+    try:
+        return process.status() != psutil.STATUS_ZOMBIE and mark in process.environ().values()
+    except psutil.Error:
+        return False
+
+
+def gone_within(seconds: float, launcher: int) -> bool:
+    deadline = time.monotonic() + seconds
+    while marked_by(launcher):
+        if time.monotonic() > deadline:
+            return False
+        time.sleep(0.02)
+    return True
+
+
+@pytest.fixture
+def begin(start: Callable[..., Running], monkeypatch: pytest.MonkeyPatch) -> Callable[..., Running]:
+    """Starts a launcher whose processes, guardian included, can be told by a variable in their environment."""
+    numbers = iter(range(100))
+
+    def started(*words: object) -> Running:
+        identity = f"launcher_{os.getpid()}{next(numbers)}"
+        monkeypatch.setenv("LW_TEST_LAUNCHER", identity)
+        running = start(*words)
+        running.identity = int(identity.rpartition("_")[2])
+        return running
+
+    return started
+
+
+class TestKilled:
+    def test_a_launcher_that_is_killed_takes_its_processes_with_it(
+        self, begin: Callable[..., Running], write: Write
+    ) -> None:
+        fork = "import os, time; os.fork(); print('up', flush=True); time.sleep(60)"
+        forking = f"ExecuteProcess(cmd=[sys.executable, '-c', {fork!r}], output='screen', name='c')"
+        shell = "ExecuteProcess(cmd=['sleep 60; echo x'], shell=True)"
+        running = begin(write("a.launch.py", launch_file(sleeper("a"), sleeper("b"), forking, shell)))
+        running.until("[a-1] up")
+        running.until("[b-2] up")
+        running.until("[c-3] up")
+        assert len(marked_by(running.identity)) >= 6
+        running.process.kill()
+        running.process.wait()
+        assert gone_within(30.0, running.identity)
+
+    def test_also_those_that_ignore_polite_signals(self, begin: Callable[..., Running], write: Write) -> None:
+        stubborn = (
+            "import signal, time\nfor n in (signal.SIGINT, signal.SIGTERM): signal.signal(n, signal.SIG_IGN)\n"
+            "print('up', flush=True)\ntime.sleep(60)"
+        )
+        action = f"ExecuteProcess(cmd=[sys.executable, '-c', {stubborn!r}], output='screen', name='bad')"
+        running = begin(write("a.launch.py", launch_file(action)))
+        running.until("[bad-1] up")
+        running.process.kill()
+        running.process.wait()
+        assert gone_within(30.0, running.identity)
+
+    def test_its_temporary_files_go_too(self, begin: Callable[..., Running], write: Write, tmp_path: Path) -> None:
+        program = "import sys; print('given', sys.argv[3], flush=True); import time; time.sleep(60)"
+        write("python", f'#!/bin/sh\nexec {sys.executable} -c "{program}" "$@"\n').chmod(0o755)
+        node = f"Node(executable='{tmp_path}/python', exec_name='n', parameters=[{{'a': 1}}], output='screen')"
+        running = begin(write("a.launch.py", launch_file(node)))
+        running.until("[n-1] given ")
+        (path,) = re.findall(r"given (\S+)", running.out)
+        assert Path(path).exists()
+        running.process.kill()
+        running.process.wait()
+        assert gone_within(30.0, running.identity)
+        assert not Path(path).parent.exists()
+
+    @pytest.mark.slow
+    def test_whenever_it_is_killed(self, begin: Callable[..., Running], write: Write) -> None:
+        path = write("a.launch.py", launch_file(sleeper("a"), TALKER, sleeper("b")))
+        for delay in random.Random(4).sample([0.05 * each for each in range(1, 31)], 8):
+            running = begin(path)
+            time.sleep(delay)
+            running.process.kill()
+            running.process.wait()
+            assert gone_within(30.0, running.identity), f"killed after {delay} s"
+
+    async def test_a_node_that_is_killed_comes_back(self, launch) -> None:
+        pids: list[int] = []
+
+        def kill(context: Any) -> None:
+            pid = action.process_details["pid"]
+            pids.append(pid)
+            os.kill(pid, signal.SIGKILL)
+
+        action = process(SLEEPS, respawn=True)
+        done = await launch(
+            action,
+            TimerAction(period=0.5, actions=[OpaqueFunction(function=kill)]),
+            TimerAction(period=1.0, actions=[OpaqueFunction(function=kill)]),
+            TimerAction(period=1.5, actions=[Shutdown()]),
+        )
+        assert len(set(pids)) == 2
+        assert done.err.count("process started with pid") == 3
+        assert done.err.count("exit code -9") == 2
+
+
+class TestInterrupted:
+    @pytest.mark.slow
+    def test_at_every_moment_of_the_start(self, begin: Callable[..., Running], write: Write) -> None:
+        path = write("a.launch.py", launch_file(sleeper("a"), TALKER, sleeper("b")))
+        began = time.monotonic()
+        running = begin(path)
+        running.until("[b-3] up")
+        whole = time.monotonic() - began
+        running.end()
+        outcomes = set()
+        for delay in [whole * each / 16 for each in range(1, 17)]:
+            running = begin(path)
+            time.sleep(delay)
+            status, _ = running.end()
+            # Python itself ends like this when the signal comes before our program has begun.
+            outcomes.add(status)
+            assert status in (130, 1, -signal.SIGINT), f"interrupted after {delay:.2f} s:\n{running.err}"
+            assert gone_within(30.0, running.identity), f"interrupted after {delay:.2f} s:\n{running.err}"
+            if "[launch]" in running.err:
+                assert status == 130
+                assert not re.search(r"^Traceback", running.err, re.MULTILINE), running.err
+        assert 130 in outcomes
+
+    @pytest.mark.parametrize("given", ["", ", sigterm_timeout='8'"])
+    def test_a_process_has_the_time_of_ros_to_save_its_file(
+        self, begin: Callable[..., Running], write: Write, given: str
+    ) -> None:
+        slow = (
+            "import time\ntry:\n    print('up', flush=True); time.sleep(60)\n"
+            "except KeyboardInterrupt:\n    time.sleep(2.2); print('saved', flush=True)"
+        )
+        options = f"output='screen', name='slow'{given}"
+        running = begin(
+            write("a.launch.py", launch_file(f"ExecuteProcess(cmd=[sys.executable, '-c', {slow!r}], {options})"))
+        )
+        running.until("[slow-1] up")
+        status, seconds = running.end()
+        assert status == 130
+        assert seconds > 2.0
+        assert "[slow-1] saved" in running.out
+
+
+class TestCounts:
+    async def test_threads_and_processes_before_and_after(self, launch, monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.delenv("LINKWRIGHT_DDS")
+        me = psutil.Process()
+        await launch()  # what is made once and kept, is made
+        threads, children = set(threading.enumerate()), {each.pid for each in me.children(recursive=True)}
+        seen: list[tuple[int, int]] = []
+
+        def look(_: Any) -> None:
+            seen.append((threading.active_count(), len(me.children(recursive=True))))
+
+        done = await launch(
+            Node(package="demo_nodes_cpp", executable="talker"),
+            Node(package="rviz2", executable="rviz2"),
+            process(SLEEPS),
+            process("print('done')"),
+            TimerAction(period=1.5, actions=[OpaqueFunction(function=look), Shutdown()]),
+        )
+        assert done.succeeded, done.err
+        assert seen[0][1] >= len(children) + 2  # the process and the guardian
+
+        def left() -> list[object]:
+            ours = [each for each in threading.enumerate() if each not in threads and not _is_pooled(each)]
+            return [*ours, *(each for each in me.children(recursive=True) if each.pid not in children)]
+
+        await eventually(lambda: not left(), what=lambda: f"left behind: {left()}")
+
+
+def _is_pooled(thread: threading.Thread) -> bool:
+    """Whether a thread belongs to the event loop's own pool, which goes with the loop."""
+    return re.match(r"asyncio_\d+|waitpid-\d+", thread.name) is not None
+
+
+class TestGuardian:
+    def test_it_ends_with_the_launch(self) -> None:
+        guardian = Guardian()
+        guardian.marked({})
+        process = guardian._process
+        assert process is not None
+        guardian.watch(1)
+        guardian.close()
+        assert process.returncode == 0
+        guardian.close()  # a second time does nothing
+        assert guardian.marked({})[MARK]
+        assert guardian._process is None
+
+    def test_a_guardian_that_was_killed_is_done_without(self) -> None:
+        guardian = Guardian()
+        guardian.marked({})
+        assert guardian._process is not None
+        guardian._process.kill()
+        guardian._process.wait()
+        guardian.watch(1)
+        guardian.release(1)
+        guardian.close()
+
+    def test_groups_that_are_gone_are_no_error(self) -> None:
+        guardian_program.end({2**22 - 3})
+        assert guardian_program.marked_groups(b"LINKWRIGHT_LAUNCH=no-such-launch") == set()

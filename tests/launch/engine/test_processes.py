@@ -1,0 +1,360 @@
+from __future__ import annotations
+
+import os
+import re
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from launch.actions import (
+    EmitEvent,
+    ExecuteProcess,
+    LogInfo,
+    RegisterEventHandler,
+    SetLaunchConfiguration,
+    Shutdown,
+    TimerAction,
+)
+from launch.event_handlers import OnExecutionComplete, OnProcessExit, OnProcessIO, OnProcessStart, OnShutdown
+from launch.events import matches_action
+from launch.events.process import ShutdownProcess, SignalProcess, matches_name
+from launch.substitutions import LaunchConfiguration
+
+from launch import LaunchContext, LaunchDescription
+
+STUBBORN = """
+import os, signal, time
+signal.signal(signal.SIGINT, lambda *_: os.write(1, b'int\\n'))
+signal.signal(signal.SIGTERM, lambda *_: os.write(1, b'term\\n'))
+os.write(1, b'ready\\n')
+time.sleep(60)
+time.sleep(60)
+time.sleep(60)
+"""
+
+
+def python(program: str, **options: object) -> ExecuteProcess:
+    options.setdefault("output", "screen")
+    options.setdefault("name", "py")
+    return ExecuteProcess(cmd=[sys.executable, "-c", program], **options)
+
+
+def is_gone(pid: int) -> bool:
+    deadline = time.monotonic() + 30.0
+    while time.monotonic() < deadline:
+        try:
+            os.kill(pid, 0)
+        except ProcessLookupError:
+            return True
+        if "Z" in Path(f"/proc/{pid}/stat").read_text().split(")")[-1].split()[0]:
+            return True
+        time.sleep(0.01)
+    return False
+
+
+async def test_a_process_from_start_to_end(launch) -> None:
+    done = await launch(python("import sys; print('out'); print('err', file=sys.stderr); sys.stdout.write('rest')"))
+    assert done.out.splitlines() == ["[py-1] out", "[py-1] rest"]
+    assert "[INFO] [py-1]: process started with pid [" in done.err
+    assert "[py-1] err" in done.err
+    assert "[INFO] [py-1]: process has finished cleanly [pid " in done.err
+    assert done.succeeded
+
+
+async def test_names_are_numbered_in_order(launch) -> None:
+    done = await launch(
+        ExecuteProcess(cmd=["sh", "-c", "echo a"], output="screen"),
+        ExecuteProcess(cmd=["sh", "-c", "sleep 0.1; echo b"], output="screen"),
+    )
+    assert done.out.splitlines() == ["[sh-1] a", "[sh-2] b"]
+
+
+async def test_folder_environment_and_substitutions(launch, tmp_path: Path) -> None:
+    done = await launch(
+        SetLaunchConfiguration("w", "x y"),
+        ExecuteProcess(
+            cmd=["sh", "-c", ["echo $PWD $A $B '", LaunchConfiguration("w"), "'"]],
+            cwd=str(tmp_path),
+            env={"A": "1"},
+            additional_env={"B": LaunchConfiguration("w")},
+            output="screen",
+        ),
+    )
+    assert done.out == f"[sh-1] {tmp_path} 1 x y x y\n"
+
+
+async def test_a_shell(launch) -> None:
+    done = await launch(ExecuteProcess(cmd=[["echo ", "a", " && echo b"]], shell=True, output="screen"))
+    assert done.out.splitlines() == ["[echo-1] a", "[echo-1] b"]
+
+
+async def test_words_that_a_substitution_gives_can_be_divided(launch) -> None:
+    program = "import sys; print(sys.argv[1:])"
+    words = ExecuteProcess(
+        cmd=[sys.executable, "-c", repr(program), LaunchConfiguration("words")],
+        name="py",
+        output="screen",
+        split_arguments=True,
+    )
+    done = await launch(SetLaunchConfiguration("words", "--name 'a b'"), words)
+    assert done.out == "[py-1] ['--name', 'a b']\n"
+
+
+async def test_prefix_and_log_cmd(launch) -> None:
+    done = await launch(ExecuteProcess(cmd=["x"], prefix="echo 'a b'", output="screen", name="n", log_cmd=True))
+    assert done.out == "[n-1] a b x\n"
+    assert "process details: cmd='echo a b x'" in done.err
+
+
+async def test_a_pseudo_terminal(launch) -> None:
+    program = "import sys; print(sys.stdout.isatty(), sys.stderr.isatty())"
+    assert (await launch(python(program, emulate_tty=True))).out == "[py-1] True True\n"
+    assert (await launch(python(program))).out == "[py-1] False False\n"
+
+
+def written_below(folder: Path) -> dict[str, list[str]]:
+    """What processes wrote into the log files of the one launch, without times."""
+    (launch,) = [path for path in folder.iterdir() if not path.is_symlink()]
+    found = {path.name: sorted(path.read_text().splitlines()) for path in launch.iterdir()}
+    of_processes = [line.partition(" ")[2] for line in found.pop("launch.log")]
+    of_processes = sorted(line for line in of_processes if line.startswith("[py-1]"))
+    return {**found, "launch.log": of_processes} if of_processes else found
+
+
+OWN_LOGS = {
+    "py-1-stderr.log": ["[py-1] err"],
+    "py-1-stdout.log": ["[py-1] out"],
+    "py-1.log": ["[py-1] err", "[py-1] out"],
+}
+
+
+class TestOutput:
+    PROGRAM = "import sys; print('out'); print('err', file=sys.stderr)"
+
+    @pytest.mark.parametrize(
+        ("mode", "out", "err", "files"),
+        [
+            ("screen", True, True, {}),
+            ("log", False, True, {"launch.log": ["[py-1] err", "[py-1] out"]}),
+            ("both", True, True, {"launch.log": ["[py-1] err", "[py-1] out"]}),
+            ("own_log", False, False, OWN_LOGS),
+            ("full", True, True, {**OWN_LOGS, "launch.log": ["[py-1] err", "[py-1] out"]}),
+            ({"both": "own_log"}, False, False, {"py-1.log": ["[py-1] err", "[py-1] out"]}),
+            ({"stdout": "screen", "stderr": {"log"}}, True, False, {"launch.log": ["[py-1] err"]}),
+            ({"both": {"screen"}}, True, True, {}),
+        ],
+    )
+    async def test_modes(self, launch, tmp_path: Path, mode: object, out: bool, err: bool, files: dict) -> None:
+        done = await launch(python(self.PROGRAM, output=mode))
+        assert ("[py-1] out" in done.out) is out
+        assert ("[py-1] err" in done.err) is err
+        assert written_below(tmp_path / "ros_log") == files
+
+    async def test_the_launch_log_has_all_lines_of_the_launcher(self, launch, tmp_path: Path) -> None:
+        done = await launch(python("0"))
+        folder = (tmp_path / "ros_log" / "latest").resolve()
+        assert done.err.splitlines()[:2] == [
+            f"[INFO] [launch]: All log files can be found below {folder}",
+            "[INFO] [launch]: Default logging verbosity is set to INFO",
+        ]
+        assert folder.name.endswith(f"-{os.getpid()}")
+        lines = (folder / "launch.log").read_text().splitlines()
+        assert [re.sub(r"^\d{10}\.\d{7} ", "", line) for line in lines] == done.err.splitlines()
+
+    async def test_formats(self, launch, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.setenv("OVERRIDE_LAUNCH_SCREEN_FORMAT", "{name}|{levelname}|{msg}")
+        monkeypatch.setenv("OVERRIDE_LAUNCH_LOG_FORMAT", "{msg}")
+        done = await launch(LogInfo(msg="hello"))
+        assert "launch.user|INFO|hello" in done.err.splitlines()
+        assert "hello" in (tmp_path / "ros_log" / "latest" / "launch.log").read_text().splitlines()
+
+    async def test_a_folder_that_cannot_be_written(self, launch, tmp_path: Path, monkeypatch) -> None:
+        (tmp_path / "file").write_text("")
+        monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "file" / "logs"))
+        done = await launch(python("print('out')", output="both"))
+        assert done.err.count("warning[LAUNCH145]") == 1
+        assert done.out == "[py-1] out\n"
+        assert done.succeeded
+
+    async def test_all_output_on_the_screen_by_the_environment(self, launch, monkeypatch) -> None:
+        monkeypatch.setenv("OVERRIDE_LAUNCH_PROCESS_OUTPUT", "both")
+        assert "[py-1] out" in (await launch(python(self.PROGRAM, output="own_log"))).out
+
+    async def test_an_unknown_mode(self, launch) -> None:
+        done = await launch(python("0", output="scren"))
+        assert "error[LAUNCH141]: there is no output 'scren'" in done.err
+        assert "did you mean 'screen'?" in done.err
+
+    async def test_format_and_cache(self, launch) -> None:
+        action = python(
+            self.PROGRAM, output_format="<{this.process_description.final_name}> {line}", cached_output=True
+        )
+        assert (await launch(action)).out == "<py-1> out\n"
+        assert action.get_stdout() == "out\n"
+        assert action.get_stderr() == "err\n"
+        assert action.return_code == 0
+
+
+def test_what_a_process_will_be_is_known_before_it_runs() -> None:
+    context = LaunchContext()
+    context.launch_configurations["word"] = "b"
+    action = ExecuteProcess(cmd=["echo", ["a", LaunchConfiguration("word")]], cwd="/", env={"A": "1"}, name="py")
+    action.prepare(context)
+    about = action.process_description
+    assert about.final_name.startswith("py-")
+    assert (about.final_cmd, about.final_cwd, about.final_env) == (["echo", "ab"], "/", {"A": "1"})
+
+
+class TestFailures:
+    async def test_an_exit_status(self, launch) -> None:
+        done = await launch(python("raise SystemExit(3)"))
+        assert "[ERROR] [py-1]: process has died [pid " in done.err
+        assert "exit code 3, cmd '" in done.err
+        assert done.succeeded  # as with ros2 launch
+
+    async def test_a_program_that_does_not_exist(self, launch) -> None:
+        done = await launch(ExecuteProcess(cmd=["no-such-program --flag"]), LogInfo(msg="others go on"))
+        assert "error[LAUNCH142]: process 'no-such-program --flag-1' cannot be started" in done.err
+        assert "test_processes.py" in done.err
+        assert "separate items of cmd" in done.err
+        assert done.messages == ["others go on"]
+        assert not done.succeeded
+
+    async def test_a_folder_that_does_not_exist(self, launch) -> None:
+        done = await launch(python("0", cwd="/no/such/folder"))
+        assert "folder '/no/such/folder' does not exist" in done.err
+
+    async def test_an_empty_command(self, launch) -> None:
+        assert "the command of the process is empty" in (await launch(ExecuteProcess(cmd=[""]))).err
+
+
+class TestHandlers:
+    async def test_start_io_and_exit(self, launch) -> None:
+        first, second = python("import os; os.write(1, b'hello\\n')", output="log"), python("0")
+        done = await launch(
+            first,
+            RegisterEventHandler(OnProcessStart(target_action=first, on_start=[LogInfo(msg="started")])),
+            RegisterEventHandler(
+                OnProcessIO(target_action=first, on_stdout=lambda event: LogInfo(msg=event.text.decode().strip()))
+            ),
+            RegisterEventHandler(OnProcessExit(target_action=first, on_exit=[LogInfo(msg="exited"), second])),
+            RegisterEventHandler(
+                OnProcessExit(
+                    target_action=second,
+                    on_exit=lambda event, _: LogInfo(msg=f"{event.process_name} {event.returncode}"),
+                )
+            ),
+        )
+        assert done.messages == ["started", "hello", "exited", "py-2 0"]
+
+    async def test_handle_once(self, launch) -> None:
+        done = await launch(
+            RegisterEventHandler(OnProcessExit(on_exit=LogInfo(msg="one"), handle_once=True)), python("0"), python("0")
+        )
+        assert done.messages == ["one"]
+
+    async def test_on_exit_shutdown_ends_the_others(self, launch) -> None:
+        done = await launch(
+            python("import time; time.sleep(60)", name="other"),
+            TimerAction(period=0.3, actions=[python("0", on_exit=Shutdown(reason="over"))]),
+            RegisterEventHandler(OnShutdown(on_shutdown=lambda event, _: LogInfo(msg=event.reason))),
+        )
+        assert done.messages == ["over"]
+        assert "process[py-2] was required: shutting down launched system" in done.err
+        assert "sending signal 'SIGINT' to process[other-1]" in done.err
+
+    async def test_on_exit_function(self, launch) -> None:
+        done = await launch(
+            python("raise SystemExit(4)", on_exit=lambda event, _: LogInfo(msg=f"rc {event.returncode}"))
+        )
+        assert done.messages == ["rc 4"]
+
+    async def test_a_target_must_be_an_action(self) -> None:
+        with pytest.raises(TypeError, match="target_action must be an ExecuteProcess"):
+            OnProcessExit(target_action="talker", on_exit=[])
+
+    async def test_completion_needs_an_event(self, launch) -> None:
+        done = await launch(RegisterEventHandler(OnExecutionComplete(on_completion=[LogInfo(msg="x")])))
+        assert done.messages == []
+
+
+class TestEnds:
+    async def test_respawn(self, launch) -> None:
+        done = await launch(python("print('up')", respawn=True, respawn_delay=0.01, respawn_max_retries=2))
+        assert done.out == "[py-1] up\n" * 3
+
+    async def test_a_process_that_was_about_to_start_ends_with_the_launch(self, launch) -> None:
+        began = time.monotonic()
+        done = await launch(
+            python("import time; time.sleep(60)"),
+            python("import time; time.sleep(60)"),
+            LogInfo(msg=LaunchConfiguration("x")),
+        )
+        assert time.monotonic() - began < 60.0
+        assert not done.succeeded
+
+    async def test_a_process_before_an_action_that_fails_is_started_and_its_exit_handled(self, launch) -> None:
+        done = await launch(
+            python("import time; time.sleep(60)", on_exit=LogInfo(msg="exited")), LogInfo(msg=LaunchConfiguration("x"))
+        )
+        assert done.messages == ["exited"]
+        assert "sending signal 'SIGINT' to process[py-1]" in done.err
+
+    async def test_a_respawn_that_waits_ends_with_the_launch(self, launch) -> None:
+        began = time.monotonic()
+        done = await launch(
+            python("0", respawn=True, respawn_delay=60.0), TimerAction(period=0.3, actions=[Shutdown(reason="over")])
+        )
+        assert time.monotonic() - began < 60.0
+        assert done.err.count("process started") == 1
+
+    async def test_escalation(self, launch) -> None:
+        action = python(STUBBORN, sigterm_timeout=0.15, sigkill_timeout="0.15")
+        done = await launch(
+            action,
+            RegisterEventHandler(
+                OnProcessIO(
+                    on_stdout=lambda event: (
+                        EmitEvent(event=ShutdownProcess(process_matcher=matches_action(action)))
+                        if b"ready" in event.text
+                        else None
+                    )
+                )
+            ),
+        )
+        assert done.out.splitlines() == ["[py-1] ready", "[py-1] int", "[py-1] term"]
+        assert "escalating to 'SIGTERM'" in done.err
+        assert "escalating to 'SIGKILL'" in done.err
+        assert action.return_code == -9
+
+    async def test_signal_process(self, launch) -> None:
+        action = python("import time; print('ready', flush=True); time.sleep(60)")
+        done = await launch(
+            action,
+            RegisterEventHandler(
+                OnProcessIO(
+                    on_stdout=lambda _: EmitEvent(
+                        event=SignalProcess(signal_number="SIGTERM", process_matcher=matches_name("py-1"))
+                    )
+                )
+            ),
+        )
+        assert action.return_code == -15
+        assert "sending signal 'SIGTERM' to process[py-1]" in done.err
+
+    async def test_grandchildren_do_not_outlive_the_launch(self, launch, tmp_path: Path) -> None:
+        pid_file = tmp_path / "pid"
+        program = f"sleep 60 & echo $! > {pid_file}; exit 0"
+        began = time.monotonic()
+        done = await launch(ExecuteProcess(cmd=["sh", "-c", program], output="screen"))
+        assert done.succeeded
+        assert time.monotonic() - began < 60.0
+        assert is_gone(int(pid_file.read_text()))
+
+
+def test_a_launch_description_can_be_added_to() -> None:
+    description = LaunchDescription()
+    description.add_action(LogInfo(msg="a"))
+    description.add_entity(LogInfo(msg="b"))
+    assert len(description.entities) == 2

@@ -1,0 +1,333 @@
+from __future__ import annotations
+
+import asyncio
+import io
+import os
+import shutil
+import time
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
+from pathlib import Path
+
+import pytest
+from launch.actions import TimerAction
+from launch.substitutions import Command
+from launch_ros.actions import Node
+from launch_ros.parameter_descriptions import ParameterValue
+
+from launch import LaunchDescription
+from linkwright.diagnostics import Diagnostic
+from linkwright.launch.engine.session import LaunchSession
+from linkwright.launch.engine.supervisor import SessionOptions
+from linkwright.launch.log.launch_log import LaunchLog
+from linkwright.packages import PackageFinder, use_finder
+from tests.waiting import SECONDS, eventually
+
+XACRO = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
+
+
+def model(link: str) -> str:
+    return f'<robot name="r" {XACRO}><link name="{link}"/></robot>'
+
+
+BROKEN = f'<robot name="r" {XACRO}>\n  <link name="${{nothing}}"/>\n</robot>'
+
+
+class Bench:
+    """A running launch of robot_state_publisher and viewer on one model."""
+
+    def __init__(self, session: LaunchSession, err: io.StringIO, out: io.StringIO) -> None:
+        self.session = session
+        self._err = err
+        self._out = out
+
+    @property
+    def err(self) -> str:
+        return self._err.getvalue()
+
+    @property
+    def out(self) -> str:
+        return self._out.getvalue()
+
+    def description(self) -> str:
+        for plan, running in self.session.host._running.values():
+            if plan.package == "robot_state_publisher":
+                return running.node.get_parameter("robot_description").value
+        return ""
+
+    def findings(self) -> list[Diagnostic]:
+        return self.session.reload.findings()
+
+    async def until(self, condition: Callable[[], bool]) -> None:
+        await eventually(condition, what=lambda: self.err)
+
+    async def shows(self, link: str) -> None:
+        await self.until(lambda: f'<link name="{link}"/>' in self.description())
+
+    async def watching(self) -> None:
+        """Wait until the watch has begun: until it tells of files that nothing depends on."""
+        await self.until(lambda: self.session.reload._watch is not None)
+        watch = self.session.reload._watch
+        assert watch is not None
+        probes, told, pass_on = {Path(folder) / ".probe" for folder, _ in watch._folders}, set(), watch._on_change
+
+        def on_change(paths: set[Path]) -> None:
+            told.update(paths & probes)
+            if paths - probes:
+                pass_on(paths - probes)
+
+        watch._on_change = on_change
+        while told != probes:
+            for probe in probes:
+                probe.write_text("")
+            await asyncio.sleep(0.05)
+
+
+@asynccontextmanager
+async def running(path: Path, *arguments: str, viewer: bool = True, delay: float | None = None) -> AsyncIterator[Bench]:
+    out, err = io.StringIO(), io.StringIO()
+    description = ParameterValue(Command(["xacro ", str(path)]), value_type=str)
+    entities = [
+        Node(
+            package="robot_state_publisher",
+            executable="robot_state_publisher",
+            parameters=[{"robot_description": description}],
+        )
+    ]
+    if delay is not None:
+        entities = [TimerAction(period=delay, actions=entities)]
+    if viewer:
+        entities.append(Node(package="rviz2", executable="rviz2", arguments=arguments))
+    finder = PackageFinder(start=path.parent, environment={})
+    with use_finder(finder):
+        session = LaunchSession(finder, SessionOptions(port=0, open_browser=False), LaunchLog(out, err))
+        task = asyncio.create_task(session.run(LaunchDescription(entities)))
+        try:
+            yield Bench(session, err, out)
+        finally:
+            session.interrupt("the test is over")
+            await asyncio.wait_for(task, SECONDS)
+
+
+async def test_a_saved_file_reaches_the_node_at_once(write) -> None:
+    path = write("r.xacro", model("a"))
+    async with running(path) as bench:
+        await bench.shows("a")
+        await bench.watching()
+        for link in ("b", "c", "d"):
+            path.write_text(model(link))
+            await bench.shows(link)
+        assert "reloaded" in bench.err
+
+
+async def test_a_node_that_starts_later_is_served_too(write) -> None:
+    path = write("r.xacro", model("a"))
+    async with running(path, delay=0.2) as bench:
+        await bench.shows("a")
+        await bench.watching()
+        path.write_text(model("b"))
+        await bench.shows("b")
+
+
+async def test_an_editor_that_renames(write) -> None:
+    path = write("r.xacro", model("a"))
+    async with running(path) as bench:
+        await bench.shows("a")
+        await bench.watching()
+        for link in ("b", "c"):
+            path.rename(path.with_suffix(".bak"))
+            await asyncio.sleep(0.08)
+            new = path.with_suffix(".new")
+            new.write_text(model(link))
+            new.replace(path)
+            await bench.shows(link)
+        assert "error" not in bench.err
+
+
+async def test_an_include_behind_a_link(write, tmp_path: Path) -> None:
+    real = write("sources/part.xacro", f'<robot {XACRO}><link name="a"/></robot>')
+    link = tmp_path / "share" / "part.xacro"
+    link.parent.mkdir()
+    link.symlink_to(real)
+    path = write("share/r.xacro", f'<robot name="r" {XACRO}><xacro:include filename="part.xacro"/></robot>')
+    async with running(path) as bench:
+        await bench.shows("a")
+        await bench.watching()
+        real.write_text(f'<robot {XACRO}><link name="b"/></robot>')
+        await bench.shows("b")
+
+
+async def test_a_new_include_is_watched_too(write) -> None:
+    path = write("r.xacro", model("a"))
+    part = write("parts/part.xacro", f'<robot {XACRO}><link name="b"/></robot>')
+    async with running(path) as bench:
+        await bench.shows("a")
+        await bench.watching()
+        path.write_text(f'<robot name="r" {XACRO}><xacro:include filename="parts/part.xacro"/></robot>')
+        await bench.shows("b")
+        await bench.watching()
+        part.write_text(f'<robot {XACRO}><link name="c"/></robot>')
+        await bench.shows("c")
+
+
+async def test_a_broken_file_leaves_the_last_good_robot_until_it_is_repaired(write) -> None:
+    path = write("r.xacro", model("a"))
+    async with running(path) as bench:
+        await bench.shows("a")
+        await bench.watching()
+        path.write_text(BROKEN)
+        await bench.until(lambda: bool(bench.findings()))
+        (finding,) = bench.findings()
+        assert finding.span is not None
+        assert (finding.span.file, finding.span.line) == (str(path), 2)
+        assert "nothing" in finding.message
+        assert bench.err.count("error[XAC") == 1
+        assert '<link name="a"/>' in bench.description()
+        path.write_text(model("c"))
+        await bench.shows("c")
+        await bench.until(lambda: not bench.findings())
+        assert "repaired" in bench.err
+
+
+async def test_two_roots_are_refused_with_the_readers_words(write) -> None:
+    path = write("r.urdf", '<robot name="r"><link name="a"/></robot>')
+    async with running(path) as bench:
+        await bench.shows("a")
+        await bench.watching()
+        path.write_text('<robot name="r"><link name="a"/><link name="b"/></robot>')
+        await bench.until(lambda: bool(bench.findings()))
+        assert bench.findings()[0].code.startswith("URDF")
+        assert '<link name="b"/>' not in bench.description()
+
+
+async def test_a_deleted_file_is_told_after_a_while_and_may_come_back(write) -> None:
+    path = write("r.xacro", model("a"))
+    async with running(path) as bench:
+        await bench.shows("a")
+        await bench.watching()
+        path.unlink()
+        await bench.until(lambda: bool(bench.findings()))
+        assert '<link name="a"/>' in bench.description()
+        path.write_text(model("b"))
+        await bench.shows("b")
+
+
+@pytest.mark.parametrize("start", [BROKEN, '<robot name="r"><link name="a"/><link name="b"/></robot>', "<robot", ""])
+async def test_a_model_broken_at_the_start_waits_for_the_repair(write, start: str) -> None:
+    path = write("r.xacro", start)
+    async with running(path) as bench:
+        await bench.until(lambda: "Viewer: " in bench.out and bool(bench.findings()))
+        assert "error[" in bench.err
+        assert bench.description() == ""
+        await bench.watching()
+        path.write_text(model("good"))
+        await bench.shows("good")
+        await bench.until(lambda: not bench.findings())
+        await bench.watching()
+        path.write_text(model("better"))
+        await bench.shows("better")
+
+
+async def test_a_broken_model_with_no_viewer_ends_the_launch(write) -> None:
+    path = write("r.xacro", BROKEN)
+    async with running(path, viewer=False) as bench:
+        await bench.until(lambda: bench.session.ending)
+        assert bench.err.count("error[XAC") == 1
+
+
+async def test_a_model_that_does_not_exist_ends_the_launch(tmp_path: Path) -> None:
+    async with running(tmp_path / "none.urdf") as bench:
+        await bench.until(lambda: bench.session.ending)
+        assert bench.err.count("error[") == 1
+        assert "Viewer:" not in bench.out
+
+
+async def test_a_change_before_the_watch_began_is_not_missed(write) -> None:
+    path = write("r.xacro", model("a"))
+    async with running(path) as bench:
+        await bench.shows("a")
+        path.write_text(model("b"))
+        os.utime(path, ns=(time.time_ns() + 10**9,) * 2)
+        await bench.shows("b")
+
+
+async def test_a_save_without_a_change_of_meaning_keeps_the_positions_right(write) -> None:
+    path = write("r.xacro", model("a"))
+    async with running(path) as bench:
+        await bench.shows("a")
+        await bench.watching()
+        path.write_text("\n\n" + model("a"))
+        await bench.until(lambda: "reloaded" in bench.err)
+        robot = bench.session.descriptions.library.read(bench.description()).robot
+        assert robot is not None
+        span = robot.links["a"].element.span()
+        assert span is not None
+        assert span.line == 3
+
+
+async def test_a_package_that_comes_later_repairs_the_model(write, tmp_path: Path) -> None:
+    path = write("r.xacro", f'<robot name="r" {XACRO}><xacro:include filename="$(find late)/part.xacro"/></robot>')
+    async with running(path) as bench:
+        await bench.until(lambda: "Viewer: " in bench.out and bool(bench.findings()))
+        assert bench.findings()[0].code == "PKG101"
+        await bench.watching()
+        write("late/part.xacro", f'<robot {XACRO}><link name="a"/></robot>')
+        write("late/package.xml", "<package><name>late</name></package>")
+        path.write_text(path.read_text() + "\n")
+        await bench.shows("a")
+
+
+async def test_what_the_viewer_says_carries_its_name(write) -> None:
+    path = write(
+        "r.urdf",
+        '<robot name="r"><link name="a"><visual><geometry><mesh filename="package://none_at_all/a.dae"/></geometry>'
+        "</visual></link></robot>",
+    )
+    config = write(
+        "a.rviz",
+        "Visualization Manager:\n  Displays:\n    - Class: rviz_default_plugins/RobotModel\n      Enabled: true\n"
+        "      Name: RobotModel\n      Description Topic: {Value: /robot_description}\n",
+    )
+    async with running(path, "-d", str(config)) as bench:
+        await bench.until(lambda: "none_at_all" in bench.err)
+        line = next(line for line in bench.err.splitlines() if "none_at_all" in line and line.startswith("["))
+        assert line.startswith("[rviz2-2] [ERROR]")
+
+
+@pytest.mark.parametrize("depth", [1, 3])
+async def test_a_folder_that_is_removed_and_made_anew_is_watched_again(tmp_path: Path, depth: int) -> None:
+    top = tmp_path / "install"
+    path = top.joinpath(*("share", "r", "urdf")[: depth - 1], "r.xacro")
+
+    def build(link: str) -> None:
+        path.parent.mkdir(parents=True)
+        path.write_text(model(link))
+
+    build("a")
+    async with running(path, viewer=False) as bench:
+        await bench.shows("a")
+        path.write_text(model("b"))
+        await bench.until(lambda: '<link name="b"/>' in bench.description())
+        for link in ("c", "d"):
+            shutil.rmtree(top)
+            await bench.until(lambda: bool(bench.findings()))
+            build(link)
+            await bench.until(lambda link=link: f'<link name="{link}"/>' in bench.description())
+            assert not bench.findings()
+
+
+async def test_what_is_wrong_elsewhere_is_told_with_what_cannot_be_expanded(tmp_path: Path) -> None:
+    path = tmp_path / "m.xacro"
+    path.write_text(model("good"))
+    async with running(path, viewer=False) as bench:
+        await bench.shows("good")
+        await bench.watching()
+        path.write_text(
+            f'<robot name="r" {XACRO}>\n  <link name="${{nothing}}"/>\n  <link name="a"/>\n'
+            '  <joint name="j" type="hinge"><parent link="a"/><child link="b"/></joint>\n</robot>'
+        )
+        await bench.until(lambda: len(bench.findings()) > 1)
+        codes = [finding.code for finding in bench.findings()]
+        assert codes[0].startswith("XAC")
+        assert any(code.startswith("URDF") for code in codes[1:])
+        assert bench.description().count('name="good"') == 1, "the last good model stays"

@@ -1,0 +1,46 @@
+"""Signals before there is a launch to be ended."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import time
+
+import pytest
+
+from linkwright.launch.engine import signals
+from linkwright.launch.engine.signals import SignalWatch
+from tests.waiting import SECONDS
+
+
+class Dropping:
+    """Something in whose destructor a signal comes."""
+
+    def __init__(self, number: int) -> None:
+        self._number = number
+
+    def __del__(self) -> None:
+        os.kill(os.getpid(), self._number)
+        for _ in range(1000):  # Python handles it here
+            pass
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_that_comes_in_a_destructor_is_not_lost(
+    number: int, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(signals, "_DEADLINE_SECONDS", SECONDS)  # beyond it, the watch ends the process: that of pytest
+    hook = sys.unraisablehook
+    watch = SignalWatch()
+
+    def wait() -> None:
+        with watch:
+            Dropping(number)
+            time.sleep(20)
+
+    with pytest.raises(KeyboardInterrupt):
+        wait()
+    assert watch.exit_status == 128 + number
+    assert sys.unraisablehook is hook
+    assert capfd.readouterr().err == ""

@@ -1,0 +1,83 @@
+"""Displays that were not saved when a launch ends."""
+
+from __future__ import annotations
+
+import asyncio
+import signal
+from collections.abc import Callable
+from pathlib import Path
+
+import aiohttp
+import pytest
+
+from linkwright.viewer import RvizConfig
+from tests.launch.launcher import Running, launch_file
+from tests.viewer.scene import Client
+
+URDF = '<robot name="arm"><link name="base"/></robot>'
+
+
+@pytest.fixture(autouse=True)
+def kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+    return tmp_path / "state" / "linkwright" / "unsaved"
+
+
+def add_axes(running: Running) -> None:
+    """As a page does."""
+
+    async def add() -> None:
+        address = running.url.replace("/?", "/ws?")
+        async with aiohttp.ClientSession() as session, session.ws_connect(address) as socket:
+            page = Client(socket)
+            await page.until("configuration")
+            await page.send("add_display", cls="rviz_default_plugins/Axes", name="Added", group=None, topic=None)
+            await page.until("configuration", unsaved=True)
+
+    asyncio.run(add())
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_they_are_kept_and_the_terminal_says_where(
+    start: Callable[..., Running], tmp_path: Path, kept: Path, number: int
+) -> None:
+    config = tmp_path / "mine.rviz"
+    config.write_text(RvizConfig.default().text())
+    (tmp_path / "arm.urdf").write_text(URDF)
+    nodes = [
+        f"Node(package='robot_state_publisher', executable='robot_state_publisher', arguments=['{tmp_path}/arm.urdf'])",
+        f"Node(package='rviz2', executable='rviz2', arguments=['-d', '{config}'])",
+    ]
+    (tmp_path / "a.launch.py").write_text(launch_file(*nodes))
+    running = start(tmp_path / "a.launch.py")
+    running.until("Robot initialized")
+    add_axes(running)
+    assert running.end(number)[0] == 128 + number
+    (file,) = kept.iterdir()
+    assert [display.name for display in RvizConfig.load(file).walk()] == ["Grid", "Added"]
+    said = f"changes of '{config}' that were not saved are kept in '{file}': open that file on the page, or with 'rviz2"
+    assert said in running.err
+    again = start(tmp_path / "a.launch.py")
+    again.until("Robot initialized")
+    assert "info[RVIZ302]" in again.err
+    assert str(file) in again.err
+    assert again.end()[0] == 130
+    assert "RVIZ301" not in again.err
+    assert list(kept.iterdir()) == [file]
+
+
+def test_those_about_a_single_model_are_kept_too(start: Callable[..., Running], tmp_path: Path, kept: Path) -> None:
+    (tmp_path / "arm.urdf").write_text(URDF)
+    running = start("view", tmp_path / "arm.urdf")
+    add_axes(running)
+    assert running.end()[0] == 130
+    (file,) = kept.iterdir()
+    assert file.name.startswith("arm-"), "edits beside another model are kept in another file"
+    assert [display.name for display in RvizConfig.load(file).walk()] == ["Grid", "RobotModel", "TF", "Added"]
+
+
+def test_a_launch_that_nobody_edited_leaves_nothing(start: Callable[..., Running], kept: Path) -> None:
+    running = start("my_robot_description", "display.launch.py")
+    running.until("Robot initialized")
+    assert running.end()[0] == 130
+    assert not kept.exists()

@@ -1,0 +1,70 @@
+"""Launch files read by their path, through the functions of ``launch.launch_description_sources``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from launch.launch_description_sources import (
+    get_launch_description_from_any_launch_file,
+    get_launch_description_from_frontend_launch_file,
+    get_launch_description_from_python_launch_file,
+    load_python_launch_file_as_module,
+)
+
+from launch import InvalidLaunchFileError, LaunchDescription
+
+PYTHON = """
+from launch import LaunchDescription
+from launch.actions import LogInfo
+
+def generate_launch_description():
+    return LaunchDescription([LogInfo(msg="of Python")])
+"""
+MARKUP = '<launch><let name="kind" value="markup"/></launch>'
+
+
+@pytest.fixture(autouse=True)
+def _here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def count(description: LaunchDescription) -> int:
+    return len(description.entities)
+
+
+def test_a_python_file_as_a_module_and_as_a_description() -> None:
+    Path("a.launch.py").write_text(PYTHON)
+    assert count(load_python_launch_file_as_module("a.launch.py").generate_launch_description()) == 1
+    assert count(get_launch_description_from_python_launch_file("a.launch.py")) == 1
+
+
+def test_a_file_in_markup() -> None:
+    Path("a.launch.xml").write_text(MARKUP)
+    assert count(get_launch_description_from_frontend_launch_file("a.launch.xml")) == 1
+
+
+def test_a_parser_that_is_given_reads_it() -> None:
+    description = LaunchDescription()
+
+    class Parser:
+        def load(self, path):
+            return path, self
+
+        def parse_description(self, entity):
+            assert entity == "a.mine"
+            return description
+
+    assert get_launch_description_from_frontend_launch_file("a.mine", parser=Parser()) is description
+
+
+@pytest.mark.parametrize(("name", "text"), [("a.py", PYTHON), ("a.xml", MARKUP), ("b.txt", PYTHON), ("c.py", MARKUP)])
+def test_any_file_is_read_as_its_name_says_or_as_what_it_is(name: str, text: str) -> None:
+    Path(name).write_text(text)
+    assert count(get_launch_description_from_any_launch_file(name)) == 1
+
+
+def test_a_file_that_is_neither_is_told_with_both_reasons() -> None:
+    Path("a.py").write_text("<launch")
+    with pytest.raises(InvalidLaunchFileError, match="multiple exceptions"):
+        get_launch_description_from_any_launch_file("a.py")

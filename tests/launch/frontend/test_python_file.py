@@ -1,0 +1,205 @@
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.launch.frontend.python_file import load_python_launch_file
+
+Write = Callable[[str, str], Path]
+
+HEAD = "from launch import LaunchDescription\n"
+
+
+def fault(path: Path) -> Diagnostic:
+    with pytest.raises(LinkwrightError) as caught:
+        load_python_launch_file(path)
+    (diagnostic,) = caught.value.diagnostics
+    return diagnostic
+
+
+def marked(diagnostic: Diagnostic) -> str:
+    """The text that the diagnostic points at, in one line."""
+    span, source = diagnostic.span, diagnostic.source
+    assert span is not None
+    assert source is not None
+    return source.text[source.offset(span.line, span.column) : source.offset(span.end_line, span.end_column)]
+
+
+def test_a_launch_file_knows_its_own_path(write: Write) -> None:
+    path = write(
+        "a.launch.py",
+        HEAD + "HERE = __file__\ndef generate_launch_description():\n"
+        "    assert HERE.endswith('a.launch.py')\n    return LaunchDescription()\n",
+    )
+    assert load_python_launch_file(path).entities == []
+
+
+def test_missing(write: Write, tmp_path: Path) -> None:
+    write("display.launch.py", "")
+    diagnostic = fault(tmp_path / "dispaly.launch.py")
+    assert diagnostic.code == "LAUNCH101"
+    assert diagnostic.hint == "did you mean 'display.launch.py'?"
+    assert "does not exist" in (fault(tmp_path / "no" / "x.launch.py").hint or "")
+    assert "is a folder" in fault(tmp_path).message
+
+
+def test_unreadable(write: Write, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = write("a.launch.py", "")
+
+    def refuse(*_arguments: object, **_more: object) -> str:
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(Path, "read_text", refuse)  # root, who runs some test machines, may read anything
+    assert fault(path).code == "LAUNCH102"
+
+
+def test_not_text(tmp_path: Path) -> None:
+    path = tmp_path / "a.launch.py"
+    path.write_bytes(b"\xff\xfe\x00")
+    assert fault(path).code == "LAUNCH102"
+
+
+def test_a_syntax_error(write: Write) -> None:
+    diagnostic = fault(write("a.launch.py", "x = 1\nfor y in (1, 2:\n    pass\n"))
+    assert diagnostic.code == "LAUNCH103"
+    assert diagnostic.span is not None
+    assert diagnostic.span.line == 2
+    assert "Traceback" not in diagnostic.message
+
+
+def test_an_indentation_error(write: Write) -> None:
+    diagnostic = fault(write("a.launch.py", "def f():\npass\n"))
+    assert diagnostic.code == "LAUNCH103"
+    assert diagnostic.span is not None
+    assert diagnostic.span.line == 2
+
+
+def test_an_exception_points_at_the_innermost_line_of_the_user(write: Write) -> None:
+    path = write(
+        "a.launch.py",
+        "import json\ndef helper(text):\n    return json.loads(text)\n"
+        "def generate_launch_description():\n    return helper('{')\n",
+    )
+    diagnostic = fault(path)
+    assert diagnostic.code == "LAUNCH104"
+    assert "raised JSONDecodeError: Expecting property name" in diagnostic.message
+    assert diagnostic.span is not None
+    assert (diagnostic.span.file, diagnostic.span.line) == (str(path), 3)
+    (note,) = diagnostic.notes
+    assert note.span is not None
+    assert note.span.line == 5
+
+
+@pytest.mark.parametrize(
+    ("line", "message", "hint"),
+    [
+        (
+            "from launch.actions import DeclareLaunchArgumet",
+            "cannot import name 'DeclareLaunchArgumet' from 'launch.actions'",
+            "did you mean 'DeclareLaunchArgument'",
+        ),
+        ("from launch.action import DeclareLaunchArgument", "cannot import name", "it is in 'launch.actions'"),
+        (
+            "from launch.actions import Node",
+            "cannot import name 'Node'",
+            "it is in 'launch_ros.actions' or 'rclpy.node'",
+        ),
+        ("import launch.substitution.x", "No module named 'launch.substitution.x'", None),
+        ("import launch.substitutons", "No module named 'launch.substitutons'", "'substitutions'"),
+        ("import launch_rso", "No module named 'launch_rso'", "did you mean 'launch_ros' or 'launch'?"),
+        ("import numpyyy", "No module named 'numpyyy'", "install the Python package that provides 'numpyyy'"),
+        ("import launch; launch.actions.Nod", "has no attribute 'Nod'", None),
+        ("import launch; launch.actions.LogInf", "has no attribute 'LogInf'", "did you mean 'LogInfo'"),
+        ("LaunchDescripton()", "name 'LaunchDescripton' is not defined", "did you mean 'LaunchDescription'?"),
+        (
+            "LaunchDescription(initial_entites=[])",
+            "unexpected keyword argument 'initial_entites'",
+            "did you mean 'initial_entities'?",
+        ),
+        ("1 / 0", "raised ZeroDivisionError: division by zero", None),
+        ("{}['x']", "raised KeyError: x", None),
+        ("raise RuntimeError", "raised RuntimeError", None),
+    ],
+)
+def test_messages_and_hints(write: Write, line: str, message: str, hint: str | None) -> None:
+    diagnostic = fault(write("a.launch.py", f"{HEAD}{line}\n"))
+    assert diagnostic.code == "LAUNCH104"
+    assert message in diagnostic.message
+    assert "standins" not in diagnostic.message
+    if hint:
+        assert hint in (diagnostic.hint or "")
+    assert diagnostic.span is not None
+    assert diagnostic.span.line == 2
+
+
+NODE = "from launch_ros.actions import Node\n"
+
+
+def test_a_misspelt_argument_of_a_node(write: Write) -> None:
+    diagnostic = fault(write("a.launch.py", f"{NODE}Node(executable='a', paramters=[])\n"))
+    assert diagnostic.hint == "did you mean 'parameters'?"
+    diagnostic = fault(write("b.launch.py", f"{NODE}Node(exectuable='a')\n"))
+    assert diagnostic.hint == "'executable' is missing; it says 'exectuable'"
+
+
+def test_the_place_of_a_call_of_several_lines(write: Write) -> None:
+    diagnostic = fault(write("a.launch.py", f"{NODE}n = Node(\n    executable='a',\n    parameters={{'a': 1}},\n)\n"))
+    assert diagnostic.code == "LAUNCH132"
+    assert diagnostic.message == "'parameters' of a node must be a list"
+    assert diagnostic.span is not None
+    assert diagnostic.span.line == 2
+    assert marked(diagnostic).startswith(("Node(", "n = Node("))
+
+
+def test_columns_count_characters(write: Write) -> None:
+    diagnostic = fault(write("a.launch.py", "x = '机器人'; y = nothing\n"))
+    assert diagnostic.span is not None
+    assert marked(diagnostic) in ("nothing", "x = '机器人'; y = nothing")
+
+
+def test_a_package_that_is_not_there(write: Write, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)  # packages are looked for below the current folder too
+    diagnostic = fault(
+        write(
+            "a.launch.py",
+            "from ament_index_python.packages import get_package_share_path\n"
+            "get_package_share_path('my_robot_descriptoin')\n",
+        )
+    )
+    assert diagnostic.code == "PKG101"
+    assert diagnostic.span is not None
+    assert diagnostic.span.line == 2
+    assert diagnostic.hint == "did you mean 'my_robot_description'?"
+
+
+def test_a_package_error_can_be_caught_by_its_ros_name(write: Write) -> None:
+    path = write(
+        "a.launch.py",
+        HEAD + "from ament_index_python.packages import get_package_share_directory, PackageNotFoundError\n"
+        "def generate_launch_description():\n"
+        "    try:\n        get_package_share_directory('nope_nope')\n"
+        "    except PackageNotFoundError:\n        return LaunchDescription()\n",
+    )
+    assert load_python_launch_file(path).entities == []
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "message"),
+    [
+        ("def generate_launch_descripton():\n    pass\n", "LAUNCH105", "has no function 'generate_launch_description'"),
+        ("def generate_launch_description():\n    pass\n", "LAUNCH106", "returned None, not a LaunchDescription"),
+        ("def generate_launch_description():\n    return []\n", "LAUNCH106", "returned a list"),
+    ],
+)
+def test_no_description(write: Write, text: str, code: str, message: str) -> None:
+    diagnostic = fault(write("a.launch.py", text))
+    assert diagnostic.code == code
+    assert message in diagnostic.message
+
+
+def test_entities_that_are_none(write: Write) -> None:
+    diagnostic = fault(write("a.launch.py", "from launch.actions import GroupAction\nGroupAction(['a node'])\n"))
+    assert "expected launch actions, got 'a node' of type str" in diagnostic.message

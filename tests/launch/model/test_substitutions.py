@@ -1,0 +1,310 @@
+from __future__ import annotations
+
+import os
+import re
+import sys
+from pathlib import Path
+
+import pytest
+from launch.substitution import Substitution
+from launch.substitutions import (
+    AllSubstitution,
+    AndSubstitution,
+    AnonName,
+    AnySubstitution,
+    Command,
+    EnvironmentVariable,
+    EqualsSubstitution,
+    FileContent,
+    FindExecutable,
+    IfElseSubstitution,
+    LaunchConfiguration,
+    LocalSubstitution,
+    NotEqualsSubstitution,
+    NotSubstitution,
+    OrSubstitution,
+    PathJoinSubstitution,
+    PythonExpression,
+    SubstitutionFailure,
+    TextSubstitution,
+    ThisLaunchFile,
+    ThisLaunchFileDir,
+)
+from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
+from launch_ros.substitutions import ExecutableInPackage, FindPackagePrefix, FindPackageShare
+
+from launch import LaunchContext
+from linkwright.diagnostics import LinkwrightError
+from linkwright.packages import PackageFinder, use_finder
+
+
+@pytest.fixture
+def context() -> LaunchContext:
+    made = LaunchContext()
+    made.launch_configurations.update(model="arm", gui="true", count="2")
+    return made
+
+
+def text(substitution: Substitution, context: LaunchContext) -> str:
+    return context.perform_substitution(substitution)
+
+
+def test_texts_are_joined(context: LaunchContext) -> None:
+    parts = ["xacro ", LaunchConfiguration("model"), TextSubstitution(text=".urdf"), Path("/x")]
+    assert perform_substitutions(context, normalize_to_list_of_substitutions(parts)) == "xacro arm.urdf/x"
+
+
+@pytest.mark.parametrize("wrong", [3, None, [3], b"x"])
+def test_other_values_are_no_texts(wrong: object) -> None:
+    with pytest.raises(TypeError, match="expected a text"):
+        normalize_to_list_of_substitutions(wrong)
+
+
+def test_launch_configuration(context: LaunchContext) -> None:
+    assert text(LaunchConfiguration("model"), context) == "arm"
+    assert text(LaunchConfiguration(["mo", "del"]), context) == "arm"
+    assert text(LaunchConfiguration("none", default="d"), context) == "d"
+    assert text(LaunchConfiguration("none", default=["d", LaunchConfiguration("count")]), context) == "d2"
+    assert text(LaunchConfiguration("none", default=5), context) == "5"
+
+
+def test_an_unset_launch_configuration_names_the_nearest_and_the_line(context: LaunchContext) -> None:
+    with pytest.raises(LinkwrightError, match="launch configuration 'modle' is not set") as caught:
+        text(LaunchConfiguration("modle"), context)
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.code == "LAUNCH121"
+    assert diagnostic.hint == "did you mean 'model'?"
+    assert diagnostic.span is not None
+    assert diagnostic.span.file == __file__
+    assert diagnostic.source is not None
+    assert 'LaunchConfiguration("modle")' in diagnostic.source.line(diagnostic.span.line)
+
+
+def test_environment_variable(context: LaunchContext, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("MBOT_COLOUR", "here")
+    assert text(EnvironmentVariable("MBOT_COLOUR"), context) == "here"
+    assert text(EnvironmentVariable("LINKWRIGHT_NONE", default_value="d"), context) == "d"
+    with pytest.raises(LinkwrightError, match="environment variable 'MBOT_COLUOR' is not set") as caught:
+        text(EnvironmentVariable("MBOT_COLUOR"), context)
+    assert caught.value.diagnostics[0].hint == "did you mean 'MBOT_COLOUR'?"
+
+
+def test_local_substitution(context: LaunchContext) -> None:
+    context.extend_locals({"event": ValueError("x")})
+    assert text(LocalSubstitution("event.args"), context) == "('x',)"
+    for expression in ("evnt", "event.argz"):
+        with pytest.raises(LinkwrightError):
+            text(LocalSubstitution(expression), context)
+
+
+def test_this_launch_file(context: LaunchContext) -> None:
+    with pytest.raises(LinkwrightError, match="comes from no file"):
+        text(ThisLaunchFile(), context)
+    context.extend_locals({"current_launch_file_path": "/a/b.launch.py"})
+    assert text(ThisLaunchFile(), context) == "/a/b.launch.py"
+    assert text(ThisLaunchFileDir(), context) == "/a"
+
+
+def test_path_join(context: LaunchContext) -> None:
+    joined = PathJoinSubstitution(["/a", ["b_", LaunchConfiguration("model")], "c"])
+    assert text(joined, context) == "/a/b_arm/c"
+    assert text(joined / "d", context) == "/a/b_arm/c/d"
+
+
+def test_find_executable(context: LaunchContext) -> None:
+    assert os.access(text(FindExecutable(name="sh"), context), os.X_OK)
+    with pytest.raises(LinkwrightError, match="executable 'no-such-program' is not on PATH"):
+        text(FindExecutable(name="no-such-program"), context)
+
+
+def test_xacro_is_found_though_it_is_not_installed(context: LaunchContext, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PATH", "/nowhere")
+    assert text(FindExecutable(name="xacro"), context) == "xacro"
+
+
+def test_file_content(context: LaunchContext, tmp_path: Path) -> None:
+    (tmp_path / "x").write_text("inside")
+    assert text(FileContent(str(tmp_path / "x")), context) == "inside"
+    with pytest.raises(LinkwrightError, match="does not exist"):
+        text(FileContent(str(tmp_path / "y")), context)
+
+
+@pytest.mark.parametrize(
+    ("expression", "value"),
+    [
+        (["'", LaunchConfiguration("gui"), "' == 'true'"], "True"),
+        (["2 * ", LaunchConfiguration("count")], "4"),
+        (["cos(0) + math.sin(0)"], "1.0"),
+    ],
+)
+def test_python_expression(context: LaunchContext, expression: list[object], value: str) -> None:
+    assert text(PythonExpression(expression), context) == value
+
+
+def test_python_expression_with_a_module(context: LaunchContext) -> None:
+    assert text(PythonExpression(["os.sep"], ["os"]), context) == os.sep
+
+
+def test_a_python_expression_without_quotes_gets_the_advice(context: LaunchContext) -> None:
+    with pytest.raises(LinkwrightError, match="NameError") as caught:
+        text(PythonExpression([LaunchConfiguration("model"), " == 'arm'"]), context)
+    assert "put quotes around" in (caught.value.diagnostics[0].hint or "")
+
+
+@pytest.mark.parametrize(
+    ("substitution", "value"),
+    [
+        (NotSubstitution("true"), "false"),
+        (NotSubstitution(LaunchConfiguration("gui")), "false"),
+        (AndSubstitution("true", "1"), "true"),
+        (AndSubstitution("true", "False"), "false"),
+        (OrSubstitution("0", "True"), "true"),
+        (OrSubstitution("0", "false"), "false"),
+        (AnySubstitution("false", "false", "true"), "true"),
+        (AllSubstitution("true", "false"), "false"),
+        (AllSubstitution("true", "1"), "true"),
+        (EqualsSubstitution("a", "a"), "true"),
+        (EqualsSubstitution("a", "b"), "false"),
+        (EqualsSubstitution("true", "1"), "true"),
+        (EqualsSubstitution("1.0", "1"), "true"),
+        (EqualsSubstitution(LaunchConfiguration("count"), 2), "true"),
+        (EqualsSubstitution(None, ""), "true"),
+        (NotEqualsSubstitution("a", "b"), "true"),
+        (NotEqualsSubstitution("true", "True"), "false"),
+        (IfElseSubstitution(LaunchConfiguration("gui"), "yes", "no"), "yes"),
+        (IfElseSubstitution("false", if_value="yes"), ""),
+    ],
+)
+def test_logic(context: LaunchContext, substitution: Substitution, value: str) -> None:
+    assert text(substitution, context) == value
+
+
+def test_logic_needs_truth_values(context: LaunchContext) -> None:
+    with pytest.raises(LinkwrightError, match="NotSubstitution needs 'true' or 'false', not 'arm'"):
+        text(NotSubstitution(LaunchConfiguration("model")), context)
+
+
+def test_packages(context: LaunchContext, tmp_path: Path) -> None:
+    share = tmp_path / "ros" / "share" / "arm"
+    share.mkdir(parents=True)
+    (share / "package.xml").write_text("<package><name>arm</name></package>")
+    program = tmp_path / "ros" / "lib" / "arm" / "move"
+    program.parent.mkdir(parents=True)
+    program.write_text("#!/bin/sh\n")
+    program.chmod(0o755)
+    finder = PackageFinder(start=tmp_path, environment={"AMENT_PREFIX_PATH": str(tmp_path / "ros")})
+    with use_finder(finder):
+        assert text(FindPackageShare("arm"), context) == str(share)
+        assert text(FindPackageShare(LaunchConfiguration("model")) / "urdf", context) == str(share / "urdf")
+        assert text(FindPackagePrefix("arm"), context) == str(tmp_path / "ros")
+        assert text(ExecutableInPackage("move", "arm"), context) == str(program)
+        with pytest.raises(LinkwrightError, match="package 'armm' not found") as caught:
+            text(FindPackageShare("armm"), context)
+        assert caught.value.diagnostics[0].span is not None
+        with pytest.raises(LinkwrightError, match="package 'arm' has no executable 'moev'") as caught:
+            text(ExecutableInPackage("moev", "arm"), context)
+        assert caught.value.diagnostics[0].hint == "did you mean 'move'?"
+
+
+@pytest.mark.parametrize(
+    ("substitution", "description"),
+    [
+        (TextSubstitution(text="a"), "'a'"),
+        (LaunchConfiguration("x"), "LaunchConfig('x')"),
+        (EnvironmentVariable("HOME"), "EnvVar('HOME')"),
+        (PathJoinSubstitution(["a", "b"]), "PathJoin('a', 'b')"),
+        (Command(["xacro ", LaunchConfiguration("m")]), "Command('xacro ' + LaunchConfig('m'))"),
+        (FindPackageShare("arm"), "FindPackageShare(pkg='arm')"),
+        (ThisLaunchFileDir(), "ThisLaunchFileDir()"),
+    ],
+)
+def test_descriptions(substitution: Substitution, description: str) -> None:
+    assert substitution.describe() == description
+
+
+def test_a_users_own_substitution(context: LaunchContext) -> None:
+    class Upper(Substitution):
+        def __init__(self, inner: str) -> None:
+            self.inner = inner  # as many do, without a call of our constructor
+
+        def perform(self, context: LaunchContext) -> str:
+            if not self.inner:
+                raise SubstitutionFailure("nothing to raise")
+            return self.inner.upper()
+
+    assert text(Upper("a"), context) == "A"
+    with pytest.raises(LinkwrightError, match="nothing to raise") as caught:
+        text(Upper(""), context)
+    assert caught.value.diagnostics[0].span is not None
+
+
+class TestCommand:
+    def python(self, program: str) -> list[str]:
+        return [sys.executable, ' -c "', program, '"']
+
+    def test_output(self, context: LaunchContext) -> None:
+        assert text(Command(["echo ", LaunchConfiguration("model")]), context) == "arm\n"
+
+    def test_failure(self, context: LaunchContext) -> None:
+        with pytest.raises(LinkwrightError, match="failed with exit status 3:\nwhy") as caught:
+            text(Command(self.python("import sys; print('why', file=sys.stderr); sys.exit(3)")), context)
+        assert caught.value.diagnostics[0].code == "LAUNCH129"
+
+    def test_stderr(self, context: LaunchContext, capsys: pytest.CaptureFixture[str]) -> None:
+        words = self.python("import sys; print('out'); print('err', file=sys.stderr)")
+        with pytest.raises(LinkwrightError, match="wrote to stderr:\nerr"):
+            text(Command(words), context)
+        assert text(Command(words, on_stderr="ignore"), context) == "out\n"
+        assert text(Command(words, on_stderr="capture"), context) == "out\nerr\n"
+        capsys.readouterr()
+        assert text(Command(words, on_stderr="warn"), context) == "out\n"
+        assert "wrote to stderr" in capsys.readouterr().err
+        with pytest.raises(LinkwrightError, match="'on_stderr' is 'panic'"):
+            text(Command(words, on_stderr="panic"), context)
+
+    @pytest.mark.parametrize(
+        ("command", "message"),
+        [
+            ("no-such-program x", "cannot be run: No such file or directory: 'no-such-program'"),
+            ("echo 'open", "cannot be split"),
+            ("  ", "is empty"),
+            ("xacro", "is given no model file"),
+            ("xacro --deps a.xacro", "option '--deps' of xacro"),
+            ("xacro a.xacro b.xacro", "expects exactly one model file, but was given 2"),
+        ],
+    )
+    def test_impossible(self, context: LaunchContext, command: str, message: str) -> None:
+        with pytest.raises(LinkwrightError, match=message) as caught:
+            text(Command(command), context)
+        assert caught.value.diagnostics[0].span is not None
+
+    @pytest.mark.parametrize("program", ["xacro", "/opt/ros/bin/xacro", "ros2 run xacro xacro"])
+    def test_xacro_runs_inside(self, context: LaunchContext, tmp_path: Path, program: str) -> None:
+        model = tmp_path / "a.xacro"
+        model.write_text(
+            '<robot name="a" xmlns:xacro="http://www.ros.org/wiki/xacro">'
+            '<xacro:arg name="link" default="x"/><link name="$(arg link)"/></robot>'
+        )
+        expanded = text(Command([program, " --inorder ", str(model), " link:='two words'"]), context)
+        assert '<link name="two words"/>' in expanded
+
+    def test_a_path_with_blanks_and_no_quotes_works_with_a_warning(
+        self, context: LaunchContext, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    ) -> None:
+        model = tmp_path / "my robot" / "a.urdf"
+        model.parent.mkdir()
+        model.write_text('<robot name="a"><link name="x"/></robot>')
+        assert '<link name="x"/>' in text(Command(["xacro ", str(model)]), context)
+        assert '<link name="x"/>' in text(Command(["xacro ", str(model), " a:=b"]), context)
+        assert "has blanks and no quotes around it" in capsys.readouterr().err
+        assert '<link name="x"/>' in text(Command(['xacro "', str(model), '"']), context)
+        assert capsys.readouterr().err == ""
+
+
+def test_an_anonymous_name_has_host_process_and_a_number(
+    context: LaunchContext, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("socket.gethostname", lambda: "my-lab.local")
+    name = AnonName("robot:1").perform(context)
+    assert re.fullmatch(rf"robot_1_my_lab_local_{os.getpid()}_\d+", name)
+    assert AnonName("robot:1").perform(context) == name

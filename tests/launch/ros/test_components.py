@@ -1,0 +1,257 @@
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from launch.actions import GroupAction, OpaqueFunction, SetLaunchConfiguration, Shutdown, TimerAction
+from launch.conditions import IfCondition
+from launch.substitutions import Command, LaunchConfiguration
+from launch_ros.actions import (
+    ComposableNodeContainer,
+    LoadComposableNodes,
+    PushRosNamespace,
+    SetParameter,
+    SetParametersFromFile,
+    SetRemap,
+)
+from launch_ros.actions.load_composable_nodes import get_composable_node_load_request
+from launch_ros.descriptions import ComposableNode, ParameterValue
+from launch_ros.utilities import get_node_name_count
+
+from launch import LaunchContext
+from linkwright.diagnostics import LinkwrightError
+from linkwright.packages import PackageFinder
+from tests.launch.ending import ends_when, printed, when
+
+Write = Callable[[str, str], Path]
+URDF = '<robot name="r"><link name="base"/></robot>'
+
+
+def container(*nodes: ComposableNode, **options: Any) -> ComposableNodeContainer:
+    options.setdefault("namespace", "")
+    return ComposableNodeContainer(
+        package="rclcpp_components",
+        executable="component_container",
+        name="box",
+        composable_node_descriptions=list(nodes),
+        **options,
+    )
+
+
+def talker(**options: Any) -> ComposableNode:
+    return ComposableNode(package="composition", plugin="composition::Talker", **options)
+
+
+def asked(node: ComposableNode, *actions: Any, **configurations: str) -> Any:
+    context = LaunchContext()
+    context.launch_configurations.update(configurations)
+    for action in actions:
+        action.execute(context)
+    return get_composable_node_load_request(node, context)
+
+
+class TestRequests:
+    def test_names_and_rules(self) -> None:
+        request = asked(
+            talker(name="tk", namespace="inner", remappings=[("chatter", "talk")]),
+            PushRosNamespace("outer"),
+            SetRemap("a", "b"),
+        )
+        assert (request.package_name, request.plugin_name) == ("composition", "composition::Talker")
+        assert (request.node_name, request.node_namespace) == ("tk", "/outer/inner")
+        assert list(request.remap_rules) == ["a:=b", "chatter:=talk"]
+
+    def test_parameters_in_their_order(self, write: Write) -> None:
+        path = write("p.yaml", "/ns/tk: {ros__parameters: {c: 9}}\n/**: {ros__parameters: {c: 1, d: [1.5]}}\n")
+        request = asked(
+            talker(name="tk", namespace="ns", parameters=[{"b": {"x": LaunchConfiguration("v")}}, path]),
+            SetParameter("a", "text"),
+            SetParametersFromFile(str(path)),
+            v="true",
+        )
+        given = [(each.name, each.value) for each in request.parameters]
+        assert [name for name, _ in given] == ["a", "c", "d", "b.x", "c", "d"]
+        assert given[0][1].string_value == "text"
+        assert given[1][1].integer_value == 9  # a node's own name counts more than a pattern, whichever comes first
+        assert list(given[2][1].double_array_value) == [1.5]
+        assert given[3][1].bool_value is True
+
+    def test_extra_arguments(self) -> None:
+        request = asked(talker(extra_arguments=[{"use_intra_process_comms": True}]))
+        assert request.extra_arguments[0].name == "use_intra_process_comms"
+        assert request.extra_arguments[0].value.bool_value is True
+
+    def test_a_condition(self) -> None:
+        assert asked(talker(condition=IfCondition("false"))) is None
+
+    def test_a_wrong_pattern_in_a_file(self, write: Write) -> None:
+        path = write("p.yaml", "/***: {ros__parameters: {a: 1}}")
+        with pytest.raises(RuntimeError) as caught:
+            asked(talker(name="tk", parameters=[str(path)]))
+        assert isinstance(caught.value, LinkwrightError)
+        assert "'/***' is not a node name" in caught.value.diagnostics[0].message
+
+
+class TestContainers:
+    async def test_our_nodes_compose_in_the_launchers_process(self, launch) -> None:
+        seen: dict[str, Any] = {}
+
+        def look(context: LaunchContext) -> None:
+            seen["nodes"] = context.session.host.graph.node_names()
+            seen["counts"] = [
+                get_node_name_count(context, name) for name in ("/ns/box", "/a/tk", "/robot_state_publisher")
+            ]
+
+        done = await launch(
+            container(
+                talker(name="tk", namespace="a"),
+                ComposableNode(
+                    package="robot_state_publisher",
+                    plugin="robot_state_publisher::RobotStatePublisher",
+                    parameters=[{"robot_description": URDF}],
+                ),
+                ComposableNode(
+                    package="tf2_ros",
+                    plugin="tf2_ros::StaticTransformBroadcasterNode",
+                    name="fixed",
+                    parameters=[{"frame_id": "a", "child_frame_id": "b", "translation.x": 1.5, "rotation.w": 1.0}],
+                ),
+                namespace="ns",
+            ),
+            when(
+                printed("translation: (", "Robot initialized", "'/a/tk'", "'/fixed'", "'/robot_state_publisher'"),
+                OpaqueFunction(function=look),
+                Shutdown(),
+            ),
+        )
+        assert done.succeeded, done.err
+        assert {"/ns/box", "/a/tk", "/robot_state_publisher", "/fixed"} <= set(seen["nodes"])
+        assert seen["counts"] == [1, 1, 1]
+        assert "Loaded node '/a/tk' in container '/ns/box'" in done.err
+        assert "[component_container-1] [INFO] [" in done.err
+        assert "] [robot_state_publisher]: Robot initialized" in done.err
+        assert "translation: ('1.500000', '0.000000', '0.000000')" in done.err
+        assert "[launch] [" not in done.err
+
+    async def test_loading_into_a_container_by_its_name(self, launch) -> None:
+        listener = ComposableNode(package="composition", plugin="composition::Listener", name="ear")
+        done = await launch(
+            LoadComposableNodes(target_container="box", composable_node_descriptions=[listener]),
+            TimerAction(period=0.1, actions=[container()]),
+            ends_when(printed("Loaded node")),
+        )
+        assert "Loaded node '/ear' in container '/box'" in done.err
+
+    async def test_the_scope_holds_for_the_nodes_though_they_are_loaded_later(self, launch) -> None:
+        group = GroupAction(
+            [
+                SetLaunchConfiguration("name", "inside"),
+                PushRosNamespace("scope"),
+                container(talker(name=LaunchConfiguration("name"), namespace="n")),
+            ]
+        )
+        done = await launch(group, ends_when(printed("Loaded node")))
+        assert "Loaded node '/scope/n/inside' in container '/scope/box'" in done.err
+
+    async def test_an_unknown_plugin_names_the_nearest_and_the_line(self, launch) -> None:
+        wrong = ComposableNode(package="composition", plugin="composition::Talkr", name="tk")
+        done = await launch(container(wrong, talker(name="other")), ends_when(printed("LAUNCH139", "Loaded node")))
+        assert "error[LAUNCH139]: Failed to load node 'tk' of type 'composition::Talkr' in container '/box'" in done.err
+        assert "did you mean 'composition::Talker'" in done.err
+        assert "test_components.py" in done.err
+        assert "Loaded node '/other' in container '/box'" in done.err
+        assert not done.succeeded
+
+    async def test_a_launch_that_ends_waits_for_no_container(self, launch) -> None:
+        done = await launch(
+            LoadComposableNodes(target_container="/nobody", composable_node_descriptions=[talker()]),
+            TimerAction(period=0.1, actions=[Shutdown()]),
+        )
+        assert "Abandoning wait for the '/nobody/_container/load_node' service, due to shutdown." in done.err
+
+    async def test_two_nodes_of_one_name_are_remarked(self, launch) -> None:
+        done = await launch(container(talker(name="box")), ends_when(printed("there are now at least")))
+        assert "there are now at least 2 nodes with the name /box created within this launch context" in done.err
+
+    async def test_services_of_the_container(self, launch) -> None:
+        answers: list[Any] = []
+
+        def ask(context: LaunchContext) -> None:
+            node = context.session.host.launcher_node
+
+            async def work() -> None:
+                for kind, name, fill in (
+                    ("ListNodes", "list_nodes", None),
+                    ("UnloadNode", "unload_node", 7),
+                    ("UnloadNode", "unload_node", 1),
+                    ("ListNodes", "list_nodes", None),
+                ):
+                    client = node.create_client(f"composition_interfaces/srv/{kind}", f"/box/_container/{name}")
+                    request = client.srv_type.Request()
+                    if fill is not None:
+                        request.unique_id = fill
+                    answers.append(await client.call_async(request))
+
+            context.session.spawn(work())
+
+        await launch(
+            container(talker(name="a"), talker(name="b")),
+            when(printed("Loaded node '/b'"), OpaqueFunction(function=ask)),
+            ends_when(lambda _: len(answers) == 4),
+        )
+        listed, missing, unloaded, rest = answers
+        assert list(listed.full_node_names) == ["/a", "/b"]
+        assert list(listed.unique_ids) == [1, 2]
+        assert missing.success is False
+        assert missing.error_message == "No node found with unique_id: 7"
+        assert unloaded.success is True
+        assert list(rest.full_node_names) == ["/b"]
+
+    async def test_a_composed_model_is_reloaded(self, launch, write: Write) -> None:
+        path = write("r.urdf", URDF)
+        texts: list[str] = []
+
+        def description(context: LaunchContext) -> str:
+            ((_, box),) = context.session.host._running.values()
+            (node,) = box.loaded.values()
+            return node.node.get_parameter("robot_description").value
+
+        def is_reloaded(context: LaunchContext) -> bool:
+            """Saves the file until that is noticed: the watch begins a moment after the node is loaded."""
+            if not texts:
+                return False
+            if not path.read_text().count("trunk") or time.time() - path.stat().st_mtime > 1.0:
+                path.write_text(URDF.replace("base", "trunk"))
+            return description(context) != texts[0]
+
+        def look(context: LaunchContext) -> None:
+            texts.append(description(context))
+
+        model = ParameterValue(Command(["xacro ", str(path)]), value_type=str)
+        publisher = ComposableNode(
+            package="robot_state_publisher",
+            plugin="robot_state_publisher::RobotStatePublisher",
+            parameters=[{"robot_description": model}],
+        )
+        await launch(
+            container(publisher),
+            when(printed("Loaded node"), OpaqueFunction(function=look)),
+            when(is_reloaded, OpaqueFunction(function=look), Shutdown()),
+        )
+        assert '"base"' in texts[0]
+        assert '"trunk"' in texts[1]
+
+    async def test_a_real_container_is_used_for_what_only_it_can_load(self, launch, write: Write) -> None:
+        write("ros/share/rclcpp_components/package.xml", "<package><name>rclcpp_components</name></package>")
+        real = write("ros/lib/rclcpp_components/component_container", "#!/bin/sh\necho real $@\n")
+        real.chmod(0o755)
+        prefix = real.parents[2]
+        finder = PackageFinder(start=prefix, environment={"AMENT_PREFIX_PATH": str(prefix)})
+        theirs = ComposableNode(package="camera", plugin="camera::Driver")
+        done = await launch(container(theirs, output="screen"), ends_when(printed("real --ros")), finder=finder)
+        assert "[component_container-1] real --ros-args -r __node:=box -r __ns:=/" in done.out
+        done = await launch(container(talker()), ends_when(printed("started in the launcher")), finder=finder)
+        assert "[component_container-1]: started in the launcher's process" in done.err

@@ -1,0 +1,235 @@
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from launch_ros.actions import Node
+from launch_ros.substitutions import ExecutableInPackage
+
+from launch import LaunchContext
+from linkwright.diagnostics import LinkwrightError
+from linkwright.launch import builtin_packages, executables_of
+from linkwright.launch.ros.executables import Origin, find_executable
+from linkwright.packages import PackageFinder, use_finder
+from linkwright.packages.programs.interpreters import needs_our_interpreter
+from linkwright.packages.programs.source_programs import EntryPoint, source_programs
+from linkwright.packages.programs.workspace_environment import workspace_environment
+
+Write = Callable[[str, str], Path]
+SETUP = """
+from setuptools import setup
+name = 'arm'
+setup(
+    name=name,
+    packages=[name],
+    entry_points={'console_scripts': ['wave = arm.wave:main', 'nod=arm.nod:Nodder.run', f'shake = {name}.shake:main']},
+)
+"""
+
+
+@pytest.fixture
+def finder(tmp_path: Path) -> PackageFinder:
+    return PackageFinder(start=tmp_path / "ws", environment={})
+
+
+@pytest.fixture
+def arm(write: Write) -> Path:
+    """A package in its sources with three entry points."""
+    write("ws/src/arm/package.xml", "<package><name>arm</name></package>")
+    write("ws/src/arm/setup.py", SETUP)
+    write("ws/src/arm/arm/__init__.py", "")
+    write(
+        "ws/src/arm/arm/wave.py", "import sys\nimport hand\ndef main():\n    print(hand.NAME, sys.argv)\n    return 3\n"
+    )
+    write("ws/src/arm/arm/nod.py", "class Nodder:\n    @staticmethod\n    def run():\n        print('nod')\n")
+    write("ws/src/hand/package.xml", "<package><name>hand</name></package>")
+    write("ws/src/hand/setup.py", "from setuptools import setup\nsetup(name='hand', packages=['hand'])\n")
+    return write("ws/src/hand/hand/__init__.py", "NAME = 'five fingers'\n").parents[2] / "arm"
+
+
+class TestSources:
+    def test_entry_points_of_setup_py(self, arm: Path) -> None:
+        found = source_programs(arm)
+        assert found.entry_points == {
+            "wave": EntryPoint("arm.wave", "main"),
+            "nod": EntryPoint("arm.nod", "Nodder.run"),
+            "shake": EntryPoint("arm.shake", "main"),
+        }
+
+    def test_entry_points_of_setup_cfg_and_pyproject(self, write: Write) -> None:
+        folder = write(
+            "p/setup.cfg", "[options.entry_points]\nconsole_scripts =\n  a = p.a:main\n  b = p.b:main\n"
+        ).parent
+        write("p/pyproject.toml", '[project]\nname = "p"\n[project.scripts]\nc = "p.c:main"\n')
+        assert source_programs(folder).names() == ["a", "b", "c"]
+
+    def test_entry_points_that_a_program_makes_are_asked_for(self, write: Write) -> None:
+        text = (
+            "from setuptools import setup, find_packages\n"
+            "setup(name='p', packages=find_packages(), scripts=['bin/old'],\n"
+            "      entry_points={'console_scripts': [f'{n} = p.{n}:main' for n in ('x', 'y')]})\n"
+        )
+        folder = write("p/setup.py", text).parent
+        write("p/bin/old", "#!/usr/bin/env python3\n")
+        assert source_programs(folder).names() == ["old", "x", "y"]
+
+    def test_a_setup_py_that_fails_has_no_programs(self, write: Write) -> None:
+        text = "from setuptools import setup\nraise SystemExit(1)\nsetup(entry_points={'console_scripts': LIST})\n"
+        assert source_programs(write("p/setup.py", text).parent).names() == []
+
+    def test_programs_of_cmake(self, write: Write) -> None:
+        folder = write(
+            "p/CMakeLists.txt",
+            "project(p)\nadd_executable(driver src/driver.cpp)\n"
+            "install(TARGETS driver DESTINATION lib/${PROJECT_NAME})\n"
+            'rclcpp_components_register_node(comp PLUGIN "p::Comp" EXECUTABLE comp_node)\n'
+            "install(PROGRAMS scripts/look.py scripts/missing.py DESTINATION lib/${PROJECT_NAME})\n"
+            "install(PROGRAMS scripts/see.py DESTINATION lib/${PROJECT_NAME} RENAME seer)\n",
+        ).parent
+        write("p/scripts/look.py", "")
+        write("p/scripts/see.py", "")
+        found = source_programs(folder)
+        assert found.scripts == {"look.py": folder / "scripts/look.py", "seer": folder / "scripts/see.py"}
+        assert found.compiled == {"driver", "comp_node"}
+
+    def test_an_entry_point_runs_without_a_build(self, arm: Path, finder: PackageFinder) -> None:
+        found = find_executable(finder, arm.name, "wave")
+        assert found.origin is Origin.SOURCE
+        assert found.path is not None
+        assert found.path.parts[-3:] == ("lib", "arm", "wave")
+        done = subprocess.run([*found.command, "--fast"], capture_output=True, text=True, check=False)
+        assert done.returncode == 3, done.stderr
+        assert done.stdout == f"five fingers ['{found.path}', '--fast']\n"
+
+    def test_its_file_is_made_anew_only_if_it_changes(self, arm: Path, finder: PackageFinder) -> None:
+        path = find_executable(finder, arm.name, "nod").path
+        assert path is not None
+        made = path.stat().st_mtime_ns, path.stat().st_ino
+        assert find_executable(finder, arm.name, "nod").path == path
+        assert (path.stat().st_mtime_ns, path.stat().st_ino) == made
+        path.write_text("print('somebody else was here')")
+        assert find_executable(finder, arm.name, "nod").path == path
+        assert subprocess.run([path], capture_output=True, text=True, check=True).stdout == "nod\n"
+
+    def test_a_module_that_is_not_there(self, arm: Path, finder: PackageFinder) -> None:
+        with pytest.raises(LinkwrightError, match=r"and there is no module .arm\.shake.") as caught:
+            find_executable(finder, arm.name, "shake")
+        assert caught.value.diagnostics[0].code == "LAUNCH131"
+
+    def test_a_compiled_program_says_how_to_build_it(self, write: Write, finder: PackageFinder) -> None:
+        write("ws/src/p/package.xml", "<package><name>p</name></package>")
+        write("ws/src/p/CMakeLists.txt", "project(p)\nadd_executable(driver driver.cpp)\n")
+        with pytest.raises(LookupError) as caught:
+            find_executable(finder, "p", "driver")
+        assert isinstance(caught.value, LinkwrightError)
+        (diagnostic,) = caught.value.diagnostics
+        assert diagnostic.message == "executable 'driver' of package 'p' is a compiled program that was not built"
+        assert diagnostic.hint is not None
+        assert diagnostic.hint.startswith("build it with 'colcon build --packages-select p'")
+
+    def test_the_nearest_name_counts_compiled_programs_too(self, write: Write, finder: PackageFinder) -> None:
+        write("ws/src/p/package.xml", "<package><name>p</name></package>")
+        write("ws/src/p/CMakeLists.txt", "project(p)\nadd_executable(driver driver.cpp)\n")
+        with pytest.raises(LinkwrightError) as caught:
+            find_executable(finder, "p", "drivr")
+        assert caught.value.diagnostics[0].hint == "did you mean 'driver'?"
+
+
+class TestInstalled:
+    def test_a_built_one_comes_before_that_of_sources(self, write: Write) -> None:
+        write("ws/install/.colcon_install_layout", "isolated")
+        write("ws/install/arm/share/arm/package.xml", "<package><name>arm</name></package>")
+        built = write("ws/install/arm/lib/arm/wave", "#!/bin/sh\necho built\n")
+        built.chmod(0o755)
+        write("ws/install/arm/lib/arm/notes.txt", "no program")
+        folder = built.parents[4]
+        write("ws/src/arm/package.xml", "<package><name>arm</name></package>")
+        write("ws/src/arm/setup.py", SETUP)
+        finder = PackageFinder(start=folder, environment={})
+        assert {name: each.path for name, each in executables_of(finder, "arm").items()} == {"wave": built}
+        assert find_executable(finder, "arm", "wave").command == [str(built)]
+
+    def test_the_environment_of_a_workspace_that_nobody_sourced(self, write: Write) -> None:
+        write("ws/install/.colcon_install_layout", "isolated")
+        share = write("ws/install/arm/share/arm/package.xml", "<package><name>arm</name></package>").parent
+        write("ws/install/arm/share/arm/hook/pythonpath_develop.dsv", "prepend-non-duplicate;PYTHONPATH;/ws/build/arm")
+        modules = write("ws/install/arm/lib/python3.11/site-packages/arm.py", "").parent
+        prefix = share.parents[1]
+        finder = PackageFinder(start=prefix.parents[1], environment={})
+        made = workspace_environment(finder, {"PYTHONPATH": "/own"})
+        assert made["AMENT_PREFIX_PATH"] == str(prefix)
+        folders = made["PYTHONPATH"].split(os.pathsep)
+        assert folders[:3] == ["/own", str(modules), "/ws/build/arm"]
+        assert made["LINKWRIGHT_START"] == str(prefix.parents[1])
+        sourced = workspace_environment(finder, {"AMENT_PREFIX_PATH": str(prefix)})
+        assert str(modules) not in sourced.get("PYTHONPATH", "")
+
+    def test_a_launched_process_finds_the_packages_of_its_launcher(
+        self, arm: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        monkeypatch.setenv("LINKWRIGHT_START", str(arm))
+        assert PackageFinder().find("arm") == arm
+
+    @pytest.mark.parametrize(
+        ("line", "needed"),
+        [
+            (f"#!{sys.executable}", False),
+            ("#!/bin/sh", False),
+            ("", False),
+            ("#!/no/such/python3", False),
+        ],
+    )
+    def test_scripts_for_a_python_like_ours_run_as_they_are(self, write: Write, line: str, needed: bool) -> None:
+        assert needs_our_interpreter(write("script", f"{line}\nprint()\n")) is needed
+
+    def test_a_script_for_another_python_runs_with_ours(self, write: Write, tmp_path: Path) -> None:
+        other = write("python3", "#!/bin/sh\necho 3 4\n")
+        other.chmod(0o755)
+        assert needs_our_interpreter(write("script", f"#!{other}\nprint()\n"))
+
+
+class TestOurs:
+    def test_they_are_listed(self, finder: PackageFinder) -> None:
+        assert {"robot_state_publisher", "tf2_ros", "rviz2", "rclcpp_components"} <= builtin_packages()
+        found = executables_of(finder, "robot_state_publisher")
+        assert str(found["robot_state_publisher"]) == "built into Linkwright"
+
+    def test_they_run_as_processes(self, finder: PackageFinder) -> None:
+        found = find_executable(finder, "tf2_ros", "static_transform_publisher")
+        assert found.command[1:] == ["-m", "linkwright.node_program", "tf2_ros", "static_transform_publisher"]
+
+    def test_the_substitution_gives_a_file(self, finder: PackageFinder) -> None:
+        with use_finder(finder):
+            path = ExecutableInPackage("static_transform_publisher", "tf2_ros").perform(LaunchContext())
+        done = subprocess.run([path, "--nonsense"], capture_output=True, text=True, check=False)
+        assert done.returncode == 1
+        assert "error parsing command line arguments" in done.stderr
+
+
+async def test_a_script_that_cmake_would_install_imports_its_package(
+    launch, write: Write, finder: PackageFinder
+) -> None:
+    write("ws/src/p/package.xml", "<package><name>p</name></package>")
+    write(
+        "ws/src/p/CMakeLists.txt",
+        "project(p)\nament_python_install_package(${PROJECT_NAME})\n"
+        "install(PROGRAMS scripts/look.py scripts/list.sh DESTINATION lib/${PROJECT_NAME})\n",
+    )
+    write("ws/src/p/p/__init__.py", "WORD = 'seen'\n")
+    write("ws/src/p/scripts/look.py", "import p\nprint(p.WORD)\n")  # neither made executable nor with a first line
+    write("ws/src/p/scripts/list.sh", "#!/bin/sh\necho $0 $1\n")
+    nodes = [Node(package="p", executable=name, arguments=["x"], output="screen") for name in ("look.py", "list.sh")]
+    done = await launch(*nodes, finder=finder)
+    assert "[look.py-1] seen" in done.out, done.err
+    assert "list.sh x" in done.out
+
+
+async def test_a_node_of_a_source_package_is_started(launch, arm: Path, finder: PackageFinder) -> None:
+    done = await launch(Node(package=arm.name, executable="wave", output="screen"), finder=finder)
+    assert "[wave-1] five fingers" in done.out
+    assert "[ERROR] [wave-1]: process has died [pid " in done.err
+    assert "exit code 3" in done.err

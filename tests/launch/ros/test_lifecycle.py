@@ -1,0 +1,124 @@
+from __future__ import annotations
+
+from importlib.metadata import EntryPoint
+from typing import Any
+
+import pytest
+from launch.actions import EmitEvent, LogInfo, RegisterEventHandler
+from launch.events import matches_action
+from launch_ros.actions import LifecycleNode, LifecycleTransition, Node
+from launch_ros.event_handlers import OnStateTransition
+from launch_ros.events import matches_node_name
+from launch_ros.events.lifecycle import ChangeState
+
+from launch import LaunchContext
+from linkwright.graph import Graph
+from linkwright.graph.lifecycle.managed_node import LifecycleNodeMixin
+from linkwright.nodes import EXECUTABLES, NodeOptions
+from tests.launch.ending import ends_when, printed
+
+CONFIGURE, DEACTIVATE = 1, 4
+
+
+class Managed(LifecycleNodeMixin):
+    """A lifecycle node of this process, whose configuring fails if a parameter says so."""
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        self.node = graph.create_node(options.name or "managed", namespace=options.namespace)
+        self.fails = bool(options.parameters.get("fails"))
+        for name in ("get_name", "create_publisher", "create_service", "get_clock", "get_logger"):
+            setattr(self, name, getattr(self.node, name))
+        LifecycleNodeMixin.__init__(self)
+
+    def on_configure(self, state: Any) -> Any:
+        kind = type(super().on_configure(state))
+        return kind.FAILURE if self.fails else kind.SUCCESS
+
+    def close(self) -> None:
+        self.node.destroy_node()
+
+
+@pytest.fixture(autouse=True)
+def _executable(monkeypatch: pytest.MonkeyPatch) -> None:
+    entry = EntryPoint("life/node", f"{__name__}:Managed", "linkwright.nodes")
+    monkeypatch.setitem(EXECUTABLES.entry_points, ("life", "node"), entry)
+
+
+def managed(name: str = "one", **options: Any) -> LifecycleNode:
+    return LifecycleNode(package="life", executable="node", name=name, namespace="", **options)
+
+
+def said(text: str, **what: Any) -> RegisterEventHandler:
+    return RegisterEventHandler(OnStateTransition(entities=[LogInfo(msg=text)], **what))
+
+
+async def test_a_wish_for_a_transition_and_the_news_of_it(launch) -> None:
+    node = managed()
+    wish = ChangeState(lifecycle_node_matcher=matches_action(node), transition_id=CONFIGURE)
+    done = await launch(
+        node,
+        managed("two"),
+        said("configured", target_lifecycle_node=node, transition="on_configure_success"),
+        said("inactive", goal_state="inactive", start_state="configuring"),
+        EmitEvent(event=wish),
+        ends_when(printed("[launch.user]: inactive")),
+    )
+    assert done.messages.count("inactive") == 1
+    assert node.current_state == "PRIMARY_STATE_INACTIVE"
+
+
+async def test_autostart(launch) -> None:
+    node = managed(autostart=True)
+    active = said("active", target_lifecycle_node=node, goal_state="active")
+    done = await launch(node, active, ends_when(printed("[launch.user]: active")))
+    assert done.messages == ["active"]
+
+
+async def test_a_row_of_transitions(launch) -> None:
+    nodes = [managed("one"), managed("two")]
+    row = LifecycleTransition(lifecycle_node_names=["one", "/two"], transition_ids=[CONFIGURE, "3", DEACTIVATE])
+    off = said("off", start_state="deactivating", goal_state="inactive")
+    done = await launch(*nodes, row, off, ends_when(printed("[launch.user]: off", times=2)))
+    assert done.messages == ["off", "off"]
+
+
+async def test_a_transition_that_fails_is_told(launch) -> None:
+    node = managed(parameters=[{"fails": True}])
+    wish = ChangeState(lifecycle_node_matcher=matches_node_name("one"), transition_id=CONFIGURE)
+    done = await launch(node, EmitEvent(event=wish), ends_when(printed("Failed to make transition")))
+    assert "Failed to make transition 'TRANSITION_CONFIGURE' for LifecycleNode '/one'" in done.err
+
+
+def test_matchers_go_by_full_names() -> None:
+    node = managed()
+    node._perform_substitutions(LaunchContext())
+    assert matches_node_name("one")(node)
+    assert matches_node_name("/one")(node)
+    assert not matches_node_name("/one/x")(node)
+    assert node.is_node_name_fully_specified()
+
+
+def test_names_are_required() -> None:
+    with pytest.raises(TypeError):
+        LifecycleNode(package="a", executable="b", name="c")
+    with pytest.raises(TypeError):
+        LifecycleNode(package="a", executable="b", namespace="c")
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: ChangeState(lifecycle_node_matcher=lambda _: True, transition_id=42),
+        lambda: LifecycleTransition(lifecycle_node_names=[], transition_ids=[1]),
+        lambda: LifecycleTransition(lifecycle_node_names=["a"], transition_ids=[]),
+        lambda: LifecycleTransition(lifecycle_node_names=["a"], transition_ids=["x"]).execute(LaunchContext()),
+    ],
+)
+def test_wrong_transitions(make: Any) -> None:
+    with pytest.raises(ValueError, match=r"transition|lifecycle_node_names"):
+        make()
+
+
+def test_a_target_must_be_a_lifecycle_node() -> None:
+    with pytest.raises(RuntimeError, match="requires a 'LifecycleNode' action"):
+        OnStateTransition(target_lifecycle_node=Node(executable="x"), entities=[])

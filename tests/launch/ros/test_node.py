@@ -1,0 +1,281 @@
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+from launch.actions import EmitEvent, GroupAction, LogInfo, OpaqueFunction, RegisterEventHandler, Shutdown, TimerAction
+from launch.event_handlers import OnProcessExit, OnProcessStart
+from launch.events import matches_action
+from launch.events.process import ShutdownProcess
+from launch.substitutions import Command, LaunchConfiguration
+from launch_ros.actions import Node, PushRosNamespace, SetParameter, SetParametersFromFile, SetRemap
+from launch_ros.parameter_descriptions import Parameter, ParameterValue
+
+from launch import LaunchContext
+from linkwright.packages import PackageFinder
+
+Write = Callable[[str, str], Path]
+URDF = '<robot name="r"><link name="base"/></robot>'
+
+
+@pytest.fixture
+def ros(tmp_path: Path) -> PackageFinder:
+    """A prefix with the package ``arm``, whose executable ``tell`` writes its command line as JSON."""
+    share = tmp_path / "ros" / "share" / "arm"
+    share.mkdir(parents=True)
+    (share / "package.xml").write_text("<package><name>arm</name></package>")
+    program = tmp_path / "ros" / "lib" / "arm" / "tell"
+    program.parent.mkdir(parents=True)
+    program.write_text(
+        f"#!{sys.executable}\nimport json, sys\n"
+        "files = {a: open(a).read() for a in sys.argv if a.endswith('.yaml')}\n"
+        "print(json.dumps([sys.argv[1:], files]))\n"
+    )
+    program.chmod(0o755)
+    return PackageFinder(start=tmp_path, environment={"AMENT_PREFIX_PATH": str(tmp_path / "ros")})
+
+
+class TestProcessNodes:
+    async def told(self, launch, ros: PackageFinder, *entities: Any) -> tuple[list[str], list[Any]]:
+        done = await launch(*entities, finder=ros)
+        assert done.succeeded, done.err
+        (line,) = done.out.splitlines()
+        words, files = json.loads(line.partition("] ")[2])
+        return words, [yaml.safe_load(files[word]) for word in words if word in files]
+
+    async def test_command_line(self, launch, ros: PackageFinder) -> None:
+        words, files = await self.told(
+            launch,
+            ros,
+            SetParameter("global", 1),
+            SetRemap("/a", "/b"),
+            GroupAction(
+                [
+                    PushRosNamespace("robot"),
+                    PushRosNamespace("left"),
+                    Node(
+                        package="arm",
+                        executable="tell",
+                        name="teller",
+                        namespace="inner",
+                        output="screen",
+                        parameters=[{"own": LaunchConfiguration("x", default="2")}],
+                        remappings=[("chatter", ["/t", "alk"])],
+                        arguments=["--fast", LaunchConfiguration("x", default="1")],
+                        ros_arguments=["--log-level", "debug"],
+                    ),
+                ]
+            ),
+        )
+        assert words[:4] == ["--fast", "1", "--ros-args", "--log-level"]
+        assert words[4:10] == ["debug", "--ros-args", "-r", "__node:=teller", "-r", "__ns:=/robot/left/inner"]
+        assert words[10:13] == ["-p", "global:=1", "--params-file"]
+        assert words[14:] == ["-r", "/a:=/b", "-r", "chatter:=/talk"]
+        assert files == [{"/robot/left/inner/teller": {"ros__parameters": {"own": 2}}}]
+
+    async def test_parameters_of_a_node_without_a_name_are_for_any(self, launch, ros: PackageFinder) -> None:
+        node = Node(package="arm", executable="tell", output="screen", parameters=[{"a": 1}])
+        words, files = await self.told(launch, ros, node)
+        assert words[:2] == ["--ros-args", "--params-file"]
+        assert files == [{"/**": {"ros__parameters": {"a": 1}}}]
+
+    async def test_single_parameters_are_told_as_rules(self, launch, ros: PackageFinder) -> None:
+        parameters = [Parameter("a", "x: y"), Parameter("b", [1.0, 2.5]), Parameter("c", True), Parameter("d", "1")]
+        node = Node(package="arm", executable="tell", output="screen", parameters=parameters)
+        words, _ = await self.told(launch, ros, node)
+        assert words[1::2] == ["-p"] * 4
+        assert words[2::2] == ["a:='x: y'", "b:=[1.0, 2.5]", "c:=true", "d:='1'"]
+
+    async def test_ros_arguments_are_announced_even_if_there_are_none(self, launch, ros: PackageFinder) -> None:
+        words, _ = await self.told(launch, ros, Node(package="arm", executable="tell", output="screen"))
+        assert words == ["--ros-args"]
+
+    async def test_an_absolute_namespace(self, launch, ros: PackageFinder) -> None:
+        words, _ = await self.told(
+            launch,
+            ros,
+            PushRosNamespace("robot"),
+            Node(package="arm", executable="tell", output="screen", namespace="/own"),
+        )
+        assert words == ["--ros-args", "-r", "__ns:=/own"]
+
+    async def test_parameter_files_are_passed_by_path(self, launch, ros: PackageFinder, write: Write) -> None:
+        path = write("p.yaml", "/**: {ros__parameters: {a: 1}}")
+        words, _ = await self.told(
+            launch,
+            ros,
+            SetParametersFromFile(str(path)),
+            Node(package="arm", executable="tell", output="screen", parameters=[str(path)]),
+        )
+        assert words == ["--ros-args", "--params-file", str(path), "--params-file", str(path)]
+
+    async def test_a_parameter_file_that_is_missing_is_passed_over(
+        self, launch, ros: PackageFinder, write: Write
+    ) -> None:
+        path = write("p.yaml", "/**: {ros__parameters: {a: 1}}")
+        gone = path.with_name("q.yaml")
+        node = Node(package="arm", executable="tell", output="screen", parameters=[str(gone), str(path)])
+        done = await launch(node, finder=ros)
+        assert "q.yaml' does not exist" in done.err
+        assert "warning[LAUNCH133]" in done.err
+        assert "test_node.py" in done.err
+        assert json.loads(done.out.partition("] ")[2])[0] == ["--ros-args", "--params-file", str(path)]
+        assert done.succeeded
+
+    @pytest.mark.parametrize(
+        ("text", "message"),
+        [
+            ("a: [1", "error[GRAPH212]"),
+            ("talker: 5", "error[GRAPH212]"),
+            ("a: {ros__params: {b: 1}}", "error[GRAPH212]"),
+        ],
+    )
+    async def test_a_parameter_file_that_is_malformed_is_told_before_the_node_starts(
+        self, launch, ros: PackageFinder, write: Write, text: str, message: str
+    ) -> None:
+        path = write("p.yaml", text)
+        done = await launch(Node(package="arm", executable="tell", parameters=[str(path)]), finder=ros)
+        assert message in done.err
+        assert "p.yaml:1" in done.err
+        assert "process started" not in done.err
+        assert not done.succeeded
+
+    @pytest.mark.parametrize(
+        ("section", "node", "told"),
+        [
+            ("tller", {"name": "teller"}, "did you mean '/tller'?"),
+            ("teller", {"name": "teller", "namespace": "left"}, "is for node '/left/teller'"),
+            ("left: {teller", {"name": "teller", "namespace": "left"}, ""),
+            ("/**", {"name": "teller"}, ""),
+            ("other", {}, ""),
+        ],
+    )
+    async def test_a_parameter_file_with_nothing_for_the_node(
+        self, launch, ros: PackageFinder, write: Write, section: str, node: dict[str, str], told: str
+    ) -> None:
+        path = write("p.yaml", f"{section}: {{ros__parameters: {{a: 1}}}}" + "}" * section.count("{"))
+        done = await launch(Node(package="arm", executable="tell", parameters=[str(path)], **node), finder=ros)
+        assert ("warning[LAUNCH149]: no section of" in done.err) is bool(told)
+        assert told in done.err
+        assert done.succeeded
+
+    async def test_temporary_files_go_with_the_launch(self, launch, ros: PackageFinder) -> None:
+        done = await launch(Node(package="arm", executable="tell", output="screen", parameters=[{"a": 1}]), finder=ros)
+        (path,) = {word for word in done.out.replace('"', " ").split() if word.endswith(".yaml")}
+        assert not Path(path).exists()  # noqa: ASYNC240
+
+    async def test_a_node_without_a_package(self, launch) -> None:
+        done = await launch(Node(executable=sys.executable, arguments=["-c", "print('here')"], output="screen"))
+        assert done.out.endswith("] here\n")
+
+    @pytest.mark.parametrize(
+        ("package", "executable", "message", "hint"),
+        [
+            ("arm", "tel", "package 'arm' has no executable 'tel'", "did you mean 'tell'?"),
+            ("arm", "xyzzy", "package 'arm' has no executable 'xyzzy'", "it has: tell"),
+            ("amr", "tell", "package 'amr' of node executable 'tell' not found", "did you mean 'arm'?"),
+            ("robot_state_publishr", "x", "package 'robot_state_publishr'", "did you mean 'robot_state_publisher'"),
+            ("rviz2", "rviz", "package 'rviz2' has no executable 'rviz'", "did you mean 'rviz2'?"),
+            ("my_robot_description", "x", "has no executable 'x'", "name it in entry_points of setup.py"),
+        ],
+    )
+    async def test_unknown_executables(
+        self, launch, ros: PackageFinder, package: str, executable: str, message: str, hint: str
+    ) -> None:
+        done = await launch(Node(package=package, executable=executable), finder=ros)
+        assert "error[LAUNCH131]" in done.err
+        assert message in done.err
+        assert hint in done.err
+        assert "test_node.py" in done.err
+        assert not done.succeeded
+
+
+class TestHostedNodes:
+    async def test_events_names_and_logs(self, launch) -> None:
+        node = Node(
+            package="robot_state_publisher",
+            executable="robot_state_publisher",
+            name="rsp",
+            namespace="robot",
+            parameters=[{"robot_description": URDF}],
+        )
+        done = await launch(
+            node,
+            RegisterEventHandler(OnProcessStart(target_action=node, on_start=[LogInfo(msg="started")])),
+            RegisterEventHandler(OnProcessExit(target_action=node, on_exit=[LogInfo(msg="exited")])),
+            TimerAction(period=0.05, actions=[Shutdown(reason="done")]),
+        )
+        assert done.messages == ["started", "exited"]
+        assert "[INFO] [robot_state_publisher-1]: started in the launcher's process" in done.err
+        assert "[robot_state_publisher-1] [INFO] [" in done.err
+        assert "] [robot.rsp]: Robot initialized" in done.err
+        assert node.node_name == "/robot/rsp"
+        assert done.succeeded
+
+    async def test_a_node_that_cannot_start(self, launch) -> None:
+        done = await launch(
+            Node(package="robot_state_publisher", executable="robot_state_publisher", on_exit=[LogInfo(msg="gone")]),
+            LogInfo(msg="others go on"),
+        )
+        assert "error[NODE101]" in done.err
+        assert "[ERROR] [robot_state_publisher-1]: node has not started" in done.err
+        assert done.messages == ["others go on", "gone"]
+        assert not done.succeeded
+
+    async def test_shutdown_process_ends_one(self, launch) -> None:
+        node = Node(
+            package="tf2_ros",
+            executable="static_transform_publisher",
+            arguments=["--frame-id", "a", "--child-frame-id", "b"],
+        )
+        end = EmitEvent(event=ShutdownProcess(process_matcher=matches_action(node)))
+        done = await launch(node, TimerAction(period=0.02, actions=[end]))
+        assert "[INFO] [static_transform_publisher-1]: has finished cleanly" in done.err
+        assert done.succeeded
+
+    async def test_parameters_of_a_file_reach_it(self, launch, write: Write) -> None:
+        path = write("p.yaml", "robot_state_publisher: {ros__parameters: {publish_frequency: 30.0}}")
+        seen: list[float] = []
+
+        def look(context: LaunchContext) -> None:
+            for _, running in context.session.host._running.values():
+                seen.append(running.node.get_parameter("publish_frequency").value)
+
+        await launch(
+            Node(
+                package="robot_state_publisher",
+                executable="robot_state_publisher",
+                parameters=[str(path), {"robot_description": URDF}],
+            ),
+            TimerAction(period=0.02, actions=[OpaqueFunction(function=look), Shutdown()]),
+        )
+        assert seen == [30.0]
+
+    async def test_positions_of_a_command_reach_the_library(self, launch, write: Write) -> None:
+        path = write("r.urdf", "\n\n" + URDF)
+        lines: list[int] = []
+
+        def look(context: LaunchContext) -> None:
+            (_, running), *_ = context.session.host._running.values()
+            text = running.node.get_parameter("robot_description").value
+            robot = context.session.descriptions.library.read(text).robot
+            assert robot is not None
+            span = robot.links["base"].element.span()
+            assert span is not None
+            assert span.file == str(path)
+            lines.append(span.line)
+
+        await launch(
+            Node(
+                package="robot_state_publisher",
+                executable="robot_state_publisher",
+                parameters=[{"robot_description": ParameterValue(Command(["xacro ", str(path)]), value_type=str)}],
+            ),
+            TimerAction(period=0.02, actions=[OpaqueFunction(function=look), Shutdown()]),
+        )
+        assert lines == [3]

@@ -1,0 +1,267 @@
+from __future__ import annotations
+
+import io
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from launch.frontend.parse_substitution import parse_substitution
+from launch.substitutions import LaunchConfiguration, TextSubstitution
+from launch_ros.actions import SetParameter
+from launch_ros.parameter_descriptions import Parameter, ParameterFile, ParameterValue
+from launch_ros.substitutions import Parameter as ParameterSubstitution
+from launch_ros.utilities import evaluate_parameters, normalize_parameters
+
+from launch import LaunchContext
+from launch.frontend import Parser
+from linkwright.diagnostics import LinkwrightError
+from linkwright.launch.ros.parameters import own_parameters
+
+Write = Callable[[str, str], Path]
+
+
+@pytest.fixture
+def context() -> LaunchContext:
+    made = LaunchContext()
+    made.launch_configurations.update(number="3", truth="true", word="on", text="a: b", model="<robot> a: b\n</robot>")
+    return made
+
+
+def values(context: LaunchContext, *parameters: Any, node: str = "/talker") -> dict[str, Any]:
+    return own_parameters(normalize_parameters(list(parameters)), context).values(context, node)
+
+
+def told(error: BaseException) -> str:
+    assert isinstance(error, LinkwrightError)
+    (diagnostic,) = error.diagnostics
+    return diagnostic.message
+
+
+class TestParameters:
+    def test_python_values_stay_what_they_are(self, context: LaunchContext) -> None:
+        given = {"a": 1, "b": 1.5, "c": True, "d": "true", "e": [1, 2], "f": ["x", "y"], "g": [1, 2.5], "h": ""}
+        assert values(context, given) == {**given, "g": [1.0, 2.5]}
+
+    def test_substitutions_follow_yaml(self, context: LaunchContext) -> None:
+        found = values(
+            context,
+            {
+                "a": LaunchConfiguration("number"),
+                "b": LaunchConfiguration("truth"),
+                "c": LaunchConfiguration("word"),
+                "d": ["/", LaunchConfiguration("number")],
+                "e": [[LaunchConfiguration("number")], [TextSubstitution(text="4")]],
+            },
+        )
+        assert found == {"a": 3, "b": True, "c": True, "d": "/3", "e": [3, 4]}
+
+    @pytest.mark.parametrize(
+        ("name", "kind", "value"),
+        [
+            ("number", None, 3),
+            ("number", int, 3),
+            ("number", float, 3.0),
+            ("number", str, "3"),
+            ("truth", bool, True),
+            ("text", str, "a: b"),
+            ("list", list[int], [1, 2]),
+        ],
+    )
+    def test_typed_values(self, context: LaunchContext, name: str, kind: Any, value: Any) -> None:
+        context.launch_configurations["list"] = "[1, 2]"
+        found = values(context, {"p": ParameterValue(LaunchConfiguration(name), value_type=kind)})
+        assert found == {"p": value}
+        assert type(found["p"]) is type(value)
+
+    def test_a_value_of_another_type(self, context: LaunchContext) -> None:
+        with pytest.raises(ValueError) as caught:
+            values(context, {"p": ParameterValue(LaunchConfiguration("word"), value_type=int)})
+        assert "parameter 'p' is not the int that is asked for" in told(caught.value)
+
+    def test_nested_dictionaries_and_substituted_names(self, context: LaunchContext) -> None:
+        found = values(context, {"zeros": {"joint": 1.0, ("n", LaunchConfiguration("number")): 2.0}, "a.b": 1})
+        assert found == {"zeros.joint": 1.0, "zeros.n3": 2.0, "a.b": 1}
+
+    def test_later_ones_win(self, context: LaunchContext) -> None:
+        assert values(context, {"a": 1, "b": 1}, {"a": 2}, Parameter("b", 3)) == {"a": 2, "b": 3}
+
+    def test_a_description_that_is_read_as_yaml_gives_one_error_with_the_fix(self, context: LaunchContext) -> None:
+        with pytest.raises(LinkwrightError) as caught:
+            values(context, {"robot_description": LaunchConfiguration("model")})
+        (diagnostic,) = caught.value.diagnostics
+        assert diagnostic.code == "LAUNCH132"
+        assert "parameter 'robot_description' is read as YAML" in diagnostic.message
+        assert "ParameterValue(VALUE, value_type=str)" in (diagnostic.hint or "")
+        assert diagnostic.span is not None
+        assert diagnostic.span.file == __file__
+
+    def test_a_description_without_colons_passes_unfolded(self, context: LaunchContext) -> None:
+        text = '<robot name="r">\n  <link name="a"/>\n</robot>'
+        context.launch_configurations["model"] = text
+        assert values(context, {"robot_description": LaunchConfiguration("model")}) == {"robot_description": text}
+
+    @pytest.mark.parametrize(
+        ("value", "message"),
+        [
+            ("{a: 1}", "becomes a mapping, which no parameter can be"),
+            ("[1, x]", "becomes a list of mixed items (int, str)"),
+            ("[]", "becomes an empty list"),
+            ("[[1], [2]]", "becomes a list of items of type list"),
+        ],
+    )
+    def test_what_no_parameter_can_be(self, context: LaunchContext, value: str, message: str) -> None:
+        context.launch_configurations["odd"] = value
+        with pytest.raises(TypeError) as caught:
+            values(context, {"p": LaunchConfiguration("odd")})
+        assert message in told(caught.value)
+
+    def test_nothing_is_an_empty_text(self, context: LaunchContext) -> None:
+        context.launch_configurations["nothing"] = ""
+        assert values(context, {"p": LaunchConfiguration("nothing")}) == {"p": ""}
+
+    @pytest.mark.parametrize(
+        ("parameters", "message"),
+        [
+            ([{"p": object()}], "is of type object, which no parameter can be"),
+            ([{"p": Path("/x")}], "is a Path"),
+            ([{"p": [1, 2, [3, 4]]}], "has an item of type list"),
+            ([{"g": {"h": {5: "x"}}}], "the name of a parameter must be text, not 5"),
+            ([5.0], "has an item of type float"),
+            ({"a": 5}, "'parameters' of a node must be a list"),
+            ("/path.yaml", "'parameters' of a node must be a list"),
+        ],
+    )
+    def test_forms_that_are_refused_when_the_node_is_made(self, parameters: Any, message: str) -> None:
+        with pytest.raises(TypeError) as caught:
+            normalize_parameters(parameters)
+        assert message in told(caught.value)
+
+    def test_plain_texts_are_not_read_as_yaml(self, context: LaunchContext) -> None:
+        given = {"a": "1", "b": ["true", "2"], "c": "{x: y}"}
+        assert values(context, given) == given
+
+    def test_evaluated_forms(self, context: LaunchContext) -> None:
+        given = normalize_parameters(["/a.yaml", {"n": {"x": 1}, "l": [1, 2.5]}, Path("/b.yaml")])
+        assert evaluate_parameters(context, given) == (Path("/a.yaml"), {"n.x": 1, "l": (1.0, 2.5)}, Path("/b.yaml"))
+
+
+class TestParameterFiles:
+    FILE = """
+/**:
+  ros__parameters:
+    everywhere: 1
+    deep: {x: 1}
+talker:
+  ros__parameters: {own: 2}
+/robot:
+  talker:
+    ros__parameters: {own: 3}
+/robot/*:
+  ros__parameters: {star: 4}
+listener:
+  ros__parameters: {own: 5}
+"""
+
+    @pytest.mark.parametrize(
+        ("node", "expected"),
+        [
+            ("/talker", {"everywhere": 1, "deep.x": 1, "own": 2}),
+            ("/robot/talker", {"everywhere": 1, "deep.x": 1, "own": 3, "star": 4}),
+            ("/other", {"everywhere": 1, "deep.x": 1}),
+        ],
+    )
+    def test_sections_by_name(self, context: LaunchContext, write: Write, node: str, expected: dict) -> None:
+        path = write("p.yaml", self.FILE)
+        assert values(context, str(path), node=node) == expected
+        assert values(context, path, node=node) == expected
+        assert values(context, ParameterFile(path), node=node) == expected
+
+    def test_substitutions_inside(self, context: LaunchContext, write: Write) -> None:
+        path = write(
+            "p.yaml",
+            "/**: {ros__parameters: {a: $(var number), b: $(env LW_NONE x), c: '$(var n$(var word) d)', "
+            "d: $(find-pkg-share my_robot_description)}}",
+        )
+        found = values(context, ParameterFile(path, allow_substs=True))
+        assert found["a"] == 3
+        assert found["b"] == "x"
+        assert found["c"] == "d"
+        assert found["d"].endswith("my_robot_description")
+
+    @pytest.mark.parametrize(
+        ("text", "message"),
+        [
+            ("a: [", "is not YAML"),
+            ("a: 1", "'a' has a value before 'ros__parameters'"),
+            ("/**: {ros__parameters: {a: $(var nmber)}}", "launch configuration 'nmber' is not set"),
+            ("/**: {ros__parameters: {a: $(vra number)}}", "there is no substitution 'vra'"),
+            ("/**: {ros__parameters: {a: $(var number}}", "has no closing parenthesis"),
+        ],
+    )
+    def test_faults(self, context: LaunchContext, write: Write, text: str, message: str) -> None:
+        with pytest.raises(LinkwrightError) as caught:
+            values(context, ParameterFile(write("p.yaml", text), allow_substs=True))
+        (diagnostic,) = caught.value.diagnostics
+        assert message in diagnostic.message
+        assert diagnostic.span is not None
+        assert diagnostic.span.file.endswith("p.yaml")
+
+    def test_comments_are_left_alone(self, context: LaunchContext, write: Write) -> None:
+        text = "/**:  # $(nothing of the kind)\n  ros__parameters:\n    a: '# $(var number)'  # $(var none)\n"
+        assert values(context, ParameterFile(write("p.yaml", text), allow_substs=True)) == {"a": "# 3"}
+
+    def test_the_path_of_a_file_with_substitutions(self, context: LaunchContext, write: Write) -> None:
+        file = ParameterFile(write("p.yaml", "/**: {ros__parameters: {a: $(var number)}}"), allow_substs=True)
+        made = file.evaluate(context)
+        assert file.param_file == made
+        assert made.read_text() == "/**: {ros__parameters: {a: 3}}"
+        file.cleanup()
+        assert not made.exists()
+
+    def test_a_missing_file(self, context: LaunchContext, tmp_path: Path) -> None:
+        with pytest.raises(FileNotFoundError) as caught:
+            values(context, str(tmp_path / "none.yaml"))
+        assert "none.yaml' does not exist" in told(caught.value)
+
+    def test_an_empty_file(self, context: LaunchContext, write: Write) -> None:
+        assert values(context, str(write("p.yaml", ""))) == {}
+
+
+@pytest.mark.parametrize(
+    ("kind", "text", "items"),
+    [
+        ("int", "1,2", [1, 2]),
+        ("float", "1.0,2.5", [1.0, 2.5]),
+        ("bool", "true,false", [True, False]),
+        ("str", "1,a", ["1", "a"]),
+    ],
+)
+def test_lists_of_a_type_in_markup(context: LaunchContext, kind: str, text: str, items: list[Any]) -> None:
+    for named in (f"list_of_{kind}", f"list[{kind}]"):
+        xml = f'<param name="p" value="{text}" value-sep="," type="{named}"/>'
+        assert values(context, *parsed(f'<launch><node pkg="a" exec="b">{xml}</node></launch>')) == {"p": items}
+        parts = text.split(",")
+        shown = [f"'{part}'" for part in parts] if kind == "str" else parts
+        tag = f"{{name: p, value: [{', '.join(shown)}], type: '{named}'}}"
+        yaml = f"launch:\n- node: {{pkg: a, exec: b, param: [{tag}]}}\n"
+        assert values(context, *parsed(yaml)) == {"p": items}
+
+
+def parsed(text: str) -> list[Any]:
+    """The parameters of the one node of a launch file."""
+    entity, parser = Parser.load(io.StringIO(text))
+    (node,) = parser.parse_description(entity).entities
+    return node._Node__parameters
+
+
+def test_a_parameter_of_the_scope_may_have_a_default(context: LaunchContext) -> None:
+    assert ParameterSubstitution("none", default="x").perform(context) == "x"
+    assert ParameterSubstitution("none", default=[LaunchConfiguration("number"), "4"]).perform(context) == "34"
+    assert ParameterSubstitution("none", default=5).perform(context) == "5"
+    (parsed_one,) = parse_substitution("$(param none $(var number))")
+    assert parsed_one.perform(context) == "3"
+    SetParameter("known", 7).execute(context)
+    assert ParameterSubstitution("known", default="x").perform(context) == "7"
+    with pytest.raises(LinkwrightError, match="no SetParameter"):
+        ParameterSubstitution("none").perform(context)

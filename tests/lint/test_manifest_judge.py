@@ -1,0 +1,65 @@
+"""A manifest has an error where catkin_pkg, through which colcon reads it, refuses it, and nowhere else."""
+
+from __future__ import annotations
+
+import warnings
+
+import pytest
+from catkin_pkg.package import InvalidPackage, parse_package_string
+
+from linkwright.diagnostics import has_errors
+from linkwright.lint.engine import examine_package
+from linkwright.lint.settings import Settings
+
+_PARTS = {
+    "name": [
+        *("my_robot", "depthai-ros", "My-Robot", "MyRobot", "2d_nav", "a", "a__b", "class", "my robot", "my.robot"),
+        *("_robot", "-robot", "räder", "", " my_robot "),
+    ],
+    "version": ["0.1.0", "1.0", "01.0.0", "1.0.0-rc1", "1.2.3.4", "", " 1.0.0 "],
+    "description": ["A robot.", "", "<b>A robot.</b>"],
+    "license": ["MIT", "", "Apache License 2.0"],
+}
+_WHOLE = [
+    '<maintainer email="a@b.cc"/>',
+    '<maintainer email="a@b.cc"></maintainer>',
+    '<maintainer email="a@b.c">A</maintainer>',
+    '<maintainer email="first.last@my-lab.example.org">A</maintainer>',
+    '<maintainer email="me@localhost">A</maintainer>',
+    '<maintainer email="">A</maintainer>',
+    "<maintainer>A</maintainer>",
+    '<maintainer email="a@b.cc">A</maintainer><maintainer email="x">B</maintainer>',
+    '<maintainer email="a@b.cc">A</maintainer><author>B</author>',
+    '<maintainer email="a@b.cc">A</maintainer><author email="x">B</author>',
+    '<maintainer email="a@b.cc">A</maintainer><license></license>',
+    '<maintainer email="a@b.cc">A</maintainer><exec_depend>xacro</exec_depend>',
+    '<maintainer email="a@b.cc">A</maintainer><exec_depend>my_robot</exec_depend>',
+    '<maintainer email="a@b.cc">A</maintainer><group_depend>g</group_depend><member_of_group>h</member_of_group>',
+]
+
+
+def _manifest(rest: str = '<maintainer email="lee@my-lab.org">Lee</maintainer>', **values: str | None) -> str:
+    parts = {"name": "my_robot", "version": "0.1.0", "description": "A robot.", "license": "MIT", **values}
+    written = "".join(f"<{tag}>{text}</{tag}>" for tag, text in parts.items() if text is not None)
+    return f'<package format="3">{written}{rest}</package>'
+
+
+_CASES = [
+    *(_manifest(**{tag: text}) for tag, texts in _PARTS.items() for text in (*texts, None)),
+    *map(_manifest, _WHOLE),
+    _manifest("").replace("package", "pkg"),
+]
+
+
+@pytest.mark.parametrize("text", _CASES)
+def test_catkin_pkg_is_the_judge(tmp_path, text):
+    (tmp_path / "package.xml").write_text(text, encoding="utf-8")
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # catkin_pkg's own deprecations
+            parse_package_string(text)
+        is_refused = False
+    except InvalidPackage:
+        is_refused = True
+    found = examine_package(tmp_path, Settings(select=("LW8",))).diagnostics
+    assert has_errors(found) == is_refused, [each.message for each in found]

@@ -1,0 +1,95 @@
+"""Rules that other packages bring."""
+
+from __future__ import annotations
+
+import sys
+
+import pytest
+
+from linkwright import extensions
+from linkwright.lint import check, registry
+from linkwright.lint.configuration import settings_for
+from linkwright.lint.explain import find_page
+
+RULES = '''
+from linkwright.lint import Rule
+
+
+class Nameless(Rule):
+    """A robot that the team has no name for.
+
+    ## Why
+
+    Nobody finds it again.
+    """
+
+    code = "TEAM001"
+    name = "robot-of-no-team"
+
+    def check(self, subject):
+        if not subject.root.attributes.get("name", "").startswith("team_"):
+            yield self.report("the robot's name does not begin with 'team_'", subject.root, "name")
+'''
+
+
+@pytest.fixture
+def installed(tmp_path, monkeypatch):
+    """Installs a package with the given rules."""
+
+    def install(text: str) -> None:
+        (tmp_path / "team_rules.py").write_text(text)
+        facts = tmp_path / "team_rules-1.0.dist-info"
+        facts.mkdir()
+        (facts / "METADATA").write_text("Metadata-Version: 2.1\nName: team-rules\nVersion: 1.0\n")
+        (facts / "entry_points.txt").write_text("[linkwright.lint_rules]\nteam = team_rules\n")
+        monkeypatch.syspath_prepend(tmp_path)
+        forget()
+
+    def forget() -> None:
+        sys.modules.pop("team_rules", None)
+        for cached in (extensions._all_groups, registry._found, registry._index):
+            cached.cache_clear()
+
+    yield install
+    monkeypatch.undo()
+    forget()
+
+
+@pytest.fixture
+def robot(tmp_path):
+    (tmp_path / "robot").mkdir()
+    path = tmp_path / "robot" / "r.urdf"
+    path.write_text('<robot name="r"><link name="a"/></robot>')
+    return path
+
+
+def test_they_run_beside_ours(installed, robot):
+    installed(RULES)
+    assert [each.code for each in check(robot)] == ["TEAM001"]
+
+
+def test_they_are_selected_suppressed_and_explained_like_ours(installed, robot):
+    installed(RULES)
+    (robot.parent / "linkwright.toml").write_text('ignore = ["robot-of-no-team"]')
+    assert settings_for(robot)[1] == ()
+    assert check(robot) == []
+    (robot.parent / "linkwright.toml").write_text('select = ["TEAM"]\nseverity = { TEAM001 = "error" }')
+    assert [each.severity.value for each in check(robot)] == ["error"]
+    assert "Nobody finds it again" in str(find_page("team001"))
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("import no_such_module", "No module named 'no_such_module'"),
+        (RULES.replace("TEAM001", "LW201"), "malformed code or name: LW201"),
+        (RULES.replace("TEAM001", "team1"), "malformed code or name: team1"),
+        (RULES.replace("robot-of-no-team", "limit-inverted"), "'TEAM001' or 'limit-inverted' is taken"),
+    ],
+)
+def test_of_rules_that_cannot_be_used_one_warning_tells(installed, robot, text, reason):
+    installed(text)
+    (found,) = check(robot)
+    assert (found.code, found.severity.value) == ("LINT301", "warning")
+    assert found.message.startswith("the rules of 'team_rules' cannot be used: ")
+    assert reason in found.message

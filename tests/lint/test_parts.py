@@ -1,0 +1,63 @@
+"""What rules find in a description of which some parts cannot be expanded."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.lint import check
+from linkwright.lint.registry import all_rules
+
+FINE = '<axis xyz="0 0 1"/><limit lower="-1" upper="1" effort="1" velocity="1"/>'
+LIMITS = '<axis xyz="0 0 1"/><limit lower="1" upper="-1" effort="1" velocity="1"/>'
+
+
+def joint(name: str, limit: str = LIMITS) -> str:
+    return f'<joint name="{name}" type="revolute"><parent link="base"/><child link="{name}_tip"/>{limit}</joint>'
+
+
+@pytest.fixture
+def codes(tmp_path):
+    def found(body: str) -> list[str]:
+        path = tmp_path / "robot.xacro"
+        path.write_text(f'<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n{body}\n</robot>')
+        return [each.code for each in check(path)]
+
+    return found
+
+
+def test_findings_of_rules_come_beside_the_mistake(codes):
+    assert codes(f'{joint("a")}\n<xacro:whel/>\n<link name="${{x}}"/>') == ["LW201", "XAC401", "XAC201"]
+
+
+def test_the_reader_too_tells_what_is_wrong_with_single_parts(codes):
+    assert codes('<link name="a"><visual/></link>\n<xacro:whel/>') == ["URDF130", "XAC401"]
+
+
+def test_what_may_be_due_to_the_missing_part_is_not_told(codes):
+    # Several links without a parent, a joint of links that are not there, a property and macro that nothing uses.
+    unused = '<xacro:property name="p" value="1"/><xacro:macro name="m"/>'
+    assert codes(f'{unused}<link name="a"/><link name="b"/>{joint("c", FINE)}<xacro:whel/>') == ["XAC401"]
+
+
+def test_an_element_with_a_gap_is_left_alone(codes):
+    limit = '<axis xyz="0 0 1"/><limit lower="1" upper="-1" effort="${x}" velocity="1"/>'
+    assert codes(joint("a", limit)) == ["XAC201"]
+
+
+def test_a_comment_is_not_called_useless(tmp_path):
+    path = tmp_path / "robot.xacro"
+    (tmp_path / "linkwright.toml").write_text('extend-select = ["LW001"]')
+    path.write_text(
+        '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
+        "<!-- linkwright: ignore LW102 -->\n<xacro:whel/></robot>"
+    )
+    assert [each.code for each in check(path)] == ["XAC401"]
+
+
+def test_many_rules_hold_for_parts():
+    assert {"LW201", "LW303", "LW424", "LW723"} <= {rule.code for rule in all_rules() if rule.holds_for_parts}
+
+
+def test_rules_about_the_whole_do_not():
+    whole = {"LW102", "LW103", "LW121", "LW302", "LW507", "LW701", "LW849"}
+    assert not whole & {rule.code for rule in all_rules() if rule.holds_for_parts}

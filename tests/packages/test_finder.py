@@ -1,0 +1,263 @@
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.packages import PackageFinder, PackageNotFoundError, current_finder, use_finder
+from linkwright.packages.finder import shipped_folder
+from linkwright.packages.sources import SourceScan
+
+
+def make_source(folder: Path, name: str) -> Path:
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "package.xml").write_text(f'<package format="3">\n  <name>{name}</name>\n</package>\n')
+    return folder
+
+
+def install(prefix: Path, name: str, *, marker: bool = True) -> Path:
+    share = prefix / "share" / name
+    make_source(share, name)
+    if marker:
+        markers = prefix / "share" / "ament_index" / "resource_index" / "packages"
+        markers.mkdir(parents=True, exist_ok=True)
+        (markers / name).touch()
+    return share
+
+
+def finder(start: Path, *prefixes: Path, **extra: Path) -> PackageFinder:
+    environment = {"AMENT_PREFIX_PATH": os.pathsep.join(map(str, prefixes))} if prefixes else {}
+    return PackageFinder(start=start, environment=environment, extra=extra)
+
+
+def test_extra_packages_come_first(tmp_path: Path) -> None:
+    install(tmp_path / "ros", "arm")
+    assert finder(tmp_path, tmp_path / "ros", arm=tmp_path / "mine").share("arm") == tmp_path / "mine"
+
+
+def test_prefixes_are_asked_in_their_order(tmp_path: Path) -> None:
+    overlay = install(tmp_path / "overlay", "arm")
+    install(tmp_path / "ros", "arm")
+    underlay = install(tmp_path / "ros", "gripper")
+    found = finder(tmp_path, tmp_path / "overlay", tmp_path / "ros")
+    assert found.share("arm") == overlay
+    assert found.share("gripper") == underlay
+
+
+def test_a_forgotten_index_marker_does_not_hide_an_installed_package(tmp_path: Path) -> None:
+    share = install(tmp_path / "ros", "arm", marker=False)
+    assert finder(tmp_path, tmp_path / "ros").share("arm") == share
+
+
+def test_a_prefix_lookup_does_not_walk_the_disk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    install(tmp_path / "ros", "arm")
+    found = finder(tmp_path, tmp_path / "ros")
+
+    def forbidden(*_: object) -> None:
+        raise AssertionError("the source tree is scanned")
+
+    monkeypatch.setattr(os, "scandir", forbidden)
+    assert found.share("arm").name == "arm"
+
+
+@pytest.mark.parametrize("merged", [True, False])
+def test_colcon_install_folders_are_found_from_inside_the_workspace(tmp_path: Path, merged: bool) -> None:
+    folder = tmp_path / "ws" / "install"
+    share = install(folder if merged else folder / "arm", "arm")
+    (folder / ".colcon_install_layout").write_text("merged\n" if merged else "isolated\n")
+    inside = tmp_path / "ws" / "src" / "deep"
+    inside.mkdir(parents=True)
+    assert finder(inside).share("arm") == share
+    assert finder(inside).packages()["arm"] == share
+
+
+def test_a_folder_that_is_merely_called_install_is_none(tmp_path: Path) -> None:
+    install(tmp_path / "install", "arm")
+    assert finder(tmp_path).find("arm") is None
+
+
+def test_symlink_install_gives_the_path_in_share(tmp_path: Path) -> None:
+    source = make_source(tmp_path / "src" / "arm", "arm")
+    share = install(tmp_path / "install" / "arm", "arm")
+    (share / "package.xml").unlink()
+    (share / "package.xml").symlink_to(source / "package.xml")
+    (tmp_path / "install" / ".colcon_install_layout").write_text("isolated\n")
+    assert finder(tmp_path).share("arm") == share
+
+
+def test_the_installed_copy_comes_before_the_source(tmp_path: Path) -> None:
+    make_source(tmp_path / "src" / "arm", "arm")
+    share = install(tmp_path / "install" / "arm", "arm")
+    (tmp_path / "install" / "local_setup.sh").touch()
+    assert finder(tmp_path).share("arm") == share
+
+
+def test_sources_are_found_below_src_of_the_folders_above(tmp_path: Path) -> None:
+    arm = make_source(tmp_path / "ws" / "src" / "group" / "arm", "arm")
+    elsewhere = tmp_path / "ws" / "notes" / "today"
+    elsewhere.mkdir(parents=True)
+    assert finder(elsewhere).share("arm") == arm
+
+
+def test_the_package_one_stands_in_and_those_beside_it_are_found(tmp_path: Path) -> None:
+    arm = make_source(tmp_path / "repo" / "arm", "arm")
+    gripper = make_source(tmp_path / "repo" / "gripper", "gripper")
+    (arm / "urdf").mkdir()
+    found = finder(arm / "urdf")
+    assert found.share("arm") == arm
+    assert found.share("gripper") == gripper
+
+
+def test_several_starts_are_asked_in_their_order(tmp_path: Path) -> None:
+    first = make_source(tmp_path / "a" / "arm", "arm")
+    make_source(tmp_path / "b" / "arm", "arm")
+    only_there = make_source(tmp_path / "b" / "gripper", "gripper")
+    found = PackageFinder(start=[tmp_path / "a", tmp_path / "b"], environment={})
+    assert found.share("arm") == first
+    assert found.share("gripper") == only_there
+
+
+def test_shipped_packages_are_there_from_anywhere(tmp_path: Path) -> None:
+    shipped = shipped_folder()
+    assert shipped is not None
+    assert finder(tmp_path).share("my_robot_description") == shipped / "my_robot_description"
+
+
+def test_an_unknown_package_says_what_was_searched_and_what_is_near(tmp_path: Path) -> None:
+    install(tmp_path / "ros", "turtlebot4_description")
+    make_source(tmp_path / "ws" / "src" / "arm", "arm")
+    nameless = tmp_path / "ws" / "src" / "broken"
+    nameless.mkdir()
+    (nameless / "package.xml").write_text("<package/>")
+    found = finder(tmp_path / "ws", tmp_path / "ros")
+    with pytest.raises(PackageNotFoundError) as caught:
+        found.share("turtlebot_description")
+    (diagnostic,) = caught.value.diagnostics
+    notes = "\n".join(note.message for note in diagnostic.notes)
+    assert diagnostic.code == "PKG101"
+    assert diagnostic.message == "package 'turtlebot_description' not found"
+    assert (diagnostic.hint or "").startswith("did you mean 'turtlebot4_description'")
+    assert f"AMENT_PREFIX_PATH: {tmp_path / 'ros'}" in notes
+    assert str(tmp_path / "ws" / "src") in notes
+    assert "broken/package.xml, which names no package" in notes
+    assert "my_robot_description" in notes
+
+
+def test_a_package_that_only_shares_common_words_is_not_meant(tmp_path: Path) -> None:
+    install(tmp_path / "ros", "kuka_robot_description")
+    with pytest.raises(PackageNotFoundError) as caught:
+        finder(tmp_path, tmp_path / "ros").share("abb_robot_description")
+    assert "did you mean" not in (caught.value.diagnostics[0].hint or "")
+
+
+def test_the_error_is_a_key_error_as_in_ament_index_python(tmp_path: Path) -> None:
+    with pytest.raises(KeyError) as caught:
+        finder(tmp_path).share("no_such_package_at_all")
+    assert "package 'no_such_package_at_all' not found" in str(caught.value)
+
+
+def test_the_finder_in_force(tmp_path: Path) -> None:
+    mine = finder(tmp_path)
+    with use_finder(mine):
+        assert current_finder() is mine
+    assert current_finder() is not mine
+
+
+class TestSourceScan:
+    @pytest.mark.parametrize("marker", ["COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE"])
+    def test_ignore_markers(self, tmp_path: Path, marker: str) -> None:
+        make_source(tmp_path / "off" / "arm", "arm")
+        (tmp_path / "off" / marker).touch()
+        assert SourceScan(tmp_path).packages() == {}
+
+    @pytest.mark.parametrize("folder", ["build", "install", "log", ".git", "node_modules"])
+    def test_folders_without_sources(self, tmp_path: Path, folder: str) -> None:
+        make_source(tmp_path / folder / "arm", "arm")
+        assert SourceScan(tmp_path).packages() == {}
+
+    def test_nothing_is_looked_for_inside_of_a_package(self, tmp_path: Path) -> None:
+        arm = make_source(tmp_path / "arm", "arm")
+        make_source(arm / "templates" / "x", "template")
+        assert SourceScan(tmp_path).packages() == {"arm": arm}
+
+    def test_of_two_with_one_name_the_nearer_counts(self, tmp_path: Path) -> None:
+        make_source(tmp_path / "a" / "deep" / "arm", "arm")
+        near = make_source(tmp_path / "z_arm", "arm")
+        assert SourceScan(tmp_path).find("arm") == near
+
+    def test_links_in_circles_end(self, tmp_path: Path) -> None:
+        arm = make_source(tmp_path / "group" / "arm", "arm")
+        (tmp_path / "group" / "loop").symlink_to(tmp_path)
+        scan = SourceScan(tmp_path)
+        assert scan.packages() == {"arm": arm}
+        assert not scan.truncated
+
+    def test_a_linked_package_is_found(self, tmp_path: Path) -> None:
+        make_source(tmp_path / "elsewhere" / "arm", "arm")
+        (tmp_path / "src").mkdir()
+        (tmp_path / "src" / "arm").symlink_to(tmp_path / "elsewhere" / "arm")
+        assert SourceScan(tmp_path / "src").packages() == {"arm": tmp_path / "src" / "arm"}
+
+    def test_the_search_is_bounded(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.setattr("linkwright.packages.sources.MAXIMUM_FOLDERS", 3)
+        for number in range(5):
+            (tmp_path / f"f{number}").mkdir()
+        make_source(tmp_path / "f4" / "arm", "arm")
+        scan = SourceScan(tmp_path)
+        assert scan.find("arm") is None
+        assert scan.truncated
+
+    def test_a_name_in_a_comment_is_none(self, tmp_path: Path) -> None:
+        (tmp_path / "arm").mkdir()
+        (tmp_path / "arm" / "package.xml").write_text(
+            "<?xml version='1.0'?><!-- <package><name>old</name> --><package format='2'><name> arm </name></package>"
+        )
+        assert SourceScan(tmp_path).packages() == {"arm": tmp_path / "arm"}
+
+
+class TestResolve:
+    @pytest.fixture
+    def packages(self, tmp_path: Path) -> PackageFinder:
+        return finder(tmp_path, arm=tmp_path / "arm")
+
+    @pytest.mark.parametrize(
+        ("address", "path"),
+        [
+            ("package://arm/meshes/a.stl", "arm/meshes/a.stl"),
+            ("package://arm", "arm"),
+            ("package://arm/a%20b.stl", "arm/a b.stl"),
+            ("PACKAGE://arm/a.stl", "arm/a.stl"),
+        ],
+    )
+    def test_package(self, packages: PackageFinder, tmp_path: Path, address: str, path: str) -> None:
+        assert packages.resolve(address) == tmp_path / path
+
+    @pytest.mark.parametrize("address", ["file:///a/b.stl", "file:/a/b.stl", "file://localhost/a/b.stl", "/a/b.stl"])
+    def test_absolute(self, packages: PackageFinder, address: str) -> None:
+        assert packages.resolve(address) == Path("/a/b.stl")
+
+    def test_relative(self, packages: PackageFinder) -> None:
+        assert packages.resolve("meshes/a.stl", Path("/robot")) == Path("/robot/meshes/a.stl")
+        assert packages.resolve("meshes/a.stl") == Path("meshes/a.stl")
+
+    @pytest.mark.parametrize(
+        ("address", "message"),
+        [
+            ("package:/arm/a.stl", "lacks the two slashes"),
+            ("package:///a.stl", "names no package"),
+            ("file://a.stl", "has no absolute path"),
+            ("http://example.org/a.stl", "names no file here"),
+            ("model://arm/a.stl", "names no file here"),
+            ("", "is empty"),
+        ],
+    )
+    def test_malformed(self, packages: PackageFinder, address: str, message: str) -> None:
+        with pytest.raises(LinkwrightError, match=message) as caught:
+            packages.resolve(address)
+        assert caught.value.diagnostics[0].code == "PKG102"
+
+    def test_an_unknown_package(self, packages: PackageFinder) -> None:
+        with pytest.raises(PackageNotFoundError, match="'armm' not found"):
+            packages.resolve("package://armm/a.stl")

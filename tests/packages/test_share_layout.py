@@ -1,0 +1,188 @@
+"""Packages that are not built and install their files elsewhere than they lie."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from linkwright.diagnostics import LinkwrightError, SourceText
+from linkwright.launch.model.context import LaunchContext
+from linkwright.launch.ros.substitutions import FindPackageShare
+from linkwright.packages import PackageFinder, use_finder
+from linkwright.packages.ament_functions import get_package_share_directory
+from linkwright.packages.readers.cmake import read_cmake
+from linkwright.packages.share_layout import source_of
+from linkwright.xacro import expand
+
+MANIFEST = '<package format="3"><name>arm</name></package>'
+ROBOT = '<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro"><link name="base"/></robot>'
+CMAKE = """
+project(arm)
+add_subdirectory(extra)
+install(DIRECTORY description/urdf description/meshes DESTINATION share/${PROJECT_NAME})
+foreach(folder launch config)
+  install(DIRECTORY bringup/${folder} DESTINATION share/${PROJECT_NAME})
+endforeach()
+configure_file(limits.yaml.in limits.yaml)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/limits.yaml DESTINATION share/${PROJECT_NAME}/config)
+ament_package()
+"""
+SETUP = """
+import os
+from glob import glob
+from setuptools import setup
+package_name = 'arm'
+setup(name=package_name, data_files=[
+    ('share/' + package_name, ['package.xml']),
+    (os.path.join('share', package_name, 'config'), glob('cfg/*')),
+    (os.path.join('share', package_name, 'urdf'), glob('description/**/*.xacro', recursive=True)),
+])
+"""
+
+
+@pytest.fixture(autouse=True)
+def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    return tmp_path / "cache" / "linkwright" / "shares"
+
+
+@pytest.fixture
+def write(tmp_path: Path) -> Callable[..., Path]:
+    def written(files: dict[str, str]) -> Path:
+        folder = tmp_path / "src" / "arm"
+        for name, text in {"package.xml": MANIFEST, **files}.items():
+            path = folder / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text)
+        return folder
+
+    return written
+
+
+@pytest.fixture
+def moved(write: Callable[..., Path]) -> Path:
+    return write(
+        {
+            "CMakeLists.txt": CMAKE,
+            "extra/CMakeLists.txt": "install(DIRECTORY rviz DESTINATION share/${PROJECT_NAME})\n",
+            "extra/rviz/arm.rviz": "",
+            "description/urdf/arm.xacro": ROBOT,
+            "description/meshes/base.stl": "",
+            "bringup/launch/show.launch.py": "",
+            "bringup/config/arm.rviz": "",
+            "limits.yaml.in": "robot: @PROJECT_NAME@\n",
+            "README.md": "",
+        }
+    )
+
+
+def finder_of(package: Path) -> PackageFinder:
+    return PackageFinder(start=package.parents[1], environment={})
+
+
+def files_below(folder: Path) -> set[str]:
+    return {
+        Path(where, name).relative_to(folder).as_posix()
+        for where, _, names in os.walk(folder, followlinks=True)
+        for name in names
+    }
+
+
+def test_what_cmake_moves_is_where_it_would_be_installed(moved: Path) -> None:
+    share = finder_of(moved).share("arm")
+    assert os.path.realpath(share / "urdf" / "arm.xacro") == str(moved / "description" / "urdf" / "arm.xacro")
+    cmake = read_cmake(SourceText("CMakeLists.txt", CMAKE), moved)
+    installed = {file.destination.removeprefix("share/arm/") for file in cmake.installed(moved)}
+    assert installed == {
+        *("urdf/arm.xacro", "meshes/base.stl", "launch/show.launch.py", "config/arm.rviz", "config/limits.yaml"),
+        "rviz/arm.rviz",
+    }
+    assert installed <= files_below(share)
+    assert (share / "config" / "limits.yaml").read_text() == "robot: arm\n"
+    assert {"package.xml", "README.md", "description/urdf/arm.xacro"} <= files_below(share)
+
+
+def test_what_setup_py_moves_too(write: Callable[..., Path]) -> None:
+    package = write(
+        {"setup.py": SETUP, "cfg/a.yaml": "a", "description/parts/hand.xacro": ROBOT, "config/kept.txt": ""}
+    )
+    share = finder_of(package).share("arm")
+    assert (share / "config" / "a.yaml").read_text() == "a"
+    assert (share / "urdf" / "hand.xacro").read_text() == ROBOT
+    assert (share / "config" / "kept.txt").is_file(), "what is not installed is not taken away"
+
+
+def by_address(finder: PackageFinder) -> str:
+    return str(finder.resolve("package://arm/urdf/arm.xacro"))
+
+
+def by_launch(finder: PackageFinder) -> str:
+    with use_finder(finder):
+        return FindPackageShare("arm").perform(LaunchContext()) + "/urdf/arm.xacro"
+
+
+def by_ament(finder: PackageFinder) -> str:
+    with use_finder(finder):
+        return get_package_share_directory("arm") + "/urdf/arm.xacro"
+
+
+@pytest.mark.parametrize("find", [by_address, by_launch, by_ament])
+def test_all_who_ask_find_the_same(moved: Path, find: Callable[[PackageFinder], str]) -> None:
+    assert os.path.realpath(find(finder_of(moved))) == str(moved / "description" / "urdf" / "arm.xacro")
+
+
+def test_xacro_finds_it_and_its_faults_name_the_source(moved: Path, tmp_path: Path) -> None:
+    main = tmp_path / "main.xacro"
+    main.write_text(ROBOT.replace('<link name="base"/>', '<xacro:include filename="$(find arm)/urdf/arm.xacro"/>'))
+    assert "base" in str(expand(main, packages=finder_of(moved)))
+    source = moved / "description" / "urdf" / "arm.xacro"
+    source.write_text(ROBOT.replace("base", "${none}"))
+    with pytest.raises(LinkwrightError) as caught:
+        expand(main, packages=finder_of(moved))
+    span = caught.value.diagnostics[0].span
+    assert span is not None
+    assert span.file == str(source)
+
+
+def test_a_package_that_moves_nothing_is_its_own_share_folder(write: Callable[..., Path], cache: Path) -> None:
+    cmake = "project(arm)\ninstall(DIRECTORY urdf launch/ DESTINATION share/arm)\n".replace("launch/", "launch")
+    package = write({"CMakeLists.txt": cmake, "urdf/arm.xacro": ROBOT, "launch/a.launch.py": ""})
+    assert finder_of(package).share("arm") == package
+    assert not cache.exists()
+
+
+def test_a_new_file_is_there_at_the_next_question_and_old_layouts_go(moved: Path, cache: Path) -> None:
+    finder = finder_of(moved)
+    before = finder.share("arm")
+    assert finder_of(moved).share("arm") == before, "nothing is made twice"
+    (moved / "bringup" / "config" / "more.yaml").write_text("")
+    month_ago = time.time() - 30 * 86400
+    os.utime(before.parent, (month_ago, month_ago))
+    finder.forget()
+    after = finder.share("arm")
+    assert (after / "config" / "more.yaml").is_file()
+    assert not before.exists()
+    assert len(list(next(cache.iterdir()).iterdir())) == 1
+
+
+def test_who_starts_from_such_a_folder_finds_it(moved: Path) -> None:
+    share = finder_of(moved).share("arm")
+    assert PackageFinder(start=share / "launch", environment={}).share("arm") == share
+
+
+def test_where_no_links_can_be_made_the_sources_serve(moved: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*_: object) -> None:
+        raise OSError("no links here")
+
+    monkeypatch.setattr(Path, "symlink_to", refuse)
+    assert finder_of(moved).share("arm") == moved
+
+
+def test_other_paths_are_their_own_sources(tmp_path: Path) -> None:
+    link = tmp_path / "link"
+    link.symlink_to(tmp_path)
+    assert source_of(str(link)) == str(link)

@@ -1,0 +1,213 @@
+"""A small language of garden sheds, read, written and described by its rules."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import pytest
+
+from linkwright.schema import (
+    UNREADABLE,
+    AttributeRule,
+    ElementRule,
+    ValueType,
+    describe_attribute,
+    describe_element,
+    reader_of,
+    write_element,
+)
+from linkwright.xmltree import Document, Element, parse, write
+
+TEXT = ValueType("text")
+NUMBER = ValueType("number", float, lambda value: None if value == float("inf") else f"{value:g}")
+
+
+@dataclass(frozen=True)
+class Tool:
+    name: str
+    weight: float | None = None
+    length: float = 1.0
+
+
+@dataclass(frozen=True)
+class Hook:
+    height: float
+
+
+@dataclass(frozen=True)
+class Bed:
+    length: float
+
+
+@dataclass(frozen=True)
+class Shed:
+    name: str
+    width: float = 2.0
+    tools: tuple[Tool, ...] = ()
+    place: Hook | Bed | None = None
+    shed: tuple[Shed, ...] = ()
+    element: Element | None = None
+
+
+TOOL = ElementRule(
+    "tool",
+    "something to work with",
+    (
+        AttributeRule("name", TEXT, "what it is called", required=True),
+        AttributeRule("kg", NUMBER, "how heavy it is", "kg", since=(1, 1), field="weight"),
+        AttributeRule("length", NUMBER, "how long it is", "m", default="1", later_default=((2, 0), 3.0)),
+    ),
+    many=True,
+    make=Tool,
+    field="tools",
+)
+PLACE = ElementRule(
+    "place",
+    "where it hangs or grows",
+    children=(
+        ElementRule("hook", "a hook", text=AttributeRule("height", NUMBER, "how high", required=True), make=Hook),
+        ElementRule("bed", "a bed", (AttributeRule("length", NUMBER, "", required=True),), since=(1, 1), make=Bed),
+    ),
+    choice=True,
+)
+SHED = ElementRule(
+    "shed",
+    "a house for tools",
+    (AttributeRule("name", TEXT, "its name", required=True),),
+    (
+        ElementRule(
+            "size",
+            "how large it is",
+            (AttributeRule("width", NUMBER, "from left to right", "m", required=True),),
+            required=True,
+            default=(2.0,),
+        ),
+        TOOL,
+        PLACE,
+    ),
+    make=Shed,
+    located=True,
+    nests=True,
+)
+
+
+class Told:
+    """A report that keeps a word for each finding."""
+
+    def __init__(self):
+        self.words: list[str] = []
+
+    @property
+    def count(self):
+        return len(self.words)
+
+    def missing_attribute(self, element, rule, attribute, owner):
+        self.words.append(f"{rule.tag} of {owner.tag} lacks {attribute.name}")
+
+    def malformed(self, element, rule, attribute, owner):
+        self.words.append(f"{rule.tag} of {owner.tag} has a bad {attribute.name}")
+        return 7.0 if attribute.name == "kg" else UNREADABLE
+
+    def too_new(self, element, rule, attribute, owner):
+        self.words.append(f"{attribute.name} is too new")
+
+    def missing_child(self, element, rule, child, owner):
+        self.words.append(f"{rule.tag} lacks {child.tag}")
+
+    def empty_choice(self, element, rule, owner):
+        self.words.append(f"{rule.tag} is empty")
+
+    def unknown_choice(self, child, rule, owner):
+        self.words.append(f"{child.tag} is no {rule.tag}")
+
+
+def read(text: str, version=(1, 1)):
+    root = parse(text, "shed.xml").root
+    told = Told()
+    return reader_of(SHED, version).read(root, root, told), told.words
+
+
+FULL = (
+    '<shed name="big"><size width="3"/><tool name="saw" kg="2"/><tool name="rope" length="9"/>'
+    '<place><hook>1.5</hook></place><shed name="inner"><size width="1"/></shed></shed>'
+)
+
+
+def test_everything_is_read_into_objects():
+    shed, words = read(FULL)
+    assert words == []
+    assert (shed.name, shed.width, shed.place) == ("big", 3.0, Hook(1.5))
+    assert shed.tools == (Tool("saw", 2.0), Tool("rope", None, 9.0))
+    assert [inner.name for inner in shed.shed] == ["inner"]
+    assert shed.element.tag == "shed"
+
+
+def test_what_is_written_reads_back():
+    shed, _ = read(FULL)
+    text = write(Document(write_element(SHED, shed)))
+    assert 'length="1"' not in text  # as by default
+    again, words = read(text)
+    assert words == []
+    assert again.tools == shed.tools
+    assert again.place == shed.place
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("<shed/>", ["shed of shed lacks name", "shed lacks size"]),
+        ('<shed name="a"><size/></shed>', ["size of shed lacks width"]),
+        (
+            '<shed name="a"><size width="wide"/><tool/></shed>',
+            ["size of shed has a bad width", "tool of shed lacks name"],
+        ),
+        ('<shed name="a"><size width="1"/><place/></shed>', ["place is empty"]),
+        ('<shed name="a"><size width="1"/><place><roof/></place></shed>', ["roof is no place"]),
+        ('<shed name="a"><size width="1"/><place><hook/></place></shed>', ["hook of shed lacks height"]),
+        ('<shed name="a"><size width="1"/><shed name="b"/></shed>', ["shed lacks size"]),
+    ],
+)
+def test_all_that_is_wrong_is_told_and_there_is_no_object(text, words):
+    assert read(text) == (UNREADABLE, words)
+
+
+def test_a_report_may_give_a_value_to_go_on_with():
+    shed, words = read('<shed name="a"><size width="1"/><tool name="t" kg="much"/></shed>')
+    assert words == ["tool of shed has a bad kg"]
+    assert shed.tools[0].weight == 7.0
+
+
+def test_versions():
+    text = '<shed name="a"><size width="1"/><tool name="t" kg="2"/><place><bed length="1"/></place></shed>'
+    assert read(text, (1, 0)) == (UNREADABLE, ["kg is too new", "bed is no place"])
+    shed, words = read(text, (2, 0))
+    assert words == []
+    assert shed.tools[0].length == 3.0
+
+
+def test_of_several_children_the_first_counts():
+    shed, _ = read('<shed name="a"><size width="1"/><size width="2"/></shed>')
+    assert shed.width == 1.0
+
+
+def test_what_gave_findings_gives_them_again():
+    text = '<shed name="a"><size width="x"/></shed>'
+    assert read(text) == read(text)
+
+
+def test_descriptions():
+    assert describe_element(TOOL).splitlines() == [
+        "`<tool>`: something to work with",
+        "",
+        "- `name`: what it is called (text, required)",
+        "- `kg`: how heavy it is (number in kg, since version 1.1)",
+        "- `length`: how long it is (number in m, `1` when absent)",
+    ]
+    assert describe_element(SHED).splitlines()[-1] == (
+        "- contains `<size>` (required), `<tool>` (any number), `<place>`, `<shed>` (any number)"
+    )
+    assert describe_element(PLACE).splitlines()[-1] == "- contains one of `<hook>`, `<bed>`"
+    hook, bed = PLACE.children
+    assert describe_element(hook).splitlines()[-1] == "- the text inside: how high (number, required)"
+    assert describe_element(bed).startswith("`<bed>`, since version 1.1: a bed")
+    assert describe_attribute(SHED.attributes[0]) == "`name`: its name (text, required)"

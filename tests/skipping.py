@@ -1,0 +1,108 @@
+"""Event loops whose waits are skipped: what takes seconds takes milliseconds, on a busy machine too.
+
+The time of such a loop passes only while nothing else is left to do, as far as the next thing that is due. However slow
+the machine is, work takes no time, so that rates, delays and order are the same in each run. What goes by the clock of
+the computer (``time.monotonic``) sees nothing of it; a graph does, when it has a `LoopClock`.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import functools
+import selectors
+import time
+from collections.abc import Callable, Coroutine
+from typing import Any, TypeVar
+
+from linkwright.graph import SystemClock, Timebase
+
+_LOOK = 0.0005
+"""Seconds in which a socket or another thread may still bring something before time passes."""
+_STEP = 0.02
+"""Most seconds that pass then: what was on its way longer than one look does not run into a timeout."""
+
+T = TypeVar("T")
+
+
+class _SkippingSelector(selectors.DefaultSelector):  # type: ignore[misc, valid-type]
+    """Gives the loop what is ready; instead of waiting for it, lets the loop's time pass."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.passed = 0.0
+        self.working = 0
+        """Calls that other threads make for the loop: they take the time of the machine."""
+
+    def select(self, timeout: float | None = None) -> Any:
+        if timeout is None or timeout <= 0 or self.working:
+            return super().select(timeout)
+        ready = super().select(_LOOK)
+        if not ready:
+            self.passed += min(timeout, _STEP)
+        return ready
+
+
+class SkippingLoop(asyncio.SelectorEventLoop):
+    """An event loop that skips its waits."""
+
+    def __init__(self) -> None:
+        self._skipping = _SkippingSelector()
+        super().__init__(self._skipping)
+
+    def time(self) -> float:
+        """Seconds, 1000 at the beginning."""
+        return 1000.0 + self._skipping.passed
+
+    def run_in_executor(self, executor: Any, func: Callable[..., Any], *args: Any) -> asyncio.Future[Any]:
+        """Let another thread do something, during which no time is skipped."""
+        future = super().run_in_executor(executor, func, *args)
+        self._skipping.working += 1
+        future.add_done_callback(self._worked)
+        return future
+
+    def _worked(self, _future: asyncio.Future[Any]) -> None:
+        self._skipping.working -= 1
+
+
+class LoopClock(Timebase):
+    """The time of the event loop, for the graph on it; a microsecond passes between two looks at the time of day."""
+
+    def __init__(self) -> None:
+        self._loop = asyncio.get_running_loop()
+        self._begin_ns = time.time_ns() - self.steady_ns()
+
+    def now_ns(self) -> int:
+        """Nanoseconds since the epoch."""
+        self._begin_ns += 1000
+        return self._begin_ns + self.steady_ns()
+
+    def steady_ns(self) -> int:
+        """Nanoseconds of the loop."""
+        return round(self._loop.time() * 1e9)
+
+    def call_at(self, loop: asyncio.AbstractEventLoop, steady_ns: int, callback: Callable[[], None]) -> Any:
+        """Call something once on the loop."""
+        return loop.call_at(steady_ns / 1e9, callback)
+
+
+def graph_clock() -> Timebase:
+    """The clock for a graph on the running loop: that of the loop where it skips its waits."""
+    return LoopClock() if isinstance(asyncio.get_running_loop(), SkippingLoop) else SystemClock()
+
+
+def skipping(test: Callable[..., Coroutine[Any, Any, T]]) -> Callable[..., T]:
+    """Run a test that is a coroutine on a loop that skips its waits; its fixtures must not be coroutines."""
+
+    @functools.wraps(test)
+    def run(*arguments: Any, **named: Any) -> T:
+        loop = SkippingLoop()
+        asyncio.set_event_loop(loop)
+        try:
+            return loop.run_until_complete(test(*arguments, **named))
+        finally:
+            loop.run_until_complete(loop.shutdown_asyncgens())
+            loop.run_until_complete(loop.shutdown_default_executor())
+            asyncio.set_event_loop(None)
+            loop.close()
+
+    return run

@@ -1,0 +1,49 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import rclpy
+import tf2_ros
+from geometry_msgs.msg import TransformStamped
+from sensor_msgs.msg import PointField
+from sensor_msgs_py import point_cloud2
+from std_msgs.msg import Header
+from tf2_sensor_msgs import do_transform_cloud, transform_points
+from tf_transformations import quaternion_from_euler
+
+
+@pytest.fixture
+def turned():
+    """One metre along x, and a quarter of a turn around z."""
+    made = TransformStamped(child_frame_id="lidar")
+    made.header.frame_id = "base"
+    made.transform.translation.x = 1.0
+    rotation = made.transform.rotation
+    rotation.x, rotation.y, rotation.z, rotation.w = quaternion_from_euler(0, 0, np.pi / 2)
+    return made
+
+
+def test_points(turned):
+    for transform in (turned, turned.transform):
+        np.testing.assert_allclose(
+            transform_points([[1, 0, 0], [0, 0, 2]], transform), [[1, 1, 0], [1, 0, 2]], atol=1e-12
+        )
+
+
+def test_a_cloud_keeps_its_other_fields(turned):
+    fields = [PointField(name=name, offset=4 * at, datatype=7, count=1) for at, name in enumerate(["x", "y", "z", "i"])]
+    cloud = point_cloud2.create_cloud(Header(frame_id="lidar"), fields, [(1.0, 0.0, 0.0, 7.0), (0.0, 0.0, 2.0, 8.0)])
+    moved = do_transform_cloud(cloud, turned)
+    assert moved.header.frame_id == "base"
+    assert (moved.width, moved.point_step, list(moved.fields)) == (2, 16, fields)
+    found = [list(each) for each in point_cloud2.read_points(moved)]
+    np.testing.assert_allclose(found, [[1, 1, 0, 7], [1, 0, 2, 8]], atol=1e-6)
+
+
+def test_a_buffer_transforms_clouds(turned, monkeypatch):
+    monkeypatch.setenv("LINKWRIGHT_DDS", "0")
+    buffer = tf2_ros.Buffer()
+    buffer.set_transform_static(turned, "test")
+    cloud = point_cloud2.create_cloud_xyz32(Header(frame_id="lidar"), [(1.0, 0.0, 0.0)])
+    moved = buffer.transform(cloud, "base", rclpy.duration.Duration(seconds=0))
+    np.testing.assert_allclose([list(each) for each in point_cloud2.read_points(moved)], [[1, 1, 0]], atol=1e-6)

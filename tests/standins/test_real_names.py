@@ -1,0 +1,47 @@
+"""The tables against real modules of Jazzy, where LINKWRIGHT_ROS_PYTHON names an interpreter that has them."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+
+import pytest
+
+from linkwright.standins import table
+
+PYTHON = os.environ.get("LINKWRIGHT_ROS_PYTHON", "")
+GONE_SINCE_HUMBLE = {"rclpy.time.CONVERSION_CONSTANT", "rclpy.qos_overriding_options._declare_qos_parameteres"}
+AFTER_JAZZY = ("kilted", "rolling")
+
+LOOK = """
+import importlib, json, sys
+lacking = []
+for module, names in json.load(sys.stdin).items():
+    try:
+        real = importlib.import_module(module)
+    except ModuleNotFoundError:
+        continue
+    lacking += [f"{module}.{name}" for name in names if not hasattr(real, name)]
+print(json.dumps(lacking))
+"""
+
+
+@pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ROS_PYTHON names no interpreter with rclpy")
+@pytest.mark.parametrize("package", ["rclpy", "ament_index_python", "rosidl_parser"])
+def test_the_real_modules_have_the_names_that_the_tables_say(package):
+    asked = {
+        module.name: [name for name, found in module.names.items() if found.since not in AFTER_JAZZY]
+        for module in table.read(package).values()
+        if module.since not in AFTER_JAZZY
+    }
+    done = subprocess.run(
+        [PYTHON, "-c", LOOK],
+        input=json.dumps(asked),
+        env={**os.environ, "PYTHONPATH": ""},
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=120,
+    )
+    assert set(json.loads(done.stdout)) - GONE_SINCE_HUMBLE == set()

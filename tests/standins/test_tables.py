@@ -1,0 +1,147 @@
+"""The modules that tables of names describe: exactly those names, and all else that Python's own modules do."""
+
+from __future__ import annotations
+
+import importlib
+import importlib.resources
+import inspect
+import pickle
+import pkgutil
+from unittest import mock
+
+import pytest
+
+from linkwright.standins import modules, table
+
+MODULES = {name: module for package in table.packages() for name, module in table.read(package).items()}
+NAMES = {package: {name for module in table.read(package).values() for name in module.names}
+         for package in table.packages()}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_each_name_that_a_table_has_can_be_imported(name):
+    module = importlib.import_module(name)
+    for each in [*MODULES[name].names, *MODULES[name].submodules]:
+        assert hasattr(module, each), f"from {name} import {each}"
+
+
+@pytest.mark.parametrize("name", [name for name, module in MODULES.items() if not module.others])
+def test_a_name_that_the_table_does_not_have_is_not_there(name):
+    module = importlib.import_module(name)
+    described = MODULES[name]
+    elsewhere = NAMES[name.partition(".")[0]] - described.names.keys() - set(described.submodules)
+    for each in {*elsewhere, *described.absent, "NoSuchName"}:
+        assert not hasattr(module, each), f"from {name} import {each}"
+
+
+@pytest.mark.parametrize(
+    ("module", "name"),
+    [
+        ("rclpy.qos", "Node"),
+        ("rclpy", "Node"),
+        ("rclpy.time", "QoSProfile"),
+        ("launch", "ForLoop"),
+        ("launch.launch_introspector", "Node"),
+        ("launch_ros.actions", "LaunchConfiguration"),
+        ("tf2_ros", "PoseArray"),
+    ],
+)
+def test_what_ros_does_not_export_there(module, name):
+    with pytest.raises(ImportError, match=f"cannot import name '{name}' from '{module}'"):
+        exec(f"from {module} import {name}", {})
+
+
+def test_origins_among_the_stand_ins_are_names_of_their_tables():
+    """So that a table's mistake is not hidden by what the module of another one imports."""
+    for name, module in MODULES.items():
+        for each, found in module.names.items():
+            other = MODULES.get(found.origin)
+            if other is not None and found.origin != name:
+                assert found.name in other.names or found.name in other.submodules, f"{name}: {each}"
+
+
+class TestModules:
+    def test_pkgutil_finds_them(self):
+        import launch.events
+
+        import launch
+
+        found = {each.name: each.ispkg for each in pkgutil.iter_modules(launch.__path__)}
+        assert found["actions"] is True
+        assert found["launch_service"] is False
+        walked = [each.name for each in pkgutil.walk_packages(launch.__path__, "launch.")]
+        assert {"launch.actions.timer_action", "launch.events.process.process_exited"} <= set(walked)
+        assert {"launch", "rclpy"} <= {each.name for each in pkgutil.iter_modules([modules.FOLDER])}
+
+    def test_names_are_looked_up_once_and_can_be_replaced(self):
+        import rclpy.qos
+
+        with mock.patch("rclpy.qos.QoSProfile") as replaced:
+            assert rclpy.qos.QoSProfile is replaced
+        from linkwright.graph.qos.profile import QoSProfile
+
+        assert rclpy.qos.QoSProfile is QoSProfile
+
+    def test_dir_and_star(self):
+        import launch.conditions
+
+        assert {"IfCondition", "if_condition", "__path__"} <= set(dir(launch.conditions))
+        everything = {}
+        exec("from launch.conditions import *", everything)
+        assert "IfCondition" in everything
+        assert "if_condition" not in everything
+
+    def test_classes_are_pickled_and_shown(self):
+        from rclpy.time import Time
+        from tf2_ros import Buffer
+
+        assert pickle.loads(pickle.dumps(Time(nanoseconds=5))) == Time(nanoseconds=5)
+        assert "class Buffer" in inspect.getsource(Buffer)
+
+    def test_files_of_a_package(self):
+        import launch
+
+        assert launch.__file__.endswith("launch.txt")
+        assert launch.__spec__.submodule_search_locations
+        assert importlib.resources.files("launch") is not None
+
+    def test_reload(self):
+        import launch.conditions
+
+        assert importlib.reload(launch.conditions) is launch.conditions
+        assert launch.conditions.IfCondition
+
+
+class TestReading:
+    def test_a_table(self):
+        read = table.parse(
+            "# Words.\n"
+            "[one]\n"
+            "here: A B=C\n"
+            "    D\n"
+            "here since iron: E\n"
+            "import: os\n"
+            "value F: ('x', 1)\n"
+            "absent G: why | 为什么\n"
+            "differs A: how | 如何\n"
+            "setup: here.begin\n"
+            "[one.two] since jazzy\n"
+        )
+        one = read["one"]
+        assert one.names == {
+            "A": table.Name("here", "A"),
+            "B": table.Name("here", "C"),
+            "D": table.Name("here", "D"),
+            "E": table.Name("here", "E", "iron"),
+            "os": table.Name("import", "os"),
+            "F": table.Name("value", "('x', 1)"),
+        }
+        assert one.absent == {"G": table.Remark("why", "为什么")}
+        assert one.differs == {"A": table.Remark("how", "如何")}
+        assert (one.setup, one.submodules, read["one.two"].since) == ("here.begin", ["two"], "jazzy")
+        assert modules.value_of(one, "F") == ("x", 1)
+
+    @pytest.mark.parametrize("text", ["[one]\nno line\n", "here: A\n"])
+    def test_a_line_that_is_none(self, text):
+        with pytest.raises(ValueError, match="not a line of a table"):
+            table.parse(text)

@@ -1,0 +1,50 @@
+"""The order of what packages bring."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from linkwright import extensions
+
+
+@pytest.fixture
+def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    """Install packages with entry points of one group, written in the order given."""
+
+    def install(**packages: list[str]) -> None:
+        for name, lines in packages.items():
+            facts = tmp_path / f"{name}-1.0.dist-info"
+            facts.mkdir()
+            (facts / "entry_points.txt").write_text("\n".join(["[linkwright.things]", *lines, ""]))
+        extensions._all_groups.cache_clear()
+
+    monkeypatch.setattr(sys, "path", [str(tmp_path)])
+    yield install
+    monkeypatch.undo()
+    extensions._all_groups.cache_clear()
+
+
+def names() -> list[str]:
+    return list(extensions.extensions("linkwright.things"))
+
+
+def test_ours_come_first_and_then_names_decide(installed) -> None:
+    installed(
+        brought=["b = brought:b", "a = brought:a"],
+        linkwright=["z = linkwright.z:z", "y = linkwright.y:y"],
+        other=["ab = other:ab"],
+    )
+    assert names() == ["y", "z", "a", "ab", "b"]
+
+
+def test_ours_cannot_be_replaced_and_others_not_by_those_found_later(installed) -> None:
+    installed(
+        brought=["y = brought:y", "a = brought:a"],
+        linkwright=["y = linkwright.y:y"],
+        other=["a = other:a"],
+    )
+    found = extensions.extensions("linkwright.things")
+    assert [entry.value for entry in found.values()] == ["linkwright.y:y", "brought:a"]

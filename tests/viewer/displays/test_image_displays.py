@@ -1,0 +1,180 @@
+"""Image and Camera, from the topic to what pages are sent."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from linkwright.messages import get_message
+from linkwright.viewer import RvizConfig
+from tests.viewer.contents import contents
+from tests.viewer.images.test_images import Image, image
+from tests.viewer.scene import page, world
+
+CameraInfo = get_message("sensor_msgs/msg/CameraInfo")
+CompressedImage = get_message("sensor_msgs/msg/CompressedImage")
+
+FILE = """\
+Visualization Manager:
+  Displays:
+    - Class: rviz_default_plugins/Grid
+      Name: Floor
+      Enabled: true
+    - Class: rviz_common/Group
+      Name: Sensors
+      Enabled: true
+      Displays:
+        - {Class: rviz_default_plugins/Grid, Name: Wall, Enabled: true}
+    - Class: rviz_default_plugins/CLS
+      Enabled: true
+      Name: Eye
+      Topic: {Value: TOPIC}
+  Global Options:
+    Fixed Frame: base
+"""
+
+
+def config(cls: str, topic: str = "/camera/image") -> RvizConfig:
+    return RvizConfig.parse(FILE.replace("CLS", cls).replace("TOPIC", topic))
+
+
+def picture(*values: int, frame: str = "base"):
+    message = image("mono8", len(values), 1, bytes(values))
+    message.header.frame_id = frame
+    return message
+
+
+def names(display) -> set[str]:
+    return {row.name for row in display.properties.rows()}
+
+
+async def test_an_image_is_sent():
+    async with world(config("Image")) as w:
+        publisher = w.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
+        publisher.publish(picture(1, 2, 3))
+        await w.settle()
+        (content,) = contents(w.display("Image"))
+        fields = content.fields
+        assert (fields["kind"], fields["encoding"], fields["width"], fields["height"]) == ("image_frame", "grey", 3, 1)
+        assert fields["data"].tolist() == [1, 2, 3]
+        assert fields["camera"] is None
+        assert w.status("Image") == {"Topic": ("ok", "1 messages received")}
+
+
+async def test_an_encoding_that_is_not_known_is_said():
+    async with world(config("Image")) as w:
+        publisher = w.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
+        publisher.publish(image("64FC1", 1, 1, bytes(8)))
+        await w.settle()
+        assert w.status("Image")["Image"] == ("error", "Unsupported image encoding [64FC1]")
+        publisher.publish(picture(1))
+        await w.settle()
+        assert "Image" not in w.status("Image")
+
+
+async def test_the_range_is_asked_for_when_images_have_one():
+    async with world(config("Image")) as w:
+        display = w.display("Image")
+        assert names(display) == {"Topic"}
+        publisher = w.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
+        publisher.publish(image("16UC1", 2, 1, np.array([0, 1000], "<u2").tobytes()))
+        await w.settle()
+        assert names(display) == {"Topic", "Normalize Range", "Median window"}
+        assert contents(display)[0].fields["data"].tolist() == [0, 255]
+        display.set_property(("Normalize Range",), False)
+        assert names(display) == {"Topic", "Normalize Range", "Min Value", "Max Value"}
+        display.set_property(("Max Value",), 2000.0)
+        assert contents(display)[0].fields["data"].tolist() == [0, 127]
+
+
+async def test_a_compressed_image_goes_to_the_page_as_it_is():
+    async with world(config("Image", "/camera/image/compressed")) as w:
+        publisher = w.graph.create_node("camera").create_publisher(CompressedImage, "/camera/image/compressed", 5)
+        data = b"\xff\xd8\xff\xe0" + bytes(30)
+        publisher.publish(CompressedImage(format="jpeg", data=data))
+        await w.settle()
+        (content,) = contents(w.display("Image"))
+        assert content.fields["encoding"] == "file"
+        assert content.fields["data"].tobytes() == data
+        publisher.publish(CompressedImage(format="h264", data=b"0000"))
+        await w.settle()
+        text = "The image is in no format that browsers read: 'h264'"
+        assert w.status("Image")["Image"] == ("error", text)
+
+
+def info(width: int = 4, height: int = 2, **fields):
+    message = CameraInfo(width=width, height=height)
+    message.p = np.array([100.0, 0, 2, -10, 0, 50, 1, 0, 0, 0, 1, 0])
+    for name, value in fields.items():
+        setattr(message, name, value)
+    return message
+
+
+async def test_a_camera_waits_for_its_camera_info():
+    async with world(config("Camera")) as w:
+        node = w.graph.create_node("camera")
+        images = node.create_publisher(Image, "/camera/image", 5)
+        infos = node.create_publisher(CameraInfo, "/camera/camera_info", 5)
+        w.move({("base", "eye"): (1, 2, 3, 0, 0, 0, 1)}, static=True)
+        images.publish(picture(1, 2, frame="eye"))
+        await w.settle()
+        text = "No CameraInfo received on [/camera/camera_info]. Topic may not exist."
+        assert w.status("Camera")["Camera Info"] == ("warn", text)
+        infos.publish(info())
+        await w.settle()
+        (content,) = contents(w.display("Camera"))
+        assert content.pose == [1, 2, 3, 0, 0, 0, 1]
+        assert content.fields["camera"] == {
+            "width": 4.0,
+            "height": 2.0,
+            "focal_x": 100.0,
+            "focal_y": 50.0,
+            "centre_x": 2.0,
+            "centre_y": 1.0,
+            "offset_x": 0.1,
+            "offset_y": 0.0,
+        }
+        assert w.status("Camera")["Camera Info"] == ("ok", "OK")
+
+
+async def test_malformed_camera_infos_are_said():
+    async with world(config("Camera")) as w:
+        node = w.graph.create_node("camera")
+        images = node.create_publisher(Image, "/camera/image", 5)
+        infos = node.create_publisher(CameraInfo, "/camera/camera_info", 5)
+
+        async def said(message) -> tuple[str, str]:
+            infos.publish(message)
+            images.publish(picture(1, 2))
+            await w.settle()
+            assert contents(w.display("Camera"))[0].fields["camera"] is None
+            return w.status("Camera")["Camera Info"]
+
+        bad = info()
+        bad.p[0] = math.nan
+        assert await said(bad) == ("error", "Contains invalid floating point values (nans or infs)")
+        bad = info()
+        bad.p[0] = 0.0
+        assert (await said(bad))[0] == "error"
+        empty = info(0, 0)
+        infos.publish(empty)
+        images.publish(picture())
+        await w.settle()
+        assert w.status("Camera")["Camera Info"][1].startswith("Could not determine width/height of image")
+
+
+async def test_each_other_display_can_be_hidden_from_the_camera():
+    async with world(config("Camera")) as w, page(w.viewer) as client:
+        await client.opened()
+        display = w.display("Camera")
+
+        def boxes() -> list:
+            (row,) = (row for row in display.properties.rows() if row.name == "Visibility")
+            return [(child.name, [below.name for below in child.children]) for child in row.children]
+
+        assert boxes() == [("Floor", []), ("Sensors", ["Wall"])]
+        display.set_property(("Visibility", "Sensors", "Wall"), False)
+        assert not display.properties.flag("Visibility", "Sensors", "Wall")
+        w.viewer.manager.tree.rename(w.viewer.displays[0], "Ground")
+        assert boxes()[0] == ("Ground", [])

@@ -1,0 +1,496 @@
+from __future__ import annotations
+
+import asyncio
+import struct
+import time
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+
+import numpy as np
+import pytest
+
+from linkwright.graph import Parameter, ParameterDescriptor, QoSProfile
+from linkwright.graph.parameters.parameter import Range
+from linkwright.graph.qos.profile import ROSOUT_QOS, DurabilityPolicy, ReliabilityPolicy
+from linkwright.messages import get_message
+from tests.skipping import skipping
+from tests.viewer.scene import Client, World, page, world
+from tests.waiting import eventually
+
+FLOAT = get_message("std_msgs/msg/Float64")
+JOINT_STATE = get_message("sensor_msgs/msg/JointState")
+TWIST = get_message("geometry_msgs/msg/Twist")
+TWIST_STAMPED = get_message("geometry_msgs/msg/TwistStamped")
+
+
+@asynccontextmanager
+async def opened() -> AsyncIterator[tuple[World, Client]]:
+    async with world() as made, page(made.viewer) as client:
+        await client.opened()
+        yield made, client
+
+
+def subscriptions(made: World, topic: str) -> int:
+    return made.graph.count_subscribers(topic)
+
+
+async def talk(publisher, period: float) -> None:
+    for number in range(1000):
+        publisher.publish(FLOAT(data=float(number)))
+        await asyncio.sleep(period)
+
+
+def frame_of(data: bytes) -> dict[int, np.ndarray]:
+    kind, count, *_ = struct.unpack_from("<IIII", data)
+    assert kind == 3
+    at, found = 16, {}
+    for _ in range(count):
+        identity, length = struct.unpack_from("<II", data, at)
+        found[identity] = np.frombuffer(data, "<f8", 3 * length, at + 8).reshape(3, length)
+        at += 8 + 24 * length
+    return found
+
+
+async def samples(client: Client) -> dict[int, np.ndarray]:
+    while True:
+        message = await client.receive()
+        if isinstance(message, bytes) and message[0] == 3:
+            return frame_of(message)
+
+
+# --- topics --------------------------------------------------------------------------------------------------------
+
+
+async def test_topics_are_listed_and_the_list_follows_the_graph():
+    async with opened() as (made, client):
+        await client.send("watch_topics", listed=True, measured=[], opened=[])
+        await client.until("topic_list")
+        node = made.graph.create_node("talker")
+        node.create_publisher(FLOAT, "/speed", 10)
+        while True:
+            listed = await client.until("topic_list")
+            row = next((each for each in listed["topics"] if each["name"] == "/speed"), None)
+            if row:
+                break
+        assert row == {"name": "/speed", "types": ["std_msgs/msg/Float64"], "publishers": 1, "subscribers": 0}
+        names = [each["name"] for each in listed["topics"]]
+        assert names == sorted(names)
+
+
+async def test_the_list_comes_at_once():
+    async with opened() as (_, client):
+        await client.send("watch_topics", listed=True, measured=[], opened=[])
+        listed = await client.until("topic_list")
+        assert "/tf" in [each["name"] for each in listed["topics"]]
+
+
+async def test_a_topic_is_subscribed_to_only_while_a_page_watches_it():
+    async with opened() as (made, client):
+        publisher = made.graph.create_node("talker").create_publisher(FLOAT, "/speed", 10)
+        assert subscriptions(made, "/speed") == 0
+        await client.send("watch_topics", listed=False, measured=["/speed"], opened=["/speed"])
+        await eventually(lambda: subscriptions(made, "/speed") == 1)
+        talking = asyncio.create_task(talk(publisher, 0.02))
+        message = await client.until("topic_message")
+        assert message["topic"] == "/speed"
+        assert [(each["name"], each["kind"]) for each in message["fields"]] == [("data", "double")]
+        assert abs(message["received"] - time.time()) < 5
+        while True:
+            (traffic,) = (await client.until("topic_figures"))["traffic"]
+            if traffic["rate"]:
+                break
+        assert 20 < traffic["rate"] <= 60
+        assert traffic["bandwidth"] == pytest.approx(12 * traffic["rate"], rel=0.2)
+        talking.cancel()
+        await client.send("watch_topics", listed=False, measured=[], opened=[])
+        await eventually(lambda: subscriptions(made, "/speed") == 0)
+
+
+async def test_a_page_that_goes_leaves_no_subscription():
+    async with world() as made:
+        made.graph.create_node("talker").create_publisher(FLOAT, "/speed", 10)
+        before = {name: subscriptions(made, name) for name in ("/rosout", "/parameter_events", "/speed")}
+        async with page(made.viewer) as client:
+            await client.opened()
+            await client.send("watch_topics", listed=True, measured=["/speed"], opened=["/speed"])
+            await client.send("watch_series", series=[{"id": 1, "topic": "/speed", "path": "data"}])
+            await client.send("ask_fields", topic="/speed")
+            await client.send("watch_node_graph", watched=True)
+            await client.send("watch_parameters", listed=True, node="/talker")
+            await client.send("watch_log", watched=True)
+            target = {"topic": "/cmd_vel", "kind": "auto", "frame_id": ""}
+            await client.send("aim_teleop", target=target)
+            await eventually(lambda: subscriptions(made, "/speed") == 3)
+            await eventually(lambda: made.graph.count_publishers("/cmd_vel") == 1)
+            assert subscriptions(made, "/rosout") == before["/rosout"] + 1
+            assert subscriptions(made, "/parameter_events") == before["/parameter_events"] + 1
+            assert made.graph._watchers
+        await eventually(lambda: subscriptions(made, "/speed") == 0)
+        assert {name: subscriptions(made, name) for name in before} == before
+        assert made.graph.count_publishers("/cmd_vel") == 0
+        assert made.graph.count_clients("/talker/get_parameters") == 0
+        assert not made.graph._watchers
+
+
+async def test_two_pages_share_a_subscription():
+    async with opened() as (made, one), page(made.viewer) as two:
+        made.graph.create_node("talker").create_publisher(FLOAT, "/speed", 10).publish(FLOAT())
+        for client in (one, two):
+            await client.send("watch_topics", listed=False, measured=["/speed"], opened=[])
+        await eventually(lambda: subscriptions(made, "/speed") == 1)
+        await one.send("watch_topics", listed=False, measured=[], opened=[])
+        await two.send("watch_topics", listed=True, measured=["/speed"], opened=[])
+        await one.send("watch_topics", listed=True, measured=[], opened=[])
+        for client in (one, two):
+            await client.until("topic_list")  # what was asked for before is done
+        assert subscriptions(made, "/speed") == 1
+
+
+async def test_what_was_published_once_is_shown():
+    async with opened() as (made, client):
+        lasting = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        made.graph.create_node("talker").create_publisher(FLOAT, "/map_scale", lasting).publish(FLOAT(data=0.05))
+        await client.send("watch_topics", listed=False, measured=[], opened=["/map_scale"])
+        message = await client.until("topic_message")
+        assert message["fields"][0]["value"] == "0.05"
+
+
+async def test_a_publisher_that_offers_less_is_heard_as_well():
+    async with opened() as (made, client):
+        node = made.graph.create_node("talker")
+        node.create_publisher(FLOAT, "/speed", 10)
+        await client.send("watch_topics", listed=False, measured=[], opened=["/speed"])
+        await eventually(lambda: subscriptions(made, "/speed") == 1)
+        weak = node.create_publisher(FLOAT, "/speed", QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT))
+        await eventually(lambda: weak.get_subscription_count() == 1)
+        weak.publish(FLOAT(data=7.0))
+        assert (await client.until("topic_message"))["fields"][0]["value"] == "7.0"
+
+
+async def test_unknown_and_mixed_types_say_so():
+    async with opened() as (made, client):
+        node = made.graph.create_node("talker")
+        node.create_publisher(FLOAT, "/mixed", 10)
+        node.create_publisher(TWIST, "/mixed", 10)
+        node.create_publisher("no_such_msgs/msg/Thing", "/strange", 10)
+        await client.send("watch_topics", listed=False, measured=["/mixed", "/strange"], opened=[])
+        mixed, strange = (await client.until("topic_figures"))["traffic"]
+        assert "more than one type: geometry_msgs/msg/Twist, std_msgs/msg/Float64" in mixed["error"]
+        assert "no_such_msgs" in strange["error"]
+        await client.send("ask_fields", topic="/strange")
+        assert "no_such_msgs" in (await client.until("topic_fields"))["error"]
+
+
+# --- plots ---------------------------------------------------------------------------------------------------------
+
+
+async def test_samples_carry_both_times_and_all_values():
+    async with opened() as (made, client):
+        publisher = made.graph.create_node("talker").create_publisher(JOINT_STATE, "/joint_states", 10)
+        series = [
+            {"id": 1, "topic": "/joint_states", "path": "position[b]"},
+            {"id": 2, "topic": "/joint_states", "path": "velocity[0]"},
+        ]
+        await client.send("watch_series", series=series)
+        await eventually(lambda: subscriptions(made, "/joint_states") == 1)
+        message = JOINT_STATE(name=["a", "b"], position=[1.0, 2.5], velocity=[-1.0, 0.0])
+        message.header.stamp.sec = 100
+        publisher.publish(message)
+        found = await samples(client)
+        assert found[1][1:].tolist() == [[100.0], [2.5]]
+        assert found[2][2].tolist() == [-1.0]
+        assert abs(found[1][0, 0] - time.time()) < 5
+
+
+@skipping
+async def test_a_fast_topic_comes_in_few_frames_and_in_full():
+    async with opened() as (made, client):
+        publisher = made.graph.create_node("talker").create_publisher(FLOAT, "/fast", 1000)
+        await client.send("watch_series", series=[{"id": 5, "topic": "/fast", "path": "data"}])
+        await eventually(lambda: subscriptions(made, "/fast") == 1)
+        now = asyncio.get_running_loop().time
+        started, sent = now(), 1000
+        for number in range(sent):
+            publisher.publish(FLOAT(data=float(number)))
+            if number % 10 == 9:
+                await asyncio.sleep(0.01)
+        elapsed = now() - started
+        frames = []
+        while sum(frame.shape[1] for frame in frames) < sent:
+            frames.append((await samples(client))[5])
+        assert len(frames) <= 31 * elapsed + 2
+        assert np.concatenate(frames, axis=1)[2].tolist() == [float(each) for each in range(sent)]
+
+
+async def test_wrong_paths_are_told():
+    async with opened() as (made, client):
+        made.graph.create_node("talker").create_publisher(FLOAT, "/speed", 10)
+        series = [{"id": 1, "topic": "/speed", "path": "dat"}, {"id": 2, "topic": "/speed", "path": "..."}]
+        await client.send("watch_series", series=series)
+        first, second = (await client.until("series_states"))["states"]
+        assert "did you mean 'data'" in first["error"]
+        assert "is no field" in second["error"]
+
+
+async def test_a_topic_that_comes_later_is_plotted():
+    async with opened() as (made, client):
+        series = [{"id": 1, "topic": "/later", "path": "data"}, {"id": 2, "topic": "/later", "path": "wrong"}]
+        await client.send("watch_series", series=series)
+        assert [each["error"] for each in (await client.until("series_states"))["states"]] == [None, None]
+        publisher = made.graph.create_node("talker").create_publisher(FLOAT, "/later", 10)
+        assert (await client.until("series_states"))["states"][1]["error"]
+        publisher.publish(FLOAT(data=3.0))
+        assert (await samples(client))[1][2].tolist() == [3.0]
+
+
+async def test_fields_are_offered_and_again_with_the_names_of_a_message():
+    async with opened() as (made, client):
+        publisher = made.graph.create_node("talker").create_publisher(JOINT_STATE, "/joint_states", 10)
+        await client.send("ask_fields", topic="/joint_states")
+        first = await client.until("topic_fields")
+        assert first["kind"] == "sensor_msgs/msg/JointState"
+        assert {"path": "position[0]", "kind": "double"} in first["fields"]
+        publisher.publish(JOINT_STATE(name=["elbow"], position=[1.0]))
+        second = await client.until("topic_fields")
+        assert {"path": "position[elbow]", "kind": "double"} in second["fields"]
+        assert subscriptions(made, "/joint_states") == 0
+
+
+# --- the node graph ------------------------------------------------------------------------------------------------
+
+
+async def test_the_node_graph_follows_changes():
+    async with opened() as (made, client):
+        await client.send("watch_node_graph", watched=True)
+        first = await client.until("node_graph")
+        assert "/rviz2" in first["nodes"]
+        node = made.graph.create_node("talker", namespace="/left")
+        node.create_publisher(FLOAT, "speed", 10)
+        made.graph.create_node("listener").create_subscription(FLOAT, "/left/speed", lambda _: None, 10)
+        while True:
+            now = await client.until("node_graph")
+            topic = next((each for each in now["topics"] if each["name"] == "/left/speed"), None)
+            if topic and topic["subscribers"]:
+                break
+        assert {"/left/talker", "/listener"} <= set(now["nodes"])
+        assert topic["publishers"] == ["/left/talker"]
+        assert topic["subscribers"] == ["/listener"]
+
+
+# --- parameters ----------------------------------------------------------------------------------------------------
+
+
+def tuned(made: World):
+    node = made.graph.create_node("tuned")
+    limits = ParameterDescriptor(description="how fast", floating_point_range=[Range(0.0, 2.0, 0.5)])
+    node.declare_parameter("speed.most", 1.5, limits)
+    node.declare_parameter("fixed", 7, ParameterDescriptor(read_only=True))
+    node.declare_parameter("names", ["a", "b"])
+    node.declare_parameter("big", 2**60)
+    return node
+
+
+async def test_parameters_are_shown_with_what_is_known_of_them():
+    async with opened() as (made, client):
+        tuned(made)
+        await client.send("watch_parameters", listed=True, node="/tuned")
+        assert "/tuned" in (await client.until("parameter_nodes"))["nodes"]
+        shown = await client.until("node_parameters")
+        rows = {row["name"]: row for row in shown["parameters"]}
+        assert rows["speed.most"] == {
+            "name": "speed.most",
+            "kind": "double",
+            "values": ["1.5"],
+            "description": "how fast",
+            "constraints": "",
+            "read_only": False,
+            "minimum": "0.0",
+            "maximum": "2.0",
+            "step": "0.5",
+        }
+        assert rows["fixed"]["read_only"]
+        assert rows["fixed"]["values"] == ["7"]
+        assert rows["names"]["kind"] == "string_array"
+        assert rows["names"]["values"] == ["a", "b"]
+        assert rows["big"]["values"] == [str(2**60)]
+
+
+async def test_a_node_whose_name_is_none_has_no_parameters():
+    async with opened() as (made, client):
+        tuned(made)
+        await client.send("watch_parameters", listed=True, node="no name")
+        answer = await client.until("node_parameters", node="no name")
+        assert answer["parameters"] == []
+        assert "is not a valid service name" in answer["error"]
+        await client.socket.send_json(
+            {"type": "set_parameter", "node": "no name", "name": "a", "kind": "bool", "values": ["true"]}
+        )
+        await client.send("watch_parameters", listed=False, node="/tuned")
+        assert (await client.until("node_parameters", node="/tuned"))["error"] is None
+        assert "failed" not in made.logged()
+
+
+async def test_parameters_are_set_and_refused_with_the_reason():
+    async with opened() as (made, client):
+        node = tuned(made)
+        await client.send("watch_parameters", listed=False, node="/tuned")
+        await client.until("node_parameters")
+
+        async def put(name, kind, *values):
+            wanted = {"node": "/tuned", "name": name, "kind": kind, "values": list(values)}
+            await client.socket.send_json({"type": "set_parameter", **wanted})
+            return await client.until("parameter_result")
+
+        assert (await put("speed.most", "double", "0.5"))["successful"]
+        assert node.get_parameter("speed.most").value == 0.5
+        assert (await put("names", "string_array", "x", "y", "z"))["successful"]
+        assert node.get_parameter("names").value == ["x", "y", "z"]
+        high = await put("speed.most", "double", "9")
+        assert not high["successful"]
+        assert high["reason"]
+        assert not (await put("fixed", "integer", "8"))["successful"]
+        wrong = await put("big", "integer", "lots")
+        assert (wrong["successful"], wrong["reason"]) == (False, "'lots' is not a whole number")
+        assert "64 bits" in (await put("big", "integer", str(2**64)))["reason"]
+
+
+async def test_changes_by_others_are_followed():
+    async with opened() as (made, client):
+        node = tuned(made)
+        await client.send("watch_parameters", listed=False, node="/tuned")
+        await client.until("node_parameters")
+        node.set_parameters([Parameter("speed.most", value=2.0)])
+        changed = await client.until("node_parameters")
+        assert {row["name"]: row["values"] for row in changed["parameters"]}["speed.most"] == ["2.0"]
+        node.declare_parameter("new", True, ParameterDescriptor(dynamic_typing=True))
+        while "new" not in {row["name"] for row in changed["parameters"]}:
+            changed = await client.until("node_parameters")
+        node.set_parameters([Parameter("new")])
+        while "new" in {row["name"] for row in changed["parameters"]}:
+            changed = await client.until("node_parameters")
+
+
+async def test_parameters_are_dumped_as_a_file():
+    async with opened() as (made, client):
+        tuned(made)
+        await client.send("watch_parameters", listed=False, node="/tuned")
+        await client.send("dump_parameters", node="/tuned")
+        dump = await client.until("parameter_dump")
+        assert dump["file"] == "tuned.yaml"
+        assert dump["text"].startswith("/tuned:\n  ros__parameters:\n    big: 1152921504606846976\n")
+        assert "    speed:\n      most: 1.5\n" in dump["text"]
+
+
+# --- the log -------------------------------------------------------------------------------------------------------
+
+
+async def test_the_log_is_followed_and_begins_with_the_past():
+    async with opened() as (made, client):
+        node = made.graph.create_node("talker")
+        node.get_logger().warning("before")
+        await client.send("watch_log", watched=True)
+        lines = (await client.until("log_lines"))["lines"]
+        assert ("talker", 30, "before") in [(line["node"], line["level"], line["message"]) for line in lines]
+        node.get_logger().error("after")
+        (line,) = (await client.until("log_lines"))["lines"]
+        assert (line["level"], line["message"]) == (40, "after")
+        assert line["file"].endswith(".py")
+        assert line["line"] > 0
+        assert abs(line["time"] - time.time()) < 5
+
+
+@skipping
+async def test_a_flood_is_cut_and_counted():
+    async with opened() as (made, client):
+        made.graph.create_node("first").get_logger().info("of the past")
+        await client.send("watch_log", watched=True)
+        await client.until("log_lines")
+        publisher = made.graph.create_node("flood").create_publisher("rcl_interfaces/msg/Log", "/rosout", ROSOUT_QOS)
+        log = get_message("rcl_interfaces/msg/Log")
+        for burst in range(30):
+            for number in range(100):
+                publisher.publish(log(level=20, name="flood", msg=f"{burst * 100 + number}"))
+            await made.graph.settle()
+        told = [message for message in await client.drain(0.4) if isinstance(message, dict)]
+        batches = [message for message in told if message["type"] == "log_lines"]
+        assert sum(len(batch["lines"]) + batch["missed"] for batch in batches) == 3000
+        assert batches[-1]["lines"][-1]["message"] == "2999"
+
+
+# --- the teleop pad ------------------------------------------------------------------------------------------------
+
+
+async def drive(client: Client, x: float, turn: float = 0.0) -> None:
+    await client.send("drive", linear=[x, 0, 0], angular=[0, 0, turn])
+
+
+@pytest.mark.parametrize("kind", [TWIST, TWIST_STAMPED])
+async def test_the_pad_publishes_what_listeners_take(kind):
+    async with opened() as (made, client):
+        taken = []
+        made.graph.create_node("base").create_subscription(kind, "/cmd_vel", taken.append, 10)
+        target = {"topic": "cmd_vel", "kind": "auto", "frame_id": "base_link"}
+        await client.send("aim_teleop", target=target)
+        state = await client.until("teleop_state")
+        name = kind.TYPE_NAME.rpartition("/")[2]
+        assert (state["topic"], state["kind"], state["subscribers"]) == ("/cmd_vel", name, 1)
+        await drive(client, 0.5, -1.0)
+        await eventually(lambda: taken)
+        twist = taken[0] if kind is TWIST else taken[0].twist
+        assert (twist.linear.x, twist.angular.z) == (0.5, -1.0)
+        if kind is TWIST_STAMPED:
+            assert taken[0].header.frame_id == "base_link"
+            assert abs(taken[0].header.stamp.sec - time.time()) < 5
+
+
+@skipping
+async def test_the_robot_stops_when_a_page_falls_silent_and_when_it_goes():
+    async with world() as made:
+        taken = []
+        node = made.graph.create_node("base")
+        node.create_subscription(TWIST, "/cmd_vel", lambda message: taken.append(message.linear.x), 10)
+        async with page(made.viewer) as client:
+            await client.opened()
+            await client.send("aim_teleop", target={"topic": "/cmd_vel", "kind": "auto", "frame_id": ""})
+            await drive(client, 0.5)
+            await eventually(lambda: taken == [0.5, 0.0])
+            await asyncio.sleep(0.5)
+            assert taken == [0.5, 0.0], "zero is published once"
+            await drive(client, 0.25)
+            await eventually(lambda: len(taken) == 3)
+            left = asyncio.get_running_loop().time()
+        await eventually(lambda: taken == [0.5, 0.0, 0.25, 0.0])
+        assert asyncio.get_running_loop().time() - left < 0.3, "long before a page that stays counts as silent"
+
+
+@skipping
+async def test_a_page_that_holds_on_keeps_the_robot_moving_and_releases_it_with_zero():
+    async with opened() as (made, client):
+        taken = []
+        node = made.graph.create_node("base")
+        node.create_subscription(TWIST, "/cmd_vel", lambda message: taken.append(message.linear.x), 10)
+        await client.send("aim_teleop", target={"topic": "/cmd_vel", "kind": "Twist", "frame_id": ""})
+        for _ in range(12):
+            await drive(client, 1.0)
+            await asyncio.sleep(0.05)
+        await drive(client, 0.0)
+        await eventually(lambda: len(taken) == 13)
+        assert taken == [1.0] * 12 + [0.0]
+
+
+async def test_topics_of_other_types_are_left_alone():
+    async with opened() as (made, client):
+        made.graph.create_node("base").create_publisher(FLOAT, "/cmd_vel", 10)
+        await client.send("aim_teleop", target={"topic": "/cmd_vel", "kind": "auto", "frame_id": ""})
+        assert (await client.until("teleop_state"))["error"] == "the topic carries std_msgs/msg/Float64"
+        assert made.graph.count_publishers("/cmd_vel") == 1
+        await client.send("aim_teleop", target={"topic": "1 + 1", "kind": "auto", "frame_id": ""})
+        assert "not a valid topic name" in (await client.until("teleop_state"))["error"]
+
+
+async def test_a_listener_that_comes_later_decides_the_type():
+    async with opened() as (made, client):
+        await client.send("aim_teleop", target={"topic": "/cmd_vel", "kind": "auto", "frame_id": ""})
+        assert (await client.until("teleop_state"))["kind"] == "Twist"
+        made.graph.create_node("base").create_subscription(TWIST_STAMPED, "/cmd_vel", lambda _: None, 10)
+        assert (await client.until("teleop_state"))["kind"] == "TwistStamped"

@@ -1,0 +1,150 @@
+"""Images of messages as pages draw them."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from linkwright.messages import get_message
+from linkwright.viewer.images import BadImageError, Picture, Range, RangeFinder, has_range, picture_of
+from tests.work import lines_run
+
+Image = get_message("sensor_msgs/msg/Image")
+
+
+def image(encoding: str, width: int, height: int, data: bytes, **fields):
+    return Image(encoding=encoding, width=width, height=height, data=data, **{"step": 0, **fields})
+
+
+def pixels(message, ranges: RangeFinder | None = None) -> list:
+    return picture_of(message, ranges or RangeFinder()).pixels.tolist()
+
+
+@pytest.mark.parametrize(
+    ("encoding", "data", "expected"),
+    [
+        ("rgb8", [1, 2, 3], [1, 2, 3]),
+        ("bgr8", [1, 2, 3], [3, 2, 1]),
+        ("8UC3", [1, 2, 3], [3, 2, 1]),
+        ("rgba8", [1, 2, 3, 4], [1, 2, 3, 4]),
+        ("bgra8", [1, 2, 3, 4], [3, 2, 1, 4]),
+        ("8UC4", [1, 2, 3, 4], [3, 2, 1, 4]),
+        ("mono8", [7], 7),
+        ("8UC1", [7], 7),
+    ],
+)
+def test_eight_bit_images_are_taken_as_they_are(encoding, data, expected):
+    assert pixels(image(encoding, 1, 1, bytes(data))) == [[expected]]
+
+
+def test_rows_may_be_padded():
+    assert pixels(image("mono8", 2, 2, bytes([1, 2, 0, 0, 3, 4]), step=4)) == [[1, 2], [3, 4]]
+
+
+def test_wide_values_are_spread_from_black_to_white():
+    data = np.array([[100, 200, 300]], "<u2")
+    for encoding in ("16UC1", "mono16"):
+        assert pixels(image(encoding, 3, 1, data.tobytes())) == [[0, 127, 255]]
+    assert pixels(image("16UC1", 3, 1, data.astype(">u2").tobytes(), is_bigendian=1)) == [[0, 127, 255]]
+    assert pixels(image("16SC1", 2, 1, np.array([-5, 5], "<i2").tobytes())) == [[0, 255]]
+    assert pixels(image("32FC1", 3, 1, np.array([-1.0, 0.0, 1.0], "<f4").tobytes())) == [[0, 127, 255]]
+
+
+def test_depths_that_are_none_are_black_and_do_not_count():
+    data = np.array([math.nan, 1.0, 2.0, math.inf], "<f4")
+    assert pixels(image("32FC1", 4, 1, data.tobytes())) == [[0, 0, 255, 255]]
+    assert pixels(image("32FC1", 1, 1, np.array([math.nan], "<f4").tobytes())) == [[0]]
+
+
+def test_an_image_of_one_value_is_black():
+    assert pixels(image("16UC1", 2, 1, np.array([9, 9], "<u2").tobytes())) == [[0, 0]]
+
+
+def test_a_range_can_be_fixed():
+    ranges = RangeFinder()
+    ranges.fixed = Range(0.0, 1000.0)
+    data = np.array([0, 500, 2000], "<u2")
+    assert pixels(image("16UC1", 3, 1, data.tobytes()), ranges) == [[0, 127, 255]]
+
+
+def test_the_median_of_the_last_images_counts():
+    ranges = RangeFinder()
+    ranges.window = 3
+    largest = [ranges.range_of(np.array([0.0, value])).white for value in (10.0, 20.0, 1000.0, 20.0)]
+    assert largest == [10.0, 20.0, 20.0, 20.0]
+    ranges.window = 1
+    assert ranges.range_of(np.array([0.0, 5.0])).white == 5.0
+
+
+def test_only_images_of_more_than_eight_bits_have_a_range():
+    assert [has_range(encoding) for encoding in ("mono16", "16UC1", "32FC1", "mono8", "rgb8", "")] == [
+        True,
+        True,
+        True,
+        False,
+        False,
+        False,
+    ]
+
+
+@pytest.mark.parametrize("pattern", ["rggb", "bggr", "gbrg", "grbg"])
+def test_mosaics_give_their_colours(pattern):
+    value = {"r": 200, "g": 100, "b": 50}
+    tile = np.array([value[colour] for colour in pattern], np.uint8).reshape(2, 2)
+    mosaic = np.tile(tile, (3, 3))
+    expected = [[[200, 100, 50]] * 6] * 6
+    assert pixels(image(f"bayer_{pattern}8", 6, 6, mosaic.tobytes())) == expected
+    deep = (mosaic.astype("<u2") << 8).tobytes()
+    assert pixels(image(f"bayer_{pattern}16", 6, 6, deep)) == expected
+
+
+def test_chroma_becomes_colour():
+    # BT.601: black, white, and the red of 8-bit video
+    grey = [[[0, 0, 0], [255, 255, 255]]]
+    for encoding in ("yuv422", "uyvy"):
+        assert pixels(image(encoding, 2, 1, bytes([128, 16, 128, 235]))) == grey
+    for encoding in ("yuv422_yuy2", "yuyv"):
+        assert pixels(image(encoding, 2, 1, bytes([16, 128, 235, 128]))) == grey
+    assert pixels(image("yuyv", 2, 1, bytes([81, 90, 81, 240]))) == [[[255, 0, 0]] * 2]
+    assert pixels(image("nv24", 2, 1, bytes([81, 81, 90, 240, 90, 240]))) == [[[255, 0, 0]] * 2]
+    assert pixels(image("nv21", 2, 2, bytes([81, 81, 81, 81, 240, 90]))) == [[[255, 0, 0]] * 2] * 2
+
+
+@pytest.mark.parametrize(("encoding", "width"), [("yuyv", 1), ("yuyv", 3), ("nv21", 3), ("nv24", 3)])
+def test_odd_sizes_do_no_harm(encoding, width):
+    picture = picture_of(image(encoding, width, 3, bytes([128] * 60)), RangeFinder())
+    assert (picture.width, picture.height) == (width, 3)
+
+
+@pytest.mark.parametrize("encoding", ["rgb8", "16UC1", "32FC1", "bayer_rggb8", "yuyv", "nv21", "nv24"])
+def test_too_few_bytes_are_refused(encoding):
+    with pytest.raises(BadImageError, match="too few for 4 x 4"):
+        picture_of(image(encoding, 4, 4, b"123"), RangeFinder())
+
+
+def test_unknown_encodings_are_refused():
+    with pytest.raises(BadImageError, match=r"Unsupported image encoding \[64FC1\]"):
+        picture_of(image("64FC1", 1, 1, bytes(8)), RangeFinder())
+
+
+def test_a_large_image_is_thinned():
+    picture = Picture(np.arange(100, dtype=np.uint8).reshape(10, 10))
+    assert picture.thinned(100) is picture
+    thinned = picture.thinned(30)
+    assert (thinned.width, thinned.height) == (5, 5)
+    assert thinned.pixels[1].tolist() == [20, 22, 24, 26, 28]
+
+
+def test_grey_and_translucent_pictures_have_rgb():
+    assert Picture(np.array([[7]], np.uint8)).rgb().tolist() == [[[7, 7, 7]]]
+    assert Picture(np.array([[[1, 2, 3, 4]]], np.uint8)).rgb().tolist() == [[[1, 2, 3]]]
+
+
+def test_usual_images_are_left_to_numpy():
+    def work(width, height):
+        message = image("bgr8", width, height, bytes(width * height * 3))
+        return lines_run(lambda: picture_of(message, RangeFinder()))
+
+    assert work(64, 48) == work(640, 480)

@@ -1,0 +1,113 @@
+"""Displays and page features that other packages bring."""
+
+from __future__ import annotations
+
+import os
+import sys
+from importlib.metadata import entry_points
+
+import pytest
+
+from linkwright import extensions
+from linkwright.viewer import RvizConfig
+from linkwright.viewer.displays import catalogue
+from tests.viewer.scene import page, world
+
+MODULE = """\
+from linkwright.viewer.displays.polygon import PolygonDisplay
+from linkwright.viewer.features.page_feature import PageFeature
+from linkwright.viewer.protocol.message import PageMessage, ServerMessage
+
+
+class Fence(PolygonDisplay):
+    CLASS = "brought/Fence"
+    DRAWN_AS = PolygonDisplay.CLASS
+    MESSAGE = "geometry_msgs/msg/PolygonStamped"
+
+
+class Greet(PageMessage):
+    name: str
+
+
+class Greeting(ServerMessage):
+    text: str
+
+
+class GreetingFeature(PageFeature):
+    RECEIVES = (Greet,)
+
+    def receive(self, page, message):
+        page.send(Greeting(f"hello {message.name}"))
+"""
+ENTRY_POINTS = """\
+[linkwright.displays]
+brought/Fence = brought_to_linkwright:Fence
+brought/Broken = brought_to_linkwright:Nothing
+rviz_default_plugins/Grid = brought_to_linkwright:Fence
+
+[linkwright.page_features]
+greeting = brought_to_linkwright:GreetingFeature
+broken = brought_to_linkwright:nothing
+"""
+
+
+@pytest.fixture
+def brought(tmp_path, monkeypatch):
+    """A package on the path that brings a display and a page feature, and others that cannot be loaded."""
+    (tmp_path / "brought_to_linkwright.py").write_text(MODULE)
+    facts = tmp_path / "brought_to_linkwright-1.0.dist-info"
+    facts.mkdir()
+    (facts / "METADATA").write_text("Metadata-Version: 2.1\nName: brought-to-linkwright\nVersion: 1.0\n")
+    (facts / "entry_points.txt").write_text(ENTRY_POINTS)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    extensions._all_groups.cache_clear()
+    catalogue._display_class.cache_clear()
+    yield
+    monkeypatch.undo()
+    sys.modules.pop("brought_to_linkwright", None)
+    extensions._all_groups.cache_clear()
+    catalogue._display_class.cache_clear()
+
+
+def config_with(cls: str) -> RvizConfig:
+    config = RvizConfig.for_model("base")
+    config.insert(config.make(cls, "Brought"))
+    return config
+
+
+async def test_a_display_of_another_package_is_made_and_offered(brought):
+    async with world(config_with("brought/Fence")) as w, page(w.viewer) as client:
+        first = await client.opened()
+        (fence,) = [each for each in first["tree"]["displays"] if each["cls"] == "brought/Fence"]
+        assert (fence["supported"], fence["drawing"]) == (True, "rviz_default_plugins/Polygon")
+        assert {"cls": "brought/Fence", "messages": ["geometry_msgs/msg/PolygonStamped"]} in first["display_classes"][
+            "classes"
+        ]
+
+
+async def test_a_display_that_cannot_be_imported_is_kept_and_told_of(brought):
+    async with world(config_with("brought/Broken")) as w:
+        assert not w.viewer.displays[-1].SUPPORTED
+        assert "'brought/Broken' cannot be imported: AttributeError" in w.logged()
+
+
+def test_what_is_ours_cannot_be_replaced(brought):
+    assert extensions.extensions("linkwright.displays")["rviz_default_plugins/Grid"].value.startswith("linkwright.")
+
+
+async def test_a_page_feature_of_another_package_answers_its_messages(brought):
+    async with world() as w, page(w.viewer) as client:
+        await client.opened()
+        await client.send("greet", name="you")
+        assert (await client.until("greeting"))["text"] == "hello you"
+        assert "The page feature 'broken' cannot be had: AttributeError" in w.logged()
+
+
+def test_what_is_found_is_what_the_metadata_of_the_installation_say():
+    for group, found in extensions._all_groups().items():
+        declared = {(entry.name, entry.value) for entry in entry_points(group=group)}
+        assert {(entry.name, entry.value) for entry in found.values()} == declared
+
+
+def test_attributes_may_be_nested_and_name_extras():
+    assert extensions.EntryPoint("join", "os:path.join [some, extras]", "none").load() is os.path.join

@@ -1,0 +1,41 @@
+"""Waiting for what another thread, process or task is about to do: tests wait for it, not for some time.
+
+A test that passes waits no longer than it has to, so the limits are generous: a busy machine fails nothing.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import sys
+import threading
+import time
+from collections.abc import Callable
+
+SECONDS = 60.0
+_PAUSE = 0.005
+
+
+def wait_until(condition: Callable[[], object], seconds: float = SECONDS, what: object = "") -> None:
+    """Wait in this thread until a condition holds; ``what``, or what it returns, is said when it never does."""
+    limit = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < limit, _said(seconds, what)
+        time.sleep(_PAUSE)
+
+
+async def eventually(condition: Callable[[], object], seconds: float = SECONDS, what: object = "") -> None:
+    """Let the other tasks go on until a condition holds."""
+    limit = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < limit, _said(seconds, what)
+        await asyncio.sleep(_PAUSE)
+
+
+def is_waiting(thread: threading.Thread) -> bool:
+    """Whether a thread waits for another one (for a lock, an event, a condition)."""
+    frame = sys._current_frames().get(thread.ident or 0)
+    return frame is not None and frame.f_code.co_filename == threading.__file__
+
+
+def _said(seconds: float, what: object) -> str:
+    return f"not so within {seconds} s: {what() if callable(what) else what}"

@@ -1,0 +1,96 @@
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+
+import pytest
+
+from linkwright.graph import Graph, LogRecord
+from linkwright.graph.executors import SingleThreadedExecutor
+from linkwright.graph.log.levels import LogLevel
+from linkwright.wire.dds import DdsTransport, join
+from tests.domains import own_domain
+from tests.waiting import SECONDS
+from tests.wire.programs import Program
+
+ROS_VARIABLES = (
+    "ROS_LOCALHOST_ONLY",
+    "ROS_AUTOMATIC_DISCOVERY_RANGE",
+    "ROS_STATIC_PEERS",
+    "ROS_DISTRO",
+    "CYCLONEDDS_URI",
+    "LINKWRIGHT_DDS",
+)
+_taken: dict[str, int] = {}
+
+
+@pytest.fixture(autouse=True)
+def domain(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> int:
+    """A domain for this worker of a parallel run, and nothing else of ROS in the environment."""
+    for name in ROS_VARIABLES:
+        monkeypatch.delenv(name, raising=False)
+    number = own_domain(1 if "command" in request.node.nodeid else 0)
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(number))
+    return number
+
+
+class Process:
+    """What a process has on a domain: a graph, an executor, a transport. Several of them live in one test process."""
+
+    def __init__(self, name: str, *, join_now: bool = True) -> None:
+        self.log: list[LogRecord] = []
+        self.graph = Graph(threads=True, on_log=self.log.append)
+        self.node = self.graph.create_node(name)
+        self.executor = SingleThreadedExecutor()
+        self.executor.add_node(self.node)
+        self.transport: DdsTransport | None = None
+        if join_now:
+            self.join()
+
+    def join(self) -> DdsTransport:
+        self.transport = join(self.graph)
+        assert self.transport is not None
+        assert self.transport.wait_until_ready(SECONDS)
+        return self.transport
+
+    def spin_until(self, condition: Callable[[], object], seconds: float = SECONDS) -> None:
+        """Run callbacks until something holds; fails when it does not in time."""
+        until = time.monotonic() + seconds
+        while not condition():
+            assert time.monotonic() < until, f"not so within {seconds} s"
+            self.executor.spin_once(timeout_sec=0.02)
+
+    def warnings(self) -> list[str]:
+        return [record.text for record in self.log if record.level >= LogLevel.WARN]
+
+    def close(self) -> None:
+        self.executor.shutdown()
+        self.graph.close_now()
+
+
+@pytest.fixture
+def processes() -> Iterator[Callable[..., Process]]:
+    """Makes graphs that meet on the wire alone, closed after the test."""
+    made: list[Process] = []
+
+    def make(name: str, **options: bool) -> Process:
+        made.append(Process(name, **options))
+        return made[-1]
+
+    yield make
+    for each in made:
+        each.close()
+
+
+@pytest.fixture
+def programs() -> Iterator[Callable[..., Program]]:
+    """Starts a program of this folder in a Python of its own; gone after the test."""
+    started: list[Program] = []
+
+    def start(name: str, *words: str, **environment: str) -> Program:
+        started.append(Program(name, *words, **environment))
+        return started[-1]
+
+    yield start
+    for each in started:
+        each.end()

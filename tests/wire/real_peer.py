@@ -1,0 +1,112 @@
+"""A process with a real rclpy: ``$LINKWRIGHT_ROS_PYTHON -m tests.wire.real_peer NODE_NAME``.
+
+It has publishers on ``/from_ros``, ``/states_from_ros`` and ``/images_from_ros``, a lasting one on
+``/lasting_from_ros``, and subscriptions to ``/to_ros``, ``/states_to_ros``, ``/images_to_ros`` and, lasting,
+``/lasting_to_ros``; a service ``/flip``; and a parameter ``speed``.
+"""
+
+from __future__ import annotations
+
+import sys
+import threading
+import time
+from typing import Any
+
+import rclpy
+from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from sensor_msgs.msg import Image, JointState
+from std_msgs.msg import String
+from std_srvs.srv import SetBool
+
+from tests.wire.programs import serve
+
+LASTING = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+KINDS = {"": (String, 10), "lasting_": (String, LASTING), "states_": (JointState, 10), "images_": (Image, 50)}
+
+
+class RealPeer:
+    def __init__(self, name: str) -> None:
+        rclpy.init()
+        self.node = Node(name)
+        self.heard: dict[str, list[Any]] = {}
+        self.publishers: dict[str, Any] = {}
+        self.mismatched: list[str] = []
+        publisher_events = PublisherEventCallbacks(incompatible_qos=lambda _: self.mismatched.append("publisher"))
+        subscription_events = SubscriptionEventCallbacks(
+            incompatible_qos=lambda _: self.mismatched.append("subscription")
+        )
+        for kind, (message_type, qos) in KINDS.items():
+            heard = self.heard.setdefault(f"{kind}to_ros", [])
+            self.publishers[kind] = self.node.create_publisher(
+                message_type, f"{kind}from_ros", qos, event_callbacks=publisher_events
+            )
+            self.node.create_subscription(
+                message_type, f"{kind}to_ros", heard.append, qos, event_callbacks=subscription_events
+            )
+        self.node.create_service(SetBool, "flip", lambda _, response: response)
+        self.node.declare_parameter("speed", 1.5)
+        self.publishers["lasting_"].publish(String(data="said before"))
+        threading.Thread(target=rclpy.spin, args=(self.node,), daemon=True).start()
+
+    def nodes(self) -> list[list[str]]:
+        return sorted([namespace, name] for name, namespace in self.node.get_node_names_and_namespaces())
+
+    def published_by(self, node: str) -> dict[str, list[str]]:
+        known = node in self.node.get_node_names()
+        return dict(self.node.get_publisher_names_and_types_by_node(node, "/")) if known else {}
+
+    def hashes(self, topic: str) -> list[str]:
+        """Of the types of its publishers."""
+        return [str(each.topic_type_hash) for each in self.node.get_publishers_info_by_topic(topic)]
+
+    def publish(self, text: str) -> None:
+        self.publishers[""].publish(String(data=text))
+
+    def publish_state(self, names: list[str], positions: list[float]) -> None:
+        self.publishers["states_"].publish(JointState(name=names, position=positions))
+
+    def publish_images(self, count: int, rate: float) -> None:
+        """Such as a camera does, in a thread of its own; each has its number in the frame's name."""
+
+        def work() -> None:
+            image = Image(height=480, width=640, encoding="rgb8", step=1920, data=bytes(640 * 480 * 3))
+            due = time.monotonic()
+            for number in range(count):
+                image.header.frame_id = str(number)
+                self.publishers["images_"].publish(image)
+                due += 1 / rate
+                time.sleep(max(0.0, due - time.monotonic()))
+
+        threading.Thread(target=work, daemon=True).start()
+
+    def call(self, service: str) -> None:
+        """Ask, without waiting for the answer."""
+        client = self.node.create_client(SetBool, service)
+        assert client.wait_for_service(60)
+        client.call_async(SetBool.Request(data=True))
+
+    def received(self, topic: str) -> list[str]:
+        return [message.data for message in self.heard[topic]]
+
+    def received_states(self) -> list[list[Any]]:
+        return [[list(message.name), list(message.position)] for message in self.heard["states_to_ros"]]
+
+    def received_images(self) -> list[int]:
+        return [int(message.header.frame_id) for message in self.heard["images_to_ros"]]
+
+    def mismatches(self) -> list[str]:
+        return self.mismatched
+
+
+def main() -> None:
+    peer = RealPeer(sys.argv[1])
+    questions = "nodes published_by hashes publish publish_state publish_images received received_states"
+    questions += " received_images mismatches call"
+    serve({question: getattr(peer, question) for question in questions.split()})
+    rclpy.shutdown()
+
+
+if __name__ == "__main__":
+    main()

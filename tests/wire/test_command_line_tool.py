@@ -1,0 +1,62 @@
+"""What the `cyclonedds` command shows of us: a view from outside that knows nothing of ROS."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from linkwright.messages import JointState, type_hash
+from tests.wire.ros_peer import CONFIGURATIONS
+
+TOOL = Path(sys.executable).with_name("cyclonedds")
+
+pytestmark = pytest.mark.skipif(not TOOL.exists(), reason="the tool is not installed")
+
+
+@pytest.fixture
+def tool(domain, monkeypatch):
+    def run(*words: str) -> str:
+        done = subprocess.run(
+            [str(TOOL), *words, "--suppress-progress-bar", "-r", "1s"],
+            capture_output=True,
+            text=True,
+            timeout=60,
+            check=True,
+            env={"CYCLONEDDS_URI": CONFIGURATIONS["localhost"], "COLUMNS": "200", "PATH": "/usr/bin", "HOME": "/tmp"},
+        )
+        return re.sub(r"\x1b\[[0-9;]*m", "", done.stdout)
+
+    return run
+
+
+def test_it_shows_our_participant_and_its_topics(processes, tool, domain):
+    us = processes("ours")
+    us.node.create_publisher(JointState, "joint_states", 10)
+    shown = tool("ps", "-i", str(domain))
+    assert "linkwright/" in shown
+    assert str(os.getpid()) in shown
+    for topic in ("ros_discovery_info", "rt/joint_states", "rt/rosout", "rq/ours/get_parametersRequest"):
+        assert topic in shown
+
+
+def test_it_lists_our_endpoints_with_their_facts(processes, tool, domain):
+    us = processes("ours")
+    us.node.create_publisher(JointState, "joint_states", 7)
+    shown = tool("ls", "-i", str(domain), "-q", "-t", "rt/joint_states")
+    assert "sensor_msgs::msg::dds_::JointState_" in shown
+    assert "History.KeepLast(depth=7)" in shown
+    assert "Reliability.Reliable(max_blocking_time='100 milliseconds')" in shown
+    assert f"typehash={type_hash(JointState)};" in shown
+    assert "enclave=/;" in shown
+
+
+def test_types_go_by_their_names(processes, tool, domain):
+    """Descriptions of types are not sent: rmw_fastrtps_cpp and Humble's Cyclone DDS do not get on with ours."""
+    us = processes("ours")
+    us.node.create_publisher(JointState, "joint_states", 10)
+    assert "struct" not in tool("typeof", "rt/joint_states", "-i", str(domain))

@@ -1,0 +1,80 @@
+from __future__ import annotations
+
+from linkwright.graph.names.identity import NodeIdentity
+from linkwright.messages import String
+from tests.waiting import SECONDS
+
+
+def names(process):
+    return sorted(name for name, _ in process.node.get_node_names_and_namespaces())
+
+
+def test_nodes_come_and_go(processes):
+    a, b = processes("a"), processes("b")
+    extra = b.graph.create_node("extra", namespace="/deep/er")
+    a.spin_until(lambda: NodeIdentity("extra", "/deep/er") in a.transport.remote_nodes())
+    assert names(a) == ["a", "b", "extra"]
+    extra.destroy_node()
+    a.spin_until(lambda: names(a) == ["a", "b"])
+    b.close()
+    a.spin_until(lambda: names(a) == ["a"])
+
+
+def test_each_of_two_nodes_of_one_name_is_listed(processes):
+    a, b = processes("a"), processes("twin")
+    b.graph.create_node("twin")
+    a.spin_until(lambda: names(a) == ["a", "twin", "twin"])
+
+
+def test_changes_are_announced(processes):
+    a = processes("a")
+    changes: list[int] = []
+    a.transport.watch(lambda: changes.append(1))
+    b = processes("b")
+    a.spin_until(lambda: changes and "b" in names(a))
+    seen = len(changes)
+    b.node.create_publisher(String, "chatter", 10)
+    a.spin_until(lambda: len(changes) > seen and a.node.count_publishers("chatter") == 1)
+
+
+def test_the_endpoints_of_each_node_are_known(processes):
+    a, b = processes("a"), processes("b")
+    b.node.create_publisher(String, "said", 10)
+    b.node.create_subscription(String, "heard", print, 10)
+    a.spin_until(lambda: a.node.count_subscribers("heard") == 1)
+    assert ("/said", ["std_msgs/msg/String"]) in a.node.get_publisher_names_and_types_by_node("b", "/")
+    assert ("/heard", ["std_msgs/msg/String"]) in a.node.get_subscriber_names_and_types_by_node("b", "/")
+    services = dict(a.node.get_service_names_and_types_by_node("b", "/"))
+    assert services["/b/list_parameters"] == ["rcl_interfaces/srv/ListParameters"]
+
+
+def test_waiting_for_discovery_ends_when_everybody_is_known(processes, programs):
+    programs("our_program", "one")
+    programs("our_program", "two")
+    us = processes("ours")
+    assert us.transport.wait_for_discovery(SECONDS)
+    assert {node.name for node in us.transport.remote_nodes()} == {"one", "two"}
+
+
+def test_alone_it_ends_soon(processes):
+    us = processes("ours")
+    assert us.transport.wait_for_discovery(SECONDS)
+
+
+def test_a_killed_process_and_the_one_that_takes_its_place_are_one(processes, programs):
+    us = processes("ours")
+    first = programs("our_program", "worker")
+    us.spin_until(lambda: names(us) == ["ours", "worker"])
+    first.kill()
+    us.spin_until(lambda: names(us) == ["ours"], 2)
+    programs("our_program", "worker")
+    us.spin_until(lambda: names(us) == ["ours", "worker"])
+
+
+def test_fifty_nodes_with_their_services_are_found(processes, programs):
+    us = processes("ours")
+    for number in range(50):
+        us.graph.create_node(f"node_{number}")
+    other = programs("our_program", "other")
+    found = other.ask_until(lambda found: len(found) == 52, "nodes", seconds=20)
+    assert "node_49" in found

@@ -1,0 +1,55 @@
+from __future__ import annotations
+
+import struct
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from linkwright.wire.dds.discovery_info import (
+    GID_SIZE,
+    OLD_GID_SIZE,
+    NodeEntities,
+    ParticipantEntities,
+    decode,
+    encode,
+)
+
+gids = st.binary(min_size=16, max_size=16)
+texts = st.text(st.characters(codec="utf-8", exclude_characters="\0"), max_size=12)
+nodes = st.builds(NodeEntities, texts, texts, st.lists(gids, max_size=3), st.lists(gids, max_size=3))
+participants = st.builds(ParticipantEntities, gids, st.lists(nodes, max_size=3))
+
+
+@given(participants, st.sampled_from([GID_SIZE, OLD_GID_SIZE]))
+def test_what_is_written_is_read(info, gid_size):
+    assert decode(encode(info, gid_size)) == info
+
+
+@given(st.binary(max_size=200))
+def test_any_bytes_are_read_or_refused(data):
+    decode(b"\0\1\0\0" + data)
+
+
+@pytest.mark.parametrize("data", [b"", b"\0", b"\0\1\0\0", b"\0\1\0\0" + bytes(15)])
+def test_short_samples_are_refused(data):
+    assert decode(data) is None
+
+
+def test_the_layout_is_that_of_rmw_dds_common():
+    gid, other = bytes(range(16)), bytes(range(16, 32))
+    info = ParticipantEntities(gid, [NodeEntities("/", "abc", [other], [])])
+    body = struct.pack("<I", 1)
+    body += struct.pack("<I", 2) + b"/\0" + bytes(2)
+    body += struct.pack("<I", 4) + b"abc\0"
+    assert encode(info, 16) == b"\0\1\0\0" + gid + body + struct.pack("<I", 1) + other + struct.pack("<I", 0)
+    padded = other + bytes(8)
+    assert encode(info, 24) == b"\0\1\0\0" + gid + bytes(8) + body + struct.pack("<I", 1) + padded + struct.pack(
+        "<I", 0
+    )
+
+
+def test_big_endian_samples_are_read():
+    data = bytes(range(16)) + struct.pack(">I", 1) + struct.pack(">I", 2) + b"/\0\0\0"
+    data += struct.pack(">I", 2) + b"a\0\0\0" + struct.pack(">II", 0, 0)
+    assert decode(b"\0\0\0\0" + data) == ParticipantEntities(bytes(range(16)), [NodeEntities("/", "a", [], [])])

@@ -1,0 +1,105 @@
+from __future__ import annotations
+
+import socket
+import subprocess
+import sys
+from contextlib import ExitStack, suppress
+
+import pytest
+
+from linkwright.graph import Graph, LogRecord
+from linkwright.messages import String
+from linkwright.wire.dds import available, join, why_not
+from linkwright.wire.dds.settings import PARTICIPANTS
+
+
+@pytest.fixture
+def log() -> list[LogRecord]:
+    return []
+
+
+@pytest.fixture
+def graph(log):
+    graph = Graph(threads=True, on_log=log.append)
+    yield graph
+    graph.close_now()
+
+
+def texts(log):
+    return [record.text for record in log]
+
+
+def goes_on(graph) -> bool:
+    got = []
+    node = graph.create_node("alone")
+    node.create_subscription(String, "chatter", got.append, 10)
+    node.create_publisher(String, "chatter", 10).publish(String())
+    return graph.count_publishers("/chatter") == 1
+
+
+def test_importing_does_not_load_the_library():
+    code = "import sys, linkwright.wire.dds; print('cyclonedds' in sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "False\n"
+
+
+def test_a_switch_keeps_a_process_to_itself(graph, log, monkeypatch):
+    monkeypatch.setenv("LINKWRIGHT_DDS", "0")
+    assert not available()
+    assert why_not() == "the environment variable LINKWRIGHT_DDS is 0"
+    assert join(graph) is None
+    assert log == []
+    assert goes_on(graph)
+
+
+def test_without_a_wheel_a_process_says_so_and_goes_on(graph, log, monkeypatch):
+    monkeypatch.setattr("linkwright.wire.dds.availability.find_spec", lambda _name: None)
+    assert "'cyclonedds' is not installed" in why_not()
+    assert join(graph) is None
+    (text,) = texts(log)
+    assert text.startswith("This process speaks to no other one: the package 'cyclonedds' is not installed")
+    assert goes_on(graph)
+
+
+@pytest.mark.parametrize("number", ["233", "-1", "one", "1.5"])
+def test_a_domain_that_is_none_is_told(graph, log, monkeypatch, number):
+    monkeypatch.setenv("ROS_DOMAIN_ID", number)
+    assert join(graph) is None
+    (text,) = texts(log)
+    assert f"error[DDS101]: '{number}' is not a DDS domain" in text
+    assert "This process goes on by itself" in text
+    assert goes_on(graph)
+
+
+@pytest.mark.parametrize("uri", ["file:///no/such/file.xml", "<CycloneDDS><Nonsense/></CycloneDDS>", "<Cyclone"])
+def test_a_configuration_that_cyclone_refuses_is_told(graph, log, monkeypatch, uri, capfd):
+    monkeypatch.setenv("CYCLONEDDS_URI", uri)
+    transport = join(graph)
+    assert not transport.wait_until_ready(10)
+    assert transport.problem.diagnostics[0].code == "DDS102"
+    (text,) = texts(log)
+    assert uri in text
+    assert goes_on(graph)
+    capfd.readouterr()
+
+
+def test_a_wrong_range_is_told_and_stays_on_the_machine(graph, log, monkeypatch):
+    monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOTS")
+    transport = join(graph)
+    assert transport.wait_until_ready(60)
+    (text,) = texts(log)
+    assert text.startswith("Invalid value 'LOCALHOTS' specified for 'ROS_AUTOMATIC_DISCOVERY_RANGE'")
+    assert "did you mean 'LOCALHOST'?" in text
+
+
+def test_a_domain_without_free_ports_is_told(graph, log, domain, capfd):
+    with ExitStack() as taken:
+        for index in range(PARTICIPANTS + 1):
+            each = taken.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))
+            with suppress(OSError):
+                each.bind(("", 7410 + 250 * domain + 2 * index))
+        transport = join(graph)
+        assert not transport.wait_until_ready(10)
+    assert transport.problem.diagnostics[0].code == "DDS103"
+    assert goes_on(graph)
+    capfd.readouterr()

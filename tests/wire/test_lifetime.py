@@ -1,0 +1,158 @@
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import textwrap
+import threading
+import time
+from pathlib import Path
+
+import pytest
+
+from linkwright.graph.qos.profile import QoSProfile
+from linkwright.messages import String, get_message
+from tests.waiting import SECONDS, wait_until
+
+on_linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="looks into /proc")
+
+
+def run(text: str, seconds: float = 20) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-c", textwrap.dedent(text)], capture_output=True, text=True, timeout=seconds, check=False
+    )
+
+
+def descriptors() -> set[str]:
+    return {str(each.readlink()) for each in Path("/proc/self/fd").iterdir() if each.is_symlink()}
+
+
+def kernel_threads() -> int:
+    return len(list(Path("/proc/self/task").iterdir()))
+
+
+@on_linux
+def test_nothing_is_left_after_closing(processes):
+    processes("warm").close()
+    threads, sockets = threading.active_count(), {each for each in descriptors() if each.startswith("socket")}
+    tasks = kernel_threads()
+    us = processes("ours")
+    us.node.create_publisher(String, "chatter", 10)
+    assert kernel_threads() > tasks
+    us.close()
+    assert threading.active_count() == threads
+    assert {each for each in descriptors() if each.startswith("socket")} == sockets
+    wait_until(lambda: kernel_threads() <= tasks)  # a thread that was joined is listed a moment longer
+
+
+def test_closing_twice_and_before_being_ready_is_fine(processes):
+    us = processes("ours", join_now=False)
+    from linkwright.wire.dds import join
+
+    transport = join(us.graph)
+    transport.close()
+    transport.close()
+    assert transport.remote_nodes() == []
+
+
+def test_who_waits_for_others_goes_on_when_the_domain_is_left(processes):
+    us = processes("ours")
+    ended = threading.Event()
+
+    def wait() -> None:
+        us.transport._joined_at = time.monotonic() + 10_000.0  # discovery does not settle
+        us.transport.wait_for_discovery(10_000.0)
+        us.transport.wait_until_ready(10_000.0)
+        ended.set()
+
+    waiting = threading.Thread(target=wait, daemon=True)
+    waiting.start()
+    us.close()
+    assert ended.wait(SECONDS)
+
+
+def test_what_was_sent_reliably_before_closing_arrives(processes):
+    b = processes("b")
+    got: list[int] = []
+    deep = QoSProfile(500)
+    b.node.create_subscription("std_msgs/msg/Int32", "chatter", lambda message: got.append(message.data), deep)
+    a = processes("a")
+    publisher = a.node.create_publisher("std_msgs/msg/Int32", "chatter", deep)
+    a.spin_until(lambda: publisher.get_subscription_count() == 1)
+    for number in range(300):
+        publisher.publish(get_message("std_msgs/msg/Int32")(data=number))
+    a.close()
+    b.spin_until(lambda: len(got) == 300)
+
+
+def test_a_program_that_closes_nothing_ends(domain):
+    done = run(
+        """
+        from linkwright.graph import Graph
+        from linkwright.wire.dds import join
+        from linkwright.messages import String
+        graph = Graph(threads=True)
+        publisher = graph.create_node("ours").create_publisher(String, "chatter", 10)
+        transport = join(graph)
+        assert transport.wait_until_ready(60)
+        """
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_a_program_that_fails_ends(domain):
+    done = run(
+        """
+        from linkwright.graph import Graph
+        from linkwright.wire.dds import join
+        graph = Graph(threads=True)
+        transport = join(graph)
+        raise SystemExit(3)
+        """
+    )
+    assert (done.returncode, done.stderr) == (3, "")
+
+
+def test_packets_that_are_none_of_dds_leave_no_line_on_standard_error(domain):
+    done = run(
+        """
+        import os, socket, time
+        from linkwright.graph import Graph
+        from linkwright.wire.dds import join
+        graph = Graph(threads=True)
+        assert join(graph).wait_until_ready(60)
+        first = 7400 + 250 * int(os.environ["ROS_DOMAIN_ID"])
+        header = b"RTPS\\x02\\x01\\x01\\x10" + bytes(12)
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
+            for data in (b"hello", header + b"\\xa0\\x45" + bytes(60), header + b"\\x15\\x01\\x40\\x00" + bytes(9)):
+                for port in range(first, first + 30):
+                    sender.sendto(data, ("127.0.0.1", port))
+        time.sleep(0.3)
+        graph.close_now()
+        """
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork here")
+@pytest.mark.filterwarnings("ignore:.*fork.*:DeprecationWarning")
+def test_a_child_that_is_forked_off_takes_no_part(processes, programs):
+    us = processes("ours")
+    us.node.create_subscription("std_msgs/msg/Int32", "/flood", print, 10)
+    other = programs("our_program", "forking")
+    other.ask_until(bool, "subscribers", "/flood")
+    assert other.ask("fork")[0] == 7
+    assert other.ask("nodes") == ["forking", "ours"]
+
+
+def test_a_peer_that_is_killed_does_not_hold_us_up(processes, programs):
+    us = processes("ours")
+    publisher = us.node.create_publisher(String, "/to_ros", 10)
+    peer = programs("ros_peer", "humble", "victim", "localhost")
+    us.spin_until(lambda: publisher.get_subscription_count() == 1)
+    peer.kill()
+    begin = time.monotonic()
+    for _ in range(2000):
+        publisher.publish(String(data="x" * 1000))
+    us.close()
+    assert time.monotonic() - begin < SECONDS, "each of them would wait"

@@ -1,0 +1,269 @@
+"""Nodes of real ROS 2, where an interpreter with rclpy is named by LINKWRIGHT_ROS_PYTHON (see CONTRIBUTING.md)."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+
+import pytest
+
+from linkwright.graph.names.identity import NodeIdentity
+from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from linkwright.messages import String, get_message, get_service, type_hash
+from tests.domains import own_domain
+
+PYTHON = os.environ.get("LINKWRIGHT_ROS_PYTHON", "")
+LASTING = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+IMAGES = 45
+
+Image = get_message("sensor_msgs/msg/Image")
+JointState = get_message("sensor_msgs/msg/JointState")
+
+pytestmark = pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ROS_PYTHON names no interpreter with rclpy")
+
+
+@pytest.fixture
+def real_node(programs):
+    return lambda **variables: programs("real_peer", "real_node", python=PYTHON, **variables)
+
+
+def has(us, name):
+    return NodeIdentity(name, "/") in us.transport.remote_nodes()
+
+
+def linkwright(*words):
+    """What a command prints, its errors and its exit status."""
+    done = subprocess.run(
+        [sys.executable, "-m", "linkwright", *words], capture_output=True, text=True, timeout=60, check=False
+    )
+    return done.stdout, done.stderr, done.returncode
+
+
+@pytest.mark.parametrize("we_are_first", [True, False])
+def test_nodes_know_each_other(processes, real_node, we_are_first):
+    if we_are_first:
+        us = processes("ours")
+        real = real_node()
+    else:
+        real = real_node()
+        us = processes("ours")
+    us.spin_until(lambda: has(us, "real_node"), 2.5)
+    real.ask_until(lambda nodes: nodes == [["/", "ours"], ["/", "real_node"]], "nodes")
+
+
+@pytest.mark.parametrize(
+    ("theirs", "ours"),
+    [
+        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}, {}),
+        ({}, {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}),
+        ({}, {"ROS_LOCALHOST_ONLY": "1"}),
+        ({"ROS_LOCALHOST_ONLY": "1"}, {"ROS_LOCALHOST_ONLY": "1"}),
+        ({}, {"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}),
+    ],
+)
+def test_nodes_know_each_other_however_far_they_look(processes, real_node, monkeypatch, theirs, ours):
+    real = real_node(**theirs)
+    for name, value in ours.items():
+        monkeypatch.setenv(name, value)
+    us = processes("ours")
+    us.spin_until(lambda: has(us, "real_node"), 5.0)
+    real.ask_until(lambda nodes: ["/", "ours"] in nodes, "nodes")
+
+
+def test_domains_are_kept_apart(processes, real_node, domain):
+    real = real_node(ROS_DOMAIN_ID=str(own_domain(2)))
+    us = processes("ours")
+    time.sleep(1.5)
+    assert not has(us, "real_node")
+    assert real.ask("nodes") == [["/", "real_node"]]
+
+
+def test_who_comes_later_knows_all_when_discovery_is_complete(processes, real_node):
+    """Down to the last service, which Fast DDS tells some time after the first topic."""
+    real_node()
+    us = processes("ours")
+    assert us.transport.wait_for_discovery(60)
+    assert has(us, "real_node")
+    assert us.node.count_publishers("/from_ros") == 1
+    services = dict(us.node.get_service_names_and_types_by_node("real_node", "/"))
+    assert services["/flip"] == ["std_srvs/srv/SetBool"]
+    assert len([name for name in services if "parameter" in name]) == 6
+
+
+def test_topics_go_both_ways(processes, real_node):
+    us = processes("ours")
+    got: list[str] = []
+    us.node.create_subscription(String, "/from_ros", lambda message: got.append(message.data), 10)
+    publisher = us.node.create_publisher(String, "/to_ros", 10)
+    real = real_node()
+    us.spin_until(lambda: publisher.get_subscription_count() == 1)
+    us.spin_until(lambda: us.node.count_publishers("/from_ros") == 1)
+    publisher.publish(String(data="hej"))
+    assert real.ask_until(bool, "received", "to_ros") == ["hej"]
+    for number in range(3):
+        real.ask("publish", f"från {number}")
+    us.spin_until(lambda: len(got) == 3)
+    assert got == ["från 0", "från 1", "från 2"]
+
+
+def test_types_with_sequences_go_both_ways(processes, real_node):
+    """Cyclone cannot read what Fast DDS 3 says of these."""
+    us = processes("ours")
+    real = real_node()
+    got = []
+    us.node.create_subscription(JointState, "/states_from_ros", got.append, 10)
+    publisher = us.node.create_publisher(JointState, "/states_to_ros", 10)
+    us.spin_until(lambda: publisher.get_subscription_count() == 1)
+    us.spin_until(lambda: us.node.count_publishers("/states_from_ros") == 1)
+    publisher.publish(JointState(name=["a", "b"], position=[0.5, 1.5]))
+    assert real.ask_until(bool, "received_states") == [[["a", "b"], [0.5, 1.5]]]
+    real.ask("publish_state", ["left", "right"], [0.25])
+    us.spin_until(lambda: got)
+    assert (got[0].name, list(got[0].position), list(got[0].velocity)) == (["left", "right"], [0.25], [])
+
+
+def test_images_come_whole_at_30_hz_both_ways(processes, real_node):
+    us = processes("ours")
+    real = real_node()
+    got: list[int] = []
+    us.node.create_subscription(Image, "/images_from_ros", lambda image: got.append(int(image.header.frame_id)), 50)
+    publisher = us.node.create_publisher(Image, "/images_to_ros", 50)
+    us.spin_until(lambda: publisher.get_subscription_count() == 1)
+    us.spin_until(lambda: us.node.count_publishers("/images_from_ros") == 1)
+    time.sleep(0.5)
+    real.ask("publish_images", IMAGES, 30.0)
+    picture = Image(height=480, width=640, encoding="rgb8", step=1920, data=bytes(640 * 480 * 3))
+    due = time.monotonic()
+    for number in range(IMAGES):
+        picture.header.frame_id = str(number)
+        publisher.publish(picture)
+        due += 1 / 30
+        while time.monotonic() < due:
+            us.executor.spin_once(timeout_sec=max(0.0, due - time.monotonic()))
+    us.spin_until(lambda: len(got) == IMAGES)
+    assert got == list(range(IMAGES))
+    assert real.ask_until(lambda images: len(images) == IMAGES, "received_images") == list(range(IMAGES))
+
+
+def test_what_was_said_before_is_heard_by_who_comes_later(processes, real_node):
+    us = processes("ours")
+    us.node.create_publisher(String, "/lasting_to_ros", LASTING).publish(String(data="said before"))
+    real = real_node()
+    assert real.ask_until(bool, "received", "lasting_to_ros") == ["said before"]
+    late = processes("late")
+    got: list[str] = []
+    late.node.create_subscription(String, "/lasting_from_ros", lambda message: got.append(message.data), LASTING)
+    late.spin_until(lambda: got == ["said before"])
+
+
+def test_our_endpoints_have_their_node_and_their_type_hash(processes, real_node):
+    us = processes("ours")
+    us.node.create_publisher(String, "/named", 10)
+    real = real_node()
+    published = real.ask_until(lambda found: "/named" in found, "published_by", "ours")
+    assert published["/named"] == ["std_msgs/msg/String"]
+    (told,) = real.ask("hashes", "/named")
+    assert type_hash(String).removeprefix("RIHS01_") in told
+    us.spin_until(lambda: us.node.get_publishers_info_by_topic("/from_ros"))
+    (info,) = us.node.get_publishers_info_by_topic("/from_ros")
+    assert info.node_name == "real_node"
+
+
+def test_a_mismatch_of_quality_of_service_is_told_on_both_sides(processes, real_node):
+    us = processes("ours")
+    real = real_node()
+    us.node.create_publisher(String, "/to_ros", QoSProfile(5, reliability=ReliabilityPolicy.BEST_EFFORT))
+    us.node.create_subscription(String, "/from_ros", print, LASTING)
+    us.spin_until(lambda: len([text for text in us.warnings() if "incompatible QoS" in text]) == 2)
+    assert any("RELIABILITY" in text and "'/real_node'" in text for text in us.warnings())
+    assert any("DURABILITY" in text and "'/real_node'" in text for text in us.warnings())
+    told = real.ask_until(lambda told: len(told) == 2, "mismatches")
+    assert sorted(told) == ["publisher", "subscription"]
+
+
+def test_one_that_is_killed_and_comes_back_is_heard_again(processes, real_node):
+    us = processes("ours")
+    got: list[str] = []
+    us.node.create_subscription(String, "/from_ros", lambda message: got.append(message.data), 10)
+    publisher = us.node.create_publisher(String, "/to_ros", 10)
+    first = real_node()
+    us.spin_until(lambda: publisher.get_subscription_count() == 1)
+    first.kill()
+    again = real_node()
+    us.spin_until(lambda: publisher.get_subscription_count() == 2)  # the first one's lease of 20 s is still running
+    began = time.monotonic()
+    for number in range(8):
+        publisher.publish(String(data=str(number)))
+    assert time.monotonic() - began < 1.0
+    assert again.ask_until(lambda heard: len(heard) == 8, "received", "to_ros") == list("01234567")
+    again.ask("publish", "back")
+    us.spin_until(lambda: got == ["back"])
+
+
+def test_ours_that_is_killed_is_gone_there_and_its_successor_is_heard(processes, programs, real_node):
+    real = real_node()
+    ours = programs("our_program", "victim")
+    real.ask_until(lambda nodes: ["/", "victim"] in nodes, "nodes")
+    ours.kill()
+    successor = processes("victim")
+    publisher = successor.node.create_publisher(String, "/to_ros", 10)
+    successor.spin_until(lambda: publisher.get_subscription_count() == 1)
+    publisher.publish(String(data="the next one"))
+    assert real.ask_until(bool, "received", "to_ros") == ["the next one"]
+    real.ask_until(lambda nodes: nodes.count(["/", "victim"]) == 1, "nodes", seconds=10)
+
+
+def test_a_service_on_fast_dds_is_listed_and_said_to_be_out_of_reach(processes, real_node, monkeypatch):
+    monkeypatch.setenv("RMW_IMPLEMENTATION", "rmw_fastrtps_cpp")
+    real_node()
+    us = processes("ours")
+    us.spin_until(lambda: us.node.count_services("/real_node/get_parameters") == 1)
+    client = us.node.create_client(get_service("rcl_interfaces/srv/GetParameters"), "/real_node/get_parameters")
+    us.spin_until(lambda: client.unreachable)
+    assert not client.wait_for_service(0.1)
+    assert not client.wait_for_service(0.1)
+    (warning,) = us.warnings()
+    assert "RMW_IMPLEMENTATION=rmw_cyclonedds_cpp" in warning
+
+
+def test_a_service_of_ours_that_fast_dds_calls_says_that_it_cannot_answer(processes, real_node):
+    us = processes("ours")
+    asked = []
+    us.node.create_service(get_service("std_srvs/srv/SetBool"), "/our_flip", lambda *both: asked.append(both))
+    real = real_node()
+    real.ask("call", "/our_flip")
+    us.spin_until(us.warnings)
+    (warning,) = us.warnings()
+    assert "A node on Fast DDS (rmw_fastrtps_cpp) calls service '/our_flip'" in warning
+    assert not asked
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("param", "get", "/real_node", "speed"),
+        ("param", "list", "/real_node"),
+        ("service", "call", "/flip", "std_srvs/srv/SetBool", "{data: true}"),
+    ],
+)
+def test_verbs_that_ask_a_node_on_fast_dds_say_at_once_that_they_cannot(real_node, monkeypatch, words):
+    monkeypatch.setenv("RMW_IMPLEMENTATION", "rmw_fastrtps_cpp")
+    real_node()
+    out, err, status = linkwright(*words)
+    assert (out, status) == ("", 1)
+    assert err.startswith("error[CLI443]")
+    assert "RMW_IMPLEMENTATION=rmw_cyclonedds_cpp" in err
+
+
+def test_verbs_show_what_a_node_there_has(real_node):
+    real_node()
+    assert linkwright("node", "list") == ("/real_node\n", "", 0)
+    topics = linkwright("topic", "list", "-t")[0].splitlines()
+    assert "/states_from_ros [sensor_msgs/msg/JointState]" in topics
+    assert "/images_to_ros [sensor_msgs/msg/Image]" in topics
+    info = linkwright("node", "info", "/real_node")[0]
+    assert "/lasting_from_ros: std_msgs/msg/String" in info
+    assert "/flip: std_srvs/srv/SetBool" in info
+    assert linkwright("topic", "echo", "--once", "/lasting_from_ros") == ("data: said before\n---\n", "", 0)

@@ -1,0 +1,133 @@
+"""Nodes of real ROS 2, played by a process that does on the wire what rmw_cyclonedds_cpp does."""
+
+from __future__ import annotations
+
+import os
+
+import pytest
+
+from linkwright.graph.endpoints.info import EndpointKind
+from linkwright.graph.names.identity import NodeIdentity
+from linkwright.messages import String, get_service, type_hash
+
+SetBool = get_service("std_srvs/srv/SetBool")
+DISTRIBUTIONS = ("humble", "jazzy")
+
+
+@pytest.fixture(params=DISTRIBUTIONS)
+def distribution(request):
+    return request.param
+
+
+def test_a_real_node_and_its_endpoints_are_seen(processes, programs, distribution):
+    programs("ros_peer", distribution, "real_node", "localhost")
+    us = processes("ours")
+    us.spin_until(lambda: NodeIdentity("real_node", "/") in us.transport.remote_nodes())
+    us.spin_until(lambda: len(us.transport.remote_endpoints()) >= 4)
+    seen = {(each.kind, each.name): each for each in us.transport.remote_endpoints()}
+    assert seen[EndpointKind.PUBLISHER, "/from_ros"].type_name == "std_msgs/msg/String"
+    assert seen[EndpointKind.SUBSCRIPTION, "/to_ros"].node == NodeIdentity("real_node", "/")
+    assert seen[EndpointKind.SERVICE, "/ros_flip"].type_name == "std_srvs/srv/SetBool"
+    assert seen[EndpointKind.CLIENT, "/our_flip"].node == NodeIdentity("real_node", "/")
+    hashed = seen[EndpointKind.PUBLISHER, "/from_ros"].type_hash
+    assert hashed == ("" if distribution == "humble" else type_hash(String))
+
+
+@pytest.mark.parametrize("other", ["", "humble", "jazzy"])
+def test_a_real_node_sees_ours_with_gids_of_its_size(processes, programs, distribution, other, monkeypatch):
+    """Whatever ROS_DISTRO says: what is heard counts."""
+    monkeypatch.setenv("ROS_DISTRO", other)
+    us = processes("ours")
+    publisher = us.node.create_publisher(String, "/to_ros", 10)
+    peer = programs("ros_peer", distribution, "real_node", "localhost")
+    nodes = peer.ask_until(lambda nodes: any(node[1] == "ours" for node in nodes), "nodes")
+    namespace, name, readers, writers = next(node for node in nodes if node[1] == "ours")
+    assert (namespace, name) == ("/", "ours")
+    size = 24 if distribution == "humble" else 16
+    assert publisher.gid.ljust(size, b"\0").hex() in writers
+    assert all(len(gid) == 2 * size for gid in readers + writers)
+
+
+def test_gids_are_the_older_ones_where_both_are_heard(processes, programs):
+    us = processes("ours")
+    programs("ros_peer", "jazzy", "new_node", "localhost")
+    us.spin_until(lambda: NodeIdentity("new_node", "/") in us.transport.remote_nodes())
+    old = programs("ros_peer", "humble", "old_node", "localhost")
+    us.spin_until(lambda: NodeIdentity("old_node", "/") in us.transport.remote_nodes())
+    old.ask_until(lambda nodes: any(node[1] == "ours" for node in nodes), "nodes")
+
+
+def test_topics_go_both_ways(processes, programs, distribution):
+    us = processes("ours")
+    got: list[str] = []
+    us.node.create_subscription(String, "/from_ros", lambda message: got.append(message.data), 10)
+    publisher = us.node.create_publisher(String, "/to_ros", 10)
+    peer = programs("ros_peer", distribution, "real_node", "localhost")
+    us.spin_until(lambda: publisher.get_subscription_count() == 1)
+    us.spin_until(lambda: us.node.count_publishers("/from_ros") == 1)
+    publisher.publish(String(data="hej"))
+    assert peer.ask_until(bool, "received") == ["hej"]
+    for number in range(3):
+        peer.ask("publish", f"från {number}")
+    us.spin_until(lambda: len(got) == 3)
+    assert got == ["från 0", "från 1", "från 2"]
+
+
+def test_a_service_of_ours_answers_a_real_client(processes, programs, distribution):
+    us = processes("ours")
+
+    def flip(request, response):
+        response.success, response.message = not request.data, "by us"
+        return response
+
+    us.node.create_service(SetBool, "/our_flip", flip)
+    peer = programs("ros_peer", distribution, "real_node", "localhost")
+    us.spin_until(lambda: us.node.count_clients("/our_flip") == 1)
+    peer.ask("call", False, 41)
+    us.spin_until(lambda: peer.ask("replies") == [[0x0123456789ABCDEF, 41, True, "by us"]])
+
+
+def test_a_real_service_answers_a_client_of_ours(processes, programs, distribution):
+    us = processes("ours")
+    client = us.node.create_client(SetBool, "/ros_flip")
+    future = client.call_async(SetBool.Request(data=False))
+    peer = programs("ros_peer", distribution, "real_node", "localhost")
+    us.spin_until(lambda: peer.ask("answer") or future.done())
+    us.spin_until(future.done)
+    assert future.result() == SetBool.Response(success=True, message="by ROS")
+    assert client.service_is_ready()
+    peer.kill()
+
+
+def test_endpoints_tell_type_hashes_and_which_belong_together(processes, programs):
+    us = processes("ours")
+    us.node.create_publisher(String, "/named", 10)
+    us.node.create_service(SetBool, "/asked", lambda _request, response: response)
+    us.node.create_client(SetBool, "/asking")
+    peer = programs("ros_peer", "jazzy", "real_node", "localhost")
+    wanted = {"rt/named", "rq/askedRequest", "rr/askedReply", "rq/askingRequest", "rr/askingReply"}
+    seen = peer.ask_until(lambda seen: wanted <= {each[0] for each in seen.values()}, "seen")
+    facts = {topic: (kind, data) for topic, kind, data, _ in seen.values()}
+    assert facts["rt/named"] == ("std_msgs::msg::dds_::String_", f"typehash={type_hash(String)};")
+    for key, topics in (
+        ("serviceid", ("rq/askedRequest", "rr/askedReply")),
+        ("clientid", ("rq/askingRequest", "rr/askingReply")),
+    ):
+        kinds, data = zip(*(facts[topic] for topic in topics), strict=True)
+        assert kinds == ("std_srvs::srv::dds_::SetBool_Request_", "std_srvs::srv::dds_::SetBool_Response_")
+        assert data[0] == data[1]
+        assert data[0].startswith(f"{key}=")
+        assert data[0].endswith(f";typehash={type_hash(SetBool)};")
+
+
+@pytest.mark.skipif(os.environ.get("CI") == "true", reason="machines of CI may have no interface with multicast")
+@pytest.mark.parametrize("network", ["humble", "jazzy", "jazzy localhost", "localhost"])
+@pytest.mark.parametrize("we_are_first", [True, False])
+def test_real_nodes_with_the_network_settings_they_have_are_met(processes, programs, network, we_are_first):
+    if we_are_first:
+        us = processes("ours")
+        programs("ros_peer", network.split()[0].replace("localhost", "humble"), "real_node", network)
+    else:
+        programs("ros_peer", network.split()[0].replace("localhost", "humble"), "real_node", network)
+        us = processes("ours")
+    us.spin_until(lambda: NodeIdentity("real_node", "/") in us.transport.remote_nodes())

@@ -1,0 +1,133 @@
+from __future__ import annotations
+
+from linkwright.graph.actions.client import ActionClient
+from linkwright.graph.actions.server import ActionServer
+from linkwright.graph.parameters.client import AsyncParameterClient
+from linkwright.messages import get_action, get_service
+from tests.waiting import SECONDS
+
+SetBool = get_service("std_srvs/srv/SetBool")
+Empty = get_service("std_srvs/srv/Empty")
+Fibonacci = get_action("example_interfaces/action/Fibonacci")
+
+
+def flip(request, response):
+    response.success = not request.data
+    return response
+
+
+def test_requests_made_before_the_server_is_there_are_answered(processes):
+    a = processes("a")
+    client = a.node.create_client(SetBool, "flip")
+    futures = [client.call_async(SetBool.Request(data=value)) for value in (True, False)]
+    assert not client.service_is_ready()
+    b = processes("b")
+    b.node.create_service(SetBool, "flip", flip)
+
+    def both_spin():
+        b.executor.spin_once(timeout_sec=0.01)
+        return all(future.done() for future in futures)
+
+    a.spin_until(both_spin)
+    assert [future.result().success for future in futures] == [False, True]
+
+
+def test_a_client_is_ready_while_the_server_is_there(processes):
+    a, b = processes("a"), processes("b")
+    client = a.node.create_client(SetBool, "flip")
+    service = b.node.create_service(SetBool, "flip", flip)
+    assert client.wait_for_service(60)
+    b.node.destroy_service(service)
+    a.spin_until(lambda: not client.service_is_ready())
+
+
+def test_answers_go_to_who_asked(processes):
+    a, b, server = processes("a"), processes("b"), processes("server")
+    server.node.create_service(SetBool, "flip", flip)
+    clients = [process.node.create_client(SetBool, "flip") for process in (a, b)]
+    assert all(client.wait_for_service(60) for client in clients)
+    requests = [SetBool.Request(data=data) for data in (True, False)]
+    futures = [client.call_async(request) for client, request in zip(clients, requests, strict=True)]
+
+    def all_spin():
+        for process in (a, b):
+            process.executor.spin_once(timeout_sec=0.01)
+        return all(future.done() for future in futures)
+
+    server.spin_until(all_spin)
+    assert [future.result().success for future in futures] == [False, True]
+
+
+def test_messages_without_members_travel(processes):
+    a, b = processes("a"), processes("b")
+    calls = []
+    b.node.create_service(Empty, "poke", lambda _request, response: calls.append(1) or response)
+    client = a.node.create_client(Empty, "poke")
+    future = client.call_async(Empty.Request())
+    a.spin_until(lambda: b.executor.spin_once(timeout_sec=0.01) or future.done())
+    assert calls == [1]
+    assert future.result() == Empty.Response()
+
+
+def test_parameters_of_a_node_elsewhere_are_read_and_set(processes):
+    a, b = processes("a"), processes("b")
+    b.node.declare_parameter("speed", 1.5)
+    parameters = AsyncParameterClient(a.node, "/b")
+
+    def done(future):
+        a.spin_until(lambda: b.executor.spin_once(timeout_sec=0.01) or future.done())
+        return future.result()
+
+    assert "speed" in done(parameters.list_parameters()).result.names
+    assert done(parameters.get_parameters(["speed"])).values[0].double_value == 1.5
+
+
+def test_an_action_elsewhere_is_carried_out(processes):
+    a, b = processes("a"), processes("b")
+
+    def execute(goal):
+        sequence = [0, 1]
+        for _ in range(goal.request.order - 1):
+            sequence.append(sequence[-1] + sequence[-2])
+            goal.publish_feedback(Fibonacci.Feedback(sequence=sequence))
+        goal.succeed()
+        return Fibonacci.Result(sequence=sequence)
+
+    server = ActionServer(b.node, Fibonacci, "count", execute)
+    client = ActionClient(a.node, Fibonacci, "count")
+    assert client.wait_for_server(SECONDS)
+    b.spin_until(lambda: b.node.count_clients("/count/_action/send_goal"))  # the server knows the client, too
+    b.spin_until(lambda: b.node.count_clients("/count/_action/get_result"))
+    b.spin_until(lambda: b.node.count_subscribers("/count/_action/feedback"))
+    feedback = []
+
+    def done(future):
+        a.spin_until(lambda: b.executor.spin_once(timeout_sec=0.01) or future.done())
+        return future.result()
+
+    handle = done(client.send_goal_async(Fibonacci.Goal(order=4), feedback_callback=feedback.append))
+    assert handle.accepted
+    result = done(handle.get_result_async())
+    assert list(result.result.sequence) == [0, 1, 1, 2, 3]
+    a.spin_until(lambda: len(feedback) == 3)
+    client.destroy()
+    server.destroy()
+
+
+def test_why_servers_outside_cannot_be_asked_is_logged_once_when_it_matters(processes):
+    a = processes("a", join_now=False)
+    client = a.node.create_client(SetBool, "flip")
+    client.set_unreachable("it speaks another language")
+    assert a.warnings() == []
+    assert not client.wait_for_service(0.01)
+    client.call_async(SetBool.Request())
+    assert a.warnings() == ["it speaks another language"]
+
+
+def test_a_request_that_waits_has_the_reason_logged_when_it_is_known(processes):
+    a = processes("a", join_now=False)
+    client = a.node.create_client(SetBool, "flip")
+    client.call_async(SetBool.Request())
+    assert a.warnings() == []
+    client.set_unreachable("it speaks another language")
+    assert a.warnings() == ["it speaks another language"]

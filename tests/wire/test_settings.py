@@ -1,0 +1,114 @@
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.wire.dds.discovery_info import GID_SIZE, OLD_GID_SIZE
+from linkwright.wire.dds.interfaces import own_addresses
+from linkwright.wire.dds.settings import Range, read_settings
+
+
+def elements(settings):
+    """What the preferred configuration says: path -> texts and attributes."""
+    found = {}
+
+    def walk(element, path):
+        found.setdefault(path, []).append(element.text or element.attrib)
+        for child in element:
+            walk(child, f"{path}/{child.tag}" if path else child.tag)
+
+    walk(ET.fromstring(settings.configurations[0].split(",")[0]).find("Domain"), "")
+    return found
+
+
+def test_left_to_itself_a_process_stays_inside_the_machine():
+    settings = read_settings({})
+    assert (settings.domain_id, settings.range) == (0, Range.MACHINE)
+    said = elements(settings)
+    assert said["General/MulticastTimeToLive"] == ["0"]
+    assert said["General/MulticastRecvNetworkInterfaceAddresses"] == ["127.0.0.1"]
+    peers = [each["address"] for each in said["Discovery/Peers/Peer"]]
+    assert peers == ["127.0.0.1", *own_addresses()[:3]]
+
+
+def test_a_machine_without_a_network_has_loopback_alone(monkeypatch):
+    monkeypatch.setattr("linkwright.wire.dds.settings.own_addresses", list)
+    said = elements(read_settings({}))
+    assert said["General/Interfaces/NetworkInterface"] == [{"address": "127.0.0.1", "multicast": "true"}]
+
+
+@pytest.mark.parametrize(
+    ("variables", "expected"),
+    [
+        ({"ROS_LOCALHOST_ONLY": "1"}, Range.LOCALHOST),
+        ({"ROS_LOCALHOST_ONLY": "0"}, Range.SUBNET),
+        ({"ROS_LOCALHOST_ONLY": "1", "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}, Range.LOCALHOST),
+        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}, Range.SUBNET),
+        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}, Range.LOCALHOST),
+        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "OFF"}, Range.OFF),
+        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "SYSTEM_DEFAULT"}, Range.SYSTEM_DEFAULT),
+        ({"CYCLONEDDS_URI": "file:///a.xml"}, Range.SUBNET),
+        ({"ROS_STATIC_PEERS": "192.0.2.7"}, Range.SUBNET),
+    ],
+)
+def test_variables_of_ros_are_followed(variables, expected):
+    assert read_settings(variables).range is expected
+
+
+def test_the_subnet_is_as_rmw_cyclonedds_has_it():
+    said = elements(read_settings({"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET", "ROS_STATIC_PEERS": "192.0.2.7;host"}))
+    assert said == {
+        "": [{}],
+        "Discovery": [{}],
+        "Discovery/ParticipantIndex": ["auto"],
+        "Discovery/MaxAutoParticipantIndex": ["32"],
+        "Discovery/Peers": [{}],
+        "Discovery/Peers/Peer": [{"address": "192.0.2.7"}, {"address": "host"}],
+    }
+
+
+def test_localhost_is_as_rmw_cyclonedds_has_it():
+    said = elements(read_settings({"ROS_LOCALHOST_ONLY": "1"}))
+    assert said["General/AllowMulticast"] == ["false"]
+    assert said["Discovery/Peers/Peer"] == [{"address": "localhost"}]
+
+
+def test_the_users_configuration_goes_last():
+    settings = read_settings({"CYCLONEDDS_URI": "file:///a.xml"})
+    assert all(each.endswith(",file:///a.xml") for each in settings.configurations)
+    system = read_settings({"CYCLONEDDS_URI": "file:///a.xml", "ROS_AUTOMATIC_DISCOVERY_RANGE": "SYSTEM_DEFAULT"})
+    assert system.configurations == ("file:///a.xml",)
+
+
+def test_without_discovery_nobody_else_has_the_tag():
+    said = elements(read_settings({"ROS_AUTOMATIC_DISCOVERY_RANGE": "OFF"}))
+    assert said["Discovery/ParticipantIndex"] == ["none"]
+    assert said["Discovery/Tag"][0].startswith("ros_discovery_off_")
+
+
+def test_static_peers_that_are_ignored_are_told():
+    settings = read_settings({"ROS_AUTOMATIC_DISCOVERY_RANGE": "OFF", "ROS_STATIC_PEERS": "192.0.2.7"})
+    assert settings.warnings == ("1 static peers were specified, but discovery is OFF: they are ignored",)
+
+
+@pytest.mark.parametrize(
+    ("distribution", "size"),
+    [("", OLD_GID_SIZE), ("humble", OLD_GID_SIZE), ("Foxy", OLD_GID_SIZE), ("iron", GID_SIZE), ("jazzy", GID_SIZE)],
+)
+def test_gids_have_the_size_of_the_distribution(distribution, size):
+    assert read_settings({"ROS_DISTRO": distribution}).gid_size == size
+
+
+@pytest.mark.parametrize(("text", "expected"), [("", 0), ("0", 0), (" 7 ", 7), ("232", 232)])
+def test_domains(text, expected):
+    assert read_settings({"ROS_DOMAIN_ID": text}).domain_id == expected
+    assert read_settings({"ROS_DOMAIN_ID": "50"}, domain_id=3).domain_id == 3
+
+
+@pytest.mark.parametrize("text", ["233", "-1", "x", "1.0"])
+def test_what_is_no_domain(text):
+    with pytest.raises(LinkwrightError) as caught:
+        read_settings({"ROS_DOMAIN_ID": text})
+    assert caught.value.diagnostics[0].code == "DDS101"

@@ -1,0 +1,170 @@
+"""The types of topics: told to others by name, made once a domain, and kept until it is closed."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import subprocess
+import sys
+import textwrap
+
+import pytest
+
+from linkwright.messages import String, get_message
+from linkwright.wire.dds import open_domains as opened
+from linkwright.wire.dds.cyclone import CycloneError
+from linkwright.wire.dds.topic_types import _undescribing
+
+Point = get_message("geometry_msgs/msg/Point")
+
+CHURN = """
+    import gc, time
+    from linkwright.graph import Graph
+    from linkwright.wire.dds import join
+    from linkwright.messages import String, get_message
+
+    Point = get_message("geometry_msgs/msg/Point")
+
+    def process(name):
+        graph = Graph(threads=True)
+        assert join(graph).wait_until_ready(60)
+        return graph, graph.create_node(name)
+
+    def memory():
+        gc.collect()
+        return int(open("/proc/self/statm").read().split()[1]) * 4096 / 1e6
+
+    first, node = process("first")
+    publisher = node.create_publisher(Point, "/points", 10)  # the first type whose samples are known here
+    other, listener = process("other")
+    got = []
+    listener.create_subscription(Point, "/points", got.append, 10)
+    listener.create_subscription(String, "/words", print, 10)
+    answering = listener.create_publisher(String, "/answers", 10)
+    while not publisher.get_subscription_count():
+        time.sleep(0.01)
+    publisher.publish(Point())
+    first.close_now()  # and its type with it, were it not kept
+    for number in range(24):
+        graph, node = process("next")
+        words = node.create_publisher(String, "/words", 10)
+        node.create_subscription(String, "/answers", print, 10)
+        while not (words.get_subscription_count() and answering.get_subscription_count()):
+            time.sleep(0.005)
+        for _ in range(20):
+            words.publish(String(data="word"))
+            answering.publish(String(data="answer"))
+        graph.close_now()
+        if number == 3:
+            before = memory()
+    print(f"{memory() - before:.1f}")
+    other.close_now()
+"""
+
+
+TOGETHER = """
+    from linkwright.graph import Graph
+    from linkwright.wire.dds import join
+    from linkwright.messages import get_message
+
+    NAMES = ["sensor_msgs/msg/Image", "sensor_msgs/msg/PointCloud2", "nav_msgs/msg/Odometry", "nav_msgs/msg/Path"]
+    NAMES += ["visualization_msgs/msg/MarkerArray", "trajectory_msgs/msg/JointTrajectory", "tf2_msgs/msg/TFMessage"]
+
+    def graph(name, types):
+        made = Graph(threads=True)
+        node = made.create_node(name)
+        for type_name in types:
+            node.create_publisher(get_message(type_name), f"/{name}/{type_name}", 1)
+        return made
+
+    for _ in range(120):
+        graphs = [graph("one", NAMES), graph("other", reversed(NAMES))]
+        for transport in [join(each) for each in graphs]:
+            assert transport.wait_until_ready(60)
+        for each in graphs:
+            each.close_now()
+"""
+
+
+def output_of(program: str) -> str:
+    """Of a process that ends well though freed memory is overwritten: what still looks at it goes wrong at once."""
+    done = subprocess.run(
+        [sys.executable, "-X", "faulthandler", "-c", textwrap.dedent(program)],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+        env={**os.environ, "MALLOC_PERTURB_": "165"},
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    return done.stdout
+
+
+@pytest.fixture
+def shared(processes, domain):
+    """The domain that two graphs of this process share."""
+    processes("a"), processes("b")
+    return opened._opened[domain]
+
+
+def test_graphs_share_the_types_of_their_domain(shared, processes):
+    for name in ("c", "d"):
+        processes(name).node.create_publisher(String, "chatter", 10)
+    assert shared.users == 4
+    described = shared.descriptions.message(String)
+    processes("e").spin_until(lambda: described in shared.types._made)
+    address = shared.types._made[described]
+    last = processes("f")
+    last.node.create_subscription(String, "chatter", print, 10)
+    last.spin_until(lambda: last.node.count_subscribers("/chatter") and last.node.count_publishers("/chatter") == 2)
+    assert shared.types._made[described] == address
+
+
+def test_a_type_outlives_its_last_topic(shared, processes):
+    described = shared.descriptions.message(Point)
+    a = processes("short")
+    a.node.create_publisher(Point, "points", 10)
+    a.spin_until(lambda: described in shared.types._made)
+    a.close()
+    assert described in shared.types._made
+
+
+def test_a_closed_domain_keeps_nothing(processes, domain):
+    us = processes("alone")
+    us.node.create_publisher(String, "chatter", 10)
+    us.spin_until(lambda: domain in opened._opened and len(opened._opened[domain].types._made) > 1)
+    types = opened._opened[domain].types
+    us.close()
+    assert domain not in opened._opened
+    assert types._made == {}
+
+
+def test_the_functions_that_describe_a_type_are_left_out(shared, processes):
+    processes("c").node.create_publisher(String, "chatter", 10)
+    for address in tuple(shared.types._made.values()):
+        table = ctypes.c_void_p.from_address(address).value
+        functions = (ctypes.c_void_p * 12).from_address(table)
+        assert list(functions[8:11]) == [None, None, None]
+        assert all(functions[index] for index in (0, 2, 3, 4, 5, 6, 7, 11))
+
+
+def test_a_table_of_another_version_is_left_alone():
+    table = (ctypes.c_void_p * 14)(*range(100, 114))
+    assert _undescribing(ctypes.addressof(table)) == ctypes.addressof(table)
+
+
+def test_a_topic_that_cyclone_refuses_is_an_error(processes):
+    us = processes("ours")
+    participant = us.transport._engine._participant
+    with pytest.raises(CycloneError, match="topic 'not a name'"):
+        participant.create_topic("not a name", participant.types.message(String))
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="looks into /proc")
+def test_graphs_that_come_and_go_leave_no_memory_and_no_pointer_to_it_behind(domain):
+    assert float(output_of(CHURN)) < 3.0, "0.5 MB a graph, were its types made anew"
+
+
+@pytest.mark.slow
+def test_graphs_may_join_at_the_same_time(domain):
+    assert output_of(TOGETHER) == ""

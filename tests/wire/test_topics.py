@@ -1,0 +1,229 @@
+from __future__ import annotations
+
+import time
+
+import pytest
+
+from linkwright.graph.endpoints.event_types import SubscriptionEventCallbacks
+from linkwright.graph.qos.profile import (
+    DurabilityPolicy,
+    HistoryPolicy,
+    LivelinessPolicy,
+    QoSProfile,
+    ReliabilityPolicy,
+)
+from linkwright.graph.time.values import Duration
+from linkwright.messages import String, get_message, interface_names, serialize
+
+LASTING = QoSProfile(3, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+EVERYTHING = QoSProfile(history=HistoryPolicy.KEEP_ALL)
+
+
+def test_a_message_goes_from_process_to_process_once(processes):
+    a, b = processes("a"), processes("b")
+    got: list[str] = []
+    for process in (a, b):
+        process.node.create_subscription(String, "chatter", lambda message: got.append(message.data), 10)
+    publisher = a.node.create_publisher(String, "chatter", 10)
+    b.spin_until(lambda: publisher.get_subscription_count() == 2)
+    publisher.publish(String(data="hej"))
+    b.spin_until(lambda: len(got) == 1)
+    a.spin_until(lambda: len(got) == 2)
+    time.sleep(0.2)
+    a.executor.spin_once(timeout_sec=0.05)
+    b.executor.spin_once(timeout_sec=0.05)
+    assert got == ["hej", "hej"]
+
+
+def test_nothing_is_serialised_while_nobody_outside_listens(processes):
+    a, b = processes("a"), processes("b")
+    publisher = a.node.create_publisher(String, "chatter", 10)
+    assert a.transport.wait_until_ready(60)
+    assert publisher.outside is None
+    subscription = b.node.create_subscription(String, "chatter", print, 10)
+    a.spin_until(lambda: publisher.outside is not None)
+    b.node.destroy_subscription(subscription)
+    a.spin_until(lambda: publisher.outside is None)
+    assert publisher.get_subscription_count() == 0
+
+
+def test_late_comers_get_what_was_published_before_the_domain_was_joined(processes):
+    a = processes("a", join_now=False)
+    publisher = a.node.create_publisher(String, "described", LASTING)
+    for word in ("one", "two", "three", "four"):
+        publisher.publish(String(data=word))
+    a.join()
+    publisher.publish(String(data="five"))
+    b = processes("b")
+    got: list[str] = []
+    b.node.create_subscription(String, "described", lambda message: got.append(message.data), LASTING)
+    b.spin_until(lambda: len(got) == 3)
+    assert got == ["three", "four", "five"]
+
+
+def test_what_is_published_as_soon_as_there_is_a_publisher_goes_to_who_is_known(processes):
+    a, b = processes("a"), processes("b")
+    got: list[str] = []
+    b.node.create_subscription(String, "chatter", lambda message: got.append(message.data), 10)
+    a.spin_until(lambda: a.node.count_subscribers("chatter") == 1)
+    publisher = a.node.create_publisher(String, "chatter", 10)
+    for word in ("one", "two", "three"):
+        publisher.publish(String(data=word))
+    assert publisher.wait_for_all_acked(Duration(seconds=5))
+    b.spin_until(lambda: len(got) == 3)
+    assert got == ["one", "two", "three"]
+
+
+def test_callbacks_learn_where_a_message_comes_from(processes):
+    a, b = processes("a"), processes("b")
+    infos = []
+    b.node.create_subscription(String, "chatter", lambda _message, info: infos.append(info), 10)
+    publisher = a.node.create_publisher(String, "chatter", 10)
+    a.spin_until(lambda: publisher.get_subscription_count() == 1)
+    b.spin_until(lambda: b.node.count_publishers("chatter") == 1)
+    before = time.time_ns()
+    publisher.publish(String())
+    b.spin_until(lambda: infos)
+    (info,) = infos
+    assert info.from_outside
+    assert info.publisher_gid == publisher.gid
+    assert before <= info.source_timestamp <= info.received_timestamp <= time.time_ns()
+
+
+def test_bytes_are_passed_on_as_they_are(processes):
+    a, b = processes("a"), processes("b")
+    got: list[bytes] = []
+    b.node.create_subscription(String, "chatter", got.append, 10, raw=True)
+    publisher = a.node.create_publisher(String, "chatter", 10)
+    a.spin_until(lambda: publisher.get_subscription_count() == 1)
+    data = serialize(String(data="abcd"))
+    publisher.publish(data)
+    b.spin_until(lambda: got)
+    assert got[0].rstrip(b"\0") == data.rstrip(b"\0")
+    assert len(got[0]) % 4 == 0
+
+
+def test_a_mismatch_of_quality_of_service_is_told_on_both_sides(processes):
+    a, b = processes("a"), processes("b")
+    a.node.create_publisher(String, "chatter", QoSProfile(5, reliability=ReliabilityPolicy.BEST_EFFORT))
+    b.node.create_subscription(String, "chatter", print, QoSProfile(5))
+
+    def said(process):
+        """Its warnings of a mismatch: one about a node of an earlier test that has not left yet may come besides."""
+        return [text for text in process.warnings() if "incompatible QoS" in text]
+
+    b.spin_until(lambda: said(b))
+    a.spin_until(lambda: said(a))
+    (theirs,), (ours,) = said(b), said(a)
+    assert "New publisher discovered on topic '/chatter', offering incompatible QoS" in theirs
+    assert "RELIABILITY" in theirs
+    assert "'/a'" in theirs
+    assert "New subscription discovered on topic '/chatter', requesting incompatible QoS" in ours
+    assert "'/b'" in ours
+
+
+def test_the_quality_of_service_of_others_is_known(processes):
+    a, b = processes("a"), processes("b")
+    offered = QoSProfile(
+        7,
+        reliability=ReliabilityPolicy.BEST_EFFORT,
+        durability=DurabilityPolicy.TRANSIENT_LOCAL,
+        deadline=Duration(seconds=1),
+        lifespan=Duration(seconds=3),
+        liveliness=LivelinessPolicy.MANUAL_BY_TOPIC,
+        liveliness_lease_duration=Duration(seconds=2),
+    )
+    a.node.create_publisher(String, "chatter", offered)
+    a.node.create_publisher(String, "all", EVERYTHING)
+    b.spin_until(lambda: b.node.count_publishers("chatter") and b.node.count_publishers("all"))
+    (seen,) = b.node.get_publishers_info_by_topic("/chatter")
+    assert seen.qos_profile == offered
+    (seen,) = b.node.get_publishers_info_by_topic("/all")
+    assert seen.qos_profile.history is HistoryPolicy.KEEP_ALL
+
+
+def test_a_topic_may_go_by_its_own_name(processes):
+    a, b = processes("a"), processes("b")
+    plain = QoSProfile(10, avoid_ros_namespace_conventions=True)
+    got: list[str] = []
+    b.node.create_subscription(String, "/plain", lambda message: got.append(message.data), plain)
+    b.node.create_subscription(String, "/plain", lambda message: got.append("ros"), 10)
+    publisher = a.node.create_publisher(String, "/plain", plain)
+    a.spin_until(lambda: publisher.get_subscription_count() == 1)
+    publisher.publish(String(data="hej"))
+    b.spin_until(lambda: got)
+    assert got == ["hej"]
+
+
+def test_malformed_samples_are_dropped_counted_and_told_once(processes, programs):
+    us = processes("ours")
+    got: list[str] = []
+    subscription = us.node.create_subscription(String, "/from_ros", lambda message: got.append(message.data), 10)
+    peer = programs("ros_peer", "humble", "real_node", "localhost")
+    us.spin_until(lambda: us.node.count_publishers("/from_ros") == 1)
+    us.spin_until(lambda: subscription.get_publisher_count() == 1)
+    not_utf8 = (b"\0\1\0\0" + b"\2\0\0\0\xff\0\0\0").hex()
+    for _ in range(3):
+        assert peer.ask("publish_bytes", not_utf8) == "written"
+    peer.ask("publish", "fine")
+    us.spin_until(lambda: got)
+    assert got == ["fine"]
+    assert subscription.malformed == 3
+    (warning,) = us.warnings()
+    assert "Dropped a malformed message of topic '/from_ros'" in warning
+
+
+@pytest.mark.parametrize("size", [1, 70_000, 3_000_000])
+def test_messages_of_any_size_arrive(processes, size):
+    a, b = processes("a"), processes("b")
+    got: list[int] = []
+    b.node.create_subscription(String, "chatter", lambda message: got.append(len(message.data)), EVERYTHING)
+    publisher = a.node.create_publisher(String, "chatter", EVERYTHING)
+    a.spin_until(lambda: publisher.get_subscription_count() == 1)
+    for _ in range(5):
+        publisher.publish(String(data="x" * size))
+    b.spin_until(lambda: len(got) == 5)
+    assert got == [size] * 5
+
+
+def test_a_reliable_flood_loses_nothing(processes, programs):
+    us = processes("ours")
+    got: list[int] = []
+    us.node.create_subscription("std_msgs/msg/Int32", "flood", lambda message: got.append(message.data), EVERYTHING)
+    sender = programs("our_program", "sender")
+    assert sender.ask_until(bool, "subscribers", "/flood")
+    count = 20_000
+    sender.ask("flood", "/flood", count)
+    us.spin_until(lambda: len(got) == count, 30)
+    assert got == list(range(count))
+
+
+def test_a_publisher_outside_that_shows_no_life_is_told(processes):
+    a, b = processes("a"), processes("b")
+    manual = QoSProfile(
+        5, liveliness=LivelinessPolicy.MANUAL_BY_TOPIC, liveliness_lease_duration=Duration(nanoseconds=400_000_000)
+    )
+    seen = []
+    callbacks = SubscriptionEventCallbacks(liveliness=seen.append)
+    b.node.create_subscription(String, "chatter", print, manual, event_callbacks=callbacks)
+    publisher = a.node.create_publisher(String, "chatter", manual)
+    a.spin_until(lambda: publisher.get_subscription_count() == 1)
+    publisher.assert_liveliness()
+    b.spin_until(lambda: seen and seen[-1].not_alive_count == 1)
+    publisher.publish(String())
+    b.spin_until(lambda: seen[-1].alive_count == 1 and seen[-1].not_alive_count == 0)
+
+
+def test_every_type_can_be_described():
+    """To Cyclone, which makes a description of each when it is used first."""
+    from linkwright.messages import shipped_packages
+    from linkwright.wire.dds.type_descriptions import WireTypes
+
+    types = WireTypes()
+    shipped = shipped_packages()
+    for name in interface_names("msg"):
+        package, _, short = name.split("/")
+        if package not in shipped:
+            continue
+        described = types.message(get_message(name))
+        assert described.__idl_typename__ == f"{package}.msg.dds_.{short}_"

@@ -1,0 +1,162 @@
+"""What is expanded of a description that has mistakes, and which of them are told."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.xacro import Expansion, expand
+from linkwright.xacro.inputs import Inputs
+from linkwright.xacro.parts import expand_parts
+from linkwright.xmltree import write_element
+
+
+def parts(folder, body: str, **files: str) -> Expansion:
+    for name, text in files.items():
+        (folder / f"{name}.xacro").write_text(f'<robot xmlns:xacro="http://www.ros.org/wiki/xacro">{text}</robot>')
+    path = folder / "robot.xacro"
+    path.write_text(f'<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">{body}</robot>')
+    return of_file(path)
+
+
+def of_file(path: Path) -> Expansion:
+    try:
+        return expand(path)
+    except LinkwrightError as error:
+        return expand_parts(Inputs(str(path), {}), error)
+
+
+def links(expansion: Expansion) -> list[str]:
+    return [link.attributes["name"] for link in expansion.document.root.elements("link")]
+
+
+def problems(expansion: Expansion) -> list[str]:
+    return [found.code for found in expansion.problems]
+
+
+def test_without_mistakes_it_is_the_whole(tmp_path):
+    body = '<xacro:property name="a" value="1"/><link name="l${a}"><inertial><mass value="${a}"/></inertial></link>'
+    whole = parts(tmp_path, body)
+    found = expand_parts(Inputs(str(tmp_path / "robot.xacro"), {}), LinkwrightError(Diagnostic("XAC201", "")))
+    assert found.problems == ()
+    assert write_element(found.document.root) == write_element(whole.document.root)
+
+
+def test_an_element_with_a_failed_attribute_is_left_out_with_what_is_around_it(tmp_path):
+    found = parts(tmp_path, '<link name="a"><visual><origin xyz="${nowhere} 0 0"/></visual></link><link name="b"/>')
+    assert links(found) == ["b"]
+    assert problems(found) == ["XAC201"]
+
+
+def test_mistakes_in_several_places_are_all_told(tmp_path):
+    found = parts(
+        tmp_path,
+        '<link name="${1/0}"/><xacro:wheel/><link name="a"/><xacro:insert_block name="b"/><link name="${x}"/>',
+    )
+    assert links(found) == ["a"]
+    assert problems(found) == ["XAC202", "XAC401", "XAC406", "XAC201"]
+
+
+def test_a_text_that_fails(tmp_path):
+    found = parts(tmp_path, '<gazebo><a>${nowhere}</a></gazebo><link name="a"/>')
+    assert [each.tag for each in found.document.root.elements()] == ["link"]
+
+
+def test_a_call_inside_of_an_element_that_fails(tmp_path):
+    found = parts(tmp_path, '<link name="a"><xacro:shape/></link><link name="b"/>')
+    assert links(found) == ["b"]
+
+
+def test_a_gap_in_the_body_of_a_macro_is_one_in_the_element_around_its_call(tmp_path):
+    macro = '<xacro:macro name="m"><xacro:none/><visual/></xacro:macro>'
+    found = parts(tmp_path, f'{macro}<link name="a"><xacro:m/></link><link name="b"/>')
+    assert links(found) == ["b"]
+
+
+def test_a_gap_goes_with_its_block(tmp_path):
+    macro = (
+        '<xacro:macro name="m" params="*block"><link name="a"><xacro:insert_block name="block"/></link></xacro:macro>'
+    )
+    body = f'{macro}<xacro:m><origin xyz="${{nowhere}} 0 0"/></xacro:m><link name="b"/>'
+    assert links(parts(tmp_path, body)) == ["b"]
+
+
+def test_a_call_that_lacks_a_block_because_of_a_mistake_is_left_out_in_silence(tmp_path):
+    macro = '<xacro:macro name="m" params="*block"><link name="a"/></xacro:macro>'
+    found = parts(tmp_path, f'{macro}<xacro:m><xacro:none/></xacro:m><link name="b"/>')
+    assert links(found) == ["b"]
+    assert problems(found) == ["XAC401"]
+
+
+class TestConsequences:
+    def test_what_a_missing_file_would_have_defined_is_not_missed(self, tmp_path):
+        found = parts(
+            tmp_path,
+            '<xacro:include filename="none.xacro"/><link name="${prefix}a"/><xacro:wheel/><link name="b"/>',
+        )
+        assert links(found) == ["b"]
+        assert problems(found) == ["XML101"]
+
+    def test_other_missing_files_are_told(self, tmp_path):
+        includes = '<xacro:include filename="none.xacro"/><xacro:include filename="$(cwd)/nor_this.xacro"/>'
+        assert problems(parts(tmp_path, includes)) == ["XML101", "XML101"]
+
+    def test_expressions_that_are_none_are_told(self, tmp_path):
+        found = parts(tmp_path, '<xacro:include filename="none.xacro"/><link name="${1 +}"/>')
+        assert problems(found) == ["XML101", "XAC102"]
+
+    def test_a_value_may_be_another_than_meant(self, tmp_path):
+        mass = '<link name="a"><inertial><mass value="${m}"/></inertial></link>'
+        found = parts(
+            tmp_path,
+            f'<xacro:property name="m" value="0"/><xacro:if value="${{x}}"><xacro:property name="m" value="1"/>'
+            f'</xacro:if>{mass}<link name="b"/>',
+        )
+        assert links(found) == ["b"]
+        assert problems(found) == ["XAC201"]
+
+    def test_a_condition_on_it_too(self, tmp_path):
+        body = '<xacro:include filename="none.xacro"/><xacro:unless value="${m}"><link name="a"/></xacro:unless>'
+        assert links(parts(tmp_path, f'<xacro:property name="m" value="0"/>{body}<link name="b"/>')) == ["b"]
+
+    def test_a_macro_defines_nothing_outside(self, tmp_path):
+        found = parts(tmp_path, '<xacro:property name="m" value="1"/><xacro:wheeel/><link name="a${m}"/>')
+        assert links(found) == ["a1"]
+
+    def test_unless_it_says_so(self, tmp_path):
+        macro = '<xacro:macro name="m"><xacro:property name="x" value="2" scope="parent"/></xacro:macro>'
+        found = parts(tmp_path, f'{macro}<xacro:property name="x" value="1"/><xacro:n/><link name="a${{x}}"/>')
+        assert links(found) == []
+        assert problems(found) == ["XAC401"]
+
+    def test_warnings_that_may_be_consequences_are_not_told(self, tmp_path):
+        warning = '<xacro:property name="none" remove="true"/>'
+        assert [each.code for each in parts(tmp_path, warning).diagnostics] == ["XAC310"]
+        assert parts(tmp_path, f'<xacro:include filename="none.xacro"/>{warning}').diagnostics == ()
+
+
+class TestNothingToBeHad:
+    def test_no_xml(self, tmp_path):
+        with pytest.raises(LinkwrightError, match="does not close"):
+            parts(tmp_path, "<link>")
+
+    def test_a_bound_of_the_expansion(self, tmp_path):
+        macro = '<xacro:macro name="m"><xacro:m/></xacro:macro>'
+        with pytest.raises(LinkwrightError, match="nested"):
+            parts(tmp_path, f"{macro}<xacro:m/>")
+
+    def test_too_many_mistakes(self, tmp_path):
+        with pytest.raises(LinkwrightError) as caught:
+            parts(tmp_path, "".join(f'<link name="${{a{number}}}"/>' for number in range(30)))
+        assert len(caught.value.diagnostics) == 20
+
+
+def test_an_included_file_with_a_mistake_keeps_the_rest(tmp_path):
+    found = parts(
+        tmp_path,
+        '<xacro:include filename="part.xacro"/><link name="c"/>',
+        part='<link name="a"/><link name="${x}"/><link name="b"/>',
+    )
+    assert links(found) == ["a", "b", "c"]

@@ -1,0 +1,159 @@
+"""No single call of a function takes long: between two calls an expansion can be stopped, during one it cannot."""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.xacro import expand, sandbox
+from linkwright.xacro.bounded import keys
+from linkwright.xacro.budget import Budget
+from linkwright.xacro.calling import call
+from linkwright.xacro.faults import Fault
+from linkwright.xacro.limits import Limits
+from linkwright.xacro.refusal import RefusalError
+from linkwright.xacro.symbols import MATHEMATICS, tokenize
+
+from .evaluating import evaluate
+
+LONG = 300_000
+ALIKE = [i * sys.hash_info.modulus for i in range(60_000)]
+"""Whole numbers with one hash."""
+ALIKE_PAIRS = [(number, number) for number in ALIKE]
+NUMBERS = [3**12_000 - i for i in range(200)] * 1_000
+TEXTS = {
+    "one letter": "a" * LONG,
+    "half": "a" * (LONG // 2),
+    "other end": "a" * (LONG // 2) + "b",
+    "other beginning": "ab" + "a" * (LONG // 2),
+    "many letters": "".join(map(chr, range(0x100, 0x8100))),
+    "high letters": "\xe9" * LONG,
+    "codec": "punycode",
+    "other codec": "idna",
+    "words": "a b " * (LONG // 4),
+}
+
+
+@contextlib.contextmanager
+def soon() -> Iterator[None]:
+    """What is inside takes seconds of the processor at most, where it could take hours."""
+    before = time.process_time()
+    with contextlib.suppress(Fault, RefusalError, TypeError, ValueError, LookupError, ArithmeticError, AttributeError):
+        yield
+    assert time.process_time() - before < 5.0
+
+
+def tried(function: Callable[..., Any], *arguments: Any) -> None:
+    with soon():
+        call(Budget(Limits()), function, list(arguments), {})
+
+
+def methods(kind: type) -> list[str]:
+    grown = {name for owner, name in sandbox._GROWING if owner is kind}
+    return sorted(sandbox._ATTRIBUTES[kind] | grown)
+
+
+@pytest.mark.parametrize("name", methods(str))
+def test_methods_of_texts(name: str) -> None:
+    for text in TEXTS.values():
+        method = sandbox.attribute(text, name)
+        tried(method)
+        for argument in (*TEXTS.values(), 2**30):
+            tried(method, argument)
+        tried(method, "a", "b")
+
+
+@pytest.mark.parametrize("name", methods(bytes))
+def test_methods_of_bytes(name: str) -> None:
+    for text in (b"a" * LONG, b"ab" + b"a" * (LONG // 2), b"a-" * (LONG // 2)):
+        for argument in (b"ab" + b"a" * (LONG // 2), "punycode", "idna", "utf-7"):
+            tried(sandbox.attribute(text, name), argument)
+
+
+@pytest.mark.parametrize("kind", [set, frozenset, dict, list, tuple])
+def test_methods_of_collections_with_keys_of_one_hash(kind: type) -> None:
+    for name in methods(kind):
+        for items in (ALIKE, iter(ALIKE), ALIKE_PAIRS, map(abs, ALIKE), zip(ALIKE, ALIKE, strict=True)):
+            owner = kind({1: 1}) if kind is not dict else {1: 1}
+            tried(sandbox.attribute(owner, name), items)
+
+
+@pytest.mark.parametrize("name", sorted(name for name, value in MATHEMATICS.items() if callable(value)))
+def test_functions_of_mathematics(name: str) -> None:
+    function = MATHEMATICS[name]
+    for arguments in ((NUMBERS,), NUMBERS, (NUMBERS, NUMBERS), (NUMBERS[0],), NUMBERS[:2], (2000, 1000)):
+        tried(function, *arguments)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "python.set({})",
+        "python.frozenset({})",
+        "dict(python.zip({}, {}))",
+        "dict([[i, i] for i in {}])",
+        "python.set([1]).union({})",
+        "python.set([1]) | python.set(map(python.abs, {}))",
+        "xacro.dotify([(i, i) for i in {}])",
+        "python.set((i, i) for i in {})",
+        "python.set([complex(-1000003.0 * i, i) for i in python.range(60000)] + {})",
+    ],
+)
+def test_keys_of_one_hash_are_refused(text: str) -> None:
+    source = text.format(*["[i * 2305843009213693951 for i in python.range(60000)]"] * 2)
+    source = source.replace("complex", "python.complex")
+    with soon(), pytest.raises(Fault, match=r"same hash|more than \d+"):
+        evaluate("${len(" + source + ")}")
+
+
+def test_keys_that_are_equal_or_few_are_taken() -> None:
+    assert keys([7] * 5_000) == [7] * 5_000
+    assert len(set(keys(ALIKE[:900]))) == 900
+    assert keys([["a"], {}] * 1_000) == [["a"], {}] * 1_000
+    assert len(set(keys(i / 7 for i in range(50_000)))) == 50_000
+
+
+@pytest.mark.parametrize("form", ["{}: 1\n", "? {}\n: 1\n"])
+def test_keys_of_one_hash_in_a_yaml_file_are_refused(tmp_path: Path, form: str) -> None:
+    (tmp_path / "a.yaml").write_text("".join(form.format(number) for number in ALIKE))
+    text = "<robot name=\"r\" xmlns:xacro='x'><a v=\"${len(xacro.load_yaml('a.yaml'))}\"/></robot>"
+    with soon(), pytest.raises(LinkwrightError, match="60 bits"):
+        expand(tmp_path / "a.xacro", text=text)
+
+
+def test_numbers_of_a_yaml_file_have_an_end(tmp_path: Path) -> None:
+    (tmp_path / "a.yaml").write_text("a: " + ":".join(["59"] * 300_000))
+    text = "<robot name=\"r\" xmlns:xacro='x'><a v=\"${xacro.load_yaml('a.yaml')}\"/></robot>"
+    with soon(), pytest.raises(LinkwrightError, match="4,000 characters"):
+        expand(tmp_path / "a.xacro", text=text)
+
+
+@pytest.mark.parametrize("sep", ["\\\\](a+)+b", "\\\\](a|aa)+$", "^\\\\](.*)*x[", "\\\\]((a*)*)*b"])
+def test_an_expression_where_characters_are_expected_ends(sep: str) -> None:
+    for text in ("\\" + "a" * 40, "\\" + "aa" * 5_000):
+        with soon():
+            tokenize(text, sep)
+
+
+def test_characters_that_end_their_class_early_split_as_the_expression_says() -> None:
+    assert tokenize("a\\b]xc", "\\\\]b") == ["a", "xc"]
+    assert tokenize("1]2[3,4", "][,") == ["1", "2", "3", "4"]
+    assert tokenize("1-2^3", "-^") == ["1", "2", "3"]
+
+
+def test_math_keeps_what_is_usual() -> None:
+    assert evaluate("${math.gcd(12, 18, 27)}") == 3
+    if hasattr(math, "sumprod"):
+        assert evaluate("${math.sumprod([1, 2], [3, 4])}") == 11
+    assert evaluate("${list(map(str.strip, [' a ', 'b ']))}") == ["a", "b"]
+    assert evaluate("${'a,b,c'.rsplit(sep=',', maxsplit=1)}") == ["a,b", "c"]
+    assert evaluate("${'xxaxx'.strip('x')}") == "a"
+    assert evaluate("${'é'.encode('latin-1')}") == b"\xe9"

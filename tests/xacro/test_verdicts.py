@@ -1,0 +1,39 @@
+"""What ros/xacro refuses, we refuse; where not, it is on purpose."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.xacro import expand
+from tests.corpora import OWN
+
+from .cases import PACKAGES, Case, set_environment
+from .test_errors import CASES
+
+VERDICTS: dict[str, str | None] = json.loads((OWN.folder / "verdicts.json").read_text(encoding="utf-8"))["xacro"]
+STRICTER = {
+    "stories: an optional include whose own include is missing",  # the whole file would be left out without a word
+    "stories: a default with a quote that is never closed",  # the rest of the list would be taken for the default
+}
+"""Mistakes that ros/xacro goes on with."""
+
+
+def test_every_mistake_has_a_verdict() -> None:
+    assert VERDICTS.keys() == CASES.keys(), "run `make reference`"
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_verdict(name: str, tmp_path, monkeypatch: pytest.MonkeyPatch) -> None:
+    case: Case = CASES[name]
+    case.write(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    set_environment(monkeypatch)
+    try:
+        expand("main.xacro", case.arguments, packages=PACKAGES)
+        refused = False
+    except LinkwrightError:
+        refused = True
+    assert refused == (VERDICTS[name] is not None or name in STRICTER)

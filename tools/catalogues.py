@@ -1,0 +1,249 @@
+"""Keep the catalogues of other languages and the source together.
+
+Usage: python tools/catalogues.py [update | check | compile]
+
+``update`` takes what the source says, and the titles of the pages of `linkwright explain`, into the catalogues: what is
+new comes without a translation, what is no longer said is removed. ``check`` names what lacks a translation, what is
+stale and which placeholders differ, and exits with 1 when there is anything. ``compile`` writes the
+files that the program reads, where they are older than the catalogues.
+"""
+
+from __future__ import annotations
+
+import ast
+import os
+import re
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from functools import partial
+from inspect import cleandoc
+from io import BytesIO
+from pathlib import Path
+from string import Formatter
+
+from babel.messages.catalog import Catalog, Message
+from babel.messages.mofile import write_mo
+from babel.messages.pofile import read_po, write_po
+
+PACKAGE = Path(__file__).resolve().parent.parent / "src" / "linkwright"
+FOLDER = PACKAGE / "diagnostics" / "translation"
+
+LOOKED_UP = ("term", "foreign")
+"""Contexts of texts that the program gets from tables, files and other programs: the source does not tell them all."""
+
+TITLES = "rule"
+"""Context of the titles of pages: of rules, the first lines of their docstrings; of other codes, headings of files."""
+
+_PAGE = re.compile(r"^## [A-Z]+[0-9]{3}: (.+)$", re.MULTILINE)
+_HEADER = "# What Linkwright says, in {}.\n# Entries are kept by `python tools/catalogues.py update`."
+_DATED = ('"POT-', '"PO-Rev', '"Last-', '"Language-Team', '"Generated', '"Report', '"Project', "# FIRST", "#,")
+
+
+@dataclass
+class Said:
+    """A text of the source.
+
+    Attributes:
+        template: in English; with `several`, what is said of one thing.
+        several: what is said of several things, or None.
+        filled: whether it has arguments; without, its braces are braces.
+        places: where it is said, as ``file:line``.
+    """
+
+    template: str
+    several: str | None
+    filled: bool
+    places: list[str] = field(default_factory=list)
+
+    @property
+    def rooms(self) -> list[str]:
+        """The rooms that say it."""
+        return sorted({place.partition("/")[0] for place in self.places})
+
+
+class Source:
+    """What the modules below a folder say.
+
+    Attributes:
+        said: the texts, by their templates.
+        titles: of the pages that `linkwright explain` prints -> where each stands.
+        problems: calls that cannot be translated, each as a line.
+    """
+
+    def __init__(self, package: Path = PACKAGE) -> None:
+        self.said: dict[str, Said] = {}
+        self.titles: dict[str, str] = {}
+        self.problems: list[str] = []
+        for path in sorted(package.rglob("*.py")):
+            name = path.relative_to(package).as_posix()
+            tree = ast.parse(path.read_text(encoding="utf-8"))
+            for node in ast.walk(tree):
+                if name.startswith("lint/rules/") and isinstance(node, ast.ClassDef):
+                    self._rule(node, f"{name}:{node.lineno}")
+                if name.startswith("cli/"):
+                    self._help(node, f"{name}:{getattr(node, 'lineno', 0)}")
+                if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
+                    self._call(node, node.func.id, f"{name}:{node.lineno}")
+        for path in sorted(package.glob("lint/pages/*.md")):
+            for title in _PAGE.findall(path.read_text(encoding="utf-8")):
+                self.titles.setdefault(title.strip(), path.relative_to(package).as_posix())
+
+    def _rule(self, node: ast.ClassDef, place: str) -> None:
+        """The title of a rule: a class that gives a code."""
+        given = {ast.unparse(each.targets[0]) for each in node.body if isinstance(each, ast.Assign)}
+        if "code" in given:
+            title = cleandoc(ast.get_docstring(node) or "").partition("\n")[0]
+            self.titles.setdefault(title.rstrip("."), place)
+
+    def _help(self, node: ast.AST, place: str) -> None:
+        """The help texts of commands: constants called HELP, and what parsers are given."""
+        if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "HELP":
+            text: ast.expr = node.value
+        elif isinstance(node, ast.keyword) and node.arg in ("help", "title"):
+            text = node.value
+        else:
+            return
+        if isinstance(text, ast.Constant) and isinstance(text.value, str):
+            self.said.setdefault(text.value, Said(text.value, None, False)).places.append(place)
+
+    def _call(self, node: ast.Call, called: str, place: str) -> None:
+        if called == "phrase":
+            texts, given = node.args[:1], set()
+        elif called == "counted":
+            texts, given = node.args[:2], {"count"}
+        else:
+            return
+        templates = [text.value for text in texts if isinstance(text, ast.Constant) and isinstance(text.value, str)]
+        if not templates or len(templates) < len(texts):
+            self.problems.append(f"{place}: the template is no literal")
+            return
+        given |= {keyword.arg for keyword in node.keywords}
+        for template in templates:
+            wanted = placeholders(template) if given else set()
+            if None not in given and (not wanted <= given or (called == "phrase" and given > wanted)):
+                self.problems.append(f"{place}: the placeholders of '{template}' are not its arguments")
+        several = templates[1] if len(templates) > 1 else None
+        said = self.said.setdefault(templates[0], Said(templates[0], several, bool(given)))
+        if several != said.several:
+            self.problems.append(f"{place}: '{said.template}' is said with and without a plural")
+        said.places.append(place)
+
+
+def placeholders(template: str) -> set[str]:
+    """The placeholders of a template, each with its format.
+
+    Raises:
+        ValueError: its braces do not match.
+    """
+    return {name for _, name, _, _ in Formatter().parse(template) if name is not None}
+
+
+def problems_of(catalogue: Catalog, source: Source) -> Iterator[str]:
+    """What is missing, stale or filled in otherwise in the catalogue of a language."""
+    yield from source.problems
+    for message in catalogue:
+        if not message.id:
+            continue
+        english = message.id if isinstance(message.id, str) else message.id[0]
+        if not message.string or not all(_translations(message)):
+            yield f"'{english}' is not translated"
+        elif message.context == TITLES:
+            if english not in source.titles:
+                yield f"no page has the title '{english}'"
+        elif message.context not in LOOKED_UP:
+            if english not in source.said:
+                yield f"nothing says '{english}'"
+            elif source.said[english].filled and any(map(partial(_differ, message.id), _translations(message))):
+                yield f"the translation of '{english}' has other placeholders"
+    for template, said in source.said.items():
+        if catalogue.get(template) is None:
+            yield f"{said.places[0]}: '{template}' is not in the catalogue"
+    for title, place in source.titles.items():
+        if catalogue.get(title, TITLES) is None:
+            yield f"{place}: the title '{title}' is not in the catalogue"
+
+
+def _translations(message: Message) -> tuple[str, ...]:
+    return (message.string,) if isinstance(message.string, str) else tuple(message.string)
+
+
+def _differ(english: str | tuple[str, str], translation: str) -> bool:
+    """Whether a translation is filled in otherwise; with a plural the number may be said or left out."""
+    several = english if isinstance(english, str) else english[1]
+    free = set() if isinstance(english, str) else {("count", "")}
+    return _formats(several) - free != _formats(translation) - free
+
+
+def _formats(template: str) -> set[tuple[str, str | None]]:
+    return {(name, spec) for _, name, spec, _ in Formatter().parse(template) if name is not None}
+
+
+def updated(catalogue: Catalog, source: Source) -> Catalog:
+    """The catalogue with what the source says, in the order of rooms and templates, then titles, then the rest."""
+    new = Catalog(catalogue.locale, "linkwright", _HEADER.format(catalogue.locale.english_name), fuzzy=False)
+    for said in sorted(source.said.values(), key=lambda each: (each.rooms, each.template)):
+        identity = (said.template, said.several) if said.several else said.template
+        before = catalogue.get(said.template)
+        string = before.string if before is not None else ""
+        if said.several and isinstance(string, str):
+            string = (string,) * catalogue.num_plurals
+        elif not said.several and not isinstance(string, str):
+            string = string[0]
+        new.add(identity, string, locations=[(room, None) for room in said.rooms])
+    for title in sorted(source.titles):
+        before = catalogue.get(title, TITLES)
+        new.add(title, before.string if before is not None else "", context=TITLES)
+    kept = [message for message in catalogue if message.context in LOOKED_UP]
+    for message in sorted(kept, key=lambda each: (each.context, each.id)):
+        new.add(message.id, message.string, context=message.context)
+    return new
+
+
+def read(path: Path) -> Catalog:
+    """The catalogue in a file."""
+    with path.open("rb") as file:
+        return read_po(file, locale=path.stem, domain="linkwright")
+
+
+def written(path: Path, catalogue: Catalog) -> None:
+    """Write a catalogue, a line for each text, without dates, so that only texts make a difference."""
+    text = BytesIO()
+    write_po(text, catalogue, width=0, include_lineno=False)
+    head, _, entries = text.getvalue().decode("utf-8").partition("\n\n")
+    kept = [line for line in head.splitlines() if not line.startswith(_DATED)]
+    path.write_text("\n".join(kept) + "\n\n" + entries, encoding="utf-8")
+
+
+def compile_catalogues() -> None:
+    """Write ``.mo`` files beside the catalogues that are newer."""
+    for path in sorted(FOLDER.glob("*.po")):
+        target = path.with_suffix(".mo")
+        if not target.exists() or target.stat().st_mtime_ns < path.stat().st_mtime_ns:
+            part = target.with_suffix(f".{os.getpid()}")  # whole or not at all: tests run side by side
+            with part.open("wb") as file:
+                write_mo(file, read(path))
+            part.replace(target)
+
+
+def main(words: list[str]) -> int:
+    """Do what is asked for; returns the exit status."""
+    if words == ["compile"]:
+        compile_catalogues()
+        return 0
+    if words not in (["update"], ["check"]):
+        print(__doc__, file=sys.stderr)
+        return 2
+    source = Source()
+    found = list(source.problems)
+    for path in sorted(FOLDER.glob("*.po")):
+        if words == ["update"]:
+            written(path, updated(read(path), source))
+        found += [f"{path.name}: {problem}" for problem in problems_of(read(path), source)]
+    for problem in dict.fromkeys(found):
+        print(problem, file=sys.stderr)
+    return int(bool(found))
+
+
+if __name__ == "__main__":
+    raise SystemExit(main(sys.argv[1:]))
