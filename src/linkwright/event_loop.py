@@ -1,12 +1,16 @@
-"""Running a coroutine as ``asyncio.run`` does, with a moment between the making of the loop and its work.
+"""Running a coroutine as ``asyncio.run`` does since Python 3.11, with a moment between making the loop and its work.
 
-Interrupted while it is being made, a loop complains of itself on standard error.
+Interrupted while it is being made, a loop complains of itself on standard error. Ctrl-C cancels the coroutine: raised
+anywhere instead, KeyboardInterrupt could end an import halfway, and on Python 3.10 its lock would stay taken for the
+threads that import the same.
 """
 
 from __future__ import annotations
 
 import asyncio
+import signal
 import sys
+import threading
 from collections.abc import Callable, Coroutine
 from typing import Any, TypeVar
 
@@ -19,7 +23,9 @@ def run_coroutine(make: Callable[[], Coroutine[Any, Any, T]], ready: Callable[[]
     Args:
         make: gives the coroutine.
         ready: called when the loop is there and nothing runs on it yet; from then on KeyboardInterrupt may be raised.
-            Before Python 3.11 it is called before the loop is made.
+
+    Raises:
+        KeyboardInterrupt: Ctrl-C was pressed, and the coroutine let itself be cancelled.
     """
     if sys.version_info >= (3, 11):
         with asyncio.Runner() as runner:
@@ -27,5 +33,71 @@ def run_coroutine(make: Callable[[], Coroutine[Any, Any, T]], ready: Callable[[]
             ready()
             return runner.run(make())
     else:
+        return _run(make, ready)
+
+
+def _run(make: Callable[[], Coroutine[Any, Any, T]], ready: Callable[[], object]) -> T:
+    """What `asyncio.Runner` does, for Python 3.10, which does not have it."""
+    loop = asyncio.new_event_loop()
+    try:
+        asyncio.set_event_loop(loop)
         ready()
-        return asyncio.run(make())
+        main = loop.create_task(make())
+        interruptions = _Interruptions(loop, main)
+        with interruptions:
+            try:
+                return loop.run_until_complete(main)
+            except asyncio.CancelledError:
+                if interruptions.count:
+                    raise KeyboardInterrupt from None
+                raise
+    finally:
+        try:
+            _cancel_the_rest(loop)
+            loop.run_until_complete(loop.shutdown_asyncgens())
+            loop.run_until_complete(loop.shutdown_default_executor())
+        finally:
+            asyncio.set_event_loop(None)
+            loop.close()
+
+
+class _Interruptions:
+    """While this is entered, the first Ctrl-C cancels a task and the next ones raise KeyboardInterrupt.
+
+    Where somebody else takes care of Ctrl-C, or in another thread than the main one, nothing is changed.
+    """
+
+    def __init__(self, loop: asyncio.AbstractEventLoop, main: asyncio.Task[Any]) -> None:
+        self.count = 0
+        self._loop = loop
+        self._main = main
+
+    def __enter__(self) -> None:
+        self._is_ours = (
+            threading.current_thread() is threading.main_thread()
+            and signal.getsignal(signal.SIGINT) is signal.default_int_handler
+        )
+        if self._is_ours:
+            signal.signal(signal.SIGINT, self._handle)
+
+    def __exit__(self, *_: object) -> None:
+        if self._is_ours and signal.getsignal(signal.SIGINT) == self._handle:
+            signal.signal(signal.SIGINT, signal.default_int_handler)
+
+    def _handle(self, _number: int, _frame: object) -> None:
+        self.count += 1
+        if self.count > 1 or self._main.done():
+            raise KeyboardInterrupt
+        self._main.cancel()
+        self._loop.call_soon_threadsafe(lambda: None)  # the loop may be waiting for files only
+
+
+def _cancel_the_rest(loop: asyncio.AbstractEventLoop) -> None:
+    rest = asyncio.all_tasks(loop)
+    for task in rest:
+        task.cancel()
+    if rest:
+        loop.run_until_complete(asyncio.gather(*rest, return_exceptions=True))
+    for task in rest:
+        if not task.cancelled() and task.exception() is not None:
+            loop.call_exception_handler({"message": "a task failed while the loop ended", "task": task})

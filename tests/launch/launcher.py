@@ -14,6 +14,9 @@ from pathlib import Path
 from tests.waiting import SECONDS
 
 DRIVER = """
+from linkwright.interruption import end_at_once
+end_at_once()
+print("begun", flush=True)
 import sys
 from dataclasses import replace
 from linkwright.diagnostics import LinkwrightError, print_diagnostics
@@ -50,8 +53,13 @@ class Running:
             stream.close()
 
     @property
+    def has_begun(self) -> bool:
+        """Whether Ctrl-C is the launcher's own to take care of; see `tests.begun`."""
+        return self._files[0].read_text().startswith("begun\n")
+
+    @property
     def out(self) -> str:
-        return self._files[0].read_text()
+        return self._files[0].read_text().partition("begun\n")[2]
 
     @property
     def err(self) -> str:

@@ -16,6 +16,7 @@ from pathlib import Path
 import psutil
 
 from linkwright.standins.process import environment
+from tests.begun import BEGUN, telling
 from tests.waiting import SECONDS, wait_until
 
 LINKWRIGHT = str(Path(sys.executable).with_name("linkwright"))
@@ -149,7 +150,14 @@ class Machine:
         """Start ``linkwright WORDS``."""
         return self._start([LINKWRIGHT, *map(str, words)], variables)
 
-    def verb(self, *words: object, seconds: float = 20.0, **variables: str) -> str:
+    def begun(self, *words: object, module: str = "linkwright") -> Running:
+        """Start ``python -m MODULE WORDS`` and wait until Ctrl-C is its own to take care of."""
+        running = self._start(telling(module, *map(str, words)), {})
+        running.wait_for(BEGUN)
+        running.lines.remove(f"{BEGUN}\n")
+        return running
+
+    def verb(self, *words: object, seconds: float = SECONDS, **variables: str) -> str:
         """What ``linkwright WORDS`` prints; it must succeed in time."""
         running = self.command(*words, **variables)
         status = running.wait(seconds)

@@ -17,7 +17,7 @@ from tests.waiting import SECONDS, wait_until
 on_linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="looks into /proc")
 
 
-def run(text: str, seconds: float = 20) -> subprocess.CompletedProcess[str]:
+def run(text: str, seconds: float = SECONDS) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
         [sys.executable, "-c", textwrap.dedent(text)], capture_output=True, text=True, timeout=seconds, check=False
     )
@@ -53,6 +53,24 @@ def test_closing_twice_and_before_being_ready_is_fine(processes):
     transport.close()
     transport.close()
     assert transport.remote_nodes() == []
+
+
+@pytest.mark.parametrize("seconds", [0.0, 0.05, 0.1, 0.15, 0.2])
+def test_a_program_that_ends_while_the_domain_is_joined_says_nothing(seconds):
+    done = run(
+        f"""
+        import asyncio, time
+        from linkwright.graph import Graph
+        from linkwright.wire import dds
+
+        async def main():
+            dds.join(Graph())
+            time.sleep({seconds})
+
+        asyncio.run(main())
+        """
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
 
 
 def test_who_waits_for_others_goes_on_when_the_domain_is_left(processes):

@@ -28,6 +28,9 @@ if TYPE_CHECKING:
 SETTLED_AFTER = 0.3
 """Seconds without news after which discovery counts as complete."""
 
+_JOINED_WITHIN = 10.0
+"""Seconds after which the thread that joins is given up: an import that Ctrl-C ended may keep its lock for ever."""
+
 _CLOSED_WITHIN = 0.05
 """Seconds after which who waits sees that the domain was left."""
 
@@ -166,7 +169,7 @@ class DdsTransport:
         self._closed = True
         _open_transports.discard(self)
         if self._starter.ident is not None:  # Ctrl-C may have come before it was started
-            self._starter.join()
+            self._starter.join(_JOINED_WITHIN)
         if self._engine is not None:
             self._engine.close()
             self._engine = None
@@ -203,6 +206,10 @@ class DdsTransport:
             self.problem = error
             self._work.clear()
             log_join_failure(self._logger, error)
+        except RuntimeError:
+            # From Python 3.12 on no thread can be started any more once the main one has ended.
+            if threading.main_thread().is_alive():
+                raise
         finally:
             self._decided.set()
 

@@ -1,0 +1,117 @@
+"""Coroutines under Ctrl-C, the same on every Python."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import signal
+
+import pytest
+
+from linkwright.event_loop import run_coroutine
+
+
+def interrupt() -> None:
+    os.kill(os.getpid(), signal.SIGINT)
+    for _ in range(1000):  # what Python may raise anywhere, it raises here
+        pass
+
+
+def test_a_result() -> None:
+    async def seven() -> int:
+        return 7
+
+    seen = []
+    assert run_coroutine(seven, lambda: seen.append(signal.getsignal(signal.SIGINT))) == 7
+    assert seen == [signal.default_int_handler]
+
+
+def test_ctrl_c_cancels_where_the_coroutine_waits_and_nowhere_else() -> None:
+    steps = []
+
+    async def work() -> None:
+        try:
+            interrupt()
+            steps.append("not in the middle")
+            await asyncio.sleep(60)
+            steps.append("never")
+        finally:
+            await asyncio.sleep(0)
+            steps.append("cleaned up")
+
+    with pytest.raises(KeyboardInterrupt):
+        run_coroutine(work, lambda: None)
+    assert steps == ["not in the middle", "cleaned up"]
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
+def test_a_second_ctrl_c_is_raised() -> None:
+    async def stubborn() -> None:
+        interrupt()
+        try:
+            await asyncio.sleep(60)
+        except asyncio.CancelledError:
+            interrupt()
+            pytest.fail("the second one was not raised")
+
+    with pytest.raises(KeyboardInterrupt):
+        run_coroutine(stubborn, lambda: None)
+
+
+def test_before_there_is_anything_to_cancel_it_is_raised() -> None:
+    async def nothing() -> None:
+        pytest.fail("it must not begin")
+
+    with pytest.raises(KeyboardInterrupt):
+        run_coroutine(nothing, interrupt)
+
+
+def test_a_coroutine_that_waits_no_more_is_cancelled_too() -> None:
+    async def quick() -> int:
+        interrupt()
+        return 3
+
+    with pytest.raises(KeyboardInterrupt):
+        run_coroutine(quick, lambda: None)
+
+
+def test_somebody_elses_handler_stays() -> None:
+    heard = []
+    before = signal.signal(signal.SIGINT, lambda *_: heard.append("mine"))
+    try:
+
+        async def work() -> str:
+            interrupt()
+            await asyncio.sleep(0)
+            return "went on"
+
+        assert run_coroutine(work, lambda: None) == "went on"
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert heard == ["mine"]
+
+
+def test_tasks_that_are_left_are_cancelled_before_the_loop_closes() -> None:
+    ended = []
+
+    async def beside() -> None:
+        try:
+            await asyncio.sleep(60)
+        finally:
+            ended.append("beside")
+
+    async def work() -> None:
+        task = asyncio.ensure_future(beside())
+        await asyncio.sleep(0)
+        assert not task.done()
+
+    run_coroutine(work, lambda: None)
+    assert ended == ["beside"]
+
+
+def test_a_cancellation_of_its_own_is_no_ctrl_c() -> None:
+    async def work() -> None:
+        raise asyncio.CancelledError
+
+    with pytest.raises(asyncio.CancelledError):
+        run_coroutine(work, lambda: None)
