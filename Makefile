@@ -34,6 +34,9 @@ endif
 endif
 endif
 
+# With AGAIN, what fails is run again; see docs/decisions/0037.
+PYTEST = $(BIN)/$(if $(AGAIN),python tools/pytest_again.py,pytest)
+
 LOCKED := .build/constraints.txt
 PAGE_SOURCES := $(shell find frontend -path frontend/node_modules -prune -o -type f -print)
 
@@ -45,14 +48,14 @@ demo: $(VENV)/.ready
 
 test: $(VENV)/.dev page
 	$(BIN)/python tools/build_page.py test
-	LINKWRIGHT_CHROMIUM=$$($(BIN)/python tools/chromium.py) $(BIN)/pytest -n 2 --dist loadfile $(ARGS)
+	LINKWRIGHT_CHROMIUM=$$($(BIN)/python tools/chromium.py) $(PYTEST) -n 2 --dist loadfile $(ARGS)
 
 test-quick: $(VENV)/.dev
-	$(BIN)/pytest -n 2 --dist loadfile -m "not browser and not slow" $(ARGS)
+	$(PYTEST) -n 2 --dist loadfile -m "not browser and not slow" $(ARGS)
 
 # The quick tests once more, with a look at which lines they reach; fails below the share named in pyproject.toml.
 coverage: $(VENV)/.dev
-	$(BIN)/pytest -n 2 --dist loadfile -m "not browser and not slow" --cov --cov-report=term:skip-covered $(ARGS)
+	$(PYTEST) -n 2 --dist loadfile -m "not browser and not slow" --cov --cov-report=term:skip-covered $(ARGS)
 
 test-browser: $(VENV)/.dev page
 	LINKWRIGHT_CHROMIUM=$$($(BIN)/python tools/chromium.py) $(BIN)/pytest -m browser $(ARGS)
