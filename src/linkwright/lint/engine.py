@@ -126,13 +126,13 @@ def _may_run(rule: Rule, subject: Subject) -> bool:
 
 
 def _of_library(subject: Subject) -> Iterator[Diagnostic]:
-    """What there is to say of a file that only defines macros: what is true of each part, and that it is no robot."""
+    """What there is to say of a file for others to include: what is true of each part, and that it is no robot."""
     described = subject.description
     yield from (*described.problems, *described.remarks)
     whole = subject.root.span()
     yield from (each for each in described.reading.diagnostics if each.code in TRUE_OF_PARTS and each.span != whole)
-    hint = phrase("check the file that includes it, which calls the macros")
-    message = phrase("this file only defines macros and is no robot by itself")
+    hint = phrase("check the file that includes it")
+    message = phrase("this file only defines macros, properties or materials and is no robot by itself")
     yield Diagnostic("LINT302", message, subject.root.span(), Severity.INFO, hint=hint, source=subject.root.source)
 
 

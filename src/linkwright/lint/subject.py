@@ -15,12 +15,15 @@ from linkwright.xmltree import Document, Element
 
 if TYPE_CHECKING:
     from linkwright.kinematics import KinematicTree
-    from linkwright.lint.bodies import Bodies
+    from linkwright.urdf.bodies import Bodies
     from linkwright.lint.extents import Extents
     from linkwright.lint.meshes import MeshFacts
     from linkwright.lint.package import PackageContext
     from linkwright.lint.xacro_facts import XacroFacts
     from linkwright.packages import PackageFinder
+
+_DEFINITIONS = {"material", "xacro:macro", "xacro:property"}
+"""What a file for others to include may hold without anything that makes a robot."""
 
 
 class Subject:
@@ -54,12 +57,15 @@ class Subject:
 
     @cached_property
     def is_library(self) -> bool:
-        """Whether it is a xacro file for others to include: it defines macros and describes no robot by itself."""
-        if self.expansion is None or self.robot is not None or not self.is_whole:
-            return False
+        """Whether it is a xacro file for others to include: what it defines describes no robot by itself."""
         main = next(iter(self.sources.values()), None)
-        defines = main is not None and next(main.root.elements("xacro:macro"), None) is not None
-        return defines and ("name" not in self.root.attributes or next(self.elements("link"), None) is None)
+        if self.expansion is None or self.robot is not None or not self.is_whole or main is None:
+            return False
+        tags = {element.tag for element in main.root.elements()}
+        if tags and tags <= _DEFINITIONS:
+            return True
+        makes_link = next(self.elements("link"), None) is not None
+        return "xacro:macro" in tags and not ("name" in self.root.attributes and makes_link)
 
     @property
     def robot(self) -> Robot | None:
@@ -132,7 +138,7 @@ class Subject:
     @cached_property
     def bodies(self) -> Bodies:
         """The links that fixed joints make one body."""
-        from linkwright.lint.bodies import Bodies
+        from linkwright.urdf.bodies import Bodies
 
         return Bodies(self.robot)
 

@@ -35,8 +35,8 @@ _ALMOST_NOTHING = 1e-3
 """Differences smaller than this, in m, are none."""
 
 
-def measured(subject: Subject) -> Iterator[tuple[Link, Inertial, Bounds]]:
-    """The links whose mass counts in a body that can be measured, with the box around the body in the link frame."""
+def counting(subject: Subject) -> Iterator[tuple[Link, Inertial]]:
+    """The links with shapes whose mass counts in their body."""
     for link, inertial in links_with_inertial(subject):
         from linkwright.inertia.inertial import is_computable  # here: robots without masses need no numpy
 
@@ -45,8 +45,13 @@ def measured(subject: Subject) -> Iterator[tuple[Link, Inertial, Bounds]]:
             continue
         if inertial.mass <= 0 or not is_computable(inertial):
             continue
-        if inertial.mass < _NEGLIGIBLE * subject.bodies.mass(body):
-            continue
+        if inertial.mass >= _NEGLIGIBLE * subject.bodies.mass(body):
+            yield link, inertial
+
+
+def measured(subject: Subject) -> Iterator[tuple[Link, Inertial, Bounds]]:
+    """The links whose mass counts in a body that can be measured, with the box around the body in the link frame."""
+    for link, inertial in counting(subject):
         bounds = subject.extents.body_bounds(link)
         if bounds is not None and bounds.diagonal > _MARKER:
             yield link, inertial, bounds
@@ -58,7 +63,8 @@ class DensityTooHigh(Rule):
     ## Why
 
     Osmium, the densest there is, has 22 600 kg/m3. A link that would be denser has a mass in grams, or shapes in
-    other units than metres. Meshes count with the whole box around them, so nothing real is reported.
+    other units than metres. Meshes count with the whole box around them, so nothing real is reported. Where links that
+    are fixed to it have shapes and no mass, the link's mass is taken for that of them all.
 
     ## Example
 
@@ -83,13 +89,17 @@ class DensityTooHigh(Rule):
             return
         from linkwright.geometry.validity import HEAVIEST_DENSITY
 
-        for link, inertial, bounds in measured(subject):
-            volume = subject.extents.volume(link)
-            if volume is None or bounds.size.min() < _ALMOST_NOTHING / 10:
+        for link, inertial in counting(subject):
+            bounds, volume = subject.extents.link_bounds(link), subject.extents.volume(link)
+            if bounds is None or volume is None or bounds.diagonal <= _MARKER:
+                continue
+            if bounds.size.min() < _ALMOST_NOTHING / 10:
                 continue  # a sheet: its thickness is not meant
-            body = subject.bodies.of(link.name)
-            if body is not None and len(body.links) > 1:
-                volume = max(volume, float(bounds.size.prod()))
+            if subject.bodies.stands_for_others(link):
+                around = subject.extents.body_bounds(link)
+                if around is None:
+                    continue
+                volume = max(volume, float(around.size.prod()))
             if volume > 0 and inertial.mass / volume > HEAVIEST_DENSITY:
                 yield self.report(
                     phrase(

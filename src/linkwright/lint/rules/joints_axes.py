@@ -120,12 +120,12 @@ class AxisNotUnit(Rule):
 
 
 class AxisImplicit(Rule):
-    """A moving joint without `<axis>`.
+    """A joint that turns has no `<axis>`.
 
     ## Why
 
-    It moves about (or along) x, which few joints do. Whoever forgets the axis sees a wheel that turns about the
-    direction of travel.
+    It turns about x, which few joints do. Whoever forgets the axis sees a wheel that turns about the direction of
+    travel. Joints that slide often do so along x, and are not reported.
 
     ## Example
 
@@ -150,16 +150,12 @@ class AxisImplicit(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every joint that moves along one axis and does not name it."""
+        """Every joint that turns and does not name its axis."""
         for joint, element in joints(subject):
-            if joint.type in ("revolute", "continuous", "prismatic") and element.first("axis") is None:
-                verb = phrase("slides along") if joint.type == "prismatic" else phrase("turns about")
+            if joint.type in ("revolute", "continuous") and element.first("axis") is None:
                 yield self.report(
                     phrase(
-                        "{type} joint '{name}' has no <axis>, so it {verb} x",
-                        type=joint.type,
-                        name=joint.name,
-                        verb=verb,
+                        "{type} joint '{name}' has no <axis>, so it turns about x", type=joint.type, name=joint.name
                     ),
                     element,
                     hint=phrase('add <axis xyz="0 0 1"/>, or <axis xyz="1 0 0"/> if x is meant'),

@@ -10,7 +10,7 @@ from linkwright.diagnostics import Diagnostic, Note, Severity, phrase
 from linkwright.geometry.placement import Matrix, angle_between, rotation
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
-from linkwright.urdf import Box, Geometry, Mesh
+from linkwright.urdf import Box, Geometry, Joint, Mesh, parent_joints
 
 _OPTICAL = re.compile(r"(?P<stem>.*?)_?optical(_(frame|link|joint))?$")
 _OPTICAL_ROTATION: Matrix = ((0.0, 0.0, 1.0), (-1.0, 0.0, 0.0), (0.0, -1.0, 0.0))
@@ -275,15 +275,16 @@ class OpticalFrameRotation(Rule):
         robot = subject.robot
         if robot is None:
             return
+        above = parent_joints(robot)
         for joint in robot.joints.values():
             match = _OPTICAL.fullmatch(joint.child)
             if match is None or joint.type != "fixed" or joint.element is None:
                 continue
             parent = joint.parent
-            if "optical" in parent or not _same_camera(match["stem"], parent):
+            if "optical" in parent or not _same_camera(match["stem"], parent) or _is_optical(above.get(parent)):
                 continue
             turned = rotation(joint.origin)
-            if angle_between(turned, _OPTICAL_ROTATION) <= _TOLERANCE or not _is_slip(turned):
+            if _is_optical(joint) or not _is_slip(turned):
                 continue
             rpy = " ".join(f"{angle:g}" for angle in joint.origin.rpy)
             message = phrase(
@@ -297,6 +298,11 @@ class OpticalFrameRotation(Rule):
             element = origin if origin is not None else joint.element
             hint = phrase('write rpy="-1.5708 0 -1.5708" (in xacro rpy="${-pi/2} 0 ${-pi/2}"): z forward, y down')
             yield self.report(message, element, attribute, hint=hint)
+
+
+def _is_optical(joint: Joint | None) -> bool:
+    """Whether a joint turns its child as REP 103 says of optical frames, whatever the child is called."""
+    return joint is not None and angle_between(rotation(joint.origin), _OPTICAL_ROTATION) <= _TOLERANCE
 
 
 def _is_tiny(shape: Geometry) -> bool:

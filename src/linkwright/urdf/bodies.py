@@ -1,7 +1,6 @@
 """Links that fixed joints make one rigid body.
 
-Simulators merge such links, so what a link lacks another of its body may have. What their shapes take up is worked out
-in `extents`, which needs numpy; who belongs to whom does not.
+Simulators merge such links, so what a link lacks another of its body may have.
 """
 
 from __future__ import annotations
@@ -11,7 +10,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from linkwright.geometry.placement import IDENTITY, Placement, placement
-from linkwright.urdf import Joint, Link, Robot
+from linkwright.urdf.model import Joint, Link, Robot
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -52,6 +51,12 @@ class Bodies:
         assert self._robot is not None, "there are bodies only where there is a robot"
         return [self._robot.links[name] for name in body.frames]
 
+    def stands_for_others(self, link: Link) -> bool:
+        """Whether a link's mass may be that of links fixed to it: one of them has shapes and no mass of its own."""
+        body = self.of(link.name)
+        others = () if body is None else (each for each in self.members(body) if each is not link)
+        return any((each.visuals or each.collisions) and not _has_mass(each) for each in others)
+
     def mass(self, body: Body) -> float:
         """The positive masses of a body's links together, in kg."""
         inertials = [link.inertial for link in self.members(body)]
@@ -80,3 +85,7 @@ class Bodies:
                     bodies[joint.child] = Body(joint, {joint.child: start})
                 waiting.append(joint.child)
         return bodies
+
+
+def _has_mass(link: Link) -> bool:
+    return link.inertial is not None and link.inertial.mass > 0
