@@ -13,8 +13,7 @@ from linkwright.packages import PackageFinder
 from linkwright.viewer.frames.history import FrameHistory
 from linkwright.viewer.graph_changes import GraphChanges
 from linkwright.viewer.web.audience import PageGroup
-from linkwright.viewer.web.downloads import Downloads
-from linkwright.viewer.web.mesh_files import MeshFolders
+from linkwright.viewer.web.files import Downloads, MeshFolders
 
 
 @dataclass(frozen=True, slots=True)

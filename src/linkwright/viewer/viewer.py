@@ -27,7 +27,6 @@ from linkwright.viewer.visualization.manager import VisualizationManager
 from linkwright.viewer.visualization.managers import Managers
 from linkwright.viewer.web.access import Gate
 from linkwright.viewer.web.audience import Audience, Page
-from linkwright.viewer.web.listening import is_open_to_others, listen
 from linkwright.viewer.web.outbox import Payload
 
 if TYPE_CHECKING:
@@ -104,13 +103,13 @@ class Viewer:
         Raises:
             LinkwrightError: VIEW101 to VIEW103, it cannot listen where it should.
         """
+        from linkwright.viewer.web.server import WebServer, is_open_to_others, listen
+
         try:
             listener = listen(self._host, self._port)
         except Exception:
             self._node.destroy_node()
             raise
-        from linkwright.viewer.web.server import WebServer
-
         gate = Gate(self._host, listener.getsockname()[1])
         self._server = WebServer(gate, self._audience, self.context.meshes, self.context.downloads)
         self._url = await self._server.start(listener)

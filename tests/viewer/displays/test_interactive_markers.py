@@ -13,7 +13,7 @@ from linkwright.viewer import RvizConfig
 from linkwright.viewer.markers import BadMarkerError
 from linkwright.viewer.markers.controls import read_interactive_marker
 from linkwright.viewer.protocol.interactive_markers import MarkerFeedback
-from linkwright.viewer.web.mesh_files import MeshIndex
+from linkwright.viewer.web.files import MeshIndex
 from tests.viewer.contents import contents
 from tests.viewer.scene import world
 from tests.waiting import eventually

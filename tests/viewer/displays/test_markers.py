@@ -11,7 +11,7 @@ from linkwright.messages import get_message
 from linkwright.packages import PackageFinder
 from linkwright.viewer import RvizConfig
 from linkwright.viewer.markers import BadMarkerError, MarkerStore, read_marker
-from linkwright.viewer.web.mesh_files import MeshIndex
+from linkwright.viewer.web.files import MeshIndex
 from tests.viewer.contents import unpack
 from tests.viewer.scene import world
 from tests.waiting import eventually

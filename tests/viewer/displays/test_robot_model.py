@@ -6,7 +6,7 @@ import pytest
 
 from linkwright.viewer import RvizConfig
 from tests.viewer.scene import ARM, World, page, rows_by_id, world
-from tests.viewer.web.test_mesh_files import package, write
+from tests.viewer.web.test_files import package, write
 
 MESHED = ARM.replace('<box size="1 2 3"/>', '<mesh filename="package://robot/meshes/arm.stl"/>')
 

@@ -8,10 +8,10 @@ import pytest
 from linkwright.packages import PackageFinder
 from linkwright.urdf import read
 from linkwright.viewer.robot.scene import SceneBuilder, frame_of
-from linkwright.viewer.web.mesh_files import MeshIndex
+from linkwright.viewer.web.files import MeshIndex
 from linkwright.xacro import expand
 from linkwright.xmltree import parse
-from tests.viewer.web.test_mesh_files import package, write
+from tests.viewer.web.test_files import package, write
 
 
 def built(text: str, prefix: str = "", packages: dict[str, Path] | None = None, name: str = "<text>"):

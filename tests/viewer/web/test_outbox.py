@@ -5,8 +5,7 @@ import asyncio
 from hypothesis import given
 from hypothesis import strategies as st
 
-from linkwright.viewer.web.outbox import FRAME_TABLE, TRANSFORMS, Outbox
-from linkwright.viewer.web.scaled_data import ScaledData
+from linkwright.viewer.web.outbox import FRAME_TABLE, TRANSFORMS, Outbox, ScaledData
 
 
 async def emptied(outbox: Outbox) -> list:

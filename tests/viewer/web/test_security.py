@@ -13,11 +13,11 @@ import pytest
 
 from linkwright.viewer.protocol.displays import DisplayStatus
 from linkwright.viewer.protocol.parts import StatusRow
-from linkwright.viewer.web.admission import MAXIMUM_CONNECTIONS
+from linkwright.viewer.web.access import MAXIMUM_CONNECTIONS
 from linkwright.viewer.web.audience import MAXIMUM_PAGES
 from linkwright.viewer.web.server import MAXIMUM_MESSAGE
 from tests.viewer.scene import page, world
-from tests.viewer.web.test_mesh_files import package, write
+from tests.viewer.web.test_files import package, write
 from tests.waiting import eventually
 
 MESHED = """\
@@ -304,7 +304,7 @@ async def test_a_thousand_sockets_are_refused_but_for_some(served):
 
 
 async def test_half_a_request_is_not_waited_for_long(served, monkeypatch):
-    monkeypatch.setattr("linkwright.viewer.web.admission.PATIENCE", 0.2)
+    monkeypatch.setattr("linkwright.viewer.web.access.PATIENCE", 0.2)
     address = urlsplit(served.viewer.url)
     for said in (b"", b"GET / HT", b"GET / HTTP/1.1\r\nHost: localhost\r\nX-Slow: "):
         reader, writer = await asyncio.open_connection(address.hostname, address.port)
@@ -318,7 +318,7 @@ async def test_half_a_request_is_not_waited_for_long(served, monkeypatch):
 
 
 async def test_a_page_that_is_let_in_may_take_its_time(served, monkeypatch):
-    monkeypatch.setattr("linkwright.viewer.web.admission.PATIENCE", 0.1)
+    monkeypatch.setattr("linkwright.viewer.web.access.PATIENCE", 0.1)
     async with page(served.viewer) as client:
         await client.opened()
         address = urlsplit(served.viewer.url)

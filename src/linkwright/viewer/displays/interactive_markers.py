@@ -21,7 +21,7 @@ from linkwright.viewer.markers.controls import read_interactive_marker
 from linkwright.viewer.markers.shapes import pose_of
 from linkwright.viewer.protocol.interactive_markers import InteractiveMarkerMoved, MarkerFeedback
 from linkwright.viewer.protocol.parts import StatusLevel
-from linkwright.viewer.web.mesh_files import MeshIndex
+from linkwright.viewer.web.files import MeshIndex
 
 _NAMESPACE = "Interactive Markers Namespace"
 _TRANSPARENCY = "Enable Transparency"

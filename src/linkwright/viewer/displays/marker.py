@@ -17,7 +17,7 @@ from linkwright.viewer.displays.base.topic_display import TopicDisplay
 from linkwright.viewer.markers import BadMarkerError, MarkerReading, MarkerStore, read_marker
 from linkwright.viewer.markers.shapes import ADD, DELETE, DELETE_ALL, marker_id, placed_in
 from linkwright.viewer.protocol.robot import MeshStatus
-from linkwright.viewer.web.mesh_files import MeshIndex
+from linkwright.viewer.web.files import MeshIndex
 from linkwright.viewer.web.outbox import Payload
 
 _NAMESPACES = "Namespaces"

@@ -19,7 +19,7 @@ from linkwright.viewer.protocol.parts import StatusRow
 from linkwright.viewer.protocol.robot import LinkProvenance, MeshStatus, RobotScene
 from linkwright.viewer.robot.description_source import DESCRIPTION_SPECS, DescriptionSource
 from linkwright.viewer.robot.scene import SceneBuilder
-from linkwright.viewer.web.mesh_files import MeshIndex
+from linkwright.viewer.web.files import MeshIndex
 
 _STATIC = (
     PropertySpec("Visual Enabled", "bool", True, "Draw what the robot looks like."),

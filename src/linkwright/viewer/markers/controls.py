@@ -24,7 +24,7 @@ from linkwright.viewer.protocol.interactive_markers import (
     OrientationMode,
 )
 from linkwright.viewer.protocol.markers import MarkerKind, MarkerShape
-from linkwright.viewer.web.mesh_files import MeshIndex
+from linkwright.viewer.web.files import MeshIndex
 
 _MODES: tuple[InteractionMode, ...] = get_args(InteractionMode)
 _ORIENTATIONS: tuple[OrientationMode, ...] = get_args(OrientationMode)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from linkwright.geometry.single import Quaternion, Transform, compose, normalized
 from linkwright.viewer.protocol.markers import MarkerKind, MarkerMesh, MarkerShape
-from linkwright.viewer.web.mesh_files import IMAGE_TYPES, MESH_TYPES, MeshIndex
+from linkwright.viewer.web.files import IMAGE_TYPES, MESH_TYPES, MeshIndex
 
 ADD, DELETE, DELETE_ALL = 0, 2, 3
 

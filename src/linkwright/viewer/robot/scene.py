@@ -11,7 +11,7 @@ from linkwright.urdf import Box, Capsule, Collision, Cylinder, Link, Material, M
 from linkwright.viewer.protocol.parts import Place
 from linkwright.viewer.protocol.robot import JointScene, LinkScene, Shape
 from linkwright.viewer.robot.inertia import link_inertia
-from linkwright.viewer.web.mesh_files import IMAGE_TYPES, MESH_TYPES, MeshIndex
+from linkwright.viewer.web.files import IMAGE_TYPES, MESH_TYPES, MeshIndex
 from linkwright.xacro.origin import origin_of
 from linkwright.xmltree import Element
 

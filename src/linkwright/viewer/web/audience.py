@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from functools import partial
@@ -12,10 +13,7 @@ from linkwright.graph import run_logged
 from linkwright.viewer.protocol.codec import BadMessageError, decode, encode, redundancy_key
 from linkwright.viewer.protocol.message import PageMessage, ServerMessage
 from linkwright.viewer.protocol.session import Received
-from linkwright.viewer.web.in_pieces import InPieces
-from linkwright.viewer.web.line import BULK, Line, Pace
-from linkwright.viewer.web.outbox import TRANSFORMS, Made, Outbox, Payload
-from linkwright.viewer.web.scaled_data import ScaledData
+from linkwright.viewer.web.outbox import BULK, TRANSFORMS, InPieces, Line, Made, Outbox, Payload, ScaledData
 
 if TYPE_CHECKING:
     from aiohttp.web import WebSocketResponse
@@ -274,3 +272,28 @@ class Audience(PageGroup):
                     run_logged(
                         self._logger, f"'{type(decoded).__name__}' of a page", partial(self._receive, page, decoded)
                     )
+
+
+_RATE = 1000.0
+_BURST = 4000.0
+"""A page of a large robot reports all its meshes at once."""
+
+
+class Pace:
+    """Says when a sender has to wait, so that one page cannot keep the program from the others.
+
+    Args:
+        clock: seconds.
+    """
+
+    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+        self._clock = clock
+        self._left = _BURST
+        self._at = clock()
+
+    def wait(self) -> float:
+        """Seconds to wait before the message that came is worked on."""
+        now = self._clock()
+        self._left = min(_BURST, self._left + (now - self._at) * _RATE) - 1.0
+        self._at = now
+        return max(0.0, -self._left / _RATE)

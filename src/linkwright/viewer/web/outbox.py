@@ -1,11 +1,96 @@
-"""What waits to be sent to one page: of each kind only the newest, transforms before the rest."""
+"""What waits to be sent to one page, and how much of it the page's line carries.
+
+Of each kind only the newest waits, transforms go before the rest, and large content is reduced for a slow line or sent
+in pieces.
+"""
 
 from __future__ import annotations
 
 import asyncio
+import time
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Protocol
 
-from linkwright.viewer.web.scaled_data import ScaledData
+from linkwright.viewer.protocol.message import DataContent
+from linkwright.viewer.protocol.pieces import pack_piece
+
+Pack = Callable[[DataContent], bytes]
+Shrink = Callable[[int], DataContent]
+"""Reduces the content to about so many bytes, or as far as it can be; runs in a thread."""
+
+
+class ScaledData:
+    """One content of a display, packed for a page when its turn comes.
+
+    Args:
+        key: under which it waits in outboxes.
+        content: all of it.
+        shrink: makes less of it.
+        pack: makes the binary frame.
+
+    Attributes:
+        gone: it was replaced or taken away, and is not to be sent again.
+    """
+
+    def __init__(self, key: str, content: DataContent, shrink: Shrink, pack: Pack) -> None:
+        self.key = key
+        self.gone = False
+        self._content = content
+        self._shrink = shrink
+        self._pack = pack
+        self._smaller: dict[int, asyncio.Future[bytes]] = {}
+
+    @cached_property
+    def whole(self) -> bytes:
+        """The frame with all of it."""
+        return self._pack(self._content)
+
+    async def fitting(self, room: int) -> bytes:
+        """The frame with as much as goes into so many bytes; what pages of like lines get is made once."""
+        if len(self.whole) <= room:
+            return self.whole
+        size = 1 << (room.bit_length() - 1)
+        if size not in self._smaller:
+            self._smaller[size] = asyncio.ensure_future(asyncio.to_thread(self._made, size))
+        return await asyncio.shield(self._smaller[size])
+
+    def _made(self, size: int) -> bytes:
+        return self._pack(self._shrink(size))
+
+
+class InPieces:
+    """Gives a piece each time its turn comes in an outbox, so that whatever else waits goes between them.
+
+    Args:
+        payload: the content.
+        number: unlike that of those before it.
+        size: says how many bytes the next piece may have.
+    """
+
+    def __init__(self, payload: ScaledData, number: int, size: Callable[[], int]) -> None:
+        self.payload = payload
+        self.key = payload.key
+        self._number = number
+        self._size = size
+        self._given = 0
+
+    @property
+    def done(self) -> bool:
+        """Whether all of it was given, or it is not wanted any more."""
+        return self.payload.gone or self._given >= len(self.payload.whole)
+
+    def since(self, seen: int) -> tuple[bytes | None, int]:
+        """The next piece; None when there is none. What the page has seen does not matter: it is counted here."""
+        if self.done:
+            return None, seen
+        size = self._size()
+        piece = pack_piece(self.payload.whole, self._number, self._given, size)
+        self._given += size
+        return piece, seen
+
 
 FRAME_TABLE = "frame_table"
 TRANSFORMS = "transforms"
@@ -99,3 +184,105 @@ class Outbox:
             return None if payload.gone else payload
         made, self._seen[payload.key] = payload.since(self._seen.get(payload.key, 0))
         return made
+
+
+BULK = 4096
+"""Messages of at least so many bytes are counted; pages acknowledge those (and some smaller ones)."""
+
+_SHARE = 0.1
+"""Seconds that one payload may keep the line busy."""
+
+_FIRST_ROOM = 24 * 1024
+_LEAST_ROOM = 6 * 1024
+
+_BLOCKED = 0.02
+"""Seconds of waiting for the socket that say something about the line, and not about this machine."""
+
+_MOST_ON_THE_WAY = 64
+"""Messages remembered for the first answer of a page that may never answer."""
+
+
+@dataclass(slots=True)
+class _OnTheWay:
+    number: int
+    size: int
+    sent: float
+
+
+class Line:
+    """Measures the connection to one page.
+
+    Pages acknowledge large messages, which measures all of the way, tunnels with buffers of their own included. Of a
+    page that does not, only the time is known that the socket took to accept what was sent.
+
+    Args:
+        clock: seconds.
+
+    Attributes:
+        rate: bytes a second; None as long as nothing is known.
+    """
+
+    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+        self.rate: float | None = None
+        self._clock = clock
+        self._number = 0
+        self._answers = False
+        self._shortest = float("inf")
+        self._on_the_way: deque[_OnTheWay] = deque()
+        self._hello: float | None = None
+
+    @property
+    def room(self) -> int:
+        """How many bytes a reducible payload should have."""
+        return _FIRST_ROOM if self.rate is None else max(_LEAST_ROOM, int(self.rate * _SHARE))
+
+    @property
+    def is_full(self) -> bool:
+        """Whether large messages should wait until the page has those that are on the way."""
+        return self._answers and sum(each.size for each in self._on_the_way) >= self.room / 2
+
+    @property
+    def is_idle(self) -> bool:
+        """Whether the page has said that nothing large is on the way."""
+        return self._answers and not self._on_the_way
+
+    def sending(self, size: int) -> float:
+        """A message of so many bytes is handed to the socket; the time, for `sent`."""
+        now = self._clock()
+        self._number += 1
+        if self._number == 1:
+            self._hello = now
+        if size >= BULK:
+            self._on_the_way.append(_OnTheWay(self._number, size, now))
+        return now
+
+    def sent(self, size: int, since: float) -> None:
+        """The socket has accepted a message that it was handed at a time."""
+        if self._answers or size < BULK:
+            return
+        while len(self._on_the_way) > _MOST_ON_THE_WAY:
+            self._on_the_way.popleft()
+        seconds = self._clock() - since
+        if seconds >= _BLOCKED:
+            self._learn(size / seconds)
+        elif 2 * size >= self.room:  # it went into buffers of unknown size
+            self._learn(float("inf"))
+
+    def received(self, count: int) -> None:
+        """The page says that it has so many messages."""
+        now = self._clock()
+        if not self._answers:
+            self._answers = True
+            if self._hello is not None:
+                self._shortest = now - self._hello
+        while self._on_the_way and self._on_the_way[0].number <= count:
+            arrived = self._on_the_way.popleft()
+            took = now - arrived.sent
+            self._shortest = min(self._shortest, took)
+            if 2 * arrived.size >= min(self.room, _FIRST_ROOM):
+                self._learn(arrived.size / max(took - self._shortest, took / 10, 1e-4))
+
+    def _learn(self, rate: float) -> None:
+        """Take a measurement. A single one may be chance: twice as much is tried at most, or half as much."""
+        known = self.room / _SHARE
+        self.rate = min(max(rate, known / 2), known * 2)

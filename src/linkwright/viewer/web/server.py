@@ -1,10 +1,13 @@
-"""The web server: the page, its WebSocket, and the meshes that descriptions name."""
+"""The web server: the socket it listens on, the page, its WebSocket, and the files that the page fetches."""
 
 from __future__ import annotations
 
 import asyncio
+import errno
+import ipaddress
 import os
 import re
+import socket
 import stat
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
@@ -12,18 +15,14 @@ from urllib.parse import quote
 
 from aiohttp import web
 
-from linkwright.viewer.web.access import TOKEN_PARAMETER, Gate, security_headers
-from linkwright.viewer.web.admission import Admission
-from linkwright.viewer.web.line import MOST_UNSENT, keep_short
-from linkwright.viewer.web.listening import url_of
-from linkwright.viewer.web.mesh_files import CONTENT_TYPES, FileRefusedError, MeshFolders
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
+from linkwright.viewer.web.access import TOKEN_PARAMETER, Admission, Gate, security_headers
+from linkwright.viewer.web.files import CONTENT_TYPES, Downloads, FileRefusedError, MeshFolders
 
 if TYPE_CHECKING:
-    import socket
     from collections.abc import Awaitable, Callable
 
     from linkwright.viewer.web.audience import Audience
-    from linkwright.viewer.web.downloads import Downloads
 
 PAGE_FOLDER = Path(__file__).parent.parent / "page"
 """Where ``frontend/`` is built to."""
@@ -64,6 +63,15 @@ _PAGE_TYPES = {
     ".webmanifest": "application/manifest+json",
     ".txt": "text/plain; charset=utf-8",
 }
+
+DEFAULT_PORT = 7447
+_TRIES = 10
+_WILDCARDS = {"0.0.0.0": "127.0.0.1", "::": "::1"}  # noqa: S104 - what an address to open is instead of
+
+MOST_UNSENT = 16 * 1024
+"""Bytes that may wait in the program, and again as many in the operating system, before the writer has to."""
+
+_NOT_SENT_LOW_WATER: int | None = getattr(socket, "TCP_NOTSENT_LOWAT", None)
 
 
 class WebServer:
@@ -248,3 +256,87 @@ def _read(path: Path, known: str) -> tuple[str, float, bytes | None]:
         tag = f'"{facts.st_mtime_ns:x}-{facts.st_size:x}"'
         tags = {each.strip().removeprefix("W/") for each in known.split(",")}
         return tag, facts.st_mtime, None if tag in tags else file.read()
+
+
+def listen(host: str, port: int | None) -> socket.socket:
+    """A socket that listens.
+
+    Args:
+        host: a name or address of this machine.
+        port: 0 for any; None for `DEFAULT_PORT`, or the next free one when it is taken.
+
+    Raises:
+        LinkwrightError: VIEW101, the port asked for is in use; VIEW102, it cannot be listened on; VIEW103, the host
+            is unknown.
+    """
+    try:
+        family, _, _, _, address = socket.getaddrinfo(host, 0, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)[0]
+    except (OSError, UnicodeError):
+        hint = phrase("use 127.0.0.1, or 0.0.0.0 to be reached from other machines")
+        message = phrase("'{host}' is no name or address of this machine", host=host)
+        raise LinkwrightError(Diagnostic("VIEW103", message, hint=hint)) from None
+    candidates = [port] if port is not None else [*range(DEFAULT_PORT, DEFAULT_PORT + _TRIES), 0]
+    for candidate in candidates:
+        try:
+            return _listen_at(family, (address[0], candidate))
+        except OSError as error:  # noqa: PERF203 - few ports, and each may be taken
+            if candidate == candidates[-1] or error.errno != errno.EADDRINUSE:
+                raise LinkwrightError(_cannot_listen(host, candidate, error)) from None
+    raise AssertionError("the last port listens or raises")
+
+
+def url_of(listener: socket.socket) -> str:
+    """The address at which a browser on this machine reaches a listening socket."""
+    host, port = listener.getsockname()[:2]
+    host = _WILDCARDS.get(host, host)
+    return f"http://[{host}]:{port}/" if ":" in host else f"http://{host}:{port}/"
+
+
+def is_open_to_others(listener: socket.socket) -> bool:
+    """Whether other machines can reach a listening socket."""
+    return not ipaddress.ip_address(listener.getsockname()[0].partition("%")[0]).is_loopback
+
+
+def _listen_at(family: int, address: tuple[str | int, int]) -> socket.socket:
+    listener = socket.socket(family, socket.SOCK_STREAM)
+    try:
+        if os.name == "posix":
+            listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        listener.bind(address)
+        listener.listen(64)  # at once: two programs may both bind a port, but only one can listen
+        listener.setblocking(False)
+    except (OSError, OverflowError) as error:
+        listener.close()
+        if isinstance(error, OverflowError):
+            raise OSError(errno.EINVAL, phrase("a port is a number from 0 to 65535")) from None
+        raise
+    return listener
+
+
+def _cannot_listen(host: str, port: int, error: OSError) -> Diagnostic:
+    if error.errno == errno.EADDRINUSE:
+        hint = phrase("choose another with '--port', or leave '--port' out to take the next free one")
+        return Diagnostic("VIEW101", phrase("port {port} of '{host}' is in use", port=port, host=host), hint=hint)
+    return Diagnostic(
+        "VIEW102",
+        phrase(
+            "cannot listen on port {port} of '{host}': {strerror}",
+            port=port,
+            host=host,
+            strerror=foreign(error.strerror or error),
+        ),
+    )
+
+
+def keep_short(transport: asyncio.Transport) -> None:
+    """Keep the send buffer of a connection short, without bounding what is in flight.
+
+    What waits there can neither be replaced by newer data nor overtaken.
+
+    The system grows its send buffer to megabytes; over a slow line these are many seconds. Where it offers no other
+    bound (Windows), its buffer stays as it is, and pages' acknowledgements alone keep the line free.
+    """
+    transport.set_write_buffer_limits(high=MOST_UNSENT)
+    connection = transport.get_extra_info("socket")
+    if connection is not None and _NOT_SENT_LOW_WATER is not None:
+        connection.setsockopt(socket.IPPROTO_TCP, _NOT_SENT_LOW_WATER, MOST_UNSENT)

@@ -13,8 +13,7 @@ from linkwright.viewer.displays.base.host import DisplayHost
 from linkwright.viewer.protocol.data import DisplayForgotten, pack_data
 from linkwright.viewer.protocol.message import DataContent
 from linkwright.viewer.protocol.parts import StatusLevel, StatusRow
-from linkwright.viewer.web.outbox import Payload
-from linkwright.viewer.web.scaled_data import ScaledData, Shrink
+from linkwright.viewer.web.outbox import Payload, ScaledData, Shrink
 
 Pose = NDArray[np.float64]
 """x, y, z (metres), qx, qy, qz, qw of a frame in the Fixed Frame; shape (7,)."""

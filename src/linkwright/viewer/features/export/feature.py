@@ -15,7 +15,7 @@ from linkwright.viewer.features.export.snapshot import snapshot_of
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
 from linkwright.viewer.protocol.export import AskExport, ExportFailed, ExportReady
 from linkwright.viewer.web.audience import Page
-from linkwright.viewer.web.downloads import Download
+from linkwright.viewer.web.files import Download
 
 
 class ExportFeature(PageFeature):

@@ -9,7 +9,7 @@ from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
 from linkwright.viewer.protocol.robot import RobotScene
-from linkwright.viewer.web.mesh_files import FileRefusedError, MeshFolders
+from linkwright.viewer.web.files import FileRefusedError, MeshFolders
 
 _ADDRESS = re.compile(r"/mesh/([^/]+)/(.+)")
 _COLLADA_IMAGE = re.compile(r"<init_from>\s*(?:<ref>)?\s*([^<]+?)\s*<")

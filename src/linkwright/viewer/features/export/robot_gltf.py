@@ -21,7 +21,7 @@ from linkwright.viewer.features.export.gltf import GltfFile
 from linkwright.viewer.features.export.mesh_parts import UNCOLOURED, MeshPart, OwnLook, read_parts
 from linkwright.viewer.features.export.snapshot import Snapshot
 from linkwright.viewer.protocol.robot import LinkScene, Shape
-from linkwright.viewer.web.mesh_files import FileRefusedError
+from linkwright.viewer.web.files import FileRefusedError
 
 _RVIZ_RED = (1.0, 0.0, 0.0)
 _Y_UP = [-sqrt(0.5), 0.0, 0.0, sqrt(0.5)]

@@ -23,8 +23,8 @@ from linkwright.viewer.protocol.parts import Property
 from linkwright.viewer.protocol.robot import RobotScene
 from linkwright.viewer.protocol.session import Hello
 from linkwright.viewer.protocol.views import SavedViews, View, ViewClasses, ViewState
-from linkwright.viewer.web.mesh_files import MeshFolders
-from linkwright.viewer.web.scaled_data import ScaledData
+from linkwright.viewer.web.files import MeshFolders
+from linkwright.viewer.web.outbox import ScaledData
 
 if TYPE_CHECKING:
     from linkwright.viewer.displays.robot_model import RobotModelDisplay

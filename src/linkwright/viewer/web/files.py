@@ -1,7 +1,8 @@
-"""Which files of the disk a page may read: meshes that a description names, and what lies beside them.
+"""Which files a page may fetch: meshes that a description names, what lies beside them, and files made for the page.
 
 A description may come from a stranger, and so may a request. A page is served only meshes and images, only from
-folders that a description shown now names, and only where the real path, links followed, is still inside.
+folders that a description shown now names, and only where the real path, links followed, is still inside. A file that
+was made for a page can be fetched once, and soon.
 """
 
 from __future__ import annotations
@@ -9,6 +10,8 @@ from __future__ import annotations
 import hashlib
 import os
 import re
+import secrets
+import time
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 from urllib.parse import quote
@@ -194,3 +197,39 @@ def resolve(folder: ServedFolder, relative: str) -> Path:
 def _of_package(path: Path, name: str | None) -> bool:
     package = enclosing_package(path.parent)
     return package is not None and package[0] == name
+
+
+_KEPT_SECONDS = 60.0
+_MOST_KEPT = 4
+
+
+@dataclass(frozen=True, slots=True)
+class Download:
+    """A file that waits to be fetched."""
+
+    name: str
+    content_type: str
+    data: bytes
+    made: float = field(default_factory=time.monotonic)
+
+
+class Downloads:
+    """Files by a key that only the page knows that asked."""
+
+    def __init__(self) -> None:
+        self._files: dict[str, Download] = {}
+
+    def put(self, file: Download) -> str:
+        """Keep a file; its address."""
+        while len(self._files) >= _MOST_KEPT:
+            del self._files[next(iter(self._files))]
+        key = secrets.token_urlsafe(16)
+        self._files[key] = file
+        return f"/export/{key}/{quote(file.name)}"
+
+    def take(self, key: str) -> Download | None:
+        """The file with a key, which is forgotten."""
+        now = time.monotonic()
+        for old in [old for old, file in self._files.items() if now - file.made > _KEPT_SECONDS]:
+            del self._files[old]
+        return self._files.pop(key, None)

@@ -6,13 +6,7 @@ from pathlib import Path
 import pytest
 
 from linkwright.packages import PackageFinder
-from linkwright.viewer.web.mesh_files import (
-    IMAGE_TYPES,
-    MESH_TYPES,
-    FileRefusedError,
-    MeshFolders,
-    MeshIndex,
-)
+from linkwright.viewer.web.files import IMAGE_TYPES, MESH_TYPES, FileRefusedError, MeshFolders, MeshIndex
 
 
 def write(path: Path, content: str = "solid") -> Path:
