@@ -97,15 +97,18 @@ class Source:
             self.titles.setdefault(title.rstrip("."), place)
 
     def _help(self, node: ast.AST, place: str) -> None:
-        """The help texts of commands: constants called HELP, and what parsers are given."""
-        if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "HELP":
-            text: ast.expr = node.value
-        elif isinstance(node, ast.keyword) and node.arg in ("help", "title"):
-            text = node.value
+        """The help texts of commands: what their table says of them, and what parsers are given."""
+        named = isinstance(node, ast.Assign) and ast.unparse(node.targets[0])
+        if named == "GROUPS":
+            inner = [each for each in ast.walk(node.value) if isinstance(each, ast.Dict) and each is not node.value]
+            texts = [text for verbs in inner for text in verbs.values]
+        elif named == "LANGUAGE_HELP" or (isinstance(node, ast.keyword) and node.arg in ("help", "title")):
+            texts = [node.value]
         else:
             return
-        if isinstance(text, ast.Constant) and isinstance(text.value, str):
-            self.said.setdefault(text.value, Said(text.value, None, False)).places.append(place)
+        for text in texts:
+            if isinstance(text, ast.Constant) and isinstance(text.value, str):
+                self.said.setdefault(text.value, Said(text.value, None, False)).places.append(place)
 
     def _call(self, node: ast.Call, called: str, place: str) -> None:
         if called == "phrase":

@@ -15,7 +15,7 @@ from collections.abc import Iterator, Sequence
 from html import escape
 from pathlib import Path
 
-from linkwright.cli.command import VERBS, parser_for, verb
+from linkwright.cli.command import VERBS, parser_for
 from linkwright.cli.completion.candidates import TABLE
 from linkwright.cli.tools.ros2 import COMMANDS
 from linkwright.launch.ros.executables import hosted_executables
@@ -49,8 +49,8 @@ Words in capitals stand for something of yours; brackets mean that it may be lef
 def generate() -> str:
     """The whole page."""
     sections = [INTRODUCTION]
-    for name in VERBS:
-        sections += describe(parser_for(name), verb(name).HELP)
+    for name, text in VERBS.items():
+        sections += describe(parser_for(name), text)
     return "\n".join(sections)
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from linkwright.cli import main
-from linkwright.cli.interface.definition_text import definition_lines, nested_type
+from linkwright.cli.interface import definition_lines, nested_type
 
 DEFINITIONS = {
     "p/msg/Short": "# A short type\n# A constant\nbool BOOL_CONST=true # one\n\nbool value\nbool[<=3] values # two\n",

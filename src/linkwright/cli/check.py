@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from linkwright.packages import PackageFinder
     from linkwright.urdf import Robot
 
-HELP = "check URDF and xacro files, and the packages in folders; of one file, print the link tree"
 
 _USAGE = 2
 

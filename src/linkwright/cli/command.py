@@ -15,32 +15,50 @@ from typing import Protocol, cast
 
 from linkwright._version import __version__
 from linkwright.cli.endings import FINE, USAGE, status_of
-from linkwright.cli.language import HELP as LANGUAGE_HELP
-from linkwright.cli.language import take_language
-from linkwright.cli.translated_help import said_in_help, translate_help
+from linkwright.cli.language import LANGUAGE_HELP, said_in_help, take_language, translate_help
+from linkwright.cli.nested import SubVerb
 from linkwright.diagnostics import did_you_mean
 from linkwright.diagnostics.translation import set_language
 from linkwright.interruption import end_at_once, raise_interrupts
 
 GROUPS = {
-    "descriptions": ("view", "xacro", "check", "explain", "inertia", "diagram", "export"),
-    "packages and running them": ("pkg", "run", "launch", "shell", "completion", "bag"),
-    "the running graph, as ros2 does": (
-        "topic",
-        "node",
-        "param",
-        "service",
-        "action",
-        "interface",
-        "lifecycle",
-        "component",
-        "daemon",
-        "doctor",
-    ),
+    "descriptions": {
+        "view": "show a URDF or xacro file in the browser, with sliders for its joints",
+        "xacro": "expand a xacro file to URDF, list its arguments, or explain its parts",
+        "check": "check URDF and xacro files, and the packages in folders; of one file, print the link tree",
+        "explain": "say what a diagnostic code means and what to do, or what an element or attribute of URDF means",
+        "inertia": "compute mass and inertia of each link from its shapes, compare them with the file, or write them",
+        "diagram": "draw the links and joints of a model as urdf_to_graphviz does (.gv and PDF or SVG)",
+        "export": "write a model as one HTML file that opens in any browser, or as glTF (.glb)",
+    },
+    "packages and running them": {
+        "pkg": "create ROS packages, and tell where they are and what is in them",
+        "run": "run an executable of a package: ours, a built one, or an entry point of its sources",
+        "launch": "run a ROS 2 launch file, with its rviz2 as a page in the browser",
+        "shell": "open a shell in which ros2, xacro, check_urdf, urdf_to_graphviz, rviz2 and colcon exist",
+        "completion": "print what makes TAB complete command lines in bash, zsh or fish",
+        "bag": "record topics, play recordings and tell what is in them",
+    },
+    "the running graph, as ros2 does": {
+        "topic": "list, print, publish and measure topics",
+        "node": "list and describe nodes",
+        "param": "list, read and set parameters of nodes",
+        "service": "list and call services",
+        "action": "list actions and send goals",
+        "interface": "list and show types of messages, services and actions",
+        "lifecycle": "look at and change the states of managed nodes",
+        "component": "load nodes into containers, list and unload them",
+        "daemon": "accepted for ros2's sake: there is no daemon, and none is needed",
+        "doctor": "explain what is wrong with the running nodes, topics and frames",
+    },
 }
-"""The verbs in the order in which the help lists them; each is a module or package of this package."""
+"""The verbs in the order in which the help lists them, with what it says of them.
 
-VERBS = tuple(name for names in GROUPS.values() for name in names)
+Each is a module or package of this package, which is loaded only when it is asked for.
+"""
+
+VERBS = {name: text for verbs in GROUPS.values() for name, text in verbs.items()}
+"""What the help says of each verb."""
 
 _IN_ORDER = frozenset({"pkg", "run", "shell"})
 """Verbs whose words are taken in order, beside those with verbs of their own: what follows is another command's.
@@ -61,8 +79,6 @@ _COLLECT_FIRST_AFTER = 200_000
 
 class Verb(Protocol):
     """What a verb's module offers."""
-
-    HELP: str
 
     def configure(self, parser: argparse.ArgumentParser) -> None:
         """Declare the verb's arguments."""
@@ -108,7 +124,7 @@ def parser_for(name: str, *, program: str = PROGRAM) -> argparse.ArgumentParser:
     """The argument parser of one verb, as the command reference and the verb itself use it."""
     module = verb(name)
     prog = f"{program} {name}".strip()
-    parser = argparse.ArgumentParser(prog=prog, description=module.HELP, formatter_class=_formatter)
+    parser = argparse.ArgumentParser(prog=prog, description=VERBS[name], formatter_class=_formatter)
     module.configure(parser)
     translate_help(parser)
     if parser.usage is not None:
@@ -137,7 +153,7 @@ def _dispatch(words: list[str], program: str) -> int:
         return _unknown(name, VERBS, program or PROGRAM)
     parser = parser_for(name, program=program)
     module = verb(name)
-    below: Mapping[str, str] = getattr(module, "VERBS", {})
+    below: Mapping[str, SubVerb] = getattr(module, "VERBS", {})
     if below:
         asked = next((word for word in words[1:] if not word.startswith("-")), None)
         if asked is not None and asked not in below:
@@ -161,9 +177,9 @@ def _unknown(name: str, known: Iterable[str], prog: str) -> int:
 def _overview() -> str:
     width = max(map(len, VERBS))
     lines = ["usage: linkwright COMMAND ...", "", "Robot descriptions the ROS 2 way, without ROS."]
-    for title, names in GROUPS.items():
+    for title, verbs in GROUPS.items():
         lines += ["", f"{said_in_help(title)}:"]
-        lines += [f"  {name:{width}}  {said_in_help(verb(name).HELP)}" for name in names]
+        lines += [f"  {name:{width}}  {said_in_help(text)}" for name, text in verbs.items()]
     lines += ["", "options of all commands:", f"  --lang LANGUAGE  {said_in_help(LANGUAGE_HELP)}"]
     lines += ["", "`linkwright COMMAND --help` says more. `linkwright --version` prints the version."]
     return "\n".join(lines)

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import argparse
 
-HELP = "accepted for ros2's sake: there is no daemon, and none is needed"
-
 _SAYS = {
     "start": "The daemon is not needed: each command finds the nodes itself",
     "status": "The daemon is not running",

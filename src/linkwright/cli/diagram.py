@@ -10,8 +10,6 @@ from linkwright.assignments import parse_assignments
 from linkwright.cli.output import write_output
 from linkwright.diagnostics import print_diagnostics
 
-HELP = "draw the links and joints of a model as urdf_to_graphviz does (.gv and PDF or SVG)"
-
 _PICTURES = (".pdf", ".svg", ".png")
 
 

@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from linkwright.cli.session import Session
     from linkwright.doctor import FixedFrame, Observation
 
-HELP = "explain what is wrong with the running nodes, topics and frames"
 
 _SECONDS = 3.0
 

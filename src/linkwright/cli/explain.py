@@ -7,8 +7,6 @@ import argparse
 from linkwright.diagnostics import Diagnostic, LinkwrightError, joined, nearest, phrase
 from linkwright.diagnostics.translation import localized
 
-HELP = "say what a diagnostic code means and what to do, or what an element or attribute of URDF means"
-
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""

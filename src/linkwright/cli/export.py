@@ -10,8 +10,6 @@ from linkwright.assignments import parse_assignments
 from linkwright.cli.output import write_output
 from linkwright.diagnostics import LinkwrightError, print_diagnostics
 
-HELP = "write a model as one HTML file that opens in any browser, or as glTF (.glb)"
-
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""

@@ -14,7 +14,6 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, ha
 if TYPE_CHECKING:
     from linkwright.urdf import Robot
 
-HELP = "compute mass and inertia of each link from its shapes, compare them with the file, or write them"
 
 _LARGEST = 1e15
 """Masses and densities beyond this are taken for mistakes."""

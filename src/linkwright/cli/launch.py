@@ -6,8 +6,6 @@ import argparse
 import os
 import shlex
 
-HELP = "run a ROS 2 launch file, with its rviz2 as a page in the browser"
-
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""

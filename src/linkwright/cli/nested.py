@@ -1,39 +1,38 @@
-"""Verbs with verbs of their own, such as ``topic echo``: each a module, all configured below one parser."""
+"""Verbs with verbs of their own, such as ``topic echo``, all configured below one parser."""
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Mapping
-from importlib import import_module
-from typing import Protocol, cast
+from collections.abc import Callable, Mapping
+from typing import NamedTuple, cast
 
 
-class SubVerb(Protocol):
-    """What the module of a verb below a verb offers."""
+class SubVerb(NamedTuple):
+    """A verb below a verb.
 
-    HELP: str
+    Attributes:
+        configure: declares its arguments.
+        run: does it; returns the exit status.
+        help: what it does, in a line.
+    """
 
-    def configure(self, parser: argparse.ArgumentParser) -> None:
-        """Declare the arguments."""
-
-    def run(self, arguments: argparse.Namespace) -> int:
-        """Do it; returns the exit status."""
+    configure: Callable[[argparse.ArgumentParser], None]
+    run: Callable[[argparse.Namespace], int]
+    help: str
 
 
-def configure_nested(parser: argparse.ArgumentParser, package: str, modules: Mapping[str, str]) -> None:
+def configure_nested(parser: argparse.ArgumentParser, verbs: Mapping[str, SubVerb]) -> None:
     """Declare the verbs below a verb.
 
     Args:
         parser: the verb's.
-        package: the dotted name of the package that the modules are in.
-        modules: the names of the verbs, each with that of its module.
+        verbs: those below it, by their names.
     """
     below = parser.add_subparsers(dest="verb", metavar="COMMAND", title="commands")
-    for name, module_name in modules.items():
-        module = cast("SubVerb", import_module(f"{package}.{module_name}"))
-        made = below.add_parser(name, help=module.HELP, description=module.HELP, formatter_class=parser.formatter_class)
-        module.configure(made)
-        made.set_defaults(run_verb=module.run)
+    for name, verb in verbs.items():
+        made = below.add_parser(name, help=verb.help, description=verb.help, formatter_class=parser.formatter_class)
+        verb.configure(made)
+        made.set_defaults(run_verb=verb.run)
     parser.set_defaults(print_help=parser.print_help)
 
 

@@ -10,13 +10,12 @@ from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from linkwright.cli import pkg_questions
-from linkwright.diagnostics import print_diagnostics
+from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, joined, phrase, print_diagnostics
 
 if TYPE_CHECKING:
     from linkwright.packages.creation.request import Maintainer
 
-HELP = "create ROS packages, and tell where they are and what is in them"
+    _Subparsers = argparse._SubParsersAction[argparse.ArgumentParser]
 
 
 class _ListLicenses(argparse.Action):
@@ -87,7 +86,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     create.add_argument("--node-name", metavar="NODE", help="begin with an executable of this name")
     create.add_argument("--library-name", metavar="LIBRARY", help="begin with a library of this name")
     create.set_defaults(answer=_create)
-    pkg_questions.configure(verbs)
+    _configure_questions(verbs)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -163,3 +162,82 @@ def _address_part(login: str) -> str:
     import re
 
     return re.sub(r"[^A-Za-z0-9_%+-]+", "-", login).strip("-") or "user"
+
+
+def _configure_questions(verbs: _Subparsers) -> None:
+    """Declare the commands that tell of packages."""
+    listing = verbs.add_parser("list", help="list the packages there are", description="list the packages there are")
+    listing.set_defaults(answer=_list)
+
+    prefix = verbs.add_parser(
+        "prefix", help="print where a package is installed", description="print where a package is installed"
+    )
+    prefix.add_argument("package", metavar="PACKAGE", help="the package")
+    prefix.add_argument("--share", action="store_true", help="print its share folder instead of the prefix")
+    prefix.set_defaults(answer=_prefix)
+
+    executables = verbs.add_parser(
+        "executables", help="list the executables of packages", description="list the executables of packages"
+    )
+    executables.add_argument("package", metavar="PACKAGE", nargs="?", help="the package, default all")
+    executables.add_argument("--full-path", action="store_true", help="print paths instead of names")
+    executables.set_defaults(answer=_executables)
+
+    xml = verbs.add_parser("xml", help="print the package.xml of a package", description="print a package.xml")
+    xml.add_argument("package", metavar="PACKAGE", help="the package")
+    xml.add_argument("-t", "--tag", metavar="TAG", help="only the texts of these elements below <package>")
+    xml.set_defaults(answer=_xml)
+
+
+def _list(_: argparse.Namespace) -> int:
+    from linkwright.launch import builtin_packages
+    from linkwright.packages import PackageFinder
+
+    print("\n".join(sorted({*PackageFinder().packages(), *builtin_packages()})))
+    return 0
+
+
+def _prefix(arguments: argparse.Namespace) -> int:
+    from linkwright.packages import PackageFinder, install_prefix
+
+    share = PackageFinder().share(arguments.package)
+    print(share if arguments.share else install_prefix(share))
+    return 0
+
+
+def _executables(arguments: argparse.Namespace) -> int:
+    from linkwright.launch import builtin_packages, executables_of
+    from linkwright.packages import PackageFinder
+
+    finder = PackageFinder()
+    packages = [arguments.package] if arguments.package else sorted({*finder.packages(), *builtin_packages()})
+    for package in packages:
+        for name, place in sorted(executables_of(finder, package).items()):
+            print(place if arguments.full_path else f"{package} {name}")
+    return 0
+
+
+def _xml(arguments: argparse.Namespace) -> int:
+    from linkwright.packages import MANIFEST, PackageFinder
+    from linkwright.xmltree import parse_file
+
+    path = PackageFinder().share(arguments.package) / MANIFEST
+    document = parse_file(path)
+    if arguments.tag is None:
+        sys.stdout.write(path.read_text(encoding="utf-8"))
+        return 0
+    found = [each for each in document.root.elements() if each.tag == arguments.tag]
+    if not found:
+        names = sorted({each.tag for each in document.root.elements()})
+        raise LinkwrightError(
+            Diagnostic(
+                "CLI108",
+                phrase(
+                    "package.xml of '{package}' has no element <{tag}>", package=arguments.package, tag=arguments.tag
+                ),
+                hint=did_you_mean(arguments.tag, names) or phrase("there are {names}", names=joined(names)),
+            )
+        )
+    for element in found:
+        print(element.text())
+    return 0

@@ -11,8 +11,6 @@ import sys
 from linkwright.cli.launch import add_viewer_options
 from linkwright.diagnostics import foreign, phrase
 
-HELP = "run an executable of a package: ours, a built one, or an entry point of its sources"
-
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""

@@ -5,8 +5,6 @@ from __future__ import annotations
 import argparse
 import sys
 
-HELP = "open a shell in which ros2, xacro, check_urdf, urdf_to_graphviz, rviz2 and colcon exist"
-
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""

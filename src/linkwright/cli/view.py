@@ -7,8 +7,6 @@ import argparse
 from linkwright.assignments import parse_assignments
 from linkwright.cli.launch import add_viewer_options
 
-HELP = "show a URDF or xacro file in the browser, with sliders for its joints"
-
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""

@@ -13,7 +13,6 @@ from linkwright.diagnostics import Diagnostic, Severity, phrase, print_diagnosti
 if TYPE_CHECKING:
     from linkwright.xacro.inputs import Inputs
 
-HELP = "expand a xacro file to URDF, list its arguments, or explain its parts"
 
 _QUIET, _PROPERTIES, _ALL_PROPERTIES = 0, 3, 4
 _USAGE = 2

@@ -1,5 +1,5 @@
 """``linkwright bag``: record topics, play recordings, tell what is in them."""
 
-from linkwright.cli.bag.verb import HELP, VERBS, configure, run
+from linkwright.cli.bag.verb import VERBS, configure, run
 
-__all__ = ["HELP", "VERBS", "configure", "run"]
+__all__ = ["VERBS", "configure", "run"]

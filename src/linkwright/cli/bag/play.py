@@ -7,20 +7,17 @@ import math
 import sys
 from typing import TYPE_CHECKING
 
-from linkwright.cli.bag.overrides import add_overrides_argument, read_overrides
-from linkwright.cli.bag.storage import add_storage_argument
+from linkwright.cli.bag.options import add_overrides_argument, add_storage_argument, read_overrides
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase, print_diagnostics
 
 if TYPE_CHECKING:
     from linkwright.cli.session import Session
 
-HELP = "publish the messages of a recording again"
-
 _STEP = 0.1
 _DEFAULT_CLOCK_HZ = 40.0
 
 
-def configure(parser: argparse.ArgumentParser) -> None:
+def configure_play(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     parser.add_argument("bag", metavar="BAG", help="the folder of a recording, or one .mcap or .db3 file")
     add_storage_argument(parser)
@@ -83,7 +80,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--disable-loan-message", action="store_true", help="accepted for ros2's sake")
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run_play(arguments: argparse.Namespace) -> int:
     """Play until the end, or until the user ends it."""
     from linkwright.bag import BagReader, PlayOptions
     from linkwright.cli.session import run_in_graph

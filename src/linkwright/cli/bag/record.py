@@ -7,18 +7,16 @@ import sys
 from datetime import datetime
 from typing import TYPE_CHECKING
 
-from linkwright.cli.bag.overrides import add_overrides_argument, read_overrides
+from linkwright.cli.bag.options import add_overrides_argument, read_overrides
 
 if TYPE_CHECKING:
     from linkwright.bag import TopicSelection
     from linkwright.cli.session import Session
 
-HELP = "record topics until Ctrl-C"
-
 _USAGE = 2
 
 
-def configure(parser: argparse.ArgumentParser) -> None:
+def configure_record(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     parser.add_argument("names", metavar="TOPIC", nargs="*", help="the topics to record")
     parser.add_argument("--topics", metavar="TOPIC", nargs="+", default=[], help="the same, as newer ROS 2 spells it")
@@ -91,7 +89,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         parser.add_argument(*names, metavar=metavar, help="accepted for ros2's sake; there is nothing to be tuned")
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run_record(arguments: argparse.Namespace) -> int:
     """Record until the user ends it."""
     from linkwright.cli.session import run_in_graph
 

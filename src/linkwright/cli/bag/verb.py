@@ -2,12 +2,39 @@
 
 from __future__ import annotations
 
+import argparse
+import sys
 from functools import partial
 
-from linkwright.cli.nested import configure_nested, run_nested
+from linkwright.cli.bag import play, record
+from linkwright.cli.bag.options import add_storage_argument
+from linkwright.cli.nested import SubVerb, configure_nested, run_nested
+from linkwright.diagnostics import print_diagnostics
 
-HELP = "record topics, play recordings and tell what is in them"
-VERBS = {"info": "info", "play": "play", "record": "record"}
 
-configure = partial(configure_nested, package=__package__, modules=VERBS)
+def configure_info(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    parser.add_argument("bag", metavar="BAG", help="the folder of a recording, or one .mcap or .db3 file")
+    add_storage_argument(parser)
+    parser.add_argument("-t", "--topic-name", action="store_true", help="only the names of the topics")
+
+
+def run_info(arguments: argparse.Namespace) -> int:
+    """Print what a recording holds."""
+    from linkwright.bag import BagReader, summary_text
+
+    with BagReader(arguments.bag) as bag:
+        if bag.finding is not None:
+            print_diagnostics([bag.finding], sys.stderr)
+        sys.stdout.write(summary_text(bag, topic_names_only=arguments.topic_name))
+    return 0
+
+
+VERBS = {
+    "info": SubVerb(configure_info, run_info, help="print files, times and topics of a recording"),
+    "play": SubVerb(play.configure_play, play.run_play, help="publish the messages of a recording again"),
+    "record": SubVerb(record.configure_record, record.run_record, help="record topics until Ctrl-C"),
+}
+
+configure = partial(configure_nested, verbs=VERBS)
 run = run_nested

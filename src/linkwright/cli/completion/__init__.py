@@ -1,5 +1,5 @@
 """``linkwright completion``: what TAB completes in a shell."""
 
-from linkwright.cli.completion.verb import HELP, configure, run
+from linkwright.cli.completion.verb import configure, run
 
-__all__ = ["HELP", "configure", "run"]
+__all__ = ["configure", "run"]

@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     import argparse
 
-HELP = "print what makes TAB complete command lines in bash, zsh or fish"
-
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""

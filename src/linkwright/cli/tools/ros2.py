@@ -5,8 +5,8 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 
+from linkwright.cli.command import VERBS
 from linkwright.cli.command import main as linkwright
-from linkwright.cli.command import verb
 from linkwright.cli.endings import FINE, USAGE
 from linkwright.diagnostics import did_you_mean
 
@@ -68,6 +68,6 @@ def _overview() -> str:
     ]
     for name in COMMANDS:
         ours = _OTHER_NAMES.get(name)
-        lines.append(f"  {name:{width}}  {f'the same as {ours}' if ours else verb(name).HELP}")
+        lines.append(f"  {name:{width}}  {f'the same as {ours}' if ours else VERBS[name]}")
     lines += ["", "`ros2 COMMAND -h` says more."]
     return "\n".join(lines)

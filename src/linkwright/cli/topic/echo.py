@@ -6,23 +6,21 @@ import argparse
 import sys
 from typing import TYPE_CHECKING, Any
 
+from linkwright.cli.echo_format import SEPARATOR, EchoFormat, add_format_arguments, field_path, select
 from linkwright.cli.lookup import absolute, topic_type
 from linkwright.cli.numbers import positive_float
 from linkwright.cli.qos import add_subscription_qos_arguments, fitting_profile
 from linkwright.cli.session import add_session_arguments, run_in_graph
-from linkwright.cli.topic.echo_output import EchoFormat, add_format_arguments, field_path, lost_text, select
 from linkwright.cli.topic.filters import compile_filter
 
 if TYPE_CHECKING:
     from linkwright.cli.session import Session
     from linkwright.graph.endpoints.info import MessageInfo
 
-HELP = "print the messages of a topic"
-
 _CLEAR = "\x1b[H\x1b[2J\x1b[3J"
 
 
-def configure(parser: argparse.ArgumentParser) -> None:
+def configure_echo(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     add_session_arguments(parser)
     parser.add_argument("topic_name", metavar="TOPIC", help="such as /chatter")
@@ -40,7 +38,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add_subscription_qos_arguments(parser)
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run_echo(arguments: argparse.Namespace) -> int:
     """Print messages until the user ends it."""
     name = absolute(arguments.topic_name)
     fits = None if arguments.filter is None else compile_filter(arguments.filter)
@@ -77,3 +75,12 @@ def run(arguments: argparse.Namespace) -> int:
         return await session.finished(arguments.timeout) or 0
 
     return run_in_graph(arguments, job)
+
+
+def lost_text(event: Any) -> str:
+    """What is printed when messages were lost (rclpy ``QoSMessageLostInfo``)."""
+    return (
+        "A message was lost!!!\n"
+        f"\ttotal count change:{event.total_count_change}\n"
+        f"\ttotal count: {event.total_count}{SEPARATOR}"
+    )

@@ -1,21 +1,153 @@
-"""What the verbs share that measure a topic: a window of messages, and a report each second until the user ends it."""
+"""``linkwright topic hz``, ``bw`` and ``delay``: how often messages come, how large and how old they are."""
 
 from __future__ import annotations
 
 import argparse
+import struct
+import sys
+import time
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
+from linkwright.cli.lookup import absolute, topic_type
 from linkwright.cli.numbers import positive_int
-from linkwright.cli.qos import fitting_profile
+from linkwright.cli.qos import add_subscription_qos_arguments, fitting_profile
+from linkwright.cli.session import add_session_arguments, run_in_graph
+from linkwright.cli.topic.filters import compile_filter
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 
 if TYPE_CHECKING:
     from linkwright.cli.session import Session
+    from linkwright.cli.topic.rates import RateWindow
 
+_RATE_WINDOW = 10_000
+_DELAY_WINDOW = 10_000
+_STAMP = {0: struct.Struct(">iI"), 1: struct.Struct("<iI")}
+"""Seconds and nanoseconds, by the second byte of the CDR header, which tells the order of bytes."""
+_CDR_HEADER = 4
+_SECOND = 1_000_000_000
+_SIZE_WINDOW = 100
 _PERIOD = 1.0
 
 
-def add_window_argument(parser: argparse.ArgumentParser, default: int) -> None:
+def configure_hz(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    add_session_arguments(parser)
+    parser.add_argument("topic_name", metavar="TOPIC", nargs="+", help="such as /chatter; several give a table")
+    _add_window_argument(parser, _RATE_WINDOW)
+    parser.add_argument("--filter", metavar="EXPR", help="count only messages 'm' for which this holds: 'm.data > 3'")
+    parser.add_argument("--wall-time", action="store_true", help="go by the computer's clock, not by /clock")
+    add_subscription_qos_arguments(parser)
+
+
+def run_hz(arguments: argparse.Namespace) -> int:
+    """Print the rate each second until the user ends it. Messages are not read, unless for the filter."""
+    names = list(dict.fromkeys(map(absolute, arguments.topic_name)))
+    fits = None if arguments.filter is None else compile_filter(arguments.filter)
+
+    async def job(session: Session) -> int:
+        from linkwright.cli.topic.rates import RateWindow, rate_table, rate_text
+
+        windows = {name: RateWindow(arguments.window) for name in names}
+        # A node's clock is asked only where it may differ from the computer's: asking it costs more than counting.
+        clock = session.node.get_clock()
+        now_ns = clock.now_ns if arguments.use_sim_time and not arguments.wall_time else time.monotonic_ns
+
+        def count(window: RateWindow, message: Any) -> None:
+            if fits is not None and not fits(message):
+                return
+            if window.add(now_ns()):
+                print("time has reset, resetting counters", file=sys.stderr)
+
+        for name, window in windows.items():
+            kind = await topic_type(session, name, wait=True, raw=fits is None)
+            _subscribe(session, arguments, kind, name, partial(count, window), raw=fits is None)
+            if len(names) > 1:
+                print(f"Subscribed to [{name}]")
+
+        def text() -> str | None:
+            spreads = {name: window.spread() for name, window in windows.items()}
+            known = {name: spread for name, spread in spreads.items() if spread is not None}
+            if len(names) > 1:
+                return rate_table(known) if known else "no new messages"
+            return rate_text(known[names[0]]) if known else None
+
+        return await _report_until_finished(session, text)
+
+    return run_in_graph(arguments, job)
+
+
+def configure_delay(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    add_session_arguments(parser)
+    parser.add_argument("topic_name", metavar="TOPIC", help="a topic whose messages have a header")
+    _add_window_argument(parser, _DELAY_WINDOW)
+    add_subscription_qos_arguments(parser)
+
+
+def run_delay(arguments: argparse.Namespace) -> int:
+    """Print the delay each second until the user ends it."""
+    name = absolute(arguments.topic_name)
+
+    async def job(session: Session) -> int:
+        from linkwright.cli.topic.rates import DelayWindow
+
+        kind = await topic_type(session, name, wait=True)
+        fields = kind.get_fields_and_field_types()
+        if fields.get("header") != "std_msgs/Header":
+            message = phrase(
+                "msg does not have header: topic '{name}' carries {type_name}", name=name, type_name=kind.TYPE_NAME
+            )
+            hint = phrase("only messages with a std_msgs/Header say when they were made")
+            raise LinkwrightError(Diagnostic("CLI413", message, hint=hint))
+        # Where the header comes first its stamp is read from the bytes, and the rest is left alone.
+        raw = next(iter(fields)) == "header"
+        window = DelayWindow(arguments.window)
+        clock = session.node.get_clock()
+
+        def count(message: Any) -> None:
+            if raw:
+                seconds, nanoseconds = _STAMP[message[1] & 1].unpack_from(message, _CDR_HEADER)
+            else:
+                seconds, nanoseconds = message.header.stamp.sec, message.header.stamp.nanosec
+            window.add(clock.now_ns(), seconds * _SECOND + nanoseconds)
+
+        _subscribe(session, arguments, kind, name, count, raw=raw)
+        return await _report_until_finished(session, window.text)
+
+    return run_in_graph(arguments, job)
+
+
+def configure_bw(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    add_session_arguments(parser)
+    parser.add_argument("topic_name", metavar="TOPIC", help="such as /camera/image_raw")
+    _add_window_argument(parser, _SIZE_WINDOW)
+    add_subscription_qos_arguments(parser)
+
+
+def run_bw(arguments: argparse.Namespace) -> int:
+    """Print the bandwidth each second until the user ends it. Messages are not read."""
+    name = absolute(arguments.topic_name)
+
+    async def job(session: Session) -> int:
+        from linkwright.cli.topic.rates import BandwidthWindow
+
+        kind = await topic_type(session, name, wait=True, raw=True)
+        window = BandwidthWindow(arguments.window)
+
+        def count(data: bytes) -> None:
+            window.add(time.monotonic_ns(), len(data))
+
+        _subscribe(session, arguments, kind, name, count, raw=True)
+        print(f"Subscribed to [{name}]")
+        return await _report_until_finished(session, lambda: window.text(time.monotonic_ns()))
+
+    return run_in_graph(arguments, job)
+
+
+def _add_window_argument(parser: argparse.ArgumentParser, default: int) -> None:
     """Declare over how many messages it is measured."""
     parser.add_argument(
         "-w",
@@ -27,7 +159,7 @@ def add_window_argument(parser: argparse.ArgumentParser, default: int) -> None:
     )
 
 
-def subscribe(
+def _subscribe(
     session: Session,
     arguments: argparse.Namespace,
     message_type: Any,
@@ -50,7 +182,7 @@ def subscribe(
     session.node.create_subscription(message_type, name, session.receiver(callback), profile, raw=raw)
 
 
-async def report_until_finished(session: Session, text: Callable[[], str | None]) -> int:
+async def _report_until_finished(session: Session, text: Callable[[], str | None]) -> int:
     """Print a text each second, when there is one, until the verb is done; the exit status."""
 
     def report() -> None:

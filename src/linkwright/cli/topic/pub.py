@@ -19,17 +19,14 @@ if TYPE_CHECKING:
     from linkwright.cli.session import Session
     from linkwright.graph import Publisher
 
-HELP = "publish messages to a topic"
-
 _KEEP_ALIVE = 0.1
 _TELL_WAITING = 1.0
 _MATCHED_BOTH_WAYS = 0.15
 """Seconds after which the subscription that is known here knows the publisher too: what is sent before may be lost."""
-
 _Filled = tuple[Any, list[Callable[[Any], None]]]
 
 
-def configure(parser: argparse.ArgumentParser) -> None:
+def configure_pub(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     add_session_arguments(parser)
     parser.add_argument("topic_name", metavar="TOPIC", help="such as /chatter")
@@ -68,7 +65,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add_publisher_qos_arguments(parser)
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run_pub(arguments: argparse.Namespace) -> int:
     """Publish until the user ends it, or as often as was asked for."""
     from linkwright.messages import get_message
 

@@ -4,19 +4,27 @@ from __future__ import annotations
 
 import argparse
 
-from linkwright.cli.nested import configure_nested, run_nested
+from linkwright.cli.nested import SubVerb, configure_nested, run_nested
+from linkwright.cli.topic import echo, measuring, names, pub
 
-HELP = "list, print, publish and measure topics"
 VERBS = {
-    "bw": "bw",
-    "delay": "delay",
-    "echo": "echo",
-    "find": "find",
-    "hz": "hz",
-    "info": "info",
-    "list": "listing",
-    "pub": "pub",
-    "type": "type_of",
+    "bw": SubVerb(measuring.configure_bw, measuring.run_bw, help="measure how many bytes a topic carries"),
+    "delay": SubVerb(
+        measuring.configure_delay,
+        measuring.run_delay,
+        help="measure how old messages are when they come, by the stamp in their header",
+    ),
+    "echo": SubVerb(echo.configure_echo, echo.run_echo, help="print the messages of a topic"),
+    "find": SubVerb(names.configure_find, names.run_find, help="list the topics of a type"),
+    "hz": SubVerb(measuring.configure_hz, measuring.run_hz, help="measure how often messages are received"),
+    "info": SubVerb(
+        names.configure_info,
+        names.run_info,
+        help="say what type a topic has and how many publish and subscribe to it",
+    ),
+    "list": SubVerb(names.configure_list, names.run_list, help="list the topics"),
+    "pub": SubVerb(pub.configure_pub, pub.run_pub, help="publish messages to a topic"),
+    "type": SubVerb(names.configure_type, names.run_type, help="print the type of a topic"),
 }
 run = run_nested
 
@@ -24,4 +32,4 @@ run = run_nested
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     parser.add_argument("--include-hidden-topics", action="store_true", help="consider hidden topics as well")
-    configure_nested(parser, __package__, VERBS)
+    configure_nested(parser, VERBS)

@@ -1,4 +1,4 @@
-"""The option ``--qos-profile-overrides-path`` of recording and playing."""
+"""Options that the verbs for recordings share: ``--storage`` and ``--qos-profile-overrides-path``."""
 
 from __future__ import annotations
 
@@ -10,6 +10,13 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 
 if TYPE_CHECKING:
     from linkwright.graph import QoSProfile
+
+
+def add_storage_argument(parser: argparse.ArgumentParser) -> None:
+    """Declare the option."""
+    parser.add_argument(
+        "-s", "--storage", choices=("mcap", "sqlite3"), help="accepted for ros2's sake; the files tell their format"
+    )
 
 
 def add_overrides_argument(parser: argparse.ArgumentParser) -> None:

@@ -1,4 +1,4 @@
-"""What ``topic echo`` prints of each message, as text."""
+"""Messages as ``topic echo`` and ``service echo`` print them: the options for that, and the text."""
 
 from __future__ import annotations
 
@@ -13,7 +13,8 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, ph
 if TYPE_CHECKING:
     from linkwright.graph.endpoints.info import MessageInfo
 
-_SEPARATOR = "---\n"
+SEPARATOR = "---\n"
+"""What is printed after each message."""
 _TRUNCATE = 128
 
 
@@ -79,7 +80,7 @@ class EchoFormat:
         """
         part = select(message, self.field)
         if not hasattr(part, "get_fields_and_field_types"):
-            return f"{self._info(info)}{part}\n{_SEPARATOR}"
+            return f"{self._info(info)}{part}\n{SEPARATOR}"
         from linkwright.messages import to_csv, to_yaml
 
         if self.csv:
@@ -93,12 +94,12 @@ class EchoFormat:
             no_str=self.no_str,
             flow_style=self.flow_style,
         )
-        return f"{self._info(info)}{shown}{_SEPARATOR}"
+        return f"{self._info(info)}{shown}{SEPARATOR}"
 
     def _info(self, info: MessageInfo | None) -> str:
         if not self.message_info or info is None:
             return ""
-        return f"received_timestamp: {info.received_timestamp}\nsource_timestamp: {info.source_timestamp}\n{_SEPARATOR}"
+        return f"received_timestamp: {info.received_timestamp}\nsource_timestamp: {info.source_timestamp}\n{SEPARATOR}"
 
 
 def field_path(text: str | None) -> tuple[str, ...]:
@@ -143,12 +144,3 @@ def select(message: Any, path: Sequence[str]) -> Any:
             )
         part = getattr(part, name)
     return part
-
-
-def lost_text(event: Any) -> str:
-    """What is printed when messages were lost (rclpy ``QoSMessageLostInfo``)."""
-    return (
-        "A message was lost!!!\n"
-        f"\ttotal count change:{event.total_count_change}\n"
-        f"\ttotal count: {event.total_count}{_SEPARATOR}"
-    )

@@ -1,33 +1,59 @@
-"""``linkwright node info``."""
+"""``linkwright node``: the nodes of the running graph."""
 
 from __future__ import annotations
 
 import argparse
 import sys
+from functools import partial
 from typing import TYPE_CHECKING
 
 from linkwright.cli.calls import node_names
 from linkwright.cli.lookup import NamesAndTypes, absolute_or_given, unknown, visible
+from linkwright.cli.names_listing import add_count_argument, print_names
+from linkwright.cli.nested import SubVerb, configure_nested, run_nested
 from linkwright.cli.session import add_session_arguments, run_in_graph
 from linkwright.diagnostics import phrase
 
 if TYPE_CHECKING:
     from linkwright.cli.session import Session
 
-HELP = "say what a node publishes, subscribes to, serves and calls"
 
 _APPEARS_WITHIN = 1.0
 """Seconds for which to wait for a node that is not known yet."""
 
 
-def configure(parser: argparse.ArgumentParser) -> None:
+def configure_list(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    add_session_arguments(parser)
+    parser.add_argument("-a", "--all", action="store_true", help="list hidden nodes as well")
+    add_count_argument(parser, "node")
+
+
+def run_list(arguments: argparse.Namespace) -> int:
+    """Print the full names of the nodes."""
+
+    async def job(session: Session) -> int:
+        names = node_names(session, hidden=arguments.all)
+        if len(set(names)) < len(names) and not arguments.count:
+            print(
+                "WARNING: Be aware that there are nodes in the graph that share an exact name, which can have"
+                " unintended side effects.",
+                file=sys.stderr,
+            )
+        print_names(names, arguments)
+        return 0
+
+    return run_in_graph(arguments, job)
+
+
+def configure_info(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     add_session_arguments(parser)
     parser.add_argument("node_name", metavar="NODE", help="such as /robot_state_publisher")
     parser.add_argument("--include-hidden", action="store_true", help="show hidden topics, services and actions too")
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run_info(arguments: argparse.Namespace) -> int:
     """Print what the node has, as ros2 does."""
     full = absolute_or_given(arguments.node_name)
     hidden = arguments.include_hidden
@@ -64,3 +90,12 @@ def _section(title: str, found: NamesAndTypes, hidden: bool) -> None:
     print(f"  {title}:")
     lines = [f"    {name}: {', '.join(types)}" for name, types in visible(found, hidden=hidden)]
     print("\n".join(lines))
+
+
+VERBS = {
+    "info": SubVerb(configure_info, run_info, help="say what a node publishes, subscribes to, serves and calls"),
+    "list": SubVerb(configure_list, run_list, help="list the nodes"),
+}
+
+configure = partial(configure_nested, verbs=VERBS)
+run = run_nested

@@ -1,0 +1,187 @@
+"""``linkwright action``: the actions of the running graph, and goals for them."""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+from collections.abc import Sequence
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from linkwright.cli.calls import is_ready, node_names
+from linkwright.cli.lookup import absolute, unknown
+from linkwright.cli.names_listing import add_count_argument, add_types_argument, print_names_and_types
+from linkwright.cli.nested import SubVerb, configure_nested, run_nested
+from linkwright.cli.numbers import positive_float
+from linkwright.cli.session import add_session_arguments, run_in_graph
+from linkwright.cli.values import add_values_arguments, fill, parse_values, read_values
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+
+if TYPE_CHECKING:
+    from linkwright.cli.session import Session
+
+
+_STATUS = {1: "ACCEPTED", 2: "EXECUTING", 3: "CANCELING", 4: "SUCCEEDED", 5: "CANCELED", 6: "ABORTED"}
+_LONGEST_CANCEL = 3.0
+"""Seconds to wait for the server's word on a goal that is called off with Ctrl-C."""
+
+
+def configure_list(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    add_session_arguments(parser)
+    add_types_argument(parser, "action")
+    add_count_argument(parser, "action")
+
+
+def run_list(arguments: argparse.Namespace) -> int:
+    """Print the actions' names, as ros2 does."""
+
+    async def job(session: Session) -> int:
+        print_names_and_types(session.node.get_action_names_and_types(), arguments)
+        return 0
+
+    return run_in_graph(arguments, job)
+
+
+def configure_info(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    add_session_arguments(parser)
+    parser.add_argument("action_name", metavar="ACTION", help="such as /fibonacci")
+    parser.add_argument("-t", "--show-types", action="store_true", help="show the action's type beside each node")
+    parser.add_argument("-c", "--count", action="store_true", help="print only how many there are")
+
+
+def run_info(arguments: argparse.Namespace) -> int:
+    """Print the nodes, as ros2 does."""
+    name = absolute(arguments.action_name)
+
+    async def job(session: Session) -> int:
+        clients: list[tuple[str, Sequence[str]]] = []
+        servers: list[tuple[str, Sequence[str]]] = []
+        graph = session.graph
+        for full in dict.fromkeys(node_names(session, hidden=True)):
+            namespace, _, bare = full.rpartition("/")
+            who = (bare, namespace or "/")
+            for found, of_node in (
+                (clients, graph.get_action_client_names_and_types_by_node(*who)),
+                (servers, graph.get_action_server_names_and_types_by_node(*who)),
+            ):
+                found += [(full, types) for action, types in of_node if action == name]
+        print(f"Action: {arguments.action_name}")
+        for title, nodes in (("clients", clients), ("servers", servers)):
+            print(f"Action {title}: {len(nodes)}")
+            for full, types in [] if arguments.count else nodes:
+                print(f"    {full} [{', '.join(types)}]" if arguments.show_types else f"    {full}")
+        return 0
+
+    return run_in_graph(arguments, job)
+
+
+def configure_type(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    add_session_arguments(parser)
+    parser.add_argument("action_name", metavar="ACTION", help="such as /fibonacci")
+
+
+def run_type(arguments: argparse.Namespace) -> int:
+    """Print the types of the action, a line each."""
+    name = absolute(arguments.action_name)
+
+    async def job(session: Session) -> int:
+        found = dict(session.node.get_action_names_and_types())
+        if name not in found:
+            nothing = phrase("`linkwright action list` lists them")
+            raise unknown(
+                "CLI429",
+                phrase("Unknown action '{action_name}'", action_name=arguments.action_name),
+                name,
+                found,
+                nothing,
+            )
+        for each in found[name]:
+            print(each)
+        return 0
+
+    return run_in_graph(arguments, job)
+
+
+def configure_send_goal(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    add_session_arguments(parser)
+    parser.add_argument("action_name", metavar="ACTION", help="such as /fibonacci")
+    parser.add_argument("action_type", metavar="TYPE", help="such as example_interfaces/action/Fibonacci")
+    goal_help = "the goal in YAML, such as '{order: 10}'; fields left out have their defaults"
+    add_values_arguments(parser, goal_help, "GOAL")
+    parser.add_argument("-f", "--feedback", action="store_true", help="print the feedback")
+    parser.add_argument("--timeout", metavar="SECONDS", type=positive_float, help="give up waiting for a server then")
+
+
+def run_send_goal(arguments: argparse.Namespace) -> int:
+    """Print what becomes of the goal, as ros2 does. Interrupted, the goal is called off."""
+    from linkwright.messages import get_action, to_yaml
+
+    name = absolute(arguments.action_name)
+    kind = get_action(arguments.action_type)
+    text = read_values(arguments)
+    goal = kind.Goal()
+    fill(goal, parse_values(text)[0], text)
+
+    async def job(session: Session) -> int:
+        from linkwright.graph import ActionClient
+
+        client = ActionClient(session.node, kind, name)
+        print("Waiting for an action server to become available...")
+        if not await is_ready(session, name, client, client.server_is_ready, arguments.timeout):
+            raise LinkwrightError(
+                Diagnostic(
+                    "CLI430",
+                    phrase("no server of action '{name}' in {timeout} s", name=name, timeout=arguments.timeout),
+                )
+            )
+        print(f"Sending goal:\n     {to_yaml(goal)}")
+
+        def feedback(message: Any) -> None:
+            print(f"Feedback:\n    {to_yaml(message.feedback)}")
+
+        sent = client.send_goal_async(goal, session.guarded(feedback) if arguments.feedback else None)
+        handle = await session.answer(sent)
+        if handle is None or not handle.accepted:
+            print("Goal was rejected.")
+            return 1
+        print(f"Goal accepted with ID: {bytes(handle.goal_id.uuid).hex()}\n")
+        try:
+            result = await session.answer(handle.get_result_async())
+        except asyncio.CancelledError:
+            await _call_off(session, handle)
+            raise
+        if result is None:
+            return await session.finished() or 0
+        print(f"Result:\n    {to_yaml(result.result)}")
+        print(f"Goal finished with status: {_STATUS.get(result.status, 'UNKNOWN')}")
+        return 0
+
+    return run_in_graph(arguments, job)
+
+
+async def _call_off(session: Session, handle: Any) -> None:
+    print("Canceling goal...")
+    response = await session.answer(handle.cancel_goal_async(), _LONGEST_CANCEL)
+    if response is None:
+        print("The server does not answer; the goal may go on")
+    elif not response.goals_canceling:
+        print("Failed to cancel goal")
+    else:
+        print("Goal canceled.")
+
+
+VERBS = {
+    "info": SubVerb(configure_info, run_info, help="say which nodes serve and call an action"),
+    "list": SubVerb(configure_list, run_list, help="list the actions"),
+    "send_goal": SubVerb(
+        configure_send_goal, run_send_goal, help="send a goal to an action server and wait for the result"
+    ),
+    "type": SubVerb(configure_type, run_type, help="print the type of an action"),
+}
+
+configure = partial(configure_nested, verbs=VERBS)
+run = run_nested

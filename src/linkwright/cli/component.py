@@ -1,0 +1,324 @@
+"""``linkwright component``: component containers of the running graph, and the nodes in them."""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import os
+import signal
+import sys
+from collections.abc import AsyncIterator, Sequence
+from contextlib import asynccontextmanager
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from linkwright.cli.calls import call, node_names
+from linkwright.cli.lookup import absolute_or_given, unknown
+from linkwright.cli.nested import SubVerb, configure_nested, run_nested
+from linkwright.cli.remote_parameters import parameter_of
+from linkwright.cli.session import add_session_arguments, run_in_graph
+from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, foreign, joined, phrase
+
+if TYPE_CHECKING:
+    from asyncio.subprocess import Process
+
+    from linkwright.cli.session import Session
+
+
+_STARTS_WITHIN = 10.0
+_ENDS_WITHIN = 5.0
+_SERVICES = {"load_node": "LoadNode", "unload_node": "UnloadNode", "list_nodes": "ListNodes"}
+_APPEARS_WITHIN = 1.0
+
+
+def configure_list(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    add_session_arguments(parser)
+    parser.add_argument("container_node_name", metavar="CONTAINER", nargs="?", help="only this one's nodes")
+    parser.add_argument("--containers-only", action="store_true", help="list only the containers")
+
+
+def run_list(arguments: argparse.Namespace) -> int:
+    """Print them, as ros2 does."""
+
+    async def job(session: Session) -> int:
+        if arguments.container_node_name is not None:
+            container = await find_container(session, arguments.container_node_name)
+            for uid, name in [] if arguments.containers_only else await held_nodes(session, container):
+                print(f"{uid}  {name}")
+            return 0
+        for container in containers(session):
+            print(container)
+            for uid, name in [] if arguments.containers_only else await held_nodes(session, container):
+                print(f"  {uid}  {name}")
+        return 0
+
+    return run_in_graph(arguments, job)
+
+
+def configure_types(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    parser.add_argument("package_name", metavar="PACKAGE", nargs="?", help="only those of this package")
+
+
+def run_types(arguments: argparse.Namespace) -> int:
+    """Print their names below their packages, as ros2 does."""
+    from linkwright.nodes.registry import COMPONENTS
+
+    by_package: dict[str, list[str]] = {}
+    for package, plugin in sorted(COMPONENTS):
+        by_package.setdefault(package, []).append(plugin)
+    wanted = arguments.package_name
+    if wanted is None:
+        for package, plugins in by_package.items():
+            print("\n  ".join([package, *plugins]))
+        return 0
+    if wanted not in by_package:
+        hint = did_you_mean(wanted, by_package) or phrase("there are: {by_package}", by_package=joined(by_package))
+        raise LinkwrightError(
+            Diagnostic("CLI436", phrase("No component types found in package '{wanted}'", wanted=wanted), hint=hint)
+        )
+    print("\n".join(by_package[wanted]))
+    return 0
+
+
+def configure_load(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    add_session_arguments(parser)
+    parser.add_argument("container_node_name", metavar="CONTAINER", help="such as /ComponentManager")
+    add_component_arguments(parser)
+    parser.add_argument("-q", "--quiet", action="store_true", help="print only the number and name of the node")
+
+
+def run_load(arguments: argparse.Namespace) -> int:
+    """Load it, and print the node's number and name."""
+
+    async def job(session: Session) -> int:
+        container = await find_container(session, arguments.container_node_name)
+        uid, name = await _load_component(session, container, arguments)
+        if arguments.quiet:
+            print(f"{uid}  {name}")
+        else:
+            print(f"Loaded component {uid} into '{container}' container node as '{name}'")
+        return 0
+
+    return run_in_graph(arguments, job)
+
+
+def configure_unload(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    add_session_arguments(parser)
+    parser.add_argument("container_node_name", metavar="CONTAINER", help="such as /ComponentManager")
+    parser.add_argument(
+        "component_uid", metavar="NUMBER", type=int, nargs="+", help="the node's number, as `component list` tells"
+    )
+    parser.add_argument("-q", "--quiet", action="store_true", help="print only the numbers")
+
+
+def run_unload(arguments: argparse.Namespace) -> int:
+    """Unload them."""
+
+    async def job(session: Session) -> int:
+        container = await find_container(session, arguments.container_node_name)
+        for uid in arguments.component_uid:
+            await _unload_component(session, container, uid)
+            print(uid if arguments.quiet else f"Unloaded component {uid} from '{container}' container node")
+        return 0
+
+    return run_in_graph(arguments, job)
+
+
+def configure_standalone(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    add_session_arguments(parser)
+    add_component_arguments(parser)
+    parser.add_argument(
+        "-c", "--container-node-name", metavar="NAME", help="the container's name (default: one of its own)"
+    )
+
+
+def run_standalone(arguments: argparse.Namespace) -> int:
+    """Run it until the user ends it; the container's exit status."""
+    name = arguments.container_node_name or f"standalone_container_{os.urandom(6).hex()}"
+
+    async def job(session: Session) -> int:
+        async with _container_process(name) as process:
+            container = await find_container(session, name, _STARTS_WITHIN)
+            await _load_component(session, container, arguments)
+            return await process.wait()
+
+    return run_in_graph(arguments, job)
+
+
+@asynccontextmanager
+async def _container_process(name: str) -> AsyncIterator[Process]:
+    """A process with an empty container, which ends with the block."""
+    words = ("-m", "linkwright.node_program", "rclcpp_components", "component_container")
+    process = await asyncio.create_subprocess_exec(sys.executable, *words, "--ros-args", "-r", f"__node:={name}")
+    try:
+        yield process
+    finally:
+        for number in (signal.SIGINT, signal.SIGTERM):
+            if process.returncode is None:
+                process.send_signal(number)
+                try:
+                    await asyncio.wait_for(process.wait(), _ENDS_WITHIN)
+                except asyncio.TimeoutError:
+                    continue
+        if process.returncode is None:
+            process.kill()
+            await process.wait()
+
+
+def containers(session: Session) -> list[str]:
+    """Full names of the containers, sorted: the nodes with all three services of containers."""
+    services = dict(session.node.get_service_names_and_types())
+    return [
+        name
+        for name in dict.fromkeys(node_names(session))
+        if all(
+            f"composition_interfaces/srv/{kind}" in services.get(f"{name}/_container/{service}", ())
+            for service, kind in _SERVICES.items()
+        )
+    ]
+
+
+async def find_container(session: Session, name: str, timeout: float = _APPEARS_WITHIN) -> str:
+    """The full name of a running container.
+
+    Raises:
+        LinkwrightError: CLI432, there is none of that name.
+    """
+    full = absolute_or_given(name)
+    if not await session.until(lambda: full in containers(session), timeout):
+        known = containers(session)
+        nothing = phrase("there are: {known}", known=joined(known)) if known else phrase("no container is running")
+        raise unknown("CLI432", phrase("Unable to find container node '{name}'", name=name), full, known, nothing)
+    return full
+
+
+async def held_nodes(session: Session, container: str) -> list[tuple[int, str]]:
+    """The numbers and full names of the nodes in a container."""
+    response = await _call(session, container, "list_nodes")
+    return [(int(uid), str(name)) for uid, name in zip(response.unique_ids, response.full_node_names, strict=True)]
+
+
+async def _load_component(session: Session, container: str, arguments: argparse.Namespace) -> tuple[int, str]:
+    """Have a container load a component as the command line says; the node's number and full name.
+
+    Raises:
+        LinkwrightError: CLI433, the container could not.
+    """
+    response = await _call(
+        session,
+        container,
+        "load_node",
+        package_name=arguments.package_name,
+        plugin_name=arguments.plugin_name,
+        node_name=arguments.node_name or "",
+        node_namespace=arguments.node_namespace or "",
+        log_level=_log_level(arguments.log_level),
+        remap_rules=arguments.remap_rules or [],
+        parameters=_assigned(arguments.parameters or []),
+        extra_arguments=_assigned(arguments.extra_arguments or []),
+    )
+    if not response.success:
+        said = response.error_message
+        reason = foreign(said) if said else phrase("the container gives no reason")
+        hint = phrase("`linkwright component types` lists what comes with Linkwright")
+        raise LinkwrightError(
+            Diagnostic("CLI433", phrase("Failed to load component: {reason}", reason=reason), hint=hint)
+        )
+    return int(response.unique_id), str(response.full_node_name)
+
+
+async def _unload_component(session: Session, container: str, uid: int) -> None:
+    """Have a container unload a node.
+
+    Raises:
+        LinkwrightError: CLI434, the container could not.
+    """
+    response = await _call(session, container, "unload_node", unique_id=uid)
+    if not response.success:
+        message = phrase(
+            "Failed to unload component {uid} from '{container}' container node: {error_message}",
+            uid=uid,
+            container=container,
+            error_message=foreign(response.error_message),
+        )
+        there = ", ".join(f"{number} {name}" for number, name in await held_nodes(session, container))
+        raise LinkwrightError(
+            Diagnostic(
+                "CLI434",
+                message,
+                hint=phrase("it holds: {there}", there=there) if there else phrase("the container is empty"),
+            )
+        )
+
+
+def add_component_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the component and how its node is made."""
+    parser.add_argument("package_name", metavar="PACKAGE", help="the package the component is in")
+    parser.add_argument("plugin_name", metavar="COMPONENT", help="such as composition::Talker")
+    parser.add_argument("-n", "--node-name", metavar="NAME", help="the node's name")
+    parser.add_argument("--node-namespace", metavar="NAMESPACE", help="the node's namespace")
+    parser.add_argument("--log-level", metavar="LEVEL", help="the node's log level, such as debug")
+    parser.add_argument(
+        "-r", "--remap-rule", metavar="FROM:=TO", action="append", dest="remap_rules", help="remap a name of the node"
+    )
+    parser.add_argument(
+        "-p", "--parameter", metavar="NAME:=VALUE", action="append", dest="parameters", help="set a parameter"
+    )
+    parser.add_argument(
+        "-e",
+        "--extra-argument",
+        metavar="NAME:=VALUE",
+        action="append",
+        dest="extra_arguments",
+        help="say more to the container, such as use_intra_process_comms:=true",
+    )
+
+
+def _assigned(words: Sequence[str]) -> list[Any]:
+    from linkwright.assignments import parse_assignments
+
+    return [parameter_of(name, value) for name, value in parse_assignments(words).items()]
+
+
+def _log_level(text: str | None) -> int:
+    if text is None:
+        return 0
+    from linkwright.graph import LogLevel
+
+    if text.isdigit():
+        return int(text)
+    try:
+        return int(LogLevel[text.upper()])
+    except KeyError:
+        levels = ", ".join(level.name.lower() for level in LogLevel)
+        raise LinkwrightError(
+            Diagnostic(
+                "CLI435",
+                phrase("there is no log level '{text}'", text=text),
+                hint=phrase("levels are {levels}", levels=levels),
+            )
+        ) from None
+
+
+async def _call(session: Session, container: str, service: str, **fields: Any) -> Any:
+    from linkwright.messages import get_service
+
+    kind = f"composition_interfaces/srv/{_SERVICES[service]}"
+    return await call(session, kind, f"{container}/_container/{service}", get_service(kind).Request(**fields))
+
+
+VERBS = {
+    "list": SubVerb(configure_list, run_list, help="list the containers and the nodes in them"),
+    "load": SubVerb(configure_load, run_load, help="load a component into a running container"),
+    "standalone": SubVerb(configure_standalone, run_standalone, help="run a component in a container of its own"),
+    "types": SubVerb(configure_types, run_types, help="list the components that come with Linkwright"),
+    "unload": SubVerb(configure_unload, run_unload, help="take nodes out of a running container"),
+}
+
+configure = partial(configure_nested, verbs=VERBS)
+run = run_nested

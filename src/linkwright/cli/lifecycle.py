@@ -1,0 +1,199 @@
+"""``linkwright lifecycle``: the managed nodes of the running graph, their states and transitions."""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import sys
+from collections.abc import Sequence
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from linkwright.cli.calls import NoAnswerError, call, find_node, node_names
+from linkwright.cli.names_listing import add_count_argument, print_names
+from linkwright.cli.nested import SubVerb, configure_nested, run_nested
+from linkwright.cli.numbers import positive_float
+from linkwright.cli.session import add_session_arguments, run_in_graph
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, did_you_mean, phrase
+
+if TYPE_CHECKING:
+    from linkwright.cli.session import Session
+
+
+_LONGEST_ANSWER = 5.0
+_GET_STATE = "lifecycle_msgs/srv/GetState"
+
+
+def _add_node_arguments(parser: argparse.ArgumentParser, *, optional: bool = False) -> None:
+    """Declare the node."""
+    add_session_arguments(parser)
+    parser.add_argument(
+        "node_name",
+        metavar="NODE",
+        nargs="?" if optional else None,
+        help="such as /lc_talker" + ("; all managed nodes when left out" if optional else ""),
+    )
+    parser.add_argument("--include-hidden-nodes", action="store_true", help="consider hidden nodes as well")
+
+
+def configure_nodes(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    add_session_arguments(parser)
+    parser.add_argument("-a", "--all", action="store_true", help="list hidden nodes as well")
+    add_count_argument(parser, "node")
+
+
+def run_nodes(arguments: argparse.Namespace) -> int:
+    """Print the full names of the nodes."""
+
+    async def job(session: Session) -> int:
+        print_names(managed_nodes(session, hidden=arguments.all), arguments)
+        return 0
+
+    return run_in_graph(arguments, job)
+
+
+def configure_get(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    _add_node_arguments(parser, optional=True)
+    parser.add_argument("--timeout", metavar="SECONDS", type=positive_float, help="wait so long for each answer")
+
+
+def run_get(arguments: argparse.Namespace) -> int:
+    """Print the states, as ros2 does."""
+
+    async def job(session: Session) -> int:
+        hidden = arguments.include_hidden_nodes
+        if arguments.node_name is not None:
+            node = await find_node(session, arguments.node_name, hidden=hidden)
+            found = await state(session, node, arguments.timeout)
+            print(f"{found.label} [{found.id}]")
+            return 0
+        nodes = managed_nodes(session, hidden=hidden)
+        asked = [state(session, node, arguments.timeout or _LONGEST_ANSWER) for node in nodes]
+        status = 0
+        for node, found in zip(nodes, await asyncio.gather(*asked, return_exceptions=True), strict=True):
+            if isinstance(found, NoAnswerError):
+                print(f"Exception while calling service of node '{node}': {found}", file=sys.stderr)
+                status = 1
+            elif isinstance(found, BaseException):
+                raise found
+            else:
+                print(f"{node}: {found.label} [{found.id}]")
+        return status
+
+    return run_in_graph(arguments, job)
+
+
+def configure_list(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    _add_node_arguments(parser)
+    parser.add_argument("-a", "--all", action="store_true", help="list those of all its states, not of this one")
+
+
+def run_list(arguments: argparse.Namespace) -> int:
+    """Print the transitions, as ros2 does."""
+
+    async def job(session: Session) -> int:
+        node = await find_node(session, arguments.node_name, hidden=arguments.include_hidden_nodes)
+        for line in transition_lines(await transitions(session, node, every=arguments.all)):
+            print(line)
+        return 0
+
+    return run_in_graph(arguments, job)
+
+
+def configure_set(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    _add_node_arguments(parser)
+    parser.add_argument("transition", metavar="TRANSITION", help="its name, such as configure, or its number")
+
+
+def run_set(arguments: argparse.Namespace) -> int:
+    """Make it, and say whether it came about."""
+
+    async def job(session: Session) -> int:
+        node = await find_node(session, arguments.node_name, hidden=arguments.include_hidden_nodes)
+        available = [each.transition for each in await transitions(session, node)]
+        wanted = next((each for each in available if arguments.transition in (each.label, str(each.id))), None)
+        if wanted is None:
+            listed = "\n".join(f"- {each.label} [{each.id}]" for each in available)
+            raise LinkwrightError(
+                Diagnostic(
+                    "CLI431",
+                    phrase(
+                        "Unknown transition requested: node '{node}' cannot make '{transition}' now",
+                        node=node,
+                        transition=arguments.transition,
+                    ),
+                    notes=(Note(phrase("available ones are:\n{listed}", listed=listed)),),
+                    hint=did_you_mean(arguments.transition, [each.label for each in available]),
+                )
+            )
+        if await change(session, node, wanted):
+            print("Transitioning successful")
+            return 0
+        print("Transitioning failed", file=sys.stderr)
+        return 1
+
+    return run_in_graph(arguments, job)
+
+
+def managed_nodes(session: Session, *, hidden: bool = False) -> list[str]:
+    """Full names of the managed nodes, sorted: those that tell their state."""
+    services = dict(session.node.get_service_names_and_types())
+    names = dict.fromkeys(node_names(session, hidden=hidden))
+    return [name for name in names if _GET_STATE in services.get(f"{name}/get_state", ())]
+
+
+async def state(session: Session, node: str, timeout: float | None = None) -> Any:
+    """The state (lifecycle_msgs/msg/State) of a node."""
+    from linkwright.messages import get_service
+
+    request = get_service(_GET_STATE).Request()
+    return (await call(session, _GET_STATE, f"{node}/get_state", request, timeout=timeout)).current_state
+
+
+async def transitions(session: Session, node: str, *, every: bool = False) -> Sequence[Any]:
+    """Transitions of a node (lifecycle_msgs/msg/TransitionDescription): those of its state, or all of its graph."""
+    from linkwright.messages import get_service
+
+    kind = "lifecycle_msgs/srv/GetAvailableTransitions"
+    service = "get_transition_graph" if every else "get_available_transitions"
+    response = await call(session, kind, f"{node}/{service}", get_service(kind).Request())
+    found: Sequence[Any] = response.available_transitions
+    return found
+
+
+async def change(session: Session, node: str, transition: Any) -> bool:
+    """Have a node make a transition (lifecycle_msgs/msg/Transition); whether it came about."""
+    from linkwright.messages import get_service
+
+    kind = "lifecycle_msgs/srv/ChangeState"
+    request = get_service(kind).Request()
+    request.transition.id = transition.id
+    request.transition.label = transition.label
+    return bool((await call(session, kind, f"{node}/change_state", request)).success)
+
+
+def transition_lines(descriptions: Sequence[Any]) -> list[str]:
+    """What ``lifecycle list`` prints."""
+    lines = []
+    for each in descriptions:
+        lines += [
+            f"- {each.transition.label} [{each.transition.id}]",
+            f"\tStart: {each.start_state.label}",
+            f"\tGoal: {each.goal_state.label}",
+        ]
+    return lines
+
+
+VERBS = {
+    "get": SubVerb(configure_get, run_get, help="print the state of one managed node or of all"),
+    "list": SubVerb(configure_list, run_list, help="list the transitions that a managed node can make"),
+    "nodes": SubVerb(configure_nodes, run_nodes, help="list the managed nodes"),
+    "set": SubVerb(configure_set, run_set, help="have a managed node make a transition"),
+}
+
+configure = partial(configure_nested, verbs=VERBS)
+run = run_nested

@@ -1,0 +1,320 @@
+"""``linkwright param``: the parameters of running nodes."""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import re
+import sys
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from linkwright.cli.calls import NoAnswerError, find_node, node_names
+from linkwright.cli.nested import SubVerb, configure_nested, run_nested
+from linkwright.cli.output import write_output
+from linkwright.cli.remote_parameters import TYPE_NAMES, RemoteParameters, parameter_of, print_result
+from linkwright.cli.session import add_session_arguments, run_in_graph
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
+
+if TYPE_CHECKING:
+    from linkwright.cli.session import Session
+
+
+_LONGEST_ANSWER = 5.0
+"""Seconds for each of all nodes; one that hangs must not keep the others from being listed."""
+_LABELS = {
+    1: ("Boolean value is:", "bool_value"),
+    2: ("Integer value is:", "integer_value"),
+    3: ("Double value is:", "double_value"),
+    4: ("String value is:", "string_value"),
+    5: ("Byte values are:", "byte_array_value"),
+    6: ("Boolean values are:", "bool_array_value"),
+    7: ("Integer values are:", "integer_array_value"),
+    8: ("Double values are:", "double_array_value"),
+    9: ("String values are:", "string_array_value"),
+}
+_USAGE = 2
+
+
+def _add_node_arguments(parser: argparse.ArgumentParser, *, optional: bool = False) -> None:
+    """Declare the node and how long to wait for it."""
+    add_session_arguments(parser)
+    parser.add_argument(
+        "node_name",
+        metavar="NODE",
+        nargs="?" if optional else None,
+        help="such as /robot_state_publisher" + ("; all nodes when left out" if optional else ""),
+    )
+    parser.add_argument(
+        "--include-hidden-nodes", "-a", "--all", action="store_true", help="consider hidden nodes as well"
+    )
+    parser.add_argument(
+        "--timeout", metavar="SECONDS", type=float, default=1.0, help="wait so long for the node (default: 1)"
+    )
+    parser.add_argument(
+        "--service-timeout", metavar="SECONDS", type=float, help="wait so long for an answer (default: as it takes)"
+    )
+
+
+def configure_list(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    _add_node_arguments(parser, optional=True)
+    parser.add_argument(
+        "--param-prefixes", metavar="PREFIX", nargs="+", default=[], help="list only parameters below these"
+    )
+    parser.add_argument("--param-type", action="store_true", help="print the type of each")
+    parser.add_argument("--filter", metavar="REGEX", help="list only names in which this is found")
+
+
+def run_list(arguments: argparse.Namespace) -> int:
+    """Print the names, below each node's."""
+    try:
+        wanted = re.compile(arguments.filter or "")
+    except re.error as error:
+        hint = phrase("names are looked for as regular expressions; write '\\.' for a dot")
+        raise LinkwrightError(
+            Diagnostic(
+                "CLI425",
+                phrase(
+                    "'{filter}' is not a regular expression: {error}", filter=arguments.filter, error=foreign(error)
+                ),
+                hint=hint,
+            )
+        ) from None
+
+    async def job(session: Session) -> int:
+        hidden = arguments.include_hidden_nodes
+        if arguments.node_name is not None:
+            node = await find_node(session, arguments.node_name, hidden=hidden, timeout=arguments.timeout)
+            print(
+                "\n".join(await _listed(RemoteParameters(session, node, arguments.service_timeout), arguments, wanted))
+            )
+            return 0
+        services = dict(session.node.get_service_names_and_types())
+        nodes = [
+            node for node in dict.fromkeys(node_names(session, hidden=hidden)) if f"{node}/list_parameters" in services
+        ]
+        timeout = arguments.service_timeout or _LONGEST_ANSWER
+        asked = [_listed(RemoteParameters(session, node, timeout), arguments, wanted) for node in nodes]
+        failed = False
+        for node, lines in zip(nodes, await asyncio.gather(*asked, return_exceptions=True), strict=True):
+            if isinstance(lines, NoAnswerError):
+                failed = True
+                print(f"Exception while calling service of node '{node}': {lines}", file=sys.stderr)
+            elif isinstance(lines, BaseException):
+                raise lines
+            else:
+                print("\n".join([f"{node}:", *lines]))
+        return 1 if failed else 0
+
+    return run_in_graph(arguments, job)
+
+
+async def _listed(parameters: RemoteParameters, arguments: argparse.Namespace, wanted: re.Pattern[str]) -> list[str]:
+    names = [name for name in await parameters.names(arguments.param_prefixes) if wanted.search(name)]
+    if not arguments.param_type:
+        return [f"  {name}" for name in names]
+    descriptors = await parameters.descriptors(names)
+    return [f"  {each.name} (type: {TYPE_NAMES.get(each.type, 'unknown')})" for each in descriptors]
+
+
+def configure_get(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    _add_node_arguments(parser)
+    parser.add_argument("parameter_name", metavar="NAME", help="the parameter's name")
+    parser.add_argument("--hide-type", action="store_true", help="print the value alone")
+
+
+def run_get(arguments: argparse.Namespace) -> int:
+    """Print the value, as ros2 does."""
+
+    async def job(session: Session) -> int:
+        parameters = await RemoteParameters.of(session, arguments)
+        values = await parameters.values([arguments.parameter_name])
+        if not values or values[0].type == 0:
+            await parameters.must_have([arguments.parameter_name])
+            print("Parameter not set.")
+            return 0
+        label, field = _LABELS[values[0].type]
+        value = getattr(values[0], field)
+        print(value if arguments.hide_type else f"{label} {value}")
+        return 0
+
+    return run_in_graph(arguments, job)
+
+
+def configure_describe(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    _add_node_arguments(parser)
+    parser.add_argument("parameter_names", metavar="NAME", nargs="+", help="the parameters' names")
+
+
+def run_describe(arguments: argparse.Namespace) -> int:
+    """Print what the node says of them, as ros2 does."""
+
+    async def job(session: Session) -> int:
+        parameters = await RemoteParameters.of(session, arguments)
+        await parameters.must_have(arguments.parameter_names)
+        for descriptor in await parameters.descriptors(arguments.parameter_names):
+            print("\n".join(_description(descriptor)))
+        return 0
+
+    return run_in_graph(arguments, job)
+
+
+def _description(descriptor: Any) -> list[str]:
+    """What is printed of a rcl_interfaces/msg/ParameterDescriptor."""
+    lines = [f"Parameter name: {descriptor.name}", f"  Type: {TYPE_NAMES.get(descriptor.type, 'unknown')}"]
+    if descriptor.description:
+        lines.append(f"  Description: {descriptor.description}")
+    lines.append("  Constraints:")
+    if descriptor.read_only:
+        lines.append("    Read only: true")
+    for given in [*descriptor.floating_point_range, *descriptor.integer_range][:1]:
+        lines += [f"    Min value: {given.from_value}", f"    Max value: {given.to_value}"]
+        if given.step:
+            lines.append(f"    Step: {given.step}")
+    if descriptor.additional_constraints:
+        lines.append(f"    Additional constraints: {descriptor.additional_constraints}")
+    return lines
+
+
+def configure_set(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    _add_node_arguments(parser)
+    parser.add_argument(
+        "words", metavar="NAME VALUE", nargs="+", help="a parameter's name and its value in YAML; and so on for more"
+    )
+    parser.add_argument("--atomic", action="store_true", help="set all or none")
+
+
+def run_set(arguments: argparse.Namespace) -> int:
+    """Set them, and say of each whether it was."""
+    words = arguments.words
+    if len(words) % 2:
+        said = f"Parameters must be provided as name/value pairs: name value [name value ...]. Got {len(words)} word(s)"
+        print(f"linkwright param set: {said}", file=sys.stderr)
+        return _USAGE
+    wanted = [parameter_of(name, value) for name, value in zip(words[::2], words[1::2], strict=True)]
+
+    async def job(session: Session) -> int:
+        parameters = await RemoteParameters.of(session, arguments)
+        if arguments.atomic:
+            result = await parameters.set_together(wanted)
+            print_result(result, "Set parameters atomically successful", "Setting parameters atomically failed")
+            return 0 if result.successful else 1
+        results = await parameters.set(wanted)
+        for parameter, result in zip(wanted, results, strict=True):
+            before = f"{parameter.name}: " if len(wanted) > 1 else ""
+            print_result(result, f"{before}Set parameter successful", f"{before}Setting parameter failed")
+        return 0 if all(result.successful for result in results) else 1
+
+    return run_in_graph(arguments, job)
+
+
+def configure_delete(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    _add_node_arguments(parser)
+    parser.add_argument("parameter_name", metavar="NAME", help="the parameter's name")
+
+
+def run_delete(arguments: argparse.Namespace) -> int:
+    """Delete it, and say whether it was."""
+    from linkwright.graph.parameters.parameter import Parameter, ParameterType
+
+    async def job(session: Session) -> int:
+        parameters = await RemoteParameters.of(session, arguments)
+        await parameters.must_have([arguments.parameter_name])
+        nothing = Parameter(arguments.parameter_name, ParameterType.NOT_SET).to_parameter_msg()
+        (result,) = await parameters.set([nothing])
+        print_result(result, "Deleted parameter successfully", "Deleting parameter failed")
+        return 0 if result.successful else 1
+
+    return run_in_graph(arguments, job)
+
+
+def configure_dump(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    _add_node_arguments(parser)
+    parser.add_argument("--output-dir", metavar="FOLDER", help="write the file NODE.yaml there instead")
+    parser.add_argument("--print", action="store_true", help="accepted for ros2's sake; that is what is done")
+
+
+def run_dump(arguments: argparse.Namespace) -> int:
+    """Print the file or write it."""
+
+    async def job(session: Session) -> int:
+        from linkwright.graph.parameters.file_text import parameter_file_text, plain_value
+
+        parameters = await RemoteParameters.of(session, arguments)
+        names = await parameters.names()
+        values = await parameters.values(names) if names else []
+        plain = {name: plain_value(value) for name, value in zip(names, values, strict=False)}
+        text = parameter_file_text(parameters.node, plain)
+        if arguments.output_dir is None:
+            print(text)
+            return 0
+        file = Path(arguments.output_dir) / f"{parameters.node.strip('/').replace('/', '__')}.yaml"
+        write_output(file, text)
+        print(f"Saving to:  {file}")
+        return 0
+
+    return run_in_graph(arguments, job)
+
+
+def configure_load(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    _add_node_arguments(parser)
+    parser.add_argument("parameter_file", metavar="FILE", help="a YAML file of parameters")
+    parser.add_argument(
+        "--no-use-wildcard", action="store_true", help="leave out what the file gives to all nodes ('/**')"
+    )
+    parser.add_argument("--use-wildcard", action="store_true", help="accepted for ros2's sake; that is what is done")
+
+
+def run_load(arguments: argparse.Namespace) -> int:
+    """Set them, and say of each whether it was."""
+    from linkwright.graph.parameters.files import read_parameter_file
+    from linkwright.graph.parameters.parameter import Parameter
+
+    rules = read_parameter_file(arguments.parameter_file)
+
+    async def job(session: Session) -> int:
+        parameters = await RemoteParameters.of(session, arguments)
+        values = rules.for_node(parameters.node)
+        if arguments.no_use_wildcard:
+            named = dict(rules).get(parameters.node, {})
+            values = {name: value for name, value in values.items() if name in named}
+        if not values:
+            nodes = [pattern for pattern, _ in rules]
+            message = phrase(
+                "Param file does not contain parameters for {node}, only for nodes: {nodes}",
+                node=parameters.node,
+                nodes=nodes,
+            )
+            raise LinkwrightError(Diagnostic("CLI426", message))
+        wanted = [Parameter(name, value=value).to_parameter_msg() for name, value in values.items()]
+        results = await parameters.set(wanted)
+        for parameter, result in zip(wanted, results, strict=True):
+            name = parameter.name
+            print_result(result, f"Set parameter {name} successful", f"Set parameter {name} failed")
+        return 0 if all(result.successful for result in results) else 1
+
+    return run_in_graph(arguments, job)
+
+
+VERBS = {
+    "delete": SubVerb(configure_delete, run_delete, help="delete a parameter that the node lets go"),
+    "describe": SubVerb(
+        configure_describe, run_describe, help="say what parameters are for and which values they take"
+    ),
+    "dump": SubVerb(configure_dump, run_dump, help="print all parameters of a node as a parameter file"),
+    "get": SubVerb(configure_get, run_get, help="print the value of a parameter"),
+    "list": SubVerb(configure_list, run_list, help="list the parameters of one node or of all"),
+    "load": SubVerb(configure_load, run_load, help="set the parameters of a node that a parameter file gives it"),
+    "set": SubVerb(configure_set, run_set, help="set parameters of a node"),
+}
+
+configure = partial(configure_nested, verbs=VERBS)
+run = run_nested

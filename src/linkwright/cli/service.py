@@ -1,0 +1,258 @@
+"""``linkwright service``: the services of the running graph, and calls of them."""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import sys
+from typing import TYPE_CHECKING, Any
+
+from linkwright.cli.calls import is_ready
+from linkwright.cli.echo_format import EchoFormat, add_format_arguments
+from linkwright.cli.lookup import absolute, unknown, visible
+from linkwright.cli.names_listing import (
+    add_count_argument,
+    add_hidden_argument,
+    add_types_argument,
+    print_names,
+    print_names_and_types,
+)
+from linkwright.cli.nested import SubVerb, configure_nested, run_nested
+from linkwright.cli.numbers import positive_float
+from linkwright.cli.qos import add_subscription_qos_arguments, fitting_profile
+from linkwright.cli.session import add_session_arguments, run_in_graph
+from linkwright.cli.values import add_values_arguments, fill, parse_values, read_values
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+
+if TYPE_CHECKING:
+    from linkwright.cli.session import Session
+
+
+_AT_ONCE = 0.2
+"""Seconds within which a service may appear before it is said that it is waited for."""
+
+
+def add_service_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the service and how it is looked for."""
+    add_session_arguments(parser)
+    parser.add_argument("service_name", metavar="SERVICE", help="such as /add_two_ints")
+    add_hidden_argument(parser, "service")
+
+
+def types_of_service(session: Session, arguments: argparse.Namespace) -> list[str]:
+    """The types of the service that the command line names.
+
+    Raises:
+        LinkwrightError: CLI427, there is no such service.
+        InvalidNameError: it is no name.
+    """
+    name = absolute(arguments.service_name)
+    services = dict(session.node.get_service_names_and_types())
+    if name not in services:
+        nothing = phrase("`linkwright service list` lists them")
+        raise unknown(
+            "CLI427",
+            phrase("Unknown service '{service_name}'", service_name=arguments.service_name),
+            name,
+            services,
+            nothing,
+        )
+    return list(services[name])
+
+
+def configure_list(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    add_session_arguments(parser)
+    add_types_argument(parser, "service")
+    add_count_argument(parser, "service")
+    add_hidden_argument(parser, "service")
+
+
+def run_list(arguments: argparse.Namespace) -> int:
+    """Print the services' names, as ros2 does."""
+
+    async def job(session: Session) -> int:
+        services = visible(session.node.get_service_names_and_types(), hidden=arguments.include_hidden_services)
+        print_names_and_types(services, arguments)
+        return 0
+
+    return run_in_graph(arguments, job)
+
+
+def configure_find(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    add_session_arguments(parser)
+    parser.add_argument("service_type", metavar="TYPE", help="such as std_srvs/srv/SetBool")
+    add_count_argument(parser, "service")
+    add_hidden_argument(parser, "service")
+
+
+def run_find(arguments: argparse.Namespace) -> int:
+    """Print the names of the services."""
+
+    async def job(session: Session) -> int:
+        services = visible(session.node.get_service_names_and_types(), hidden=arguments.include_hidden_services)
+        print_names([name for name, types in services if arguments.service_type in types], arguments)
+        return 0
+
+    return run_in_graph(arguments, job)
+
+
+def configure_info(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    add_service_arguments(parser)
+
+
+def run_info(arguments: argparse.Namespace) -> int:
+    """Print what is known of the service, as ros2 does."""
+    name = absolute(arguments.service_name)
+
+    async def job(session: Session) -> int:
+        types = types_of_service(session, arguments)
+        print(f"Type: {types[0] if len(types) == 1 else types}")
+        print(f"Clients count: {session.node.count_clients(name)}")
+        print(f"Services count: {session.node.count_services(name)}")
+        return 0
+
+    return run_in_graph(arguments, job)
+
+
+def configure_type(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    add_service_arguments(parser)
+
+
+def run_type(arguments: argparse.Namespace) -> int:
+    """Print the types of the service, a line each."""
+
+    async def job(session: Session) -> int:
+        print("\n".join(types_of_service(session, arguments)))
+        return 0
+
+    return run_in_graph(arguments, job)
+
+
+def configure_call(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    add_session_arguments(parser)
+    parser.add_argument("service_name", metavar="SERVICE", help="such as /add_two_ints")
+    parser.add_argument("service_type", metavar="TYPE", help="such as example_interfaces/srv/AddTwoInts")
+    add_values_arguments(parser, "the request in YAML, such as '{a: 1, b: 2}'; fields left out have their defaults")
+    parser.add_argument("-r", "--rate", metavar="N", type=positive_float, help="call again and again, at N hertz")
+    parser.add_argument("--timeout", metavar="SECONDS", type=positive_float, help="give up waiting after so long")
+
+
+def run_call(arguments: argparse.Namespace) -> int:
+    """Print the request and the response, as ros2 does."""
+    from linkwright.messages import get_service
+
+    name = absolute(arguments.service_name)
+    kind = get_service(arguments.service_type)
+    text = read_values(arguments)
+    request = kind.Request()
+    fill(request, parse_values(text)[0], text)
+
+    async def job(session: Session) -> int:
+        client = session.node.create_client(kind, name)
+        if not await is_ready(session, name, client, client.service_is_ready, _AT_ONCE):
+            _check_type(session, name, kind.TYPE_NAME)
+            print("waiting for service to become available...")
+            if not await is_ready(session, name, client, client.service_is_ready, arguments.timeout):
+                message = phrase("service '{name}' did not appear in {timeout} s", name=name, timeout=arguments.timeout)
+                raise LinkwrightError(Diagnostic("CLI421", message))
+        loop = asyncio.get_running_loop()
+        while True:
+            print(f"requester: making request: {request!r}\n")
+            began = loop.time()
+            response = await session.answer(client.call_async(request), arguments.timeout)
+            if response is None:
+                raise LinkwrightError(
+                    Diagnostic(
+                        "CLI422",
+                        phrase("service '{name}' did not answer in {timeout} s", name=name, timeout=arguments.timeout),
+                    )
+                )
+            print(f"response:\n{response!r}\n")
+            if arguments.rate is None:
+                return 0
+            await asyncio.sleep(max(0.0, began + 1.0 / arguments.rate - loop.time()))
+
+    return run_in_graph(arguments, job)
+
+
+def _check_type(session: Session, name: str, asked: str) -> None:
+    """A service that is there with another type will never be ready; say so instead of waiting."""
+    from linkwright.graph.endpoints.info import EndpointKind
+
+    servers = [each for each in session.graph.endpoints() if each.kind is EndpointKind.SERVICE and each.name == name]
+    types = sorted({each.type_name for each in servers})
+    if types and asked not in types:
+        message = phrase(
+            "service '{name}' is of type {types}, not {asked}", name=name, types=", ".join(types), asked=asked
+        )
+        raise LinkwrightError(Diagnostic("CLI428", message, hint=phrase("call it with {types}", types=types[0])))
+
+
+def configure_echo(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    add_service_arguments(parser)
+    parser.add_argument("service_type", metavar="TYPE", nargs="?", help="such as std_srvs/srv/SetBool; its own")
+    add_format_arguments(parser, "print lists in brackets, on one line")
+    add_subscription_qos_arguments(parser)
+
+
+def run_echo(arguments: argparse.Namespace) -> int:
+    """Print events until the user ends it, as ros2 does."""
+    name = absolute(arguments.service_name)
+    form = EchoFormat.of(arguments)
+
+    async def job(session: Session) -> int:
+        from linkwright.graph.endpoints.service_introspection import EVENT_TOPIC_SUFFIX
+        from linkwright.messages import get_service
+
+        kind = get_service(arguments.service_type or types_of_service(session, arguments)[0])
+        topic = name + EVENT_TOPIC_SUFFIX
+        if not session.node.get_publishers_info_by_topic(topic):
+            print(
+                f"nothing is told of '{name}' yet: its server and clients do so after configure_introspection()",
+                file=sys.stderr,
+            )
+
+        def show(event: Any) -> None:
+            sys.stdout.write(_event_text(event, form))
+
+        profile = fitting_profile(session.node, topic, arguments)
+        session.node.create_subscription(kind.Event, topic, session.receiver(show), profile)
+        return await session.finished() or 0
+
+    return run_in_graph(arguments, job)
+
+
+def _event_text(event: Any, form: EchoFormat) -> str:
+    """An event as ros2 prints it: in YAML the kind by its name."""
+    from linkwright.graph.endpoints.service_introspection import EventType
+
+    kind = event.info.event_type
+    named = EventType(kind).name if kind in iter(EventType) else str(kind)
+    return form.text(event).replace(f"event_type: {kind}\n", f"event_type: {named}\n", 1)
+
+
+VERBS = {
+    "call": SubVerb(configure_call, run_call, help="call a service"),
+    "echo": SubVerb(
+        configure_echo,
+        run_echo,
+        help="print what clients ask of a service and what it answers, where they tell (service introspection)",
+    ),
+    "find": SubVerb(configure_find, run_find, help="list the services of a type"),
+    "info": SubVerb(configure_info, run_info, help="say what type a service has and how many serve and call it"),
+    "list": SubVerb(configure_list, run_list, help="list the services"),
+    "type": SubVerb(configure_type, run_type, help="print the type of a service"),
+}
+run = run_nested
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    parser.add_argument("--include-hidden-services", action="store_true", help="consider hidden services as well")
+    configure_nested(parser, VERBS)

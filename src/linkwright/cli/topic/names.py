@@ -1,0 +1,185 @@
+"""``linkwright topic list``, ``info``, ``find`` and ``type``: which topics there are and what they carry."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from linkwright.cli.lookup import absolute, unknown, visible
+from linkwright.cli.names_listing import (
+    add_count_argument,
+    add_hidden_argument,
+    add_types_argument,
+    print_names,
+    print_names_and_types,
+)
+from linkwright.cli.session import add_session_arguments, run_in_graph
+from linkwright.diagnostics import phrase
+
+if TYPE_CHECKING:
+    from linkwright.cli.session import Session
+    from linkwright.graph import QoSProfile
+
+_INFINITE_NS = 0x7FFFFFFF_FFFFFFFF
+"""From this many nanoseconds on (rmw: 9223372036.854775807 s) a duration counts as endless."""
+
+
+def configure_list(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    add_session_arguments(parser)
+    add_types_argument(parser, "topic")
+    add_count_argument(parser, "topic")
+    add_hidden_argument(parser, "topic")
+    parser.add_argument("-v", "--verbose", action="store_true", help="say how many publish and subscribe to each")
+
+
+def run_list(arguments: argparse.Namespace) -> int:
+    """Print the topics' names, as ros2 does."""
+
+    async def job(session: Session) -> int:
+        node = session.node
+        topics = visible(node.get_topic_names_and_types(), hidden=arguments.include_hidden_topics)
+        if arguments.verbose and topics and not arguments.count:
+            publishers = [(name, types, node.count_publishers(name)) for name, types in topics]
+            subscribers = [(name, types, node.count_subscribers(name)) for name, types in topics]
+            print(_counted("Published", "publisher", publishers))
+            print(_counted("Subscribed", "subscriber", subscribers))
+        else:
+            print_names_and_types(topics, arguments)
+        return 0
+
+    return run_in_graph(arguments, job)
+
+
+def _counted(title: str, kind: str, topics: Sequence[tuple[str, Sequence[str], int]]) -> str:
+    lines = [f"{title} topics:"]
+    for name, types, count in topics:
+        if count:
+            lines.append(f" * {name} [{', '.join(types)}] {count} {kind}{'s' if count > 1 else ''}")
+    return "\n".join([*lines, ""])
+
+
+def configure_info(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    add_session_arguments(parser)
+    parser.add_argument("topic_name", metavar="TOPIC", help="such as /chatter")
+    parser.add_argument(
+        "-v", "--verbose", action="store_true", help="describe each publisher and subscription: node, type, QoS"
+    )
+
+
+def run_info(arguments: argparse.Namespace) -> int:
+    """Print what is known of the topic, as ros2 does."""
+    name = absolute(arguments.topic_name)
+
+    async def job(session: Session) -> int:
+        node = session.node
+        topics = dict(node.get_topic_names_and_types())
+        if name not in topics:
+            message = phrase("Unknown topic '{topic_name}'", topic_name=arguments.topic_name)
+            raise unknown("CLI411", message, name, topics, phrase("`linkwright topic list` lists them"))
+        types = list(topics[name])
+        end = "\n\n" if arguments.verbose else "\n"
+        print(f"Type: {types[0] if len(types) == 1 else types}", end=end)
+        print(f"Publisher count: {node.count_publishers(name)}", end=end)
+        if arguments.verbose:
+            for each in node.get_publishers_info_by_topic(name):
+                print(endpoint_text(each), end=end)
+        print(f"Subscription count: {node.count_subscribers(name)}", end=end)
+        if arguments.verbose:
+            for each in node.get_subscriptions_info_by_topic(name):
+                print(endpoint_text(each), end=end)
+        return 0
+
+    return run_in_graph(arguments, job)
+
+
+def configure_find(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    add_session_arguments(parser)
+    parser.add_argument("topic_type", metavar="TYPE", help="such as std_msgs/msg/String")
+    add_count_argument(parser, "topic")
+    add_hidden_argument(parser, "topic")
+
+
+def run_find(arguments: argparse.Namespace) -> int:
+    """Print the names of the topics."""
+
+    async def job(session: Session) -> int:
+        topics = visible(session.node.get_topic_names_and_types(), hidden=arguments.include_hidden_topics)
+        print_names([name for name, types in topics if arguments.topic_type in types], arguments)
+        return 0
+
+    return run_in_graph(arguments, job)
+
+
+def configure_type(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    add_session_arguments(parser)
+    parser.add_argument("topic_name", metavar="TOPIC", help="such as /chatter")
+
+
+def run_type(arguments: argparse.Namespace) -> int:
+    """Print the types in use on the topic, a line each."""
+    name = absolute(arguments.topic_name)
+
+    async def job(session: Session) -> int:
+        topics = dict(visible(session.node.get_topic_names_and_types(), hidden=arguments.include_hidden_topics))
+        if name not in topics:
+            raise unknown(
+                "CLI411",
+                phrase("Unknown topic '{name}'", name=name),
+                name,
+                topics,
+                phrase("`linkwright topic list` lists them"),
+            )
+        for each in topics[name]:
+            print(each)
+        return 0
+
+    return run_in_graph(arguments, job)
+
+
+def endpoint_text(info: Any) -> str:
+    """What is known of an endpoint (rclpy ``TopicEndpointInfo``), in several lines.
+
+    The type's hash is shown where the other side tells it, which Humble does not.
+    """
+    lines = [
+        f"Node name: {info.node_name}",
+        f"Node namespace: {info.node_namespace}",
+        f"Topic type: {info.topic_type}",
+    ]
+    if str(info.topic_type_hash or ""):
+        lines.append(f"Topic type hash: {info.topic_type_hash}")
+    lines += [
+        f"Endpoint type: {info.endpoint_type.name}",
+        f"GID: {'.'.join(f'{byte:02x}' for byte in info.endpoint_gid)}",
+        "QoS profile:",
+        *qos_lines(info.qos_profile),
+    ]
+    return "\n".join(lines)
+
+
+def qos_lines(qos: QoSProfile) -> list[str]:
+    """The policies of a profile, a line each."""
+    history = qos.history.name
+    if history == "KEEP_LAST":
+        history = f"{history} ({qos.depth})"
+    return [
+        f"  Reliability: {qos.reliability.name}",
+        f"  History (Depth): {history}",
+        f"  Durability: {qos.durability.name}",
+        f"  Lifespan: {_duration(qos.lifespan)}",
+        f"  Deadline: {_duration(qos.deadline)}",
+        f"  Liveliness: {qos.liveliness.name}",
+        f"  Liveliness lease duration: {_duration(qos.liveliness_lease_duration)}",
+    ]
+
+
+def _duration(duration: Any) -> str:
+    nanoseconds = duration.nanoseconds
+    if nanoseconds == 0 or nanoseconds >= _INFINITE_NS:
+        return "Infinite"
+    return f"{nanoseconds} nanoseconds"
