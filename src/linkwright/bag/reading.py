@@ -194,6 +194,9 @@ def _storage_target(path: Path) -> Path:
         raise LinkwrightError(Diagnostic("BAG101", phrase("there is no recording '{path}'", path=display_path(path))))
     if path.is_file() or (path / "metadata.yaml").exists():
         return path
+    if not path.is_dir():
+        message = phrase("'{path}' is not a recording: it is neither a file nor a folder", path=display_path(path))
+        raise LinkwrightError(Diagnostic("BAG102", message))
     files = sorted(each for each in path.iterdir() if each.suffix in _SUFFIXES)
     if len(files) == 1:
         return files[0]

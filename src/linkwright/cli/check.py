@@ -150,7 +150,7 @@ def _check(paths: Sequence[Path], words: _Words) -> tuple[list[Diagnostic], Robo
     for folder in targets.packages:
         settings, trouble = words.settings(folder)
         _add(found, (*trouble, *examine_package(folder, settings).diagnostics))
-    return list(found.values()), robot if len(paths) == 1 and paths[0].is_file() else None
+    return list(found.values()), robot if len(paths) == 1 and not paths[0].is_dir() else None
 
 
 def _add(found: dict[tuple[str, object, str], Diagnostic], more: Iterable[Diagnostic]) -> None:

@@ -55,10 +55,10 @@ def read_values(arguments: argparse.Namespace) -> str:
     file = getattr(arguments, "yaml_file", None)
     if file is None:
         return str(arguments.values)
-    from pathlib import Path
+    from linkwright.input_files import read_text
 
     try:
-        return Path(file).read_text(encoding="utf-8")
+        return read_text(file)
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or error
         raise LinkwrightError(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import stat
 import warnings
 from functools import cached_property
 from pathlib import Path
@@ -93,7 +94,10 @@ def read_mesh(path: Path) -> TriangleMesh:
             Diagnostic("INR102", message, hint=phrase("use {mesh_endings}", mesh_endings=joined(MESH_ENDINGS)))
         )
     try:
-        if path.stat().st_size > LARGEST_FILE:
+        facts = path.stat()
+        if not stat.S_ISREG(facts.st_mode):
+            raise unreadable(path, phrase("it is no regular file"))
+        if facts.st_size > LARGEST_FILE:
             raise unreadable(path, phrase("it is larger than {largest_file} MiB", largest_file=LARGEST_FILE >> 20))
         data = path.read_bytes()
     except FileNotFoundError:

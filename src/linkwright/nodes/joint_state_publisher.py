@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Protocol
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
@@ -26,6 +25,7 @@ from linkwright.graph import (
     Subscription,
     Timer,
 )
+from linkwright.input_files import read_text
 from linkwright.messages import Header, JointState, String
 from linkwright.nodes.joint_layout import layout_of
 from linkwright.nodes.joint_positions import JointPositions
@@ -111,7 +111,7 @@ class JointStatePublisher(SingleNode):
             )
         path = arguments[0]
         try:
-            text = Path(path).read_text(encoding="utf-8")
+            text = read_text(path)
         except (OSError, UnicodeDecodeError) as error:
             reason = getattr(error, "strerror", None) or error
             raise LinkwrightError(

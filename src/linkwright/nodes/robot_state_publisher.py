@@ -15,7 +15,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import isfinite
-from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.graph import (
@@ -30,6 +29,7 @@ from linkwright.graph import (
 )
 from linkwright.graph.parameters.qos_overrides import QoSOverridingOptions
 from linkwright.graph.qos.profile import QoSPolicyKind
+from linkwright.input_files import read_text
 from linkwright.messages import JointState, String, TFMessage
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 from linkwright.nodes.robot_transforms import MOVING_TYPES, RobotTransforms
@@ -125,7 +125,7 @@ class RobotStatePublisher(SingleNode):
             "file.  This backwards compatibility fallback will be removed in the future."
         )
         try:
-            return Path(path).read_text(encoding="utf-8")
+            return read_text(path)
         except (OSError, UnicodeDecodeError) as error:
             raise LinkwrightError(
                 Diagnostic(

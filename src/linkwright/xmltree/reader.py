@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, NoReturn
 from xml.parsers.expat import ExpatError, ParserCreate
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, SourceText, foreign, missing_file_hint, phrase
+from linkwright.input_files import LARGEST_TEXT, NoWriterError, read_file
 from linkwright.xmltree.decoding import decode
 from linkwright.xmltree.entities import GROWTH_LIMIT, EntityGuard
 from linkwright.xmltree.nodes import Comment, Document, Element, Node, ProcessingInstruction, Text
@@ -19,8 +20,6 @@ if TYPE_CHECKING:
 
 _BEYOND_ASCII = re.compile(rb"[\x80-\xff]+")
 _CDATA_START = len("<![CDATA[")
-_FIRST_READ = 1 << 17
-_LARGEST = 100_000_000
 
 
 def parse(text: str | bytes, name: str, *, blanks: bool = True) -> Document:
@@ -53,10 +52,7 @@ def parse_file(path: str | Path) -> Document:
 def read_bytes(path: str | Path) -> bytes:
     """The bytes of a file, or a `LinkwrightError` (XML101, XML102, XML103) that says why there are none."""
     try:
-        with open(path, "rb") as file:  # noqa: PTH123 - half the time of Path.open
-            data = file.read(_FIRST_READ)
-            if len(data) == _FIRST_READ:
-                data += file.read(_LARGEST - _FIRST_READ)
+        data = read_file(path, LARGEST_TEXT)
     except FileNotFoundError:
         message = phrase("no such file: '{path}'", path=path)
         raise LinkwrightError(Diagnostic("XML101", message, hint=_missing(path))) from None
@@ -64,6 +60,12 @@ def read_bytes(path: str | Path) -> bytes:
         message = phrase("'{path}' is a folder, not a file", path=path)
         hint = _missing(os.path.join(path, "_.xacro"))  # noqa: PTH118 - pathlib takes long to import
         raise LinkwrightError(Diagnostic("XML102", message, hint=hint)) from None
+    except NoWriterError:
+        pipe = phrase("it is a pipe, and nobody writes to it")
+        message = phrase("cannot read '{path}': {reason}", path=path, reason=pipe)
+        raise LinkwrightError(
+            Diagnostic("XML103", message, hint=phrase("start the program that writes to it first"))
+        ) from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         advice = phrase("is it yours to read?") if isinstance(error, PermissionError) else None
@@ -72,8 +74,8 @@ def read_bytes(path: str | Path) -> bytes:
                 "XML103", phrase("cannot read '{path}': {reason}", path=path, reason=foreign(reason)), hint=advice
             )
         ) from None
-    if len(data) == _LARGEST:  # such as a device that never ends
-        reason = phrase("it has more than {count} million bytes", count=_LARGEST // 1_000_000)
+    if len(data) == LARGEST_TEXT:  # such as a device that never ends
+        reason = phrase("it has more than {count} million bytes", count=LARGEST_TEXT // 1_000_000)
         message = phrase("cannot read '{path}': {reason}", path=path, reason=reason)
         raise LinkwrightError(Diagnostic("XML103", message))
     return data

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
@@ -40,9 +39,10 @@ def read_overrides(arguments: argparse.Namespace) -> dict[str, QoSProfile]:
     import yaml
 
     from linkwright.bag.qos import overrides_of
+    from linkwright.input_files import read_text
 
     try:
-        document = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
+        document = yaml.safe_load(read_text(path))
     except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
         reason = error.strerror if isinstance(error, OSError) else str(error)
         raise LinkwrightError(

@@ -26,6 +26,7 @@ from linkwright.diagnostics import (
 from linkwright.graph.parameters.errors import ParameterFileNotFoundError
 from linkwright.graph.parameters.rules import ParameterRules
 from linkwright.graph.parameters.scalars import scalar_value
+from linkwright.input_files import read_text
 
 PARAMETERS_KEY = "ros__parameters"
 _KINDS = {bool: "bool", int: "integer", float: "double", str: "string"}
@@ -42,7 +43,7 @@ def read_parameter_file(path: str | Path) -> ParameterRules:
     path = Path(path)
     shown = display_path(path)
     try:
-        text = path.read_text(encoding="utf-8")
+        text = read_text(path)
     except FileNotFoundError:
         near = [str(each) for each in path.parent.glob("*.y*ml")] if path.parent.is_dir() else []
         hint = did_you_mean(str(path), near)

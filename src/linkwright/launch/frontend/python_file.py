@@ -17,6 +17,7 @@ from linkwright.diagnostics import (
     missing_file_hint,
     phrase,
 )
+from linkwright.input_files import read_text
 from linkwright.launch.errors.exceptions import InvalidPythonLaunchFileError
 from linkwright.launch.errors.places import error_at, not_reading
 from linkwright.launch.errors.ros_exceptions import as_ros_error
@@ -101,7 +102,7 @@ def read_launch_file(path: Path) -> SourceText:
     """
     shown = display_path(path)
     try:
-        return SourceText(str(path), path.read_text(encoding="utf-8-sig"))
+        return SourceText(str(path), read_text(path, "utf-8-sig"))
     except FileNotFoundError as error:
         hint = missing_file_hint(path, is_launch_file_name)
         message = phrase("launch file '{shown}' does not exist", shown=shown)

@@ -16,6 +16,7 @@ from linkwright.diagnostics import (
     missing_file_hint,
     phrase,
 )
+from linkwright.input_files import read_text
 from linkwright.launch.errors.exceptions import SubstitutionFailure
 from linkwright.launch.errors.places import Place, Placed, error_at, located
 from linkwright.launch.model.context import LaunchContext
@@ -150,7 +151,7 @@ class ParameterFile(Placed):
 def _read(path: Path, place: Place | None) -> SourceText:
     shown = display_path(path)
     try:
-        return SourceText(str(path), path.read_text(encoding="utf-8"))
+        return SourceText(str(path), read_text(path))
     except FileNotFoundError as error:
         message, hint = phrase("parameter file '{shown}' does not exist", shown=shown), missing_file_hint(path)
         raise error_at(place, "LAUNCH133", message, hint, ros_error=error) from error

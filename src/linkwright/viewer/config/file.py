@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
+from linkwright.input_files import read_file
 from linkwright.whole_files import write_whole_file
 
 MAXIMUM_SIZE = 16 * 1024 * 1024
@@ -41,8 +42,7 @@ def read(path: Path) -> tuple[str, FileForm]:
         LinkwrightError: RVIZ101, it cannot be read.
     """
     try:
-        with path.open("rb") as file:
-            content = file.read(MAXIMUM_SIZE + 1)
+        content = read_file(path, MAXIMUM_SIZE + 1)
     except OSError as error:
         hint = phrase("name a .rviz file after '-d'") if isinstance(error, FileNotFoundError) else None
         message = phrase(

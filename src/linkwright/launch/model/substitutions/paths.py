@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from linkwright.diagnostics import Phrase, did_you_mean, foreign, phrase
+from linkwright.input_files import read_text
 from linkwright.launch.errors.exceptions import SubstitutionFailure
 from linkwright.launch.errors.places import error_at
 from linkwright.launch.model.context import LaunchContext
@@ -113,7 +114,7 @@ class FileContent(DeclaredSubstitution, tag="file-content"):
         """
         path = perform_substitutions(context, self.path)
         try:
-            return Path(path).read_text(encoding="utf-8")
+            return read_text(path)
         except FileNotFoundError as error:
             ros_error = SubstitutionFailure(f"File not found: {path}")
             raise error_at(

@@ -1,0 +1,71 @@
+"""Reading files that may be pipes or devices: nobody waits for a writer who is not there, and every reading ends.
+
+Opening a named pipe (FIFO) waits until somebody opens its other end, which may be never. It imports little, because
+short commands load it.
+"""
+
+from __future__ import annotations
+
+import errno
+import io
+import os
+import stat
+
+_FIRST_READ = 1 << 17  # most files are shorter, and room for more takes time to get
+_NOT_BLOCKING = getattr(os, "O_NONBLOCK", 0)  # Windows has no such pipes
+_pipes: dict[tuple[int, int], bytes] = {}
+"""Device and number of a pipe -> what was read from it: a pipe says it once, and a command may ask twice."""
+
+
+LARGEST_TEXT = 100_000_000
+"""A text of so many bytes or more is not read."""
+
+
+class NoWriterError(OSError):
+    """A pipe has nothing in it, and nobody has opened it for writing."""
+
+
+def read_file(path: str | os.PathLike[str], at_most: int) -> bytes:
+    """What is in a file, up to so many bytes.
+
+    Of a pipe it is all that is written to it until its writers have closed it, as with ``<(command)`` in a shell. When
+    nobody writes to it any more, that is what was read before.
+
+    Raises:
+        OSError: it cannot be read; `NoWriterError`, it is a pipe that nobody writes to.
+    """
+    with open(path, "rb", opener=_open_at_once) as file:
+        kind = os.fstat(file.fileno())
+        if stat.S_ISREG(kind.st_mode):
+            data = file.read(min(at_most, _FIRST_READ))
+            return data + file.read(at_most - len(data)) if len(data) == _FIRST_READ else data
+        first: bytes | None = file.read(1) if stat.S_ISFIFO(kind.st_mode) else None  # None: there will be something
+        identity = kind.st_dev, kind.st_ino
+        if first == b"" and identity not in _pipes:
+            raise NoWriterError(errno.ENXIO, "it is a pipe, and nobody writes to it", os.fspath(path))
+        if first == b"":
+            return _pipes[identity][:at_most]
+        if _NOT_BLOCKING:
+            os.set_blocking(file.fileno(), True)
+        data = (first or b"") + file.read(at_most - len(first or b""))
+        if stat.S_ISFIFO(kind.st_mode):
+            _pipes[identity] = data
+        return data
+
+
+def read_text(path: str | os.PathLike[str], encoding: str = "utf-8") -> str:
+    """The text of a file, its line ends as Python has them.
+
+    Raises:
+        OSError: see `read_file`; or it has `LARGEST_TEXT` bytes or more.
+        UnicodeDecodeError: it is no text.
+    """
+    data = read_file(path, LARGEST_TEXT)
+    if len(data) == LARGEST_TEXT:
+        reason = f"it has more than {LARGEST_TEXT // 1_000_000} million bytes"
+        raise OSError(errno.ENXIO, reason, os.fspath(path))
+    return io.StringIO(data.decode(encoding), newline=None).read()
+
+
+def _open_at_once(path: str, flags: int) -> int:
+    return os.open(path, flags | _NOT_BLOCKING)

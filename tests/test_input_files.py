@@ -1,0 +1,144 @@
+"""Files that are pipes or devices are read as others are, or refused at once; nothing waits for a writer."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from linkwright.cli.entry import main
+from linkwright.diagnostics import LinkwrightError
+from linkwright.geometry.meshes import read_mesh
+from linkwright.graph.parameters.files import read_parameter_file
+from linkwright.input_files import NoWriterError, read_file, read_text
+from linkwright.launch.frontend.python_file import read_launch_file
+from linkwright.viewer.config.file import read as read_configuration
+from linkwright.xmltree.reader import read_bytes
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such pipes")
+
+XACRO = '<robot xmlns:xacro="http://ros.org/wiki/xacro" name="r"><link name="${1 + 1}"/></robot>'
+LONG = bytes(range(256)) * 2000
+"""More than a pipe holds."""
+
+
+@pytest.fixture
+def pipe(tmp_path: Path) -> Path:
+    path = tmp_path / "pipe.urdf"
+    os.mkfifo(path)
+    return path
+
+
+@pytest.fixture
+def piped() -> Iterator[str]:
+    """The path of a pipe with a xacro file in it, as a shell gives it for ``<(command)``."""
+    outer, inner = os.pipe()
+    os.write(inner, XACRO.encode())
+    os.close(inner)
+    yield f"/dev/fd/{outer}"
+    os.close(outer)
+
+
+def test_a_pipe_that_nobody_writes_to_is_refused(pipe: Path) -> None:
+    with pytest.raises(NoWriterError, match="nobody writes to it"):
+        read_file(pipe, 100)
+
+
+def test_a_pipe_is_read_until_it_is_closed_and_may_be_asked_again(pipe: Path) -> None:
+    # A reader at the other end lets the writer begin; it is gone before the pipe is read.
+    first = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    inner = os.open(pipe, os.O_WRONLY)
+    writer = threading.Thread(target=lambda: (os.write(inner, LONG), os.close(inner)))
+    writer.start()
+    assert read_file(pipe, 10 * len(LONG)) == LONG
+    writer.join()
+    os.close(first)
+    assert read_file(pipe, 10 * len(LONG)) == LONG
+
+
+def test_a_writer_who_has_not_begun_is_waited_for(pipe: Path) -> None:
+    first = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    inner = os.open(pipe, os.O_WRONLY)
+    writer = threading.Timer(0.05, lambda: (os.write(inner, b"late"), os.close(inner)))
+    writer.start()
+    assert read_text(pipe) == "late"
+    os.close(first)
+
+
+def test_a_device_without_end_is_read_no_further_than_asked() -> None:
+    assert read_file("/dev/zero", 1000) == bytes(1000)
+
+
+def test_line_ends_are_those_of_python(tmp_path: Path) -> None:
+    path = tmp_path / "file"
+    path.write_bytes(b"a\r\nb\rc\n")
+    assert read_text(path) == path.read_text(encoding="utf-8") == "a\nb\nc\n"
+
+
+@pytest.mark.parametrize(
+    "read", [read_bytes, read_launch_file, read_parameter_file, read_configuration], ids=lambda read: read.__name__
+)
+def test_whoever_reads_says_that_nobody_writes(read: object, pipe: Path) -> None:
+    with pytest.raises(LinkwrightError, match="it is a pipe, and nobody writes to it"):
+        read(pipe)
+
+
+@pytest.mark.parametrize("ending", [".stl", ".dae", ".obj", ".glb"])
+def test_a_mesh_is_a_file(tmp_path: Path, ending: str) -> None:
+    os.mkfifo(tmp_path / f"pipe{ending}")
+    (tmp_path / f"device{ending}").symlink_to("/dev/zero")
+    for name in ("pipe", "device"):
+        with pytest.raises(LinkwrightError, match="it is no regular file"):
+            read_mesh(tmp_path / f"{name}{ending}")
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["check"],
+        ["xacro"],
+        ["xacro", "--args"],
+        ["inertia"],
+        ["diagram"],
+        ["export", "out.glb"],
+        ["view", "--no-open"],
+        ["launch", "--print"],
+        ["launch", "--show-args"],
+        ["bag", "info"],
+        ["bag", "play"],
+    ],
+    ids=" ".join,
+)
+def test_each_command_refuses_a_pipe_that_nobody_writes_to(
+    words: list[str], pipe: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(pipe.parent)
+    assert main([*words, pipe.name]) == 1
+    said = capsys.readouterr().err
+    assert f"'{pipe.name}'" in said or f"'{pipe}'" in said
+    assert "it is a pipe, and nobody writes to it" in said or "it is neither a file nor a folder" in said
+
+
+@pytest.mark.parametrize("words", [["check"], ["xacro"], ["xacro", "--args"], ["inertia"], ["export", "out.html"]])
+def test_what_a_shell_substitutes_for_a_command_is_read(
+    words: list[str], piped: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main([*words, piped]) == 0, capsys.readouterr().err
+
+
+@pytest.mark.parametrize("command", ["check", "xacro"])
+def test_standard_input_by_its_path(command: str) -> None:
+    done = subprocess.run(
+        [sys.executable, "-m", "linkwright", command, "/dev/stdin"],
+        check=False,
+        input=XACRO.encode(),
+        capture_output=True,
+    )
+    assert done.returncode == 0, done.stderr.decode()
+    assert b"2" in done.stdout
