@@ -112,10 +112,10 @@ def test_files_that_cannot_be_read(tmp_path: Path) -> None:
 
 
 def test_a_file_without_permission(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def refuse(_path: Path, _mode: str) -> bytes:
+    def refuse(_path: Path, _at_most: int) -> bytes:
         raise PermissionError(13, "Permission denied")
 
-    monkeypatch.setattr(reader, "open", refuse, raising=False)  # root, who runs some test machines, may read anything
+    monkeypatch.setattr(reader, "read_file", refuse)  # root, who runs some test machines, may read anything
     with pytest.raises(LinkwrightError) as caught:
         parse_file(tmp_path / "a.urdf")
     assert caught.value.diagnostics[0].code == "XML103"
