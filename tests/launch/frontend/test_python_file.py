@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.launch.frontend import python_file
 from linkwright.launch.frontend.python_file import load_python_launch_file
 
 Write = Callable[[str, str], Path]
@@ -52,7 +53,7 @@ def test_unreadable(write: Write, monkeypatch: pytest.MonkeyPatch) -> None:
     def refuse(*_arguments: object, **_more: object) -> str:
         raise PermissionError(13, "Permission denied")
 
-    monkeypatch.setattr(Path, "read_text", refuse)  # root, who runs some test machines, may read anything
+    monkeypatch.setattr(python_file, "read_text", refuse)  # root, who runs some test machines, may read anything
     assert fault(path).code == "LAUNCH102"
 
 
