@@ -18,7 +18,7 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import Graph
 from linkwright.messages import String, serialize
 from linkwright.viewer import RvizConfig
-from linkwright.viewer.config.places import RecentFiles
+from linkwright.viewer.config.locations import RecentFiles
 from tests.full_disk import full_disk, needs_limits
 from tests.places import REPOSITORY
 

@@ -10,9 +10,9 @@ from linkwright.geometry.mass import FARTHEST, MassProperties, combine
 from linkwright.geometry.placement import Placement
 from linkwright.geometry.solids import half_extents, shape_properties
 from linkwright.inertia.inertial import from_inertial, is_computable
-from linkwright.urdf.bodies import Bodies, Body
 from linkwright.lint.meshes import MeshFacts
 from linkwright.urdf import Collision, Link, Mesh, Visual
+from linkwright.urdf.bodies import Bodies, Body
 
 
 class Extents:

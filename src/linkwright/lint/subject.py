@@ -15,12 +15,12 @@ from linkwright.xmltree import Document, Element
 
 if TYPE_CHECKING:
     from linkwright.kinematics import KinematicTree
-    from linkwright.urdf.bodies import Bodies
     from linkwright.lint.extents import Extents
     from linkwright.lint.meshes import MeshFacts
     from linkwright.lint.package import PackageContext
     from linkwright.lint.xacro_facts import XacroFacts
     from linkwright.packages import PackageFinder
+    from linkwright.urdf.bodies import Bodies
 
 _DEFINITIONS = {"material", "xacro:macro", "xacro:property"}
 """What a file for others to include may hold without anything that makes a robot."""

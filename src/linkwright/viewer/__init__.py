@@ -1,6 +1,6 @@
 """The viewer: .rviz files, displays and their data, and the page that shows them."""
 
-from linkwright.viewer.config.recovery import find_unsaved
+from linkwright.viewer.config.locations import find_unsaved
 from linkwright.viewer.config.rviz_config import RvizConfig
 from linkwright.viewer.viewer import Viewer
 

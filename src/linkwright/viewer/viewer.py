@@ -11,7 +11,7 @@ from linkwright.diagnostics import Diagnostic
 from linkwright.graph import Graph, Parameter, ParameterDescriptor
 from linkwright.nodes.options import NodeOptions, create_node
 from linkwright.packages import PackageFinder
-from linkwright.viewer.config.recovery import keep_unsaved
+from linkwright.viewer.config.locations import keep_unsaved
 from linkwright.viewer.config.rviz_config import RvizConfig
 from linkwright.viewer.context import ViewerContext
 from linkwright.viewer.displays.base.display import ViewerDisplay

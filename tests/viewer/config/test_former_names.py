@@ -6,8 +6,7 @@ import yaml
 from linkwright.viewer.config import yaml_tree
 from linkwright.viewer.config.former_names import former_keys, modern_class
 from linkwright.viewer.config.property_store import PropertyStore
-from linkwright.viewer.config.schema import PropertySpec
-from linkwright.viewer.config.topic_properties import topic_spec
+from linkwright.viewer.config.schema import PropertySpec, topic_spec
 
 
 @pytest.mark.parametrize(

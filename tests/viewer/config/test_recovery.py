@@ -7,8 +7,7 @@ from pathlib import Path
 import pytest
 
 from linkwright.viewer import RvizConfig, find_unsaved
-from linkwright.viewer.config.places import RecentFiles
-from linkwright.viewer.config.recovery import recovery_file, recovery_folder
+from linkwright.viewer.config.locations import RecentFiles, recovery_file, recovery_folder
 from tests.viewer.configured import edit, opened
 from tests.viewer.visualization.test_managers import own_page
 

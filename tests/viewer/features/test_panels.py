@@ -7,7 +7,7 @@ import difflib
 import pytest
 
 from linkwright.viewer import RvizConfig
-from linkwright.viewer.config.window_state import is_shown, with_shown
+from linkwright.viewer.config.panels import is_shown, with_shown
 from tests.viewer.configured import opened
 from tests.viewer.panels import RVIZ_PANELS, window_state
 from tests.viewer.scene import page

@@ -6,7 +6,7 @@ import pytest
 import yaml
 
 from linkwright.viewer import RvizConfig
-from linkwright.viewer.config.tool_classes import TOOL_KINDS, tool_name
+from linkwright.viewer.config.tools import TOOL_KINDS, tool_name
 from tests.viewer.scene import page, rows_by_id, world
 from tests.waiting import eventually
 

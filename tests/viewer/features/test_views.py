@@ -4,7 +4,7 @@ import pytest
 import yaml
 
 from linkwright.viewer import RvizConfig
-from linkwright.viewer.config.view_classes import CURRENT_NAME, ORBIT, PITCH_LIMIT, VIEW_SCHEMAS, view_classes
+from linkwright.viewer.config.views import CURRENT_NAME, ORBIT, PITCH_LIMIT, VIEW_SCHEMAS, view_classes
 from linkwright.viewer.protocol.views import View
 from tests.viewer.scene import page, world
 

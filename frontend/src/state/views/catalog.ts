@@ -6,7 +6,7 @@ import { ThirdPersonFollowerController, XYOrbitController } from "./xy-orbit";
 
 const ORBIT = new OrbitController();
 
-/** The view classes of RViz. Their properties are declared in `viewer/config/view_classes.py`. */
+/** The view classes of RViz. Their properties are declared in `viewer/config/views.py`. */
 const CONTROLLERS: ReadonlyMap<string, ViewController> = new Map<string, ViewController>([
   ["rviz_default_plugins/FPS", new FpsController()],
   ["rviz_default_plugins/Orbit", ORBIT],

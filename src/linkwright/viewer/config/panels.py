@@ -1,21 +1,32 @@
-"""The panels of a .rviz file: which of those that RViz brings along are open.
+"""The panels of a .rviz file: which of those that RViz brings along are open, and what leads the Time panel.
 
-RViz keeps that in three places. ``Panels`` lists the panels that there are. The state of the window, see
-`window_state`, has those of them that the user closed. ``Window Geometry`` says of those that went with a whole side
-of the window that they are ``collapsed``; RViz looks at that only while ``Hide Left Dock`` or ``Hide Right Dock`` is
-on, and shows them again otherwise.
+RViz keeps the first in three places. ``Panels`` lists the panels that there are. The state of the window has those of
+them that the user closed. ``Window Geometry`` says of those that went with a whole side of the window that they are
+``collapsed``; RViz looks at that only while ``Hide Left Dock`` or ``Hide Right Dock`` is on, and shows them again
+otherwise.
+
+The state is what Qt's ``QMainWindow::saveState`` gives. It has for each dock the byte 0xfb, its name (the number of its
+bytes in four bytes, then UTF-16, both big endian) and a byte of flags: 1 shown, 2 floating. Of several of one name the
+first is the dock; the others are places that it had once. RViz keeps all this as hexadecimal digits. Everything else in
+it stays as it is.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass
 from types import MappingProxyType
 
 from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.viewer.config.former_names import is_former
-from linkwright.viewer.config.window_state import is_shown, with_shown
 from linkwright.viewer.config.yaml_tree import Section, entries, insert_section, new_section, remove_section
 from linkwright.viewer.protocol.panels import PanelName
+from linkwright.viewer.protocol.time import SyncMode
+
+_DOCK = b"\xfb"
+_SHOWN = 1
+_TIME = ("rviz_common/Time", "rviz/Time")
+_MODES: tuple[SyncMode, ...] = ("Off", "Exact", "Approximate")
 
 _PANELS = "Panels"
 _GEOMETRY = "Window Geometry"
@@ -139,3 +150,90 @@ class PanelsConfig:
 
 def _panel(section: Section) -> PanelName | None:
     return _CLASSES.get(section.text("Class") or "")
+
+
+def is_shown(state: str, name: str) -> bool | None:
+    """Whether a dock is shown; None where the state does not know it, or is none that Qt wrote.
+
+    Args:
+        state: the hexadecimal digits.
+        name: of the dock, which is that of its panel.
+    """
+    content = _bytes(state)
+    at = _flags(content, name)
+    return None if at is None else bool(content[at] & _SHOWN)
+
+
+def with_shown(state: str, name: str, shown: bool) -> str:
+    """The state with a dock shown or hidden; the same one where that is so already or the dock is not known."""
+    content = _bytes(state)
+    at = _flags(content, name)
+    if at is None or bool(content[at] & _SHOWN) is shown:
+        return state
+    # Of two digits a byte: the others stay in the case that they have.
+    return f"{state[: 2 * at]}{content[at] ^ _SHOWN:02x}{state[2 * at + 2 :]}"
+
+
+def _bytes(state: str) -> bytes:
+    """What the digits stand for; nothing where they are none."""
+    try:
+        content = bytes.fromhex(state)
+    except ValueError:
+        return b""
+    return content if 2 * len(content) == len(state) else b""  # `fromhex` passes over white space
+
+
+def _flags(content: bytes, name: str) -> int | None:
+    """Where the flags of a dock are."""
+    text = name.encode("utf-16-be", "surrogatepass")
+    mark = _DOCK + len(text).to_bytes(4, "big") + text
+    at = content.find(mark) + len(mark)
+    return at if len(mark) <= at < len(content) else None
+
+
+@dataclass(frozen=True, slots=True)
+class Synchronization:
+    """Which display's messages drive time, and how."""
+
+    mode: SyncMode = "Off"
+    source: str = ""
+
+
+def read_synchronization(document: Section) -> Synchronization:
+    """What the Time panel says; RViz looks at it only where ``Experimental`` is on, which RViz 1 at last left out."""
+    panel = _time_panel(document)
+    if panel is None or not (_text(panel, "Experimental").lower() == "true" or _is_always_on(panel)):
+        return Synchronization()
+    number = _text(panel, "SyncMode")
+    if number not in ("1", "2"):
+        return Synchronization()
+    return Synchronization(_MODES[int(number)], _text(panel, "SyncSource"))
+
+
+def write_synchronization(document: Section, wanted: Synchronization) -> bool:
+    """Make the Time panel say it, in a file that has one; whether anything was another."""
+    panel = _time_panel(document)
+    if panel is None or read_synchronization(document) == wanted:
+        return False
+    panel.put(("SyncMode",), str(_MODES.index(wanted.mode)))
+    panel.put(("SyncSource",), wanted.source, string=True)
+    if wanted.mode != "Off" and not _is_always_on(panel):
+        panel.put(("Experimental",), "true")
+    return True
+
+
+def _is_always_on(panel: Section) -> bool:
+    """Whether the panel is one of RViz 1 as of Noetic. Without a source its mode is none that could lead time."""
+    return is_former(_text(panel, "Class")) and not _text(panel, "Experimental") and bool(_text(panel, "SyncSource"))
+
+
+def _time_panel(document: Section) -> Section | None:
+    for panel in document.sections(_PANELS):
+        if _text(panel, "Class") in _TIME:
+            return panel
+    return None
+
+
+def _text(section: Section, key: str) -> str:
+    scalar = section.scalar(key)
+    return scalar.text.strip() if scalar else ""

@@ -6,14 +6,12 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 
 from linkwright.diagnostics import Diagnostic, Severity, phrase
+from linkwright.graph import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from linkwright.viewer.config.former_names import FormerKey
-from linkwright.viewer.config.schema import PropertySpec, accept, from_text, in_place_of, to_text
+from linkwright.viewer.config.schema import Path, PropertySpec, Schema, accept, from_text, in_place_of, to_text
 from linkwright.viewer.config.yaml_tree import Made, Memory, Scalar, Section, make_section, unmake
 from linkwright.viewer.protocol.displays import PropertyChanged
 from linkwright.viewer.protocol.parts import Property, PropertyValue, TopicOffer
-
-Path = tuple[str, ...]
-Schema = tuple[PropertySpec, ...]
 
 
 def property_id(owner: str, path: Iterable[str]) -> str:
@@ -275,3 +273,24 @@ class PropertyStore:
 def _depends(spec: PropertySpec, path: Path) -> bool:
     condition = spec.when is not None and spec.when[0] == path
     return condition or any(_depends(child, path) for child in spec.children)
+
+
+def qos_of(properties: PropertyStore, name: str = "Topic", *, lasting: bool | None = None) -> QoSProfile:
+    """The quality of service that a Topic property asks for.
+
+    Args:
+        properties: of the display.
+        name: of the property.
+        lasting: whether messages published before count too, whatever the property says.
+    """
+    get = properties.text
+    keep_all = get(name, "History Policy") == "Keep All"
+    best_effort = get(name, "Reliability Policy") == "Best Effort"
+    if lasting is None:
+        lasting = get(name, "Durability Policy") == "Transient Local"
+    return QoSProfile(
+        depth=int(properties.number(name, "Depth")),
+        history=HistoryPolicy.KEEP_ALL if keep_all else HistoryPolicy.KEEP_LAST,
+        reliability=ReliabilityPolicy.BEST_EFFORT if best_effort else ReliabilityPolicy.RELIABLE,
+        durability=DurabilityPolicy.TRANSIENT_LOCAL if lasting else DurabilityPolicy.VOLATILE,
+    )

@@ -14,6 +14,8 @@ from dataclasses import dataclass
 from linkwright.diagnostics import phrase
 from linkwright.viewer.protocol.parts import PropertyKind, PropertyValue, RowDetails
 
+Path = tuple[str, ...]
+
 FIXED_FRAME = "<Fixed Frame>"
 """Stands for whatever the Fixed Frame is, where RViz asks for a frame."""
 
@@ -69,6 +71,9 @@ class PropertySpec:
     hidden: bool = False
     read_only: bool = False
     details: RowDetails | None = None
+
+
+Schema = tuple[PropertySpec, ...]
 
 
 def vector(name: str, description: str) -> PropertySpec:
@@ -222,3 +227,72 @@ def _spelt_colour(text: str) -> str:
 def _shown(value: object) -> str:
     text = repr(value)
     return text if len(text) <= 60 else text[:57] + "..."
+
+
+SYSTEM_DEFAULT = "System Default"
+FILTER_SIZE = "Filter size"
+
+
+def topic_spec(
+    name: str = "Topic",
+    default: str = "",
+    description: str = "The topic to listen to.",
+    *,
+    depth: int = 5,
+    durability: str = "Volatile",
+    reliability: str = "Reliable",
+    filter_size: int | None = None,
+    durability_help: str = "Whether a message published before counts too.",
+    when: tuple[Path, str] | None = None,
+    messages: tuple[str, ...] = (),
+) -> PropertySpec:
+    """The property with its parts.
+
+    Args:
+        name: of the property.
+        default: topic.
+        description: the tooltip.
+        depth: RViz's default for how many messages may wait.
+        durability: RViz's default.
+        reliability: RViz's default.
+        filter_size: default of how many messages wait for their transforms; None where they need none.
+        durability_help: the tooltip of ``Durability Policy``.
+        when: as `PropertySpec.when`.
+        messages: as `PropertySpec.messages`.
+    """
+    children = [
+        PropertySpec("Depth", "int", depth, "How many messages may wait.", minimum=1, maximum=1000),
+        PropertySpec(
+            "History Policy",
+            "enum",
+            "Keep Last",
+            "Whether only the last messages wait, or all.",
+            options=("Keep Last", "Keep All", SYSTEM_DEFAULT),
+        ),
+        PropertySpec(
+            "Reliability Policy",
+            "enum",
+            reliability,
+            "Whether every message must arrive.",
+            options=("Reliable", "Best Effort", SYSTEM_DEFAULT),
+        ),
+        PropertySpec(
+            "Durability Policy",
+            "enum",
+            durability,
+            durability_help,
+            options=("Volatile", "Transient Local", SYSTEM_DEFAULT),
+        ),
+    ]
+    if filter_size is not None:
+        children.append(
+            PropertySpec(
+                FILTER_SIZE,
+                "int",
+                filter_size,
+                "How many messages may wait for their transforms.",
+                minimum=1,
+                maximum=1000,
+            )
+        )
+    return PropertySpec(name, "topic", default, description, messages=messages, children=tuple(children), when=when)

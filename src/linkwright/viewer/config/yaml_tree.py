@@ -6,6 +6,7 @@ spelling of every scalar survive, and every value knows its line.
 
 from __future__ import annotations
 
+import re
 from bisect import bisect
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -14,7 +15,6 @@ from typing import Any
 import yaml
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText, Span, foreign, phrase
-from linkwright.viewer.config import yaml_layout
 
 _Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _Resolver: Any = yaml.resolver.Resolver
@@ -172,12 +172,12 @@ def parse(text: str, name: str) -> Section:
 
 def write(section: Section) -> str:
     """The document as text: keys in their order, scalars spelt as they were read, laid out as the source is."""
-    return yaml_layout.write(section.node, section.source.text)
+    return _laid_out(section.node, section.source.text)
 
 
 def same(one: Section, other: Section) -> bool:
     """Whether two documents would be written alike."""
-    return yaml_layout.plain(one.node) == yaml_layout.plain(other.node)
+    return _plain(one.node) == _plain(other.node)
 
 
 def new_section(source: SourceText) -> Section:
@@ -402,3 +402,51 @@ def _not_yaml(error: yaml.YAMLError, source: SourceText) -> Diagnostic:
     return Diagnostic(
         "RVIZ102", phrase("not valid YAML: {problem}", problem=foreign(problem)), span, hint=hint, source=source
     )
+
+
+_PlainDumper: Any = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
+
+_ENDLESS = 2**30
+"""Width of a line that is never broken."""
+
+_EMPTY_BELOW = re.compile(r"^ +\{\}\r?$", re.MULTILINE)
+_INDENTED_ITEMS = re.compile(r"^( *)[^\s#-][^\n]*:[ \r]*\n\1 +- ", re.MULTILINE)
+
+
+def _laid_out(node: yaml.Node, source: str) -> str:
+    """A document as text, laid out like its source."""
+    if not _INDENTED_ITEMS.search(source):
+        return _plain(node)
+    return _serialized(node, _RvizDumper if _EMPTY_BELOW.search(source) else _IndentingDumper)
+
+
+def _plain(node: yaml.Node) -> str:
+    """A document as text, in a layout that is quickly made."""
+    return _serialized(node, _PlainDumper)
+
+
+def _serialized(node: yaml.Node, dumper: Any) -> str:
+    text: str = yaml.serialize(node, Dumper=dumper, width=_ENDLESS, allow_unicode=True)
+    return text
+
+
+class _IndentingDumper(yaml.SafeDumper):
+    """Indents the items of a sequence."""
+
+    def increase_indent(self, flow: bool = False, indentless: bool = False) -> None:  # noqa: ARG002
+        super().increase_indent(flow, False)
+
+
+class _RvizDumper(_IndentingDumper):
+    """Lays out as RViz does: an empty mapping has a line of its own, too."""
+
+    def expect_block_mapping_simple_value(self) -> None:
+        if not (isinstance(self.event, yaml.MappingStartEvent) and self.check_empty_mapping()):
+            super().expect_block_mapping_simple_value()
+            return
+        self.write_indicator(":", False)
+        self.states.append(self.expect_block_mapping_key)
+        indent, self.indent = self.indent, (self.indent or 0) + 2
+        self.write_indent()
+        self.indent = indent
+        self.expect_node(mapping=True)

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from linkwright.viewer.config.property_store import Path
-from linkwright.viewer.config.schema import FIXED_FRAME, PropertySpec
+from linkwright.viewer.config.schema import FIXED_FRAME, Path, PropertySpec
 from linkwright.viewer.displays.base.display import ViewerDisplay
 from linkwright.viewer.frames.view import transform_status
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 from functools import cache
 
 from linkwright.extensions import extensions
-from linkwright.viewer.config.displays import DisplayConfig
+from linkwright.viewer.config.rviz_config import DisplayConfig
 from linkwright.viewer.displays.base.display import ViewerDisplay
 from linkwright.viewer.displays.base.host import DisplayHost
 from linkwright.viewer.displays.unsupported import UnsupportedDisplay

@@ -10,8 +10,8 @@ import numpy as np
 
 from linkwright.graph import HistoryPolicy, QoSProfile, ReliabilityPolicy
 from linkwright.viewer.clouds import BadCloudError, DepthCamera, DepthCloudBuilder, Points
-from linkwright.viewer.config.property_store import Path, Schema
 from linkwright.viewer.config.rviz_config import DisplayConfig
+from linkwright.viewer.config.schema import Path, Schema
 from linkwright.viewer.displays.base.cloud_display import CloudDisplay
 from linkwright.viewer.displays.base.data_display import Pose
 from linkwright.viewer.displays.base.host import DisplayHost

@@ -13,10 +13,8 @@ from linkwright.geometry.single import quaternion_multiply, rotation_from_z
 from linkwright.graph import DESCRIPTION_QOS, TransformException
 from linkwright.messages import String
 from linkwright.urdf import Joint
-from linkwright.viewer.config.displays import DisplayConfig
-from linkwright.viewer.config.property_store import Path, Schema
-from linkwright.viewer.config.schema import PropertySpec
-from linkwright.viewer.config.topic_properties import topic_spec
+from linkwright.viewer.config.rviz_config import DisplayConfig
+from linkwright.viewer.config.schema import Path, PropertySpec, Schema, topic_spec
 from linkwright.viewer.displays.base.host import DisplayHost
 from linkwright.viewer.displays.base.recent import RecentDisplay
 from linkwright.viewer.displays.properties.look import alpha

@@ -7,8 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from linkwright.viewer.config.schema import PropertySpec
-from linkwright.viewer.config.topic_properties import topic_spec
+from linkwright.viewer.config.schema import PropertySpec, topic_spec
 from linkwright.viewer.displays.base.data_display import Pose
 from linkwright.viewer.displays.base.topic_display import TOPIC, TopicDisplay
 from linkwright.viewer.displays.properties.look import alpha

@@ -5,9 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from linkwright.viewer.config.property_store import Path, Schema
-from linkwright.viewer.config.schema import PropertySpec
-from linkwright.viewer.config.topic_properties import topic_spec
+from linkwright.viewer.config.schema import Path, PropertySpec, Schema, topic_spec
 from linkwright.viewer.displays.base.data_display import Pose
 from linkwright.viewer.displays.base.image_topic import ImageTopicDisplay
 from linkwright.viewer.images import Range, has_range

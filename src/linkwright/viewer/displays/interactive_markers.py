@@ -10,9 +10,8 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.geometry.single import Transform
 from linkwright.graph import TransformException
 from linkwright.messages import get_message
-from linkwright.viewer.config.displays import DisplayConfig
-from linkwright.viewer.config.property_store import Path
-from linkwright.viewer.config.schema import PropertySpec
+from linkwright.viewer.config.rviz_config import DisplayConfig
+from linkwright.viewer.config.schema import Path, PropertySpec
 from linkwright.viewer.displays.base.data_display import DataDisplay, Pose
 from linkwright.viewer.displays.base.host import DisplayHost
 from linkwright.viewer.markers import BadMarkerError

@@ -9,7 +9,7 @@ import numpy as np
 from linkwright.graph import TransformException
 from linkwright.viewer.clouds import Points, ScanProjector, swept
 from linkwright.viewer.config.rviz_config import DisplayConfig
-from linkwright.viewer.config.topic_properties import topic_spec
+from linkwright.viewer.config.schema import topic_spec
 from linkwright.viewer.displays.base.cloud_display import CloudDisplay
 from linkwright.viewer.displays.base.data_display import Pose
 from linkwright.viewer.displays.base.host import DisplayHost

@@ -10,10 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.viewer.config.property_store import Path, Schema
+from linkwright.viewer.config.property_store import qos_of
 from linkwright.viewer.config.rviz_config import DisplayConfig
-from linkwright.viewer.config.schema import PropertySpec
-from linkwright.viewer.config.topic_properties import qos_of, topic_spec
+from linkwright.viewer.config.schema import Path, PropertySpec, Schema, topic_spec
 from linkwright.viewer.displays.base.data_display import Pose
 from linkwright.viewer.displays.base.host import DisplayHost
 from linkwright.viewer.displays.base.side_topic import SideTopic

@@ -7,10 +7,8 @@ from typing import Any
 
 from linkwright.geometry.single import Transform
 from linkwright.graph import TransformException
-from linkwright.viewer.config.property_store import Path, Schema
 from linkwright.viewer.config.rviz_config import DisplayConfig
-from linkwright.viewer.config.schema import PropertySpec
-from linkwright.viewer.config.topic_properties import topic_spec
+from linkwright.viewer.config.schema import Path, PropertySpec, Schema, topic_spec
 from linkwright.viewer.displays.base.data_display import Pose
 from linkwright.viewer.displays.base.host import DisplayHost
 from linkwright.viewer.displays.base.topic_display import TopicDisplay

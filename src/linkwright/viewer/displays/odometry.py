@@ -7,9 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from linkwright.viewer.config.displays import DisplayConfig
-from linkwright.viewer.config.schema import PropertySpec
-from linkwright.viewer.config.topic_properties import topic_spec
+from linkwright.viewer.config.rviz_config import DisplayConfig
+from linkwright.viewer.config.schema import PropertySpec, topic_spec
 from linkwright.viewer.displays.base.host import DisplayHost
 from linkwright.viewer.displays.base.recent import RecentDisplay
 from linkwright.viewer.displays.poses import pose_row

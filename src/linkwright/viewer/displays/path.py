@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from linkwright.viewer.config.schema import PropertySpec, vector
-from linkwright.viewer.config.topic_properties import topic_spec
+from linkwright.viewer.config.schema import PropertySpec, topic_spec, vector
 from linkwright.viewer.displays.base.recent import RecentDisplay
 from linkwright.viewer.displays.poses import NO_COVARIANCE, pose_rows
 from linkwright.viewer.displays.properties.look import alpha, length, line_style, line_width

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from linkwright.viewer.clouds import Points, points_of_cloud
-from linkwright.viewer.config.topic_properties import topic_spec
+from linkwright.viewer.config.schema import topic_spec
 from linkwright.viewer.displays.base.cloud_display import CloudDisplay
 from linkwright.viewer.displays.properties.cloud import STYLE_SPECS, TRANSFORMER_SPECS
 

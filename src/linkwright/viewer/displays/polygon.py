@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from linkwright.viewer.config.schema import PropertySpec
-from linkwright.viewer.config.topic_properties import topic_spec
+from linkwright.viewer.config.schema import PropertySpec, topic_spec
 from linkwright.viewer.displays.base.recent import RecentDisplay
 from linkwright.viewer.displays.properties.look import alpha
 from linkwright.viewer.protocol.geometry import PolygonLine

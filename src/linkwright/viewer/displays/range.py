@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from linkwright.viewer.config.schema import PropertySpec
-from linkwright.viewer.config.topic_properties import topic_spec
+from linkwright.viewer.config.schema import PropertySpec, topic_spec
 from linkwright.viewer.displays.base.recent import RecentDisplay
 from linkwright.viewer.displays.properties.look import alpha
 from linkwright.viewer.protocol.geometry import RangeCone

@@ -6,9 +6,8 @@ from collections.abc import Sequence
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, translated
 from linkwright.urdf import Robot
-from linkwright.viewer.config.property_store import Path, Schema
 from linkwright.viewer.config.rviz_config import DisplayConfig
-from linkwright.viewer.config.schema import PropertySpec
+from linkwright.viewer.config.schema import Path, PropertySpec, Schema
 from linkwright.viewer.displays.base.display import ViewerDisplay
 from linkwright.viewer.displays.base.host import DisplayHost
 from linkwright.viewer.displays.properties.look import alpha

@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from linkwright.viewer.clouds import Points
-from linkwright.viewer.config.topic_properties import topic_spec
+from linkwright.viewer.config.schema import topic_spec
 from linkwright.viewer.displays.base.cloud_display import CloudDisplay
 from linkwright.viewer.displays.properties.cloud import scalar_specs
 

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from linkwright.viewer.config.displays import DisplayConfig
-from linkwright.viewer.config.property_store import Path, Schema
-from linkwright.viewer.config.schema import PropertySpec
+from linkwright.viewer.config.rviz_config import DisplayConfig
+from linkwright.viewer.config.schema import Path, PropertySpec, Schema
 from linkwright.viewer.displays.base.display import ViewerDisplay
 from linkwright.viewer.displays.base.host import DisplayHost
 from linkwright.viewer.displays.frame_filter import FrameFilter

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.viewer.config import file as configuration_file
-from linkwright.viewer.config.places import RecentFiles, configuration_path, list_folder
-from linkwright.viewer.config.recovery import forget_unsaved
+from linkwright.viewer.config.locations import RecentFiles, configuration_path, forget_unsaved, list_folder
 from linkwright.viewer.config.rviz_config import RvizConfig
 from linkwright.viewer.config.schema import MAXIMUM_TEXT
 from linkwright.viewer.displays.catalogue import has_display

@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from linkwright.graph import InvalidTopicNameError, Publisher
 from linkwright.messages import get_message
-from linkwright.viewer.config.tool_classes import TOOL_KINDS, tool_name
-from linkwright.viewer.config.tools import ToolEntry, ToolsConfig
-from linkwright.viewer.config.topic_properties import qos_of
+from linkwright.viewer.config.property_store import qos_of
+from linkwright.viewer.config.tools import TOOL_KINDS, ToolEntry, ToolsConfig, tool_name
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
 from linkwright.viewer.protocol.message import ServerMessage
 from linkwright.viewer.protocol.tools import (

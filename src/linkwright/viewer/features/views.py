@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from linkwright.viewer.config.view_classes import view_classes
+from linkwright.viewer.config.views import view_classes
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
 from linkwright.viewer.protocol.message import ServerMessage
 from linkwright.viewer.protocol.views import (

@@ -12,9 +12,8 @@ from linkwright.descriptions import examine
 from linkwright.diagnostics import Diagnostic, LinkwrightError
 from linkwright.graph import DurabilityPolicy
 from linkwright.messages import String
-from linkwright.viewer.config.property_store import PropertyStore
-from linkwright.viewer.config.schema import PropertySpec
-from linkwright.viewer.config.topic_properties import qos_of, topic_spec
+from linkwright.viewer.config.property_store import PropertyStore, qos_of
+from linkwright.viewer.config.schema import PropertySpec, topic_spec
 from linkwright.viewer.context import ViewerContext
 
 SOURCE = "Description Source"

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from functools import partial
 
-from linkwright.viewer.config.displays import DisplayConfig
-from linkwright.viewer.config.rviz_config import Arrangement, RvizConfig
+from linkwright.viewer.config.rviz_config import Arrangement, DisplayConfig, RvizConfig
 from linkwright.viewer.config.yaml_tree import Memory
 from linkwright.viewer.displays.base.display import ViewerDisplay
 from linkwright.viewer.displays.base.host import DisplayHost

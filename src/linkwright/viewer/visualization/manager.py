@@ -7,9 +7,10 @@ from functools import partial
 from typing import TYPE_CHECKING, Protocol
 
 from linkwright.diagnostics import phrase
-from linkwright.viewer.config.property_store import Path, PropertyStore
+from linkwright.viewer.config.panels import Synchronization, read_synchronization, write_synchronization
+from linkwright.viewer.config.property_store import PropertyStore
 from linkwright.viewer.config.rviz_config import RvizConfig
-from linkwright.viewer.config.time import Synchronization, read_synchronization, write_synchronization
+from linkwright.viewer.config.schema import Path
 from linkwright.viewer.context import ViewerContext
 from linkwright.viewer.displays.base.display import ViewerDisplay, worst
 from linkwright.viewer.displays.robot_model import RobotModelDisplay

@@ -11,8 +11,8 @@ from functools import partial
 from typing import Any
 
 from linkwright.viewer.clouds import BadCloudError, Points, coloured, decimated, supported_transformers
-from linkwright.viewer.config.property_store import Path, Schema
 from linkwright.viewer.config.rviz_config import DisplayConfig
+from linkwright.viewer.config.schema import Path, Schema
 from linkwright.viewer.displays.base.data_display import Pose
 from linkwright.viewer.displays.base.host import DisplayHost
 from linkwright.viewer.displays.base.topic_display import TopicDisplay

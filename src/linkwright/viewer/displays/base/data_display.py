@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.viewer.config.displays import DisplayConfig
+from linkwright.viewer.config.rviz_config import DisplayConfig
 from linkwright.viewer.displays.base.display import ViewerDisplay
 from linkwright.viewer.displays.base.host import DisplayHost
 from linkwright.viewer.protocol.data import DisplayForgotten, pack_data

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from typing import Any, ClassVar
 
 from linkwright.viewer.config.former_names import former_keys
-from linkwright.viewer.config.property_store import Path, PropertyStore, Schema
+from linkwright.viewer.config.property_store import PropertyStore
 from linkwright.viewer.config.rviz_config import DisplayConfig
-from linkwright.viewer.config.schema import FIXED_FRAME
+from linkwright.viewer.config.schema import FIXED_FRAME, Path, Schema
 from linkwright.viewer.config.yaml_tree import Memory
 from linkwright.viewer.displays.base.host import DisplayHost
 from linkwright.viewer.protocol.displays import Display, DisplayProperties, DisplayStatus, PropertyChanged

@@ -9,8 +9,8 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from linkwright.viewer.config.displays import DisplayConfig
-from linkwright.viewer.config.property_store import Path
+from linkwright.viewer.config.rviz_config import DisplayConfig
+from linkwright.viewer.config.schema import Path
 from linkwright.viewer.displays.base.data_display import Pose
 from linkwright.viewer.displays.base.host import DisplayHost
 from linkwright.viewer.displays.base.topic_display import TopicDisplay

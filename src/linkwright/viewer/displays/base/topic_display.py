@@ -12,9 +12,9 @@ from typing import Any, ClassVar
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import QoSProfile, Subscription, SubscriptionEventCallbacks, TransformException
-from linkwright.viewer.config.property_store import Path, Schema
+from linkwright.viewer.config.property_store import qos_of
 from linkwright.viewer.config.rviz_config import DisplayConfig
-from linkwright.viewer.config.topic_properties import FILTER_SIZE, qos_of, topic_spec
+from linkwright.viewer.config.schema import FILTER_SIZE, Path, Schema, topic_spec
 from linkwright.viewer.displays.base.data_display import DataDisplay, Pose
 from linkwright.viewer.displays.base.host import DisplayHost
 

@@ -6,8 +6,8 @@ from dataclasses import replace
 from typing import Any
 
 from linkwright.viewer.clouds import AXES, TRANSFORMERS, ColourSettings
-from linkwright.viewer.config.property_store import Path, PropertyStore, Schema
-from linkwright.viewer.config.schema import PropertySpec
+from linkwright.viewer.config.property_store import PropertyStore
+from linkwright.viewer.config.schema import Path, PropertySpec, Schema
 from linkwright.viewer.displays.properties.look import alpha
 
 DECAY_TIME = "Decay Time"

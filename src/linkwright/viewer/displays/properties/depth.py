@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from linkwright.viewer.config.property_store import Schema
-from linkwright.viewer.config.schema import PropertySpec
+from linkwright.viewer.config.schema import PropertySpec, Schema
 from linkwright.viewer.displays.properties.cloud import POSITION_TRANSFORMER, STYLE_SPECS, TRANSFORMER_SPECS
 from linkwright.viewer.images import RAW, TRANSPORTS
 

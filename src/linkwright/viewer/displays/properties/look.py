@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from linkwright.viewer.config.property_store import Path
-from linkwright.viewer.config.schema import PropertySpec
+from linkwright.viewer.config.schema import Path, PropertySpec
 
 BILLBOARDS = (("Line Style",), "Billboards")
 """The condition of properties of lines that have a width."""

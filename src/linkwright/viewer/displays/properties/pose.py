@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from linkwright.viewer.config.property_store import Schema
-from linkwright.viewer.config.schema import PropertySpec
+from linkwright.viewer.config.schema import PropertySpec, Schema
 from linkwright.viewer.displays.properties.look import alpha, length
 
 _ARROW = (("Shape",), "Arrow")

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from linkwright.urdf import Joint, Link, Robot
-from linkwright.viewer.config.property_store import Path
-from linkwright.viewer.config.schema import PropertySpec
+from linkwright.viewer.config.schema import Path, PropertySpec
 from linkwright.viewer.displays.properties.look import alpha
 
 LINKS = "Links"
