@@ -1,19 +1,67 @@
-"""What all parts of a viewer share: its node, files and pages."""
+"""What all parts of a viewer share: its node, files and pages, and word of changes in the graph."""
 
 from __future__ import annotations
 
+import asyncio
 import itertools
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass, field
 
 from linkwright.descriptions import DescriptionLibrary
 from linkwright.diagnostics import Diagnostic, Severity
 from linkwright.graph import Node
+from linkwright.graph.introspection.graph_queries import GraphQueries
 from linkwright.packages import PackageFinder
 from linkwright.viewer.frames.history import FrameHistory
-from linkwright.viewer.graph_changes import GraphChanges
 from linkwright.viewer.web.audience import PageGroup
 from linkwright.viewer.web.files import Downloads, MeshFolders
+
+_QUIET = 0.1
+"""Seconds that changes are gathered for: a node that starts makes dozens of endpoints."""
+
+
+class GraphChanges:
+    """The changes of a graph, for those who listen; costs nothing while nobody does.
+
+    Args:
+        graph: whose changes; they may happen in any thread.
+    """
+
+    def __init__(self, graph: GraphQueries) -> None:
+        self._graph = graph
+        self._listeners: dict[Callable[[], None], None] = {}
+        self._loop = asyncio.get_running_loop()
+        self._due: asyncio.TimerHandle | None = None
+
+    def listen(self, changed: Callable[[], None]) -> None:
+        """Have something called on the loop after changes."""
+        if not self._listeners:
+            self._graph.watch(self._changed)
+        self._listeners[changed] = None
+
+    def ignore(self, changed: Callable[[], None]) -> None:
+        """Do not have it called any longer."""
+        self._listeners.pop(changed, None)
+        if not self._listeners:
+            self._graph.unwatch(self._changed)
+            if self._due is not None:
+                self._due.cancel()
+                self._due = None
+
+    def _changed(self) -> None:
+        with suppress(RuntimeError):  # the loop is closed: nobody listens any more
+            self._loop.call_soon_threadsafe(self._wait)
+
+    def _wait(self) -> None:
+        if self._due is None and self._listeners:
+            self._due = self._loop.call_later(_QUIET, self._tell)
+
+    def _tell(self) -> None:
+        self._due = None
+        for changed in tuple(self._listeners):
+            if changed in self._listeners:
+                changed()
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,18 +13,16 @@ from linkwright.nodes.options import NodeOptions, create_node
 from linkwright.packages import PackageFinder
 from linkwright.viewer.config.locations import keep_unsaved
 from linkwright.viewer.config.rviz_config import RvizConfig
-from linkwright.viewer.context import ViewerContext
+from linkwright.viewer.context import GraphChanges, ViewerContext
 from linkwright.viewer.displays.base.display import ViewerDisplay
 from linkwright.viewer.features.catalogue import make_features
 from linkwright.viewer.features.joints import JointsFeature
 from linkwright.viewer.features.page_feature import PageFeature
 from linkwright.viewer.frames.history import FrameHistory
-from linkwright.viewer.graph_changes import GraphChanges
 from linkwright.viewer.protocol.codec import encode
 from linkwright.viewer.protocol.message import PageMessage, ServerMessage
 from linkwright.viewer.protocol.session import PROTOCOL_VERSION, Hello
-from linkwright.viewer.visualization.manager import VisualizationManager
-from linkwright.viewer.visualization.managers import Managers
+from linkwright.viewer.visualization.manager import Managers, VisualizationManager
 from linkwright.viewer.web.access import Gate
 from linkwright.viewer.web.audience import Audience, Page
 from linkwright.viewer.web.outbox import Payload

@@ -8,7 +8,7 @@ import yaml
 
 from linkwright.messages import get_message
 from linkwright.viewer import RvizConfig
-from linkwright.viewer.frames.time_control import TimeControl
+from linkwright.viewer.frames.stream import TimeControl
 from tests.skipping import skipping
 from tests.viewer.scene import page, world
 

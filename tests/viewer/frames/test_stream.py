@@ -9,8 +9,7 @@ import numpy as np
 from linkwright.graph import STATIC_TF_PUBLISHER_QOS, TF_QOS, Graph
 from linkwright.messages import TFMessage, TransformBatch
 from linkwright.viewer.frames.history import FrameHistory
-from linkwright.viewer.frames.stream import FrameStream
-from linkwright.viewer.frames.time_control import TimeControl
+from linkwright.viewer.frames.stream import FrameStream, TimeControl
 from tests.skipping import LoopClock, skipping
 from tests.viewer.scene import IDENTITY, unpack
 from tests.waiting import eventually

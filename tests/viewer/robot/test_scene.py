@@ -7,7 +7,7 @@ import pytest
 
 from linkwright.packages import PackageFinder
 from linkwright.urdf import read
-from linkwright.viewer.robot.scene import SceneBuilder, frame_of
+from linkwright.viewer.robot import SceneBuilder, frame_of
 from linkwright.viewer.web.files import MeshIndex
 from linkwright.xacro import expand
 from linkwright.xmltree import parse

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from linkwright.viewer.config.schema import FIXED_FRAME, Path, PropertySpec
 from linkwright.viewer.displays.base.display import ViewerDisplay
-from linkwright.viewer.frames.view import transform_status
+from linkwright.viewer.frames.stream import transform_status
 
 _FRAME = "Reference Frame"
 

@@ -20,7 +20,7 @@ from linkwright.viewer.displays.base.recent import RecentDisplay
 from linkwright.viewer.displays.properties.look import alpha
 from linkwright.viewer.protocol.geometry import EffortRings
 from linkwright.viewer.protocol.message import DataContent
-from linkwright.viewer.robot.scene import frame_of
+from linkwright.viewer.robot import frame_of
 
 _DESCRIPTION = "Robot Description"
 _PREFIX = "TF Prefix"

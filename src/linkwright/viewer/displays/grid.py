@@ -5,7 +5,7 @@ from __future__ import annotations
 from linkwright.viewer.config.schema import FIXED_FRAME, Path, PropertySpec, vector
 from linkwright.viewer.displays.base.display import ViewerDisplay
 from linkwright.viewer.displays.properties.look import alpha, line_style, line_width
-from linkwright.viewer.frames.view import transform_status
+from linkwright.viewer.frames.stream import transform_status
 
 
 class GridDisplay(ViewerDisplay):

@@ -16,8 +16,7 @@ from linkwright.viewer.protocol.displays import PropertyChanged
 from linkwright.viewer.protocol.message import ServerMessage
 from linkwright.viewer.protocol.parts import StatusRow
 from linkwright.viewer.protocol.robot import LinkProvenance, MeshStatus, RobotScene
-from linkwright.viewer.robot.description_source import DESCRIPTION_SPECS, DescriptionSource
-from linkwright.viewer.robot.scene import SceneBuilder
+from linkwright.viewer.robot import DESCRIPTION_SPECS, DescriptionSource, SceneBuilder
 from linkwright.viewer.web.files import MeshIndex
 
 _STATIC = (

@@ -8,8 +8,7 @@ from typing import Any, ClassVar, Protocol
 from linkwright.diagnostics import Diagnostic
 from linkwright.viewer.context import ViewerContext
 from linkwright.viewer.protocol.message import ServerMessage
-from linkwright.viewer.visualization.manager import VisualizationManager
-from linkwright.viewer.visualization.managers import Managers
+from linkwright.viewer.visualization.manager import Managers, VisualizationManager
 from linkwright.viewer.web.audience import Page
 from linkwright.viewer.web.outbox import Payload
 

@@ -1,10 +1,14 @@
-"""Sends transforms from the graph to the pages: at most at the Frame Rate, at once after a pause, and only changes."""
+"""Sends transforms from the graph to the pages: at most at the Frame Rate, at once after a pause, and only changes.
+
+`TimeControl` says at which time frames are shown, `FrameView` what displays know of them.
+"""
 
 from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable, Hashable
 from contextlib import suppress
+from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 import numpy as np
@@ -13,16 +17,18 @@ from numpy.typing import NDArray
 from linkwright.graph import (
     STATIC_TF_SUBSCRIPTION_QOS,
     TF_QOS,
+    Clock,
     FrameSnapshot,
     Node,
     TransformBuffer,
     TransformException,
 )
 from linkwright.messages import TFMessage
+from linkwright.viewer.config.schema import FIXED_FRAME
 from linkwright.viewer.frames.history import FrameHistory
-from linkwright.viewer.frames.time_control import TimeControl
-from linkwright.viewer.frames.view import FrameView
 from linkwright.viewer.protocol.frames import FrameTable, pack_transforms
+from linkwright.viewer.protocol.parts import StatusRow
+from linkwright.viewer.protocol.time import SyncMode
 
 _SHORTEST_PAUSE = 0.004
 """Seconds between two looks at the buffer that find nothing new, so that a flood of equal transforms costs little."""
@@ -42,6 +48,118 @@ _FADE_STEP = 0.02
 """Part of the Frame Timeout by which an age must differ to be sent anew; younger than a third of it all look alike."""
 
 _IDENTITY = np.array([[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]])
+
+_APPROACH = 0.3
+"""Part by which the delay of Approximate comes nearer to that of the last message, at each look (rviz_common)."""
+
+
+@dataclass(frozen=True, slots=True)
+class FrameView:
+    """Which frames there are, how they hang together and which of them can be placed in the Fixed Frame.
+
+    Attributes:
+        fixed_frame: the Fixed Frame, which may be unknown to tf.
+        names: the frames tf knows.
+        parents: index of each frame's parent in `names`, -1 for a root.
+        placed: the frames with a transform to the Fixed Frame; this one always is, as in RViz.
+    """
+
+    fixed_frame: str = ""
+    names: tuple[str, ...] = ()
+    parents: tuple[int, ...] = ()
+    placed: frozenset[str] = field(default_factory=frozenset)
+
+    def problem(self, frame: str) -> str | None:
+        """RViz's words for a frame that cannot be placed, or None."""
+        if frame in self.placed:
+            return None
+        return f"No transform from [{frame}] to [{self.fixed_frame}]"
+
+
+def transform_status(frames: FrameView, frame: str) -> StatusRow:
+    """The Transform row of a display in a frame (or in ``<Fixed Frame>``), in RViz's words."""
+    if frame == FIXED_FRAME or frame in frames.placed:
+        return StatusRow("Transform", "ok", "Transform OK")
+    return StatusRow("Transform", "error", f"Could not transform from [{frame}] to [{frames.fixed_frame}]")
+
+
+class TimeControl:
+    """RViz's Time panel: Pause, and Synchronization with its Source.
+
+    While paused displays take no messages and frames stay where they are. Exact shows the frames where they were at
+    the time of the source's last message; Approximate lets time go on behind the present by the source's delay.
+
+    Args:
+        clock: the viewer's.
+        changed: called when one of the attributes is another.
+        signalled: called when the source took a message, so that frames must be looked at.
+
+    Attributes:
+        paused: whether time stands still.
+        mode: Off, Exact or Approximate.
+        source: the name of the display that leads.
+        sources: names of the displays that can, in the order in which their first messages came.
+    """
+
+    def __init__(
+        self, clock: Clock, changed: Callable[[], None] = lambda: None, signalled: Callable[[], None] = lambda: None
+    ) -> None:
+        self.paused = False
+        self.mode: SyncMode = "Off"
+        self.source = ""
+        self.sources: list[str] = []
+        self._clock = clock
+        self._changed = changed
+        self._signalled = signalled
+        self._exact_ns = 0
+        self._delay_ns = self._current_delay_ns = 0
+        self._paused_ns = 0
+
+    def set(self, *, paused: bool, mode: SyncMode, source: str) -> None:
+        """Pause or go on; follow a source or none."""
+        if paused and not self.paused:
+            self._paused_ns = self.now_ns()
+        if (mode, source) != (self.mode, self.source):
+            self._exact_ns = self._delay_ns = self._current_delay_ns = 0
+        self.paused, self.mode, self.source = paused, mode, source
+        self._changed()
+
+    def took(self, display: str, stamp_ns: int) -> None:
+        """A display takes a message of some time, nanoseconds."""
+        if display not in self.sources:
+            self.sources.append(display)
+            self._changed()
+        if display != self.source or self.mode == "Off" or self.paused:
+            return
+        self._exact_ns = stamp_ns
+        self._delay_ns = max(0, self._clock.now_ns() - stamp_ns) if stamp_ns else 0
+        self._signalled()
+
+    def lookup_ns(self) -> int | None:
+        """The time at which frames are to be shown, nanoseconds; None for the latest there is."""
+        if self.paused and self.mode != "Off":
+            return self._paused_ns
+        if self.mode == "Exact":
+            return self._exact_ns or None
+        if self.mode == "Approximate" and self.source in self.sources:
+            self._current_delay_ns += int(_APPROACH * (self._delay_ns - self._current_delay_ns))
+            return self._clock.now_ns() - self._current_delay_ns
+        return None
+
+    def now_ns(self) -> int:
+        """What the clock of the Time panel shows as ROS time, nanoseconds."""
+        if self.paused:
+            return self._paused_ns
+        if self.mode == "Exact" and self._exact_ns:
+            return self._exact_ns
+        return self._clock.now_ns() - (self._current_delay_ns if self.mode == "Approximate" else 0)
+
+    def reset(self) -> None:
+        """Forget what messages said of time."""
+        self.sources.clear()
+        self._exact_ns = self._delay_ns = self._current_delay_ns = 0
+        self._paused_ns = self._clock.now_ns()
+        self._changed()
 
 
 class FrameAudience(Protocol):

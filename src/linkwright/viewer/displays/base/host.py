@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import Protocol
 
 from linkwright.viewer.context import ViewerContext
-from linkwright.viewer.frames.time_control import TimeControl
-from linkwright.viewer.frames.view import FrameView
+from linkwright.viewer.frames.stream import FrameView, TimeControl
 from linkwright.viewer.web.audience import PageGroup
 
 

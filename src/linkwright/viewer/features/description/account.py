@@ -10,8 +10,7 @@ from linkwright.geometry.single import quaternion_of, rpy_from_quaternion
 from linkwright.urdf import Joint, Link, Mimic, Robot
 from linkwright.viewer.features.description.places import Places
 from linkwright.viewer.protocol.description import Description, JointDetails, JointMimic, LinkDetails
-from linkwright.viewer.robot.inertia import link_inertia
-from linkwright.viewer.robot.scene import frame_of
+from linkwright.viewer.robot import frame_of, link_inertia
 
 
 def account(robot: Robot, text: str, files: list[str], *, display: str, revision: int, prefix: str) -> Description:

@@ -1,1 +1,0 @@
-"""Robots as the page draws them: links, joints, inertias, and where each was written."""
