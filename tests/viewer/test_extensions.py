@@ -14,7 +14,7 @@ from linkwright.viewer.displays import catalogue
 from tests.viewer.scene import page, world
 
 MODULE = """\
-from linkwright.viewer.displays.polygon import PolygonDisplay
+from linkwright.viewer.displays.geometry import PolygonDisplay
 from linkwright.viewer.features.page_feature import PageFeature
 from linkwright.viewer.protocol.message import PageMessage, ServerMessage
 

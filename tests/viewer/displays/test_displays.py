@@ -45,7 +45,7 @@ def test_displays_of_data_are_imported_when_there_are_some():
     """The program answers a browser sooner without them."""
     code = "import sys, linkwright.viewer.viewer; print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    rooms = ("clouds", "images", "markers", "displays.topic_display")
+    rooms = ("clouds", "images", "markers", "displays.base.topic_display")
     assert not {f"linkwright.viewer.{room}" for room in rooms} & set(done.stdout.split())
     assert not {"PIL", "cyclonedds", "rosbags", "linkwright.inertia"} & set(done.stdout.split())
 

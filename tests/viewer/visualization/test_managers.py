@@ -6,7 +6,7 @@ from contextlib import asynccontextmanager
 
 import aiohttp
 
-from linkwright.viewer.visualization import managers
+from linkwright.viewer.visualization import manager
 from tests.viewer.configured import TEXT, PointStamped, opened
 from tests.viewer.scene import Client, page
 from tests.waiting import eventually
@@ -30,7 +30,7 @@ async def test_pages_share_displays():
 
 
 async def test_a_page_may_have_displays_of_its_own(monkeypatch):
-    monkeypatch.setattr(managers, "LINGERING", 0.05)
+    monkeypatch.setattr(manager, "LINGERING", 0.05)
     async with opened() as (made, shared):
         publisher = made.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
         async with own_page(made) as own:
@@ -58,7 +58,7 @@ async def test_a_page_may_have_displays_of_its_own(monkeypatch):
 
 
 async def test_only_some_displays_wait_for_their_pages(monkeypatch):
-    monkeypatch.setattr(managers, "MOST_LINGERING", 2)
+    monkeypatch.setattr(manager, "MOST_LINGERING", 2)
     async with opened() as (made, _):
         publisher = made.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
         for number in range(5):

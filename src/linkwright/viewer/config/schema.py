@@ -83,6 +83,39 @@ def vector(name: str, description: str) -> PropertySpec:
     )
 
 
+BILLBOARDS = (("Line Style",), "Billboards")
+"""The condition of properties of lines that have a width."""
+
+
+def alpha(
+    description: str = "Opacity: 0 is invisible.", default: float = 1.0, when: tuple[Path, str] | None = None
+) -> PropertySpec:
+    """The opacity of what a display draws."""
+    return PropertySpec("Alpha", "float", default, description, minimum=0.0, maximum=1.0, when=when)
+
+
+def length(name: str, default: float, description: str, when: tuple[Path, str] | None = None) -> PropertySpec:
+    """A length in metres."""
+    return PropertySpec(name, "float", default, description, when=when)
+
+
+def line_style(*children: PropertySpec) -> PropertySpec:
+    """Whether lines are thin or have a width."""
+    return PropertySpec(
+        "Line Style",
+        "enum",
+        "Lines",
+        "Lines are one pixel wide; billboards have a width in metres.",
+        options=("Lines", "Billboards"),
+        children=children,
+    )
+
+
+def line_width() -> PropertySpec:
+    """The width of lines that have one."""
+    return PropertySpec("Line Width", "float", 0.03, "Width of the lines, in metres.", minimum=0.001, when=BILLBOARDS)
+
+
 def accept(spec: PropertySpec, value: object) -> PropertyValue:
     """The value to store for one that a page sent: of the kind's type, clamped into the bounds.
 

@@ -10,10 +10,33 @@ from __future__ import annotations
 from functools import cache
 
 from linkwright.extensions import extensions
+from linkwright.viewer.config.former_names import GROUP as GROUP_CLASS
 from linkwright.viewer.config.rviz_config import DisplayConfig
-from linkwright.viewer.displays.base.display import ViewerDisplay
-from linkwright.viewer.displays.base.host import DisplayHost
-from linkwright.viewer.displays.unsupported import UnsupportedDisplay
+from linkwright.viewer.displays.base.display import DisplayHost, ViewerDisplay
+from linkwright.viewer.protocol.parts import StatusRow
+
+
+class GroupDisplay(ViewerDisplay):
+    """Holds other displays, and switches them off together."""
+
+    CLASS = GROUP_CLASS
+
+
+class UnsupportedDisplay(ViewerDisplay):
+    """A display of any other class."""
+
+    CLASS = ""
+    SUPPORTED = False
+
+    def start(self) -> None:
+        """Say that it is not drawn."""
+        self.enabled_changed()
+
+    def enabled_changed(self) -> None:
+        """Say that it is not drawn, where the user would have it drawn."""
+        text = f"Displays of class '{self.config.cls}' are kept in the file but not drawn"
+        self.set_status([StatusRow("Class", "warn", text)])
+
 
 GROUP = "linkwright.displays"
 """Of the entry points."""

@@ -14,10 +14,9 @@ from linkwright.graph import DESCRIPTION_QOS, TransformException
 from linkwright.messages import String
 from linkwright.urdf import Joint
 from linkwright.viewer.config.rviz_config import DisplayConfig
-from linkwright.viewer.config.schema import Path, PropertySpec, Schema, topic_spec
-from linkwright.viewer.displays.base.host import DisplayHost
-from linkwright.viewer.displays.base.recent import RecentDisplay
-from linkwright.viewer.displays.properties.look import alpha
+from linkwright.viewer.config.schema import Path, PropertySpec, Schema, alpha, topic_spec
+from linkwright.viewer.displays.base.display import DisplayHost
+from linkwright.viewer.displays.base.topic_display import RecentDisplay
 from linkwright.viewer.protocol.geometry import EffortRings
 from linkwright.viewer.protocol.message import DataContent
 from linkwright.viewer.robot import frame_of

@@ -1,14 +1,139 @@
-"""rviz_default_plugins/Image."""
+"""Image and Camera: what is on a topic of images, raw or compressed."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
+from functools import partial
+from typing import Any, Literal
 
+import numpy as np
+
+from linkwright.graph import QoSProfile
+from linkwright.viewer.config.property_store import qos_of
+from linkwright.viewer.config.rviz_config import DisplayConfig
 from linkwright.viewer.config.schema import Path, PropertySpec, Schema, topic_spec
-from linkwright.viewer.displays.base.data_display import Pose
-from linkwright.viewer.displays.base.image_topic import ImageTopicDisplay
-from linkwright.viewer.images import Range, has_range
+from linkwright.viewer.displays.base.display import DisplayHost, Pose, ViewerDisplay
+from linkwright.viewer.displays.base.topic_display import TOPIC, SideTopic, TopicDisplay, camera_info_topic
+from linkwright.viewer.images import (
+    COMPRESSED,
+    BadImageError,
+    ImageCompressor,
+    ImageSource,
+    Range,
+    RangeFinder,
+    Unpacker,
+    encoding_of,
+    has_range,
+    picture_of,
+)
+from linkwright.viewer.protocol.images import CameraModel, ImageFrame
+
+_ENCODINGS: dict[int, Literal["grey", "rgb", "rgba"]] = {1: "grey", 3: "rgb", 4: "rgba"}
+MOST_PIXELS = 2_100_000
+"""Pages are sent no more pixels of an image than Full HD has: panels are smaller, and pixels are not compressed."""
+
+
+class ImageTopicDisplay(TopicDisplay):
+    """Shows the images of a topic, whose transport is the one that its name ends with, as in RViz.
+
+    Those of ``/compressed`` are files that browsers read, and go to the page as they are, unless their values have more
+    than 8 bits.
+    """
+
+    MESSAGE = "sensor_msgs/msg/Image"
+
+    def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
+        super().__init__(host, identity, config)
+        self.ranges = RangeFinder()
+        self._compressor = ImageCompressor()
+        self._unpacker = Unpacker()
+
+    @classmethod
+    def messages_shown(cls) -> tuple[str, ...]:
+        """Raw and compressed images."""
+        return (cls.MESSAGE, "sensor_msgs/msg/CompressedImage")
+
+    def subscription(self) -> tuple[str, str, QoSProfile]:
+        """As the transport of the topic has it."""
+        source = self._source()
+        return source.message_type, source.topic, super().subscription()[2]
+
+    def take(self, message: Any, pose: Pose | None) -> None:
+        """Show an image, or say why it cannot be unpacked."""
+        try:
+            image = self._image_of(message)
+        except BadImageError as error:
+            self.say("Image", "error", str(error))
+            return
+        self.take_image(image, pose)
+
+    def take_image(self, message: Any, pose: Pose | None) -> None:
+        """An image to show.
+
+        Args:
+            message: with the fields of a sensor_msgs/msg/Image, or a sensor_msgs/msg/CompressedImage for browsers.
+            pose: see `take`.
+        """
+        raise NotImplementedError
+
+    def reset(self) -> None:
+        """Forget the image."""
+        self.ranges.reset()
+        super().reset()
+
+    def show_image(self, message: Any, camera: CameraModel | None = None, pose: Pose | None = None) -> None:
+        """Send an image, or say why it cannot be shown."""
+        try:
+            content = self._frame(message, camera)
+        except BadImageError as error:
+            self.say("Image", "error", str(error))
+            return
+        self.unsay("Image")
+        frame, stamp_ns = TopicDisplay.frame_of(self, message)
+        shrink = partial(self._compressor.compressed, content)
+        self.send(content, frame=frame.removeprefix("/"), pose=pose, stamp_ns=stamp_ns, shrink=shrink)
+
+    def _source(self) -> ImageSource:
+        return ImageSource.of(self.properties.text(TOPIC))
+
+    def _subscribe(self) -> None:
+        source = self._source()
+        if source.is_read:
+            super()._subscribe()
+        else:
+            choice = f"choose {source.base} or {source.base}/{COMPRESSED}"
+            self.say(TOPIC, "error", f"Images of transport '{source.transport}' are not read: {choice}")
+
+    def _image_of(self, message: Any) -> Any:
+        transport = self._source().transport
+        if transport == COMPRESSED and not has_range(encoding_of(message)):
+            return message
+        return self._unpacker.image(message, transport)
+
+    def _frame(self, message: Any, camera: CameraModel | None) -> ImageFrame:
+        if not hasattr(message, "encoding"):
+            data = np.frombuffer(message.data, np.uint8)
+            if not _is_readable(data.tobytes()[:16]):
+                raise BadImageError(f"The image is in no format that browsers read: '{message.format}'")
+            return ImageFrame(0, 0, 0, 0, "file", data, camera)
+        picture = picture_of(message, self.ranges)
+        shown = picture.thinned(MOST_PIXELS)
+        return ImageFrame(
+            width=picture.width,
+            height=picture.height,
+            columns=shown.width,
+            rows=shown.height,
+            encoding=_ENCODINGS[shown.channels],
+            data=shown.pixels,
+            camera=camera,
+        )
+
+
+def _is_readable(start: bytes) -> bool:
+    """Whether a file begins as JPEG, PNG, GIF, BMP or WebP do."""
+    return start.startswith((b"\xff\xd8\xff", b"\x89PNG", b"GIF8", b"BM")) or start[8:12] == b"WEBP"
+
 
 _NORMALIZE = "Normalize Range"
 
@@ -66,3 +191,151 @@ class ImageDisplay(ImageTopicDisplay):
         super().changed(path)
         if any(spec.name == path[0] for spec in _RANGE_SPECS):
             self.show_again()
+
+
+_INFO = "Camera Info"
+_MOST_WAITING = 10
+
+_SPECS: Schema = (
+    topic_spec(description="sensor_msgs/msg/Image; its camera_info is looked for beside it."),
+    PropertySpec(
+        "Image Rendering",
+        "enum",
+        "background and overlay",
+        "Draw the image behind everything else, over it, or both.",
+        options=("background", "overlay", "background and overlay"),
+    ),
+    PropertySpec("Overlay Alpha", "float", 0.5, "Opacity of the image over the scene.", minimum=0.0, maximum=1.0),
+    PropertySpec(
+        "Zoom Factor",
+        "float",
+        1.0,
+        "Less than 1 shows more of the world than the image does, more than 1 less.",
+        minimum=0.00001,
+        maximum=100000.0,
+    ),
+    PropertySpec(
+        "Far Plane Distance",
+        "float",
+        100.0,
+        "What is farther away is not drawn, in metres.",
+        minimum=0.00001,
+        maximum=100000.0,
+    ),
+)
+
+
+class CameraDisplay(ImageTopicDisplay):
+    """The scene as a camera sees it, with the camera's image behind or over it, in a panel of its own."""
+
+    CLASS = "rviz_default_plugins/Camera"
+    SCHEMA = _SPECS
+
+    def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
+        self._boxes: Schema = ()
+        super().__init__(host, identity, config)
+        self._infos = SideTopic(host, "sensor_msgs/msg/CameraInfo", self._info_received)
+        self._info: Any = None
+
+    def schema(self) -> Schema:
+        """The properties, with a box for each other display."""
+        whole = PropertySpec(
+            "Visibility",
+            "bool",
+            True,
+            "Which displays are seen through the camera.",
+            children=self._boxes,
+            nested=True,
+        )
+        return (*_SPECS, whole)
+
+    def arranged(self, displays: Sequence[ViewerDisplay]) -> None:
+        """Offer a box for each of the other displays."""
+        boxes = self._boxes_of(displays, None)
+        if boxes != self._boxes:
+            self._boxes = boxes
+            self.publish_properties()
+
+    def _boxes_of(self, displays: Sequence[ViewerDisplay], group: DisplayConfig | None) -> Schema:
+        """A box for each display of a group, by its name; those in groups below the group's box."""
+        found: dict[str, PropertySpec] = {}
+        for display in displays:
+            config = display.config
+            if config.group is not group or display is self or config.name in found:
+                continue
+            inside = self._boxes_of(displays, config) if config.is_group else ()
+            text = "Show this display through the camera."
+            found[config.name] = PropertySpec(config.name, "bool", True, text, children=inside, nested=config.is_group)
+        return tuple(found.values())
+
+    def most_waiting(self) -> int:
+        """RViz's number; the display has no property for it."""
+        return _MOST_WAITING
+
+    def take_image(self, message: Any, pose: Pose | None) -> None:
+        """Show an image, once it is known how the camera looks."""
+        camera = self._model(message)
+        self.show_image(message, camera, pose)
+
+    def time_changed(self) -> None:
+        """Show what came while time stood still."""
+        self._infos.go_on()
+        super().time_changed()
+
+    def reset(self) -> None:
+        """Forget image and camera."""
+        if self.last is None:
+            self._info = None
+        super().reset()
+
+    def _subscribe(self) -> None:
+        super()._subscribe()
+        topic = self.properties.text(TOPIC).strip()
+        if not topic:
+            return
+        info = camera_info_topic(topic)
+        problem = self._infos.listen(info, qos_of(self.properties))
+        text = problem or f"No CameraInfo received on [{info}]. Topic may not exist."
+        self.say(_INFO, "error" if problem else "warn", text)
+
+    def _unsubscribe(self) -> None:
+        super()._unsubscribe()
+        self._infos.close()
+
+    def _info_received(self, info: Any) -> None:
+        first = self._info is None
+        self._info = info
+        if first:
+            self.show_again()
+
+    def _model(self, image: Any) -> CameraModel | None:
+        """The camera of an image; None, and the status says why, without one."""
+        info = self._info
+        if info is None:
+            return None
+        numbers = [np.asarray(part, np.float64) for part in (info.d, info.k, info.r, info.p)]
+        if not all(np.isfinite(part).all() for part in numbers):
+            self.say(_INFO, "error", "Contains invalid floating point values (nans or infs)")
+            return None
+        width = info.width or getattr(image, "width", 0)
+        height = info.height or getattr(image, "height", 0)
+        if width == 0 or height == 0:
+            text = "Could not determine width/height of image due to malformed CameraInfo (either width or height is 0)"
+            self.say(_INFO, "error", text)
+            return None
+        p = numbers[3]
+        if p[0] == 0.0 or p[5] == 0.0:
+            text = "CameraInfo/P resulted in an invalid position calculation (nans or infs)"
+            self.say(_INFO, "error", text)
+            return None
+        self.say(_INFO, "ok", "OK")
+        return CameraModel(
+            width=float(width),
+            height=float(height),
+            focal_x=float(p[0]),
+            focal_y=float(p[5]),
+            centre_x=float(p[2]),
+            centre_y=float(p[6]),
+            offset_x=float(-p[3] / p[0]),
+            offset_y=float(-p[7] / p[5]),
+        )

@@ -12,8 +12,7 @@ from linkwright.graph import TransformException
 from linkwright.messages import get_message
 from linkwright.viewer.config.rviz_config import DisplayConfig
 from linkwright.viewer.config.schema import Path, PropertySpec
-from linkwright.viewer.displays.base.data_display import DataDisplay, Pose
-from linkwright.viewer.displays.base.host import DisplayHost
+from linkwright.viewer.displays.base.display import DataDisplay, DisplayHost, Pose
 from linkwright.viewer.markers import BadMarkerError
 from linkwright.viewer.markers.client import ClientEvents, InteractiveMarkerClient
 from linkwright.viewer.markers.controls import read_interactive_marker

@@ -12,12 +12,9 @@ from numpy.typing import NDArray
 
 from linkwright.viewer.config.property_store import qos_of
 from linkwright.viewer.config.rviz_config import DisplayConfig
-from linkwright.viewer.config.schema import Path, PropertySpec, Schema, topic_spec
-from linkwright.viewer.displays.base.data_display import Pose
-from linkwright.viewer.displays.base.host import DisplayHost
-from linkwright.viewer.displays.base.side_topic import SideTopic
-from linkwright.viewer.displays.base.topic_display import TOPIC, TRANSFORM, TopicDisplay
-from linkwright.viewer.displays.properties.look import alpha
+from linkwright.viewer.config.schema import Path, PropertySpec, Schema, alpha, topic_spec
+from linkwright.viewer.displays.base.display import DisplayHost, Pose
+from linkwright.viewer.displays.base.topic_display import TOPIC, TRANSFORM, SideTopic, TopicDisplay
 from linkwright.viewer.protocol.displays import PropertyChanged
 from linkwright.viewer.protocol.images import OccupancyMap
 

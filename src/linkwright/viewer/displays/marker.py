@@ -9,8 +9,7 @@ from linkwright.geometry.single import Transform
 from linkwright.graph import TransformException
 from linkwright.viewer.config.rviz_config import DisplayConfig
 from linkwright.viewer.config.schema import Path, PropertySpec, Schema, topic_spec
-from linkwright.viewer.displays.base.data_display import Pose
-from linkwright.viewer.displays.base.host import DisplayHost
+from linkwright.viewer.displays.base.display import DisplayHost, Pose
 from linkwright.viewer.displays.base.topic_display import TopicDisplay
 from linkwright.viewer.markers import BadMarkerError, MarkerReading, MarkerStore, read_marker
 from linkwright.viewer.markers.shapes import ADD, DELETE, DELETE_ALL, marker_id, placed_in

@@ -1,25 +1,108 @@
-"""rviz_default_plugins/Pose, PoseArray and PoseWithCovariance."""
+"""Pose, PoseArray, PoseWithCovariance, Odometry and Path: poses as arrows or axes, and lines through them."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 
-from linkwright.viewer.config.schema import PropertySpec, topic_spec
-from linkwright.viewer.displays.base.recent import RecentDisplay
-from linkwright.viewer.displays.properties.look import alpha, length
-from linkwright.viewer.displays.properties.pose import covariance, pose_shape
+from linkwright.viewer.config.rviz_config import DisplayConfig
+from linkwright.viewer.config.schema import (
+    PropertySpec,
+    Schema,
+    alpha,
+    length,
+    line_style,
+    line_width,
+    topic_spec,
+    vector,
+)
+from linkwright.viewer.displays.base.display import DisplayHost
+from linkwright.viewer.displays.base.topic_display import RecentDisplay
 from linkwright.viewer.protocol.data import Floats
 from linkwright.viewer.protocol.geometry import PoseMarks
 from linkwright.viewer.protocol.message import DataContent
+
+_ARROW = (("Shape",), "Arrow")
+_AXES = (("Shape",), "Axes")
+
+
+def pose_shape(*, nested: bool = False) -> Schema:
+    """Whether a pose is an arrow or axes, and how large; ``nested`` as Odometry has it: the sizes below ``Shape``."""
+    description = "Whether a pose is drawn as an arrow along its x or as axes."
+    sizes = (
+        PropertySpec("Color", "color", "#ff1900", "Colour of the arrow.", when=_ARROW),
+        alpha("Opacity of the arrow.", when=_ARROW),
+        length("Shaft Length", 1.0, "Length of the arrow's shaft, in metres.", _ARROW),
+        length("Shaft Radius", 0.05, "Thickness of the arrow's shaft, in metres.", _ARROW),
+        length("Head Length", 0.3, "Length of the arrow's head, in metres.", _ARROW),
+        length("Head Radius", 0.1, "Width of the arrow's head, in metres.", _ARROW),
+        length("Axes Length", 1.0, "Length of each axis, in metres.", _AXES),
+        length("Axes Radius", 0.1, "Thickness of each axis, in metres.", _AXES),
+    )
+    options = ("Arrow", "Axes")
+    if nested:
+        return (PropertySpec("Shape", "enum", "Arrow", description, options=options, children=sizes),)
+    return (PropertySpec("Shape", "enum", "Arrow", description, options=options), *sizes)
+
+
+def covariance() -> PropertySpec:
+    """RViz's CovarianceProperty."""
+    position = (
+        PropertySpec("Color", "color", "#cc33cc", "Colour of the ellipsoid."),
+        alpha("Opacity of the ellipsoid.", 0.3),
+        PropertySpec("Scale", "float", 1.0, "How many standard deviations the ellipsoid is large.", minimum=0.0),
+    )
+    orientation = (
+        PropertySpec(
+            "Frame",
+            "enum",
+            "Local",
+            "Whether the deviations are about the axes of the pose or of the frame it is given in.",
+            options=("Local", "Fixed"),
+        ),
+        PropertySpec(
+            "Color Style",
+            "enum",
+            "Unique",
+            "One colour for all three, or red, green and blue for the rotations about x, y and z.",
+            options=("Unique", "RGB"),
+        ),
+        PropertySpec(
+            "Color",
+            "color",
+            "#ffff7f",
+            "Colour of the three.",
+            when=(("Covariance", "Orientation", "Color Style"), "Unique"),
+        ),
+        alpha("Opacity of the three.", 0.5),
+        PropertySpec(
+            "Offset",
+            "float",
+            1.0,
+            "How far from the pose they are, in metres; in a plane: how long the triangle is.",
+            minimum=0.0,
+        ),
+        PropertySpec("Scale", "float", 1.0, "How many standard deviations they are large.", minimum=0.0),
+    )
+    return PropertySpec(
+        "Covariance",
+        "bool",
+        True,
+        "Draw how uncertain each pose is.",
+        children=(
+            PropertySpec("Position", "bool", True, "Draw how uncertain the position is.", children=position),
+            PropertySpec("Orientation", "bool", True, "Draw how uncertain the orientation is.", children=orientation),
+        ),
+    )
+
 
 NO_COVARIANCE: Floats = np.zeros(0, dtype=np.float32)
 
 _FLAT = (("Shape",), "Arrow (Flat)")
 _SOLID = (("Shape",), "Arrow (3D)")
-_AXES = (("Shape",), "Axes")
 
 
 def pose_row(pose: Any) -> tuple[float, ...]:
@@ -90,4 +173,93 @@ class PoseArrayDisplay(RecentDisplay):
     def content(self, message: Any) -> DataContent | None:
         """The poses."""
         rows = pose_rows(message.poses)
+        return PoseMarks(rows, NO_COVARIANCE) if self.is_finite(rows) else None
+
+
+_NORM_TOLERANCE = 10e-3
+
+
+class OdometryDisplay(RecentDisplay):
+    """The way of a robot: a mark wherever it was a bit further or turned a bit more than at the mark before."""
+
+    CLASS = "rviz_default_plugins/Odometry"
+    MESSAGE = "nav_msgs/msg/Odometry"
+    LENGTH = ("Keep",)
+    SCHEMA = (
+        topic_spec(description=MESSAGE, filter_size=10),
+        PropertySpec(
+            "Position Tolerance", "float", 0.1, "Metres from the last mark that make for a new one.", minimum=0.0
+        ),
+        PropertySpec(
+            "Angle Tolerance", "float", 0.1, "Radians from the last mark that make for a new one.", minimum=0.0
+        ),
+        PropertySpec("Keep", "int", 100, "How many marks are kept; 0 for all of them.", minimum=0),
+        *pose_shape(nested=True),
+        covariance(),
+    )
+
+    def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
+        super().__init__(host, identity, config)
+        self._marked: tuple[float, ...] | None = None
+
+    def content(self, message: Any) -> DataContent | None:
+        """The pose with its covariance, unless it is too near to the last."""
+        row = pose_row(message.pose.pose)
+        spread = np.asarray(message.pose.covariance, dtype=np.float64)
+        if not self.is_finite(row, spread):
+            return None
+        if abs(sum(part * part for part in row[3:]) - 1.0) >= _NORM_TOLERANCE:
+            self.refuse("Message contained unnormalized quaternion (squares of values don't add to 1)")
+            return None
+        if self._is_near(row):
+            return None
+        self._marked = row
+        return PoseMarks(np.array([row], dtype=np.float32), spread.astype(np.float32))
+
+    def reset(self) -> None:
+        """Forget the marks; the next message makes one."""
+        self._marked = None
+        super().reset()
+
+    def _is_near(self, row: tuple[float, ...]) -> bool:
+        if self._marked is None:
+            return False
+        cosine = sum(a * b for a, b in zip(self._marked[3:], row[3:], strict=True))
+        angle = math.acos(min(1.0, max(-1.0, 2.0 * cosine * cosine - 1.0)))
+        return math.dist(self._marked[:3], row[:3]) < self.properties.number(
+            "Position Tolerance"
+        ) and angle < self.properties.number("Angle Tolerance")
+
+
+_AXES_SHOWN = (("Pose Style",), "Axes")
+_ARROWS_SHOWN = (("Pose Style",), "Arrows")
+
+
+class PathDisplay(RecentDisplay):
+    """The last paths of a topic, as lines through their poses, with the poses if asked for."""
+
+    CLASS = "rviz_default_plugins/Path"
+    MESSAGE = "nav_msgs/msg/Path"
+    LENGTH = ("Buffer Length",)
+    SCHEMA = (
+        topic_spec(description=MESSAGE, filter_size=10),
+        line_style(),
+        line_width(),
+        PropertySpec("Color", "color", "#19ff00", "Colour of the lines."),
+        alpha("Opacity of the lines."),
+        PropertySpec("Buffer Length", "int", 1, "How many paths are shown.", minimum=1),
+        vector("Offset", "How far from their place paths are drawn, in metres of the Fixed Frame."),
+        PropertySpec("Pose Style", "enum", "None", "How the poses are drawn.", options=("None", "Axes", "Arrows")),
+        length("Length", 0.3, "Length of each axis, in metres.", _AXES_SHOWN),
+        length("Radius", 0.03, "Thickness of each axis, in metres.", _AXES_SHOWN),
+        PropertySpec("Pose Color", "color", "#ff55ff", "Colour of the arrows.", when=_ARROWS_SHOWN),
+        length("Shaft Length", 0.1, "Length of the arrows' shafts, in metres.", _ARROWS_SHOWN),
+        length("Head Length", 0.2, "Length of the arrows' heads, in metres.", _ARROWS_SHOWN),
+        length("Shaft Diameter", 0.1, "Thickness of the arrows' shafts, in metres.", _ARROWS_SHOWN),
+        length("Head Diameter", 0.3, "Width of the arrows' heads, in metres.", _ARROWS_SHOWN),
+    )
+
+    def content(self, message: Any) -> DataContent | None:
+        """The poses of a path."""
+        rows = pose_rows(stamped.pose for stamped in message.poses)
         return PoseMarks(rows, NO_COVARIANCE) if self.is_finite(rows) else None

@@ -5,9 +5,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from linkwright.viewer.config.schema import PropertySpec, Schema, topic_spec
-from linkwright.viewer.displays.base.recent import RecentDisplay
-from linkwright.viewer.displays.properties.look import alpha
+from linkwright.viewer.config.schema import PropertySpec, Schema, alpha, topic_spec
+from linkwright.viewer.displays.base.topic_display import RecentDisplay
 from linkwright.viewer.protocol.geometry import Screw
 from linkwright.viewer.protocol.message import DataContent
 

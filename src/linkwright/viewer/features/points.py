@@ -14,7 +14,7 @@ class PointsFeature(PageFeature):
 
     def receive(self, page: Page, message: AskPoint) -> None:
         """Answer, if the point is still shown."""
-        from linkwright.viewer.displays.base.cloud_display import CloudDisplay
+        from linkwright.viewer.displays.point_clouds import CloudDisplay
 
         display = self.managers.of(page).display(message.display)
         if not isinstance(display, CloudDisplay):

@@ -7,8 +7,7 @@ from functools import partial
 
 from linkwright.viewer.config.rviz_config import Arrangement, DisplayConfig, RvizConfig
 from linkwright.viewer.config.yaml_tree import Memory
-from linkwright.viewer.displays.base.display import ViewerDisplay
-from linkwright.viewer.displays.base.host import DisplayHost
+from linkwright.viewer.displays.base.display import DisplayHost, ViewerDisplay
 from linkwright.viewer.displays.catalogue import make_display
 from linkwright.viewer.protocol.configuration import EditKind, EditName
 from linkwright.viewer.visualization.history import Edit, History

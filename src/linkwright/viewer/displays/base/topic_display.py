@@ -8,15 +8,73 @@ import traceback
 from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
+from dataclasses import dataclass
 from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import QoSProfile, Subscription, SubscriptionEventCallbacks, TransformException
 from linkwright.viewer.config.property_store import qos_of
 from linkwright.viewer.config.rviz_config import DisplayConfig
 from linkwright.viewer.config.schema import FILTER_SIZE, Path, Schema, topic_spec
-from linkwright.viewer.displays.base.data_display import DataDisplay, Pose
-from linkwright.viewer.displays.base.host import DisplayHost
+from linkwright.viewer.displays.base.display import DataDisplay, DisplayHost, Pose
+from linkwright.viewer.protocol.message import DataContent
+
+
+class SideTopic:
+    """Listens to a topic that goes along with the display's own. While time is paused its messages wait.
+
+    Args:
+        host: of the display.
+        message_type: of its messages.
+        on_message: called with each of them.
+    """
+
+    def __init__(self, host: DisplayHost, message_type: str, on_message: Callable[[Any], None]) -> None:
+        self._host = host
+        self._type = message_type
+        self._on_message = on_message
+        self._subscription: Subscription[Any] | None = None
+        self._held: deque[Any] = deque()
+
+    def listen(self, topic: str, qos: QoSProfile) -> str | None:
+        """Subscribe to a topic instead of the one before; returns RViz's words for why that failed, or None."""
+        self.close()
+        self._held = deque(maxlen=max(1, qos.depth))
+        try:
+            self._subscription = self._host.context.node.create_subscription(self._type, topic, self._received, qos)
+        except LinkwrightError as error:
+            return f"Error subscribing: {error.diagnostics[0].message}"
+        return None
+
+    def close(self) -> None:
+        """Stop listening."""
+        if self._subscription is not None:
+            with suppress(ValueError):  # the node may have been destroyed before
+                self._host.context.node.destroy_subscription(self._subscription)
+            self._subscription = None
+        self._held.clear()
+
+    def go_on(self) -> None:
+        """Handle the messages that were held while time was paused."""
+        while self._held and not self._host.time.paused:
+            self._on_message(self._held.popleft())
+
+    def _received(self, message: Any) -> None:
+        if self._host.time.paused:
+            self._held.append(message)
+        else:
+            self._on_message(message)
+
+
+def camera_info_topic(image: str) -> str:
+    """Where the CameraInfo of an image topic is by ROS's convention: beside the image, whatever its transport."""
+    for transport in ("/compressed", "/compressedDepth", "/theora"):
+        image = image.removesuffix(transport)
+    return image.rpartition("/")[0] + "/camera_info"
+
 
 TOPIC = "Topic"
 TRANSFORM = "Transform"
@@ -285,3 +343,93 @@ class TopicDisplay(DataDisplay):
         if self._failing:
             self._failing = False
             self.unsay(_FAILURE)
+
+
+_MESSAGE = "Message"
+_INVALID = "Message contained invalid floating point values (nans or infs)"
+
+
+@dataclass(slots=True)
+class _Shown:
+    content: DataContent
+    frame: str
+    pose: Pose | None
+    stamp_ns: int
+
+
+class RecentDisplay(TopicDisplay):
+    """Shows what `content` makes of each of the last messages, each where its frame was at its time.
+
+    A subclass says how many with the property at `LENGTH` (0 for all of them); without one it is a single message.
+    """
+
+    LENGTH: ClassVar[Path | None] = None
+
+    IN_FIXED_FRAME: ClassVar[bool] = False
+    """Whether contents are in the Fixed Frame already."""
+
+    def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
+        super().__init__(host, identity, config)
+        self._shown: deque[_Shown] = deque()
+        self._number = 0
+
+    def content(self, message: Any) -> DataContent | None:
+        """What pages draw of a message, in the frame of `frame_of`; None for nothing new."""
+        raise NotImplementedError
+
+    def take(self, message: Any, pose: Pose | None) -> None:
+        """Show a message, and drop the oldest one."""
+        assert pose is not None
+        content = self.content(message)
+        if content is None:
+            return
+        frame, stamp_ns = self.frame_of(message)
+        if self.IN_FIXED_FRAME:
+            frame, pose = "", None
+        self._shown.append(_Shown(content, frame, pose, stamp_ns))
+        length = self._length()
+        if length and len(self._shown) > length:
+            self._shown.popleft()
+        self._send(self._shown[-1])
+
+    def changed(self, path: Path) -> None:
+        """Show as many messages as are asked for."""
+        super().changed(path)
+        if path == self.LENGTH:
+            length = self._length()
+            kept = list(self._shown)[-length:]
+            self.reset()
+            for each in kept:
+                self._shown.append(each)
+                self._send(each)
+
+    def reset(self) -> None:
+        """Forget all of them."""
+        self._shown.clear()
+        self._number = 0
+        super().reset()
+
+    def refuse(self, text: str) -> None:
+        """Show what is wrong with the last message."""
+        self.say(_MESSAGE, "error", text)
+
+    def accept(self) -> None:
+        """Clear what the status said of the previous message."""
+        self.unsay(_MESSAGE)
+
+    def is_finite(self, *numbers: ArrayLike) -> bool:
+        """Whether all are finite; the status says so if not."""
+        if all(np.isfinite(each).all() for each in numbers):
+            self.accept()
+            return True
+        self.refuse(_INVALID)
+        return False
+
+    def _send(self, shown: _Shown) -> None:
+        length = self._length()
+        key = str(self._number % length if length else self._number)
+        self._number += 1
+        self.send(shown.content, key=key, frame=shown.frame, pose=shown.pose, stamp_ns=shown.stamp_ns)
+
+    def _length(self) -> int:
+        return 1 if self.LENGTH is None else int(self.properties.number(*self.LENGTH))

@@ -1,4 +1,4 @@
-"""Displays of points: what PointCloud2, LaserScan, DepthCloud and the displays of single numbers have in common."""
+"""LaserScan, PointCloud and PointCloud2, and points with one value: FluidPressure, Illuminance and others."""
 
 from __future__ import annotations
 
@@ -8,15 +8,27 @@ import time
 from collections import deque
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any
+from typing import Any, ClassVar
 
-from linkwright.viewer.clouds import BadCloudError, Points, coloured, decimated, supported_transformers
+import numpy as np
+
+from linkwright.graph import TransformException
+from linkwright.viewer.clouds import (
+    BadCloudError,
+    Points,
+    ScanProjector,
+    coloured,
+    decimated,
+    points_of_cloud,
+    points_of_legacy_cloud,
+    supported_transformers,
+    swept,
+)
 from linkwright.viewer.config.rviz_config import DisplayConfig
-from linkwright.viewer.config.schema import Path, Schema
-from linkwright.viewer.displays.base.data_display import Pose
-from linkwright.viewer.displays.base.host import DisplayHost
+from linkwright.viewer.config.schema import Path, Schema, topic_spec
+from linkwright.viewer.displays.base.display import DisplayHost, Pose
 from linkwright.viewer.displays.base.topic_display import TopicDisplay
-from linkwright.viewer.displays.properties.cloud import (
+from linkwright.viewer.displays.cloud_properties import (
     AUTO_INTENSITY,
     AUTO_VALUES,
     CHANNEL,
@@ -24,8 +36,11 @@ from linkwright.viewer.displays.properties.cloud import (
     COLOUR_TRANSFORMER,
     DECAY_TIME,
     INTENSITY_BOUNDS,
+    STYLE_SPECS,
+    TRANSFORMER_SPECS,
     VALUE_BOUNDS,
     colour_settings,
+    scalar_specs,
 )
 from linkwright.viewer.protocol.displays import PropertyChanged
 from linkwright.viewer.protocol.points import CloudPoints
@@ -243,3 +258,138 @@ class CloudDisplay(TopicDisplay):
     def _say_count(self) -> None:
         points = sum(len(each.points) for each in self._shown)
         self.say("Points", "ok", f"Showing [{points}] points from [{len(self._shown)}] messages")
+
+
+_IDENTITY = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0])
+
+
+class LaserScanDisplay(CloudDisplay):
+    """The echoes of a planar scanner.
+
+    Each ray is placed where the scanner was when it was sent, as laser_geometry does; a scan whose end has no
+    transforms yet is placed by its beginning, where RViz would drop it.
+    """
+
+    CLASS = "rviz_default_plugins/LaserScan"
+    MESSAGE = "sensor_msgs/msg/LaserScan"
+    SCHEMA = (
+        topic_spec(description=MESSAGE, filter_size=10),
+        *STYLE_SPECS,
+        *TRANSFORMER_SPECS,
+    )
+
+    def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
+        super().__init__(host, identity, config)
+        self._projector = ScanProjector()
+
+    def points_of(self, message: Any) -> Points:
+        """Where the rays hit something."""
+        return self._projector.points(message)
+
+    def placed(self, points: Points, message: Any, pose: Pose) -> tuple[Points, Pose]:
+        """The points in the Fixed Frame if the scanner moved, else in its own frame."""
+        steps = len(message.ranges) - 1
+        frame, stamp_ns = self.frame_of(message)
+        seconds = steps * float(message.time_increment)
+        if stamp_ns == 0 or steps < 1 or not 0.0 < seconds < 3600.0:
+            return points, pose
+        fixed_frame = self.host.frames.fixed_frame
+        try:
+            end = self.context.transforms.pose(fixed_frame, frame.removeprefix("/"), stamp_ns + int(seconds * 1e9))
+        except TransformException:
+            return points, pose
+        if np.allclose(end, pose, rtol=0.0, atol=1e-9):
+            return points, pose
+        return swept(points, points.channels["index"] / steps, pose, end), _IDENTITY
+
+
+class PointCloudDisplay(CloudDisplay):
+    """A cloud of points as the old sensor_msgs/msg/PointCloud has it."""
+
+    CLASS = "rviz_default_plugins/PointCloud"
+    MESSAGE = "sensor_msgs/msg/PointCloud"
+    SCHEMA = (
+        topic_spec(description="sensor_msgs/msg/PointCloud", filter_size=10),
+        *STYLE_SPECS,
+        *TRANSFORMER_SPECS,
+    )
+
+    def points_of(self, message: Any) -> Points:
+        """The points with finite coordinates."""
+        return points_of_legacy_cloud(message)
+
+
+class PointCloud2Display(CloudDisplay):
+    """A cloud of points."""
+
+    CLASS = "rviz_default_plugins/PointCloud2"
+    MESSAGE = "sensor_msgs/msg/PointCloud2"
+    SCHEMA = (
+        topic_spec(description=MESSAGE, filter_size=10),
+        *STYLE_SPECS,
+        *TRANSFORMER_SPECS,
+    )
+
+    def points_of(self, message: Any) -> Points:
+        """The points with finite coordinates."""
+        return points_of_cloud(message)
+
+
+class ScalarDisplay(CloudDisplay):
+    """A point at the origin of the sensor's frame."""
+
+    FIELD: ClassVar[str]
+    """The field of the message with the number, and the channel of the point."""
+
+    def points_of(self, message: Any) -> Points:
+        """The one point."""
+        value = np.array([getattr(message, self.FIELD)], np.float64)
+        return Points(np.zeros((1, 3), np.float32), {self.FIELD: value})
+
+
+class FluidPressureDisplay(ScalarDisplay):
+    """The pressure of air or water, in pascal."""
+
+    CLASS = "rviz_default_plugins/FluidPressure"
+    MESSAGE = "sensor_msgs/msg/FluidPressure"
+    FIELD = "fluid_pressure"
+    SCHEMA = (
+        topic_spec(description=MESSAGE, filter_size=10),
+        *scalar_specs(FIELD, 98000.0, 105000.0),
+    )
+
+
+class IlluminanceDisplay(ScalarDisplay):
+    """How bright it is, in lux."""
+
+    CLASS = "rviz_default_plugins/Illuminance"
+    MESSAGE = "sensor_msgs/msg/Illuminance"
+    FIELD = "illuminance"
+    SCHEMA = (
+        topic_spec(description=MESSAGE, filter_size=10),
+        *scalar_specs(FIELD, 0.0, 1000.0),
+    )
+
+
+class RelativeHumidityDisplay(ScalarDisplay):
+    """The humidity of the air, 0 to 1."""
+
+    CLASS = "rviz_default_plugins/RelativeHumidity"
+    MESSAGE = "sensor_msgs/msg/RelativeHumidity"
+    FIELD = "relative_humidity"
+    SCHEMA = (
+        topic_spec(description=MESSAGE, filter_size=10),
+        *scalar_specs(FIELD, 0.0, 1.0),
+    )
+
+
+class TemperatureDisplay(ScalarDisplay):
+    """The temperature, in degrees Celsius; cold is violet, hot is red."""
+
+    CLASS = "rviz_default_plugins/Temperature"
+    MESSAGE = "sensor_msgs/msg/Temperature"
+    FIELD = "temperature"
+    SCHEMA = (
+        topic_spec(description=MESSAGE, filter_size=10),
+        *scalar_specs(FIELD, 0.0, 100.0, inverted=True),
+    )

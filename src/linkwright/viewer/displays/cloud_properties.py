@@ -7,8 +7,7 @@ from typing import Any
 
 from linkwright.viewer.clouds import AXES, TRANSFORMERS, ColourSettings
 from linkwright.viewer.config.property_store import PropertyStore
-from linkwright.viewer.config.schema import Path, PropertySpec, Schema
-from linkwright.viewer.displays.properties.look import alpha
+from linkwright.viewer.config.schema import Path, PropertySpec, Schema, alpha
 
 DECAY_TIME = "Decay Time"
 COLOUR_TRANSFORMER = "Color Transformer"

@@ -1,1 +1,0 @@
-"""Properties that several displays have, and how their values are read."""
