@@ -102,8 +102,12 @@ class Source:
         if named == "GROUPS":
             inner = [each for each in ast.walk(node.value) if isinstance(each, ast.Dict) and each is not node.value]
             texts = [text for verbs in inner for text in verbs.values]
-        elif named == "LANGUAGE_HELP" or (isinstance(node, ast.keyword) and node.arg in ("help", "title")):
+        elif named == "LANGUAGE_HELP":
             texts = [node.value]
+        elif isinstance(node, ast.keyword) and node.arg and node.arg.endswith(("help", "title", "description")):
+            texts = [node.value]
+            if isinstance(node.value, (ast.JoinedStr, ast.BinOp, ast.IfExp)):
+                self.problems.append(f"{place}: the help text is no literal")
         else:
             return
         for text in texts:

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import argparse
 import subprocess
 import sys
+from collections.abc import Iterator
 
 import pytest
 
 from linkwright import __version__
 from linkwright.cli import main
-from linkwright.cli.command import VERBS
+from linkwright.cli.command import VERBS, parser_for
+from linkwright.diagnostics.translation import set_language
 
 
 def test_no_words_prints_the_overview_as_usage(capsys):
@@ -90,3 +93,27 @@ def test_what_is_imported_at_the_start_is_not_searched_for_garbage():
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     first, later = map(int, done.stdout.split()[-2:])
     assert first > later > 700
+
+
+def help_texts(parser: argparse.ArgumentParser) -> Iterator[str]:
+    """What a parser and those below it say: of themselves, of their groups and of each argument."""
+    yield from filter(None, [parser.description, *(group.title for group in parser._action_groups)])
+    for action in parser._actions:
+        if action.help and action.help != argparse.SUPPRESS:
+            yield action.help
+        if isinstance(action, argparse._SubParsersAction):
+            for below in action.choices.values():
+                yield from help_texts(below)
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_all_that_the_help_of_a_command_says_is_translated(verb):
+    set_language("en")
+    try:
+        english = list(help_texts(parser_for(verb)))
+        set_language("zh")
+        chinese = list(help_texts(parser_for(verb)))
+    finally:
+        set_language(None)
+        parser_for(verb)  # argparse's own words are English again
+    assert [said for said, shown in zip(english, chinese, strict=True) if said == shown] == []

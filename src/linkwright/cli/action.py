@@ -29,7 +29,7 @@ _LONGEST_CANCEL = 3.0
 def configure_list(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     add_session_arguments(parser)
-    add_types_argument(parser, "action")
+    add_types_argument(parser, types_help="show the type of each action beside it")
     add_count_argument(parser, "action")
 
 
@@ -110,8 +110,11 @@ def configure_send_goal(parser: argparse.ArgumentParser) -> None:
     add_session_arguments(parser)
     parser.add_argument("action_name", metavar="ACTION", help="such as /fibonacci")
     parser.add_argument("action_type", metavar="TYPE", help="such as example_interfaces/action/Fibonacci")
-    goal_help = "the goal in YAML, such as '{order: 10}'; fields left out have their defaults"
-    add_values_arguments(parser, goal_help, "GOAL")
+    add_values_arguments(
+        parser,
+        values_help="the goal in YAML, such as '{order: 10}'; fields left out have their defaults",
+        metavar="GOAL",
+    )
     parser.add_argument("-f", "--feedback", action="store_true", help="print the feedback")
     parser.add_argument("--timeout", metavar="SECONDS", type=positive_float, help="give up waiting for a server then")
 

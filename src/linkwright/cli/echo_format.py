@@ -18,7 +18,7 @@ SEPARATOR = "---\n"
 _TRUNCATE = 128
 
 
-def add_format_arguments(parser: argparse.ArgumentParser, flow_help: str) -> None:
+def add_format_arguments(parser: argparse.ArgumentParser, *, flow_help: str) -> None:
     """Declare how messages are printed, for `EchoFormat.of`; `flow_help` tells what ``--flow-style`` does."""
     parser.add_argument("--csv", action="store_true", help="print the values separated by commas")
     parser.add_argument("-f", "--full-length", action="store_true", help="do not cut long arrays and texts")

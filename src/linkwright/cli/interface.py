@@ -11,7 +11,6 @@ from functools import partial
 from linkwright.cli.nested import SubVerb, configure_nested, run_nested
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, phrase
 
-_OPTIONS = (("msg", "-m", "msgs", "message"), ("srv", "-s", "srvs", "service"), ("action", "-a", "actions", "action"))
 _TITLES = {"msg": "Messages:", "srv": "Services:", "action": "Actions:"}
 _FIELD = re.compile(r"\s*(?P<type>[A-Za-z]\w*(?:/[A-Za-z]\w*)*)[^\s#]*\s+[A-Za-z]\w*\s*(?P<equals>=)?")
 _SIZED = frozenset(f"{kind}{bits}" for kind in ("int", "uint") for bits in (8, 16, 32, 64))
@@ -21,14 +20,14 @@ _DEEPEST = 50
 
 def _add_kind_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare ``--only-msgs``, ``--only-srvs`` and ``--only-actions``."""
-    for kind, short, plural, name in _OPTIONS:
-        parser.add_argument(short, f"--only-{plural}", dest=kind, action="store_true", help=f"only {name} types")
+    parser.add_argument("-m", "--only-msgs", dest="msg", action="store_true", help="only message types")
+    parser.add_argument("-s", "--only-srvs", dest="srv", action="store_true", help="only service types")
+    parser.add_argument("-a", "--only-actions", dest="action", action="store_true", help="only action types")
 
 
 def _kinds(arguments: argparse.Namespace) -> list[str]:
     """The kinds asked for: ``msg``, ``srv``, ``action``; all when none is."""
-    every = [kind for kind, *_ in _OPTIONS]
-    return [kind for kind in every if getattr(arguments, kind)] or every
+    return [kind for kind in _TITLES if getattr(arguments, kind)] or list(_TITLES)
 
 
 def configure_list(parser: argparse.ArgumentParser) -> None:

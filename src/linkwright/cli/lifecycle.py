@@ -27,12 +27,12 @@ _GET_STATE = "lifecycle_msgs/srv/GetState"
 def _add_node_arguments(parser: argparse.ArgumentParser, *, optional: bool = False) -> None:
     """Declare the node."""
     add_session_arguments(parser)
-    parser.add_argument(
-        "node_name",
-        metavar="NODE",
-        nargs="?" if optional else None,
-        help="such as /lc_talker" + ("; all managed nodes when left out" if optional else ""),
-    )
+    if optional:
+        parser.add_argument(
+            "node_name", metavar="NODE", nargs="?", help="such as /lc_talker; all managed nodes when left out"
+        )
+    else:
+        parser.add_argument("node_name", metavar="NODE", help="such as /lc_talker")
     parser.add_argument("--include-hidden-nodes", action="store_true", help="consider hidden nodes as well")
 
 

@@ -10,9 +10,9 @@ if TYPE_CHECKING:
     from linkwright.cli.lookup import NamesAndTypes
 
 
-def add_types_argument(parser: argparse.ArgumentParser, kind: str) -> None:
-    """Declare ``--show-types``, for topics, services or actions."""
-    parser.add_argument("-t", "--show-types", action="store_true", help=f"show the type of each {kind} beside it")
+def add_types_argument(parser: argparse.ArgumentParser, *, types_help: str) -> None:
+    """Declare ``--show-types``, with what its help says."""
+    parser.add_argument("-t", "--show-types", action="store_true", help=types_help)
 
 
 def add_count_argument(parser: argparse.ArgumentParser, kind: str) -> None:
@@ -27,15 +27,15 @@ def add_count_argument(parser: argparse.ArgumentParser, kind: str) -> None:
     )
 
 
-def add_hidden_argument(parser: argparse.ArgumentParser, kind: str) -> None:
+def add_hidden_argument(parser: argparse.ArgumentParser, option: str, *, hidden_help: str) -> None:
     """Declare ``--include-hidden-topics`` or the like, which may stand before the verb too."""
     parser.add_argument(
-        f"--include-hidden-{kind}s",
+        option,
         "-a",
         "--all",
         action="store_true",
         default=argparse.SUPPRESS,
-        help=f"consider hidden {kind}s as well",
+        help=hidden_help,
     )
 
 

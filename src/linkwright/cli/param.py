@@ -40,12 +40,12 @@ _USAGE = 2
 def _add_node_arguments(parser: argparse.ArgumentParser, *, optional: bool = False) -> None:
     """Declare the node and how long to wait for it."""
     add_session_arguments(parser)
-    parser.add_argument(
-        "node_name",
-        metavar="NODE",
-        nargs="?" if optional else None,
-        help="such as /robot_state_publisher" + ("; all nodes when left out" if optional else ""),
-    )
+    if optional:
+        parser.add_argument(
+            "node_name", metavar="NODE", nargs="?", help="such as /robot_state_publisher; all nodes when left out"
+        )
+    else:
+        parser.add_argument("node_name", metavar="NODE", help="such as /robot_state_publisher")
     parser.add_argument(
         "--include-hidden-nodes", "-a", "--all", action="store_true", help="consider hidden nodes as well"
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Sequence
 from copy import copy
 from typing import TYPE_CHECKING
 
@@ -36,32 +37,39 @@ _LEASE = "qos_liveliness_lease_duration_seconds"
 
 def add_publisher_qos_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options for what a verb publishes with; see `profile`."""
-    _add_arguments(parser, "publish", "default")
+    _add_arguments(
+        parser,
+        "default",
+        profile_help="the profile to publish with (default: %(default)s): %(choices)s",
+        reliability_help="whether each message must arrive: %(choices)s",
+        durability_help="whether late joiners get what was sent: %(choices)s",
+    )
 
 
 def add_subscription_qos_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options for what a verb subscribes with; see `fitting_profile`."""
-    _add_arguments(parser, "subscribe", "sensor_data", "; as the publishers have it, if they agree")
-
-
-def _add_arguments(parser: argparse.ArgumentParser, action: str, default: str, extra: str = "") -> None:
-    group = parser.add_argument_group("quality of service")
-    group.add_argument(
-        "--qos-profile",
-        metavar="PROFILE",
-        choices=_PROFILES,
-        default=default,
-        help=f"the profile to {action} with (default: {default}): {', '.join(_PROFILES)}",
+    _add_arguments(
+        parser,
+        "sensor_data",
+        profile_help="the profile to subscribe with (default: %(default)s): %(choices)s",
+        reliability_help="whether each message must arrive; as the publishers have it, if they agree: %(choices)s",
+        durability_help="whether late joiners get what was sent; as the publishers have it, if they agree: %(choices)s",
     )
+
+
+def _add_arguments(
+    parser: argparse.ArgumentParser, default: str, *, profile_help: str, reliability_help: str, durability_help: str
+) -> None:
+    def add_policy(name: str, values: Sequence[str], *, help: str) -> None:  # noqa: A002 - as argparse calls it
+        group.add_argument(f"--qos-{name}", metavar="POLICY", choices=values, help=help)
+
+    group = parser.add_argument_group(title="quality of service")
+    group.add_argument("--qos-profile", metavar="PROFILE", choices=_PROFILES, default=default, help=profile_help)
     group.add_argument("--qos-depth", metavar="N", type=unsigned_int, help="the length of the queue")
-    for name, values, meaning in (
-        ("history", _HISTORY, "which samples are kept"),
-        ("reliability", _RELIABILITY, f"whether each message must arrive{extra}"),
-        ("durability", _DURABILITY, f"whether late joiners get what was sent{extra}"),
-        ("liveliness", _LIVELINESS, "how a publisher is known to be alive"),
-    ):
-        help_text = f"{meaning}: {', '.join(values)}"
-        group.add_argument(f"--qos-{name}", metavar="POLICY", choices=values, help=help_text)
+    add_policy("history", _HISTORY, help="which samples are kept: %(choices)s")
+    add_policy("reliability", _RELIABILITY, help=reliability_help)
+    add_policy("durability", _DURABILITY, help=durability_help)
+    add_policy("liveliness", _LIVELINESS, help="how a publisher is known to be alive: %(choices)s")
     group.add_argument(
         "--qos-liveliness-lease-duration-seconds",
         metavar="SECONDS",

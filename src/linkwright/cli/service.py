@@ -36,7 +36,7 @@ def add_service_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the service and how it is looked for."""
     add_session_arguments(parser)
     parser.add_argument("service_name", metavar="SERVICE", help="such as /add_two_ints")
-    add_hidden_argument(parser, "service")
+    add_hidden_argument(parser, "--include-hidden-services", hidden_help="consider hidden services as well")
 
 
 def types_of_service(session: Session, arguments: argparse.Namespace) -> list[str]:
@@ -63,9 +63,9 @@ def types_of_service(session: Session, arguments: argparse.Namespace) -> list[st
 def configure_list(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     add_session_arguments(parser)
-    add_types_argument(parser, "service")
+    add_types_argument(parser, types_help="show the type of each service beside it")
     add_count_argument(parser, "service")
-    add_hidden_argument(parser, "service")
+    add_hidden_argument(parser, "--include-hidden-services", hidden_help="consider hidden services as well")
 
 
 def run_list(arguments: argparse.Namespace) -> int:
@@ -84,7 +84,7 @@ def configure_find(parser: argparse.ArgumentParser) -> None:
     add_session_arguments(parser)
     parser.add_argument("service_type", metavar="TYPE", help="such as std_srvs/srv/SetBool")
     add_count_argument(parser, "service")
-    add_hidden_argument(parser, "service")
+    add_hidden_argument(parser, "--include-hidden-services", hidden_help="consider hidden services as well")
 
 
 def run_find(arguments: argparse.Namespace) -> int:
@@ -137,7 +137,9 @@ def configure_call(parser: argparse.ArgumentParser) -> None:
     add_session_arguments(parser)
     parser.add_argument("service_name", metavar="SERVICE", help="such as /add_two_ints")
     parser.add_argument("service_type", metavar="TYPE", help="such as example_interfaces/srv/AddTwoInts")
-    add_values_arguments(parser, "the request in YAML, such as '{a: 1, b: 2}'; fields left out have their defaults")
+    add_values_arguments(
+        parser, values_help="the request in YAML, such as '{a: 1, b: 2}'; fields left out have their defaults"
+    )
     parser.add_argument("-r", "--rate", metavar="N", type=positive_float, help="call again and again, at N hertz")
     parser.add_argument("--timeout", metavar="SECONDS", type=positive_float, help="give up waiting after so long")
 
@@ -197,7 +199,7 @@ def configure_echo(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     add_service_arguments(parser)
     parser.add_argument("service_type", metavar="TYPE", nargs="?", help="such as std_srvs/srv/SetBool; its own")
-    add_format_arguments(parser, "print lists in brackets, on one line")
+    add_format_arguments(parser, flow_help="print lists in brackets, on one line")
     add_subscription_qos_arguments(parser)
 
 

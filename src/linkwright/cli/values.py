@@ -31,19 +31,19 @@ _FAULTS = (AssertionError, TypeError, ValueError, AttributeError, OverflowError)
 _AUTOMATIC = ("auto", "now")
 
 
-def add_values_arguments(parser: argparse.ArgumentParser, help_text: str, metavar: str = "VALUES") -> Any:
+def add_values_arguments(parser: argparse.ArgumentParser, *, values_help: str, metavar: str = "VALUES") -> Any:
     """Declare the values, which may come from standard input instead.
 
     Args:
         parser: of the verb.
-        help_text: what they are, with an example.
+        values_help: what they are, with an example.
         metavar: what the help calls them.
 
     Returns:
         The group in which another place that they come from may be declared.
     """
     group = parser.add_mutually_exclusive_group()
-    group.add_argument("values", metavar=metavar, nargs="?", default="{}", help=help_text)
+    group.add_argument("values", metavar=metavar, nargs="?", default="{}", help=values_help)
     group.add_argument("--stdin", action="store_true", help="read the values from standard input")
     return group
 

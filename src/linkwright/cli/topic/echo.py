@@ -25,7 +25,7 @@ def configure_echo(parser: argparse.ArgumentParser) -> None:
     add_session_arguments(parser)
     parser.add_argument("topic_name", metavar="TOPIC", help="such as /chatter")
     parser.add_argument("message_type", metavar="TYPE", nargs="?", help="such as std_msgs/msg/String; the topic's own")
-    add_format_arguments(parser, "print each message on one line")
+    add_format_arguments(parser, flow_help="print each message on one line")
     parser.add_argument("--field", metavar="NAMES", help="print only a part, such as pose.pose.position")
     parser.add_argument("--lost-messages", action="store_true", help="accepted for ros2's sake; lost ones are told of")
     parser.add_argument("--no-lost-messages", action="store_true", help="do not tell when messages were lost")

@@ -28,9 +28,9 @@ _INFINITE_NS = 0x7FFFFFFF_FFFFFFFF
 def configure_list(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     add_session_arguments(parser)
-    add_types_argument(parser, "topic")
+    add_types_argument(parser, types_help="show the type of each topic beside it")
     add_count_argument(parser, "topic")
-    add_hidden_argument(parser, "topic")
+    add_hidden_argument(parser, "--include-hidden-topics", hidden_help="consider hidden topics as well")
     parser.add_argument("-v", "--verbose", action="store_true", help="say how many publish and subscribe to each")
 
 
@@ -100,7 +100,7 @@ def configure_find(parser: argparse.ArgumentParser) -> None:
     add_session_arguments(parser)
     parser.add_argument("topic_type", metavar="TYPE", help="such as std_msgs/msg/String")
     add_count_argument(parser, "topic")
-    add_hidden_argument(parser, "topic")
+    add_hidden_argument(parser, "--include-hidden-topics", hidden_help="consider hidden topics as well")
 
 
 def run_find(arguments: argparse.Namespace) -> int:

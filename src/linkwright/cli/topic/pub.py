@@ -33,8 +33,8 @@ def configure_pub(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("message_type", metavar="TYPE", help="such as std_msgs/msg/String")
     values = add_values_arguments(
         parser,
-        "the message in YAML, such as 'data: hello'; fields left out have their defaults, 'header: auto' and"
-        " 'stamp: now' stand for the time of publishing",
+        values_help="the message in YAML, such as 'data: hello'; fields left out have their defaults, 'header: auto'"
+        " and 'stamp: now' stand for the time of publishing",
     )
     values.add_argument("--yaml-file", metavar="FILE", help="publish the messages of a file, as topic echo prints them")
     parser.add_argument("-r", "--rate", metavar="N", type=positive_float, default=1.0, help="hertz, default 1")
