@@ -14,8 +14,7 @@ from linkwright.launch.frontend.launch_file import load_launch_file
 from linkwright.launch.model.description import LaunchDescription
 from linkwright.launch.model.introspector import format_launch_description
 from linkwright.packages import current_finder
-
-_ENDINGS = ("launch.py", "launch.xml", "launch.yaml", "launch.yml")
+from linkwright.packages.launch_files import is_launch_file_name
 
 
 class MultipleLaunchFilesError(Exception):
@@ -57,7 +56,7 @@ def get_launch_file_paths(*, path: str) -> list[str]:
 
 def is_launch_file(path: str) -> bool:
     """Whether a path is one of a launch file."""
-    return str(path).endswith(_ENDINGS) and Path(path).is_file()
+    return is_launch_file_name(str(path)) and Path(path).is_file()
 
 
 def parse_launch_arguments(launch_arguments: Sequence[str]) -> list[tuple[str, str]]:

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, display_path, joined, phrase
 from linkwright.launch.arguments import parse_arguments
-from linkwright.launch.frontend.python_file import is_launch_file_name
 from linkwright.packages import PackageFinder
-
-_DEPTH = 4
+from linkwright.packages.launch_files import is_launch_file_name, launch_files_below
 
 
 @dataclass(frozen=True)
@@ -48,7 +46,7 @@ class LaunchTarget:
         return self._search(share)
 
     def _search(self, share: Path) -> Path:
-        present = sorted(_launch_files(share, _DEPTH))
+        present = sorted(launch_files_below(share))
         found = [path for path in present if path.name == self.file]
         if len(found) == 1:
             return found[0]
@@ -113,20 +111,7 @@ def _is_path(word: str) -> bool:
 
 def _files_of_package(name: str) -> list[Path]:
     share = PackageFinder().find(name)
-    return [] if share is None else sorted(_launch_files(share, _DEPTH))
-
-
-def _launch_files(folder: Path, depth: int) -> Iterator[Path]:
-    try:
-        entries = sorted(folder.iterdir())
-    except OSError:
-        return
-    for entry in entries:
-        if entry.is_dir():
-            if depth and not entry.name.startswith(".") and entry.name not in ("build", "install", "log"):
-                yield from _launch_files(entry, depth - 1)
-        elif is_launch_file_name(entry.name):
-            yield entry
+    return [] if share is None else sorted(launch_files_below(share))
 
 
 def _incomplete(message: Phrase, hint: Phrase) -> LinkwrightError:

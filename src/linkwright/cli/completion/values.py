@@ -10,14 +10,13 @@ from typing import Any
 from linkwright.cli.completion.graph_names import names_of
 from linkwright.cli.completion.scripts import FILES
 from linkwright.packages import PackageFinder, install_prefix, is_installed
+from linkwright.packages.launch_files import launch_files_below
 
-_LAUNCH_FILE = re.compile(r"[._]launch\.(py|xml|ya?ml)$|launch\.(py|xml|ya?ml)$")
 _DECLARED = re.compile(
     r"""Declare(?:Boolean)?LaunchArgument\(\s*(?:name\s*=\s*)?["']([^"']+)["']"""
     r"""|<arg\s[^>]*?\bname\s*=\s*["']([^"']+)["']|-\s*arg:\s*\n\s+name:\s*["']?([\w./-]+)"""
 )
 _XACRO_ARGUMENT = re.compile(r"""<xacro:arg\s[^>]*?\bname\s*=\s*["']([^"']+)["']""")
-_DEPTH = 4
 
 _INTERFACE_KINDS = {"topic": ("msg",), "bag": ("msg",), "service": ("srv",), "action": ("action",)}
 
@@ -67,7 +66,7 @@ def _launch_files(asked: Asked) -> Iterable[str]:
     if named.is_file():
         return _arguments_in(named, _DECLARED)
     share = PackageFinder().find(asked[1][0])
-    return [] if share is None else sorted(each.name for each in _launch_files_below(share))
+    return [] if share is None else sorted(each.name for each in launch_files_below(share))
 
 
 def _launch_arguments(asked: Asked) -> Iterable[str]:
@@ -75,17 +74,8 @@ def _launch_arguments(asked: Asked) -> Iterable[str]:
     if Path(package).is_file():
         return _arguments_in(Path(package), _DECLARED)
     share = PackageFinder().find(package)
-    found = next((each for each in _launch_files_below(share) if each.name == file), None) if share else None
+    found = next((each for each in launch_files_below(share) if each.name == file), None) if share else None
     return [] if found is None else _arguments_in(found, _DECLARED)
-
-
-def _launch_files_below(share: Path, depth: int = _DEPTH) -> Iterable[Path]:
-    for entry in sorted(share.iterdir()):
-        if entry.is_dir():
-            if depth and not entry.name.startswith(".") and entry.name not in ("build", "install", "log"):
-                yield from _launch_files_below(entry, depth - 1)
-        elif _LAUNCH_FILE.search(entry.name):
-            yield entry
 
 
 def _description_arguments(asked: Asked) -> Iterable[str]:

@@ -23,10 +23,10 @@ from linkwright.launch.errors.places import error_at, not_reading
 from linkwright.launch.errors.ros_exceptions import as_ros_error
 from linkwright.launch.errors.user_code import explain
 from linkwright.launch.model.description import LaunchDescription
+from linkwright.packages.launch_files import is_launch_file_name
 
 _FUNCTION = "generate_launch_description"
 _MODULE_NAME = "python_launch_file"
-_ENDINGS = tuple(dot + "launch" + suffix for dot in "._" for suffix in (".py", ".xml", ".yaml", ".yml"))
 
 
 def load_python_launch_file(path: Path) -> LaunchDescription:
@@ -122,11 +122,6 @@ def read_launch_file(path: Path) -> SourceText:
             "LAUNCH102",
             phrase("launch file '{shown}' is not UTF-8: {reason}", shown=shown, reason=foreign(error.reason)),
         ) from error
-
-
-def is_launch_file_name(name: str) -> bool:
-    """Whether a file is called as launch files are."""
-    return name.endswith(_ENDINGS)
 
 
 def _syntax_diagnostic(error: SyntaxError, source: SourceText) -> Diagnostic:

@@ -1,0 +1,32 @@
+"""Which files of a package are launch files."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+_ENDINGS = ("launch.py", "launch.xml", "launch.yaml", "launch.yml")
+_DEPTH = 4
+_BUILT = ("build", "install", "log")
+
+
+def is_launch_file_name(name: str) -> bool:
+    """Whether a file is called as launch files are (``ros2launch.api.is_launch_file``)."""
+    return name.endswith(_ENDINGS)
+
+
+def launch_files_below(folder: Path, depth: int = _DEPTH) -> Iterator[Path]:
+    """The launch files in a folder and so many levels of folders below, those of a folder by name.
+
+    Hidden folders are left out, and those that colcon builds into.
+    """
+    try:
+        entries = sorted(folder.iterdir())
+    except OSError:
+        return
+    for entry in entries:
+        if entry.is_dir():
+            if depth and not entry.name.startswith(".") and entry.name not in _BUILT:
+                yield from launch_files_below(entry, depth - 1)
+        elif is_launch_file_name(entry.name):
+            yield entry
