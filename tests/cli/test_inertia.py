@@ -36,37 +36,45 @@ def model(tmp_path):
     return path
 
 
-def test_blocks_and_comparison(model, capsys):
+def test_a_table_with_a_verdict_on_each_link_worst_first(model, capsys):
     assert main(["inertia", str(model)]) == 0
-    assert capsys.readouterr().out == (
-        "base_footprint: no shape with a volume, so nothing is computed\n"
-        "\n"
-        "base_link: 1 visual shape, mass as in the file: 2 kg at 250 kg/m3\n"
-        "  <inertial>\n"
-        '    <origin xyz="0 0 0" rpy="0 0 0"/>\n'
-        '    <mass value="2"/>\n'
-        '    <inertia ixx="0.0133333" ixy="0" ixz="0" iyy="0.0133333" iyz="0" izz="0.0133333"/>\n'
-        "  </inertial>\n"
-        "  in the file: mass 2 kg, centre of mass 10 mm away, "
-        "principal moments for each kg 1.5 1.5 1.5 times\n"
-        "\n"
-        "wheel: 1 collision shape, mass from density: 4.18879 kg at 1000 kg/m3\n"
-        "  <inertial>\n"
-        '    <origin xyz="0 0 0" rpy="0 0 0"/>\n'
-        '    <mass value="4.18879"/>\n'
-        '    <inertia ixx="0.0167552" ixy="0" ixz="0" iyy="0.0167552" iyz="0" izz="0.0167552"/>\n'
-        "  </inertial>\n"
-        "  in the file: no <inertial>\n"
-    )
+    captured = capsys.readouterr()
+    assert captured.out.splitlines() == [
+        "link            mass (kg)           density (kg/m3)  principal moments (kg m2)  verdict",
+        "wheel           - (4.189 computed)  -                -                          missing: it has no <inertial>",
+        "base_link       2                   250              0.02 0.02 0.02             fits its shapes",
+        f"base_footprint  -{'-':>20}{'-':>17}{'':26}it is fixed to 'base_link', which has a mass",
+    ]
+    assert "--link NAME" in captured.err
 
 
-def test_density_mass_and_link(model, capsys):
+def test_the_table_in_chinese(model, capsys):
+    assert main(["--lang", "zh", "inertia", str(model)]) == 0
+    head, wheel, *_ = capsys.readouterr().out.splitlines()
+    assert head == "连杆            质量 (kg)        密度 (kg/m3)  主惯量 (kg m2)  评判"
+    assert wheel == "wheel           -（算出 4.189）  -             -               缺少：没有 <inertial>"
+
+
+def test_the_block_of_a_link_follows_the_table(model, capsys):
     words = ["inertia", str(model), "--density", "100", "--mass", "wheel=0.5", "--link", "wheel", "--link", "base_link"]
     assert main(words) == 0
-    out = capsys.readouterr().out
-    assert "base_link: 1 visual shape, mass from density: 0.8 kg at 100 kg/m3" in out
-    assert "wheel: 1 collision shape, mass as given: 0.5 kg" in out
-    assert "base_footprint" not in out
+    table, *details = capsys.readouterr().out.split("\n\n")
+    assert "base_link  2 (0.8 computed)" in table
+    assert "\n\n".join(details) == (
+        "base_link: 1 visual shape, mass from density: 0.8 kg at 100 kg/m3\n"
+        "  <inertial>\n"
+        '    <origin xyz="0 0 0" rpy="0 0 0"/>\n'
+        '    <mass value="0.8"/>\n'
+        '    <inertia ixx="0.00533333" ixy="0" ixz="0" iyy="0.00533333" iyz="0" izz="0.00533333"/>\n'
+        "  </inertial>\n"
+        "\n"
+        "wheel: 1 collision shape, mass as given: 0.5 kg at 119.4 kg/m3\n"
+        "  <inertial>\n"
+        '    <origin xyz="0 0 0" rpy="0 0 0"/>\n'
+        '    <mass value="0.5"/>\n'
+        '    <inertia ixx="0.002" ixy="0" ixz="0" iyy="0.002" iyz="0" izz="0.002"/>\n'
+        "  </inertial>\n"
+    )
 
 
 def test_json(model, capsys):
@@ -79,7 +87,10 @@ def test_json(model, capsys):
     assert base["present"]["center_distance"] == pytest.approx(0.01)
     assert base["present"]["moment_ratios"] == pytest.approx([1.5] * 3)
     assert base["equivalent_box"] == pytest.approx([0.2] * 3, rel=1e-4)
+    assert [each["verdict"] for each in data["links"]] == ["unjudged", "fits", "missing"]
+    assert base["present_density"] == pytest.approx(250.0)
     assert wheel["present"] is None
+    assert wheel["why"] == "it has no <inertial>"
     assert wheel["from"] == "collision"
     assert wheel["xml"].startswith("<inertial>\n  <origin")
 
@@ -88,13 +99,12 @@ def test_writing(model, capsys):
     assert main(["inertia", str(model), "--write"]) == 0
     out = capsys.readouterr().out
     assert out.endswith(f"wrote 2 <inertial> to '{model}'\n")
-    assert "  it was: mass 2 kg" in out
     assert "<mass" not in out
     robot = load(model)
     assert robot.links["base_link"].inertial.ixx == 0.0133333
     assert robot.links["wheel"].inertial.mass == 4.18879
     assert main(["inertia", str(model)]) == 0
-    assert "0 mm away, principal moments for each kg 1 1 1 times" in capsys.readouterr().out
+    assert capsys.readouterr().out.count("fits its shapes") == 2
 
 
 def test_what_a_macro_writes_is_printed_and_refused(tmp_path, capsys):
@@ -148,4 +158,4 @@ def test_errors_in_the_description_are_told_and_the_rest_is_computed(tmp_path, c
     assert main(["inertia", str(path)]) == 1
     captured = capsys.readouterr()
     assert "2 kg" in captured.err
-    assert "wheel: 1 collision shape" in captured.out
+    assert "wheel" in captured.out

@@ -27,7 +27,7 @@ GROUPS = {
         "xacro": "expand a xacro file to URDF, list its arguments, or explain its parts",
         "check": "check URDF and xacro files, and the packages in folders; of one file, print the link tree",
         "explain": "say what a diagnostic code means and what to do, or what an element or attribute of URDF means",
-        "inertia": "compute mass and inertia of each link from its shapes, compare them with the file, or write them",
+        "inertia": "judge mass and inertia of each link by its shapes, print those computed from them, or write them",
         "diagram": "draw the links and joints of a model as urdf_to_graphviz does (.gv and PDF or SVG)",
         "export": "write a model as one HTML file that opens in any browser, or as glTF (.glb)",
     },

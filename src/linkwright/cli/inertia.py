@@ -9,7 +9,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from linkwright.assignments import parse_assignments
+from linkwright.cli.endings import say
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, has_errors, phrase, print_diagnostics
+from linkwright.diagnostics.translation import localized
 
 if TYPE_CHECKING:
     from linkwright.urdf import Robot
@@ -32,7 +34,13 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--mass", metavar="LINK=KG", action="append", default=[], help="mass of one link; may be repeated"
     )
-    parser.add_argument("--link", metavar="NAME", action="append", default=[], help="only this link; may be repeated")
+    parser.add_argument(
+        "--link",
+        metavar="NAME",
+        action="append",
+        default=[],
+        help="only this link, with the block computed; may be repeated",
+    )
     parser.add_argument(
         "--from",
         dest="prefer",
@@ -83,8 +91,17 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.write:
         found = {each.link: each.properties for each in estimates if each.properties is not None}
         written = write_inertials(robot, found)
-    report = as_json if arguments.format == "json" else as_text
-    sys.stdout.write(report(robot, estimates, written))
+    if arguments.format == "json":
+        sys.stdout.write(as_json(robot, estimates, written))
+    else:
+        detailed = wanted if arguments.link and written is None else () if written is None else written.refused
+        sys.stdout.write(as_text(robot, estimates, written, detailed))
+        if not (arguments.link or arguments.write):
+            say(
+                localized(
+                    phrase("`--link NAME` prints the <inertial> of a link's shapes, `--write` puts them into the file")
+                )
+            )
     if written is not None:
         print_diagnostics(_refusals(written.refused, robot), sys.stderr)
     return 1 if has_errors(reading.diagnostics) or (written is not None and written.refused) else 0

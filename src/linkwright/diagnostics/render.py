@@ -148,16 +148,17 @@ def _excerpt(diagnostic: Diagnostic, paint: _Paint) -> list[str]:
     number = str(span.line)
     gutter = " " * len(number)
     bar = paint("|", "34")
-    carets = paint("^" * max(1, _width(marked)), _COLOURS[diagnostic.severity])
+    carets = paint("^" * max(1, shown_width(marked)), _COLOURS[diagnostic.severity])
     shown = line.replace("\t", _TAB)
     return [
         f"{gutter} {bar}",
         f"{paint(number, '34')} {bar} {shown}",
-        f"{gutter} {bar} {' ' * _width(before)}{carets}",
+        f"{gutter} {bar} {' ' * shown_width(before)}{carets}",
     ]
 
 
-def _width(text: str) -> int:
+def shown_width(text: str) -> int:
+    """How many columns of a terminal a text takes."""
     return sum(map(_columns, text))
 
 

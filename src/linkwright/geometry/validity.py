@@ -11,6 +11,7 @@ from math import sqrt
 
 import numpy as np
 
+from linkwright.diagnostics import Phrase, phrase
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.mass import MassProperties
 
@@ -96,13 +97,13 @@ def distance_outside(point: Array, low: Array, high: Array) -> float:
     return float(np.linalg.norm(np.maximum(0.0, np.maximum(low - point, point - high))))
 
 
-def problems(properties: MassProperties) -> list[str]:
+def problems(properties: MassProperties) -> list[Phrase]:
     """What keeps mass properties from being those of a body, in words; empty when they can be."""
     found = []
     if not properties.mass > 0:
-        found.append("the mass is not positive")
+        found.append(phrase("the mass is not positive"))
     if not is_positive_definite(properties.inertia):
-        found.append("the inertia tensor is not positive definite")
+        found.append(phrase("the inertia tensor is not positive definite"))
     elif triangle_excess(properties.inertia) > TOLERANCE:
-        found.append("one principal moment of inertia is larger than the sum of the other two")
+        found.append(phrase("one principal moment of inertia is larger than the sum of the other two"))
     return found

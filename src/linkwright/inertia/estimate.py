@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from linkwright.diagnostics import LinkwrightError
+from linkwright.diagnostics import LinkwrightError, Phrase, phrase, term
 from linkwright.geometry.mass import FARTHEST, MassProperties, combine
 from linkwright.geometry.solids import half_extents, shape_properties
 from linkwright.inertia.inertial import has_mass
@@ -43,7 +43,7 @@ class Estimate:
     shapes: int
     basis: Literal["mass", "density", "present"]
     density: float
-    notes: tuple[str, ...] = ()
+    notes: tuple[Phrase, ...] = ()
 
 
 def estimate(
@@ -66,7 +66,7 @@ def estimate(
         mass: in kg.
         prefer: the shapes to take; the others where the link has none of these (or none with a volume).
     """
-    notes: list[str] = []
+    notes: list[Phrase] = []
     kind: ShapeKind | None = None
     parts: list[MassProperties] = []
     other: ShapeKind = "visual" if prefer == "collision" else "collision"
@@ -84,7 +84,7 @@ def estimate(
     if kind is None:
         return Estimate(link.name, None, None, 0, basis, 0.0, tuple(notes))
     if kind != prefer and (link.collisions if prefer == "collision" else link.visuals):
-        notes.append(f"taken from the {kind} shapes instead")
+        notes.append(phrase("taken from the {kind} shapes instead", kind=term(kind)))
     solid = combine(parts)
     if mass is not None:
         properties = solid.with_mass(mass)
@@ -93,33 +93,43 @@ def estimate(
     return Estimate(link.name, properties, kind, len(parts), basis, properties.mass / solid.mass, tuple(notes))
 
 
-def _solid(shape: Collision | Visual, kind: ShapeKind, meshes: MeshLibrary, notes: list[str]) -> MassProperties | None:
+def _solid(
+    shape: Collision | Visual, kind: ShapeKind, meshes: MeshLibrary, notes: list[Phrase]
+) -> MassProperties | None:
     """A shape of density 1 in the link frame; None when it has no volume or cannot be read, which is noted."""
     geometry = shape.geometry
     if max(map(abs, shape.origin.xyz)) > FARTHEST:
-        notes.append(f"a {kind} shape is left out: it is too far away")
+        notes.append(phrase("a {kind} shape is left out: it is too far away", kind=term(kind)))
         return None
     if isinstance(geometry, Mesh):
         try:
             mesh = meshes.load(geometry, shape.element)
         except LinkwrightError as error:
-            notes.append(f"a {kind} mesh is left out: {error.diagnostics[0].message}")
+            notes.append(phrase("a {kind} mesh is left out: {why}", kind=term(kind), why=error.diagnostics[0].message))
             return None
         solid = mesh.solid
         name = geometry.filename.rpartition("/")[2]
         if not solid.mass > _NOTHING:
-            notes.append(f"the {kind} mesh '{name}' is left out: it is flat")
+            notes.append(phrase("the {kind} mesh '{name}' is left out: it is flat", kind=term(kind), name=name))
             return None
         if not mesh.is_watertight:
-            notes.append(f"the {kind} mesh '{name}' is not watertight: its convex hull is taken")
+            notes.append(
+                phrase(
+                    "the {kind} mesh '{name}' is not watertight: its convex hull is taken", kind=term(kind), name=name
+                )
+            )
     else:
         what = type(geometry).__name__.lower()
         if half_extents(geometry).max() > FARTHEST:
-            notes.append(f"a {kind} {what} is left out: it is too large")
+            notes.append(phrase("a {kind} {what} is left out: it is too large", kind=term(kind), what=term(what)))
             return None
         solid = shape_properties(geometry)
         if not solid.mass > _NOTHING:
-            why = "it has no volume worth mentioning" if solid.mass > 0 else "it has a size that is not positive"
-            notes.append(f"a {kind} {what} is left out: {why}")
+            why = (
+                phrase("it has no volume worth mentioning")
+                if solid.mass > 0
+                else phrase("it has a size that is not positive")
+            )
+            notes.append(phrase("a {kind} {what} is left out: {why}", kind=term(kind), what=term(what), why=why))
             return None
     return solid.moved(shape.origin)

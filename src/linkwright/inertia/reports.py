@@ -3,91 +3,132 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import asdict
-from math import isclose
 from typing import Any
 
-from linkwright.diagnostics import display_path
+from linkwright.diagnostics import Phrase, counted, display_path, phrase, quoted_names
+from linkwright.diagnostics.render import shown_width
+from linkwright.diagnostics.translation import localized
 from linkwright.geometry.mass import MassProperties
 from linkwright.inertia.blocks import inertial_block
-from linkwright.inertia.comparison import Comparison, compare
 from linkwright.inertia.estimate import Estimate
-from linkwright.inertia.inertial import from_inertial, is_computable, to_inertial
+from linkwright.inertia.inertial import to_inertial
+from linkwright.inertia.verdict import Standing, Verdict, grouped, judge
 from linkwright.inertia.writing import Written
 from linkwright.urdf import Robot
+from linkwright.urdf.bodies import Bodies
 
 _STEP = "  "
+_HEAD = (
+    phrase("link"),
+    phrase("mass (kg)"),
+    phrase("density (kg/m3)"),
+    phrase("principal moments (kg m2)"),
+    phrase("verdict"),
+)
+_NAMES = {
+    Standing.IMPOSSIBLE: phrase("impossible"),
+    Standing.DOUBTFUL: phrase("doubtful"),
+    Standing.MISSING: phrase("missing"),
+    Standing.ROUGH: phrase("rough"),
+}
+"""What verdicts that ask for a change begin with."""
+
+_BASES = {
+    "mass": phrase("mass as given"),
+    "present": phrase("mass as in the file"),
+    "density": phrase("mass from density"),
+}
 
 
-def as_text(robot: Robot, estimates: Sequence[Estimate], written: Written | None = None) -> str:
-    """For each link what was taken, the block, and how the one in the file compares.
+def as_text(
+    robot: Robot, estimates: Sequence[Estimate], written: Written | None = None, detailed: Collection[str] = ()
+) -> str:
+    """A table of what the file says of the links, the worst first, and a verdict on each; in the reader's language.
 
     Args:
         robot: the robot.
         estimates: of its links.
-        written: what came of writing; the blocks that were written are not printed.
+        written: what came of writing; the verdicts are on what was in the file before.
+        detailed: links whose computed ``<inertial>`` follows the table, with where it comes from.
     """
-    parts = []
-    for found in estimates:
-        lines = [f"{found.link}: {_summary(found)}"]
-        lines += [f"{_STEP}note: {note}" for note in found.notes]
-        if found.properties is not None:
-            if written is None or found.link in written.refused:
-                lines.append(f"{_STEP}{inertial_block(found.properties, _STEP)}")
-            where = "in the file" if written is None or found.link in written.refused else "it was"
-            lines.append(f"{_STEP}{where}: {_comparison_text(robot, found.link, found.properties)}")
-        parts.append("\n".join(lines) + "\n")
+    verdicts = _verdicts(robot, estimates)
+    ordered = sorted(estimates, key=lambda each: verdicts[each.link].place)
+    parts = ["\n".join(_table([_row(each, verdicts[each.link]) for each in ordered])) + "\n"]
+    parts += ["\n".join(_detail(each)) + "\n" for each in estimates if each.link in detailed]
     if written is not None:
-        count = len(written.links)
-        files = ", ".join(f"'{display_path(file)}'" for file in written.files) or "no file"
-        parts.append(f"wrote {count} <inertial> to {files}\n")
+        files = quoted_names(map(display_path, written.files)) if written.files else phrase("no file")
+        line = phrase("wrote {count} <inertial> to {files}", count=len(written.links), files=files)
+        parts.append(localized(line) + "\n")
     return "\n".join(parts)
+
+
+def _table(rows: list[tuple[str, ...]]) -> Iterator[str]:
+    """The lines of a table with its head; cells stand below each other on the left."""
+    lines = [tuple(map(localized, _HEAD)), *rows]
+    widths = [max(map(shown_width, column)) for column in zip(*lines, strict=True)]
+    for line in lines:
+        cells = (cell + " " * (width - shown_width(cell)) for cell, width in zip(line, widths, strict=True))
+        yield _STEP.join(cells).rstrip()
+
+
+def _row(found: Estimate, verdict: Verdict) -> tuple[str, ...]:
+    present = verdict.present
+    mass = "-" if present is None else f"{present.mass:.4g}"
+    if found.properties is not None and found.basis != "present":
+        mass = localized(phrase("{present} ({mass:.4g} computed)", present=mass, mass=found.properties.mass))
+    moments = "-" if present is None else " ".join(f"{each:.3g}" for each in present.principal().moments)
+    density = "-" if verdict.density is None else grouped(verdict.density)
+    name = _NAMES.get(verdict.standing)
+    words = verdict.words if name is None else phrase("{standing}: {words}", standing=name, words=verdict.words)
+    return found.link, mass, density, moments, localized(words)
+
+
+def _detail(found: Estimate) -> Iterator[str]:
+    yield f"{found.link}: {localized(_summary(found))}"
+    yield from (f"{_STEP}{localized(note)}" for note in found.notes)
+    if found.properties is not None:
+        yield f"{_STEP}{inertial_block(found.properties, _STEP)}"
+
+
+def _verdicts(robot: Robot, estimates: Sequence[Estimate]) -> Mapping[str, Verdict]:
+    bodies = Bodies(robot)
+    return {found.link: judge(robot.links[found.link], found, bodies) for found in estimates}
 
 
 def as_json(robot: Robot, estimates: Sequence[Estimate], written: Written | None = None) -> str:
     """The same as an object with ``links``, a list in file order; SI units, floats in full."""
-    links = [_link_data(robot, found, written) for found in estimates]
+    verdicts = _verdicts(robot, estimates)
+    links = [_link_data(found, verdicts[found.link], written) for found in estimates]
     files = [] if written is None else [str(file) for file in written.files]
     return json.dumps({"links": links, "files": files}, indent=2, ensure_ascii=False) + "\n"
 
 
-def _summary(found: Estimate) -> str:
+def _summary(found: Estimate) -> Phrase:
     if found.properties is None:
-        return "no shape with a volume, so nothing is computed"
-    shapes = f"{found.shapes} {found.kind} shape{'' if found.shapes == 1 else 's'}"
-    mass = {"mass": "mass as given", "present": "mass as in the file", "density": "mass from density"}[found.basis]
-    return f"{shapes}, {mass}: {found.properties.mass:.6g} kg at {found.density:.4g} kg/m3"
+        return phrase("no shape with a volume, so nothing is computed")
+    shapes = (
+        counted("{count} collision shape", "{count} collision shapes", found.shapes)
+        if found.kind == "collision"
+        else counted("{count} visual shape", "{count} visual shapes", found.shapes)
+    )
+    return phrase(
+        "{shapes}, {basis}: {mass:.6g} kg at {density:.4g} kg/m3",
+        shapes=shapes,
+        basis=_BASES[found.basis],
+        mass=found.properties.mass,
+        density=found.density,
+    )
 
 
-def _comparison_text(robot: Robot, link: str, properties: MassProperties) -> str:
-    compared = _compared(robot, link, properties)
-    if compared is None:
-        return "no <inertial>" if robot.links[link].inertial is None else "numbers beyond all bounds"
-    words = [f"mass {compared.mass:.6g} kg"]
-    if compared.mass_ratio is not None and not isclose(compared.mass_ratio, 1.0, rel_tol=1e-6):
-        words[0] += f" ({compared.mass_ratio:.3g} times)"
-    words.append(f"centre of mass {compared.center_distance * 1000:.3g} mm away")
-    if compared.moment_ratios is not None:
-        ratios = " ".join(f"{ratio:.3g}" for ratio in compared.moment_ratios)
-        words.append(f"principal moments for each kg {ratios} times")
-    return ", ".join(words) + "".join(f"; {problem}" for problem in compared.problems)
-
-
-def _compared(robot: Robot, link: str, properties: MassProperties) -> Comparison | None:
-    inertial = robot.links[link].inertial
-    if inertial is None or not is_computable(inertial):
-        return None
-    return compare(from_inertial(inertial), properties)
-
-
-def _link_data(robot: Robot, found: Estimate, written: Written | None) -> dict[str, Any]:
+def _link_data(found: Estimate, verdict: Verdict, written: Written | None) -> dict[str, Any]:
     data: dict[str, Any] = {"link": found.link, "from": found.kind, "shapes": found.shapes, "basis": found.basis}
     data |= {"density": found.density, "notes": list(found.notes), "inertial": None, "present": None}
     if found.properties is not None:
         data |= _properties_data(found.properties)
-        compared = _compared(robot, found.link, found.properties)
-        data["present"] = None if compared is None else asdict(compared)
+    data["present"] = None if verdict.comparison is None else asdict(verdict.comparison)
+    data |= {"verdict": verdict.standing.value, "why": str.__str__(verdict.words), "present_density": verdict.density}
     if written is not None:
         data["written"] = found.link in written.links
         data["refused"] = written.refused.get(found.link)

@@ -52,15 +52,38 @@ class Bodies:
         return [self._robot.links[name] for name in body.frames]
 
     def stands_for_others(self, link: Link) -> bool:
-        """Whether a link's mass may be that of links fixed to it: one of them has shapes and no mass of its own."""
-        body = self.of(link.name)
-        others = () if body is None else (each for each in self.members(body) if each is not link)
-        return any((each.visuals or each.collisions) and not _has_mass(each) for each in others)
+        """Whether a link's mass may be that of links with shapes and no mass that are fixed to it, too."""
+        return link.name in self._standing_for_others
 
     def mass(self, body: Body) -> float:
         """The positive masses of a body's links together, in kg."""
         inertials = [link.inertial for link in self.members(body)]
         return sum(inertial.mass for inertial in inertials if inertial is not None and inertial.mass > 0)
+
+    @cached_property
+    def _standing_for_others(self) -> frozenset[str]:
+        """The links with a mass that touch links without, of which one has a shape; frames between them do not part."""
+        links = self._robot.links if self._robot is not None else {}
+        neighbours: dict[str, list[str]] = {name: [] for name in links}
+        for joint in self._robot.joints.values() if self._robot is not None else ():
+            if joint.type == "fixed" and joint.parent in links and joint.child in links:
+                neighbours[joint.parent].append(joint.child)
+                neighbours[joint.child].append(joint.parent)
+        massless = {name for name, link in links.items() if not _has_mass(link)}
+        found: set[str] = set()
+        seen: set[str] = set()
+        for name in massless:
+            if name in seen:
+                continue
+            seen.add(name)
+            group = [name]
+            for each in group:
+                more = [other for other in neighbours[each] if other in massless and other not in seen]
+                seen.update(more)
+                group += more
+            if any(links[each].visuals or links[each].collisions for each in group):
+                found.update(other for each in group for other in neighbours[each] if other not in massless)
+        return frozenset(found)
 
     @cached_property
     def _by_link(self) -> Mapping[str, Body]:

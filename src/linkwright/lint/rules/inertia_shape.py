@@ -64,7 +64,7 @@ class DensityTooHigh(Rule):
 
     Osmium, the densest there is, has 22 600 kg/m3. A link that would be denser has a mass in grams, or shapes in
     other units than metres. Meshes count with the whole box around them, so nothing real is reported. Where links that
-    are fixed to it have shapes and no mass, the link's mass is taken for that of them all.
+    are fixed to it have shapes and no mass, its mass counts in the box around all links that fixed joints connect.
 
     ## Example
 

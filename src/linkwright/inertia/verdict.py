@@ -1,0 +1,167 @@
+"""What the ``<inertial>`` of a link is worth beside its shapes, in words."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from math import log
+
+import numpy as np
+
+from linkwright.diagnostics import Phrase, joined, phrase
+from linkwright.geometry.mass import MassProperties
+from linkwright.geometry.validity import HEAVIEST_DENSITY, LIGHTEST_DENSITY, problems
+from linkwright.inertia.comparison import Comparison, compare
+from linkwright.inertia.estimate import Estimate
+from linkwright.inertia.inertial import from_inertial, is_computable
+from linkwright.urdf import Link, Mesh
+from linkwright.urdf.bodies import Bodies
+
+_DOUBTFUL = 10.0
+_ROUGH = 2.0
+"""How many times larger or smaller than those of a solid of the same shapes moments are, to be called so."""
+
+_FAR = 0.5
+_OFF = 0.1
+"""How far a centre of mass is from that of the shapes to be doubtful, and to be rough, as a part of their diagonal."""
+
+
+class Standing(Enum):
+    """How good an ``<inertial>`` is, the worst first."""
+
+    IMPOSSIBLE = "impossible"
+    DOUBTFUL = "doubtful"
+    MISSING = "missing"
+    ROUGH = "rough"
+    FITS = "fits"
+    UNJUDGED = "unjudged"
+
+
+_ORDER = tuple(Standing)
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """What is to be said of a link's ``<inertial>``.
+
+    Attributes:
+        standing: how good it is.
+        words: why, as a clause.
+        badness: by how much it is off; comparable where the standing is the same.
+        present: what the file says, in the link frame; None without, and where its numbers cannot be computed with.
+        density: of the link's shapes with the file's mass, in kg/m3; None where they do not tell.
+        comparison: of the file with the shapes; None where there is nothing to compare.
+    """
+
+    standing: Standing
+    words: Phrase
+    badness: float = 0.0
+    present: MassProperties | None = None
+    density: float | None = None
+    comparison: Comparison | None = None
+
+    @property
+    def place(self) -> tuple[int, float]:
+        """What to sort by to have the worst first."""
+        return _ORDER.index(self.standing), -self.badness
+
+
+@dataclass(frozen=True, slots=True)
+class _Reason:
+    """One thing that is wrong with an ``<inertial>``."""
+
+    standing: Standing
+    words: Phrase
+    badness: float = 0.0
+
+
+def judge(link: Link, found: Estimate, bodies: Bodies) -> Verdict:
+    """The verdict on a link.
+
+    Args:
+        link: the link.
+        found: what its shapes tell.
+        bodies: the robot's links as fixed joints connect them: a mass may be that of links that have none.
+    """
+    if link.inertial is None:
+        return _without(link, bodies)
+    if not is_computable(link.inertial):
+        return Verdict(Standing.IMPOSSIBLE, phrase("its numbers are beyond all bounds"))
+    present = from_inertial(link.inertial)
+    shapes = link.collisions if found.kind == "collision" else link.visuals
+    comparison = None if found.properties is None else compare(present, found.properties)
+    computed = found.properties if found.shapes == len(shapes) else None  # a part of them tells nothing
+    alone = not bodies.stands_for_others(link)
+    reasons = [_Reason(Standing.IMPOSSIBLE, words) for words in problems(present)]
+    density = None
+    if alone and computed is not None and comparison is not None:
+        if present.mass > 0:
+            density = present.mass / computed.mass * found.density
+            reasons += _of_density(density, any(isinstance(each.geometry, Mesh) for each in shapes))
+        reasons += _of_comparison(comparison, computed)
+    if reasons:
+        worst = min(reasons, key=lambda each: _ORDER.index(each.standing)).standing
+        said = [each for each in reasons if each.standing is worst]
+        words, badness = joined([each.words for each in said], "; "), max(each.badness for each in said)
+        return Verdict(worst, words, badness, present, density, comparison)
+    if computed is None:
+        return Verdict(Standing.UNJUDGED, phrase("there is no shape to compare with"), 0.0, present)
+    if not alone:
+        words = phrase("its mass stands for links that are fixed to it, too")
+        return Verdict(Standing.UNJUDGED, words, 0.0, present, None, comparison)
+    return Verdict(Standing.FITS, phrase("fits its shapes"), 0.0, present, density, comparison)
+
+
+def _without(link: Link, bodies: Bodies) -> Verdict:
+    """The verdict on a link without ``<inertial>``."""
+    body = bodies.of(link.name)
+    members = [] if body is None else bodies.members(body)
+    heavy = next((each.name for each in members if each.inertial is not None and each.inertial.mass > 0), None)
+    if heavy is not None:
+        return Verdict(Standing.UNJUDGED, phrase("it is fixed to '{link}', which has a mass", link=heavy))
+    if link.visuals or link.collisions or (body is not None and body.joint is not None and members[0] is link):
+        return Verdict(Standing.MISSING, phrase("it has no <inertial>"))
+    return Verdict(Standing.UNJUDGED, phrase("it is only a frame"))
+
+
+def _of_density(density: float, has_mesh: bool) -> list[_Reason]:
+    if density > HEAVIEST_DENSITY:
+        # A mesh may be a thin skin around what weighs.
+        standing = Standing.DOUBTFUL if has_mesh else Standing.IMPOSSIBLE
+        words = phrase("denser than any solid: osmium has {density} kg/m3", density=grouped(HEAVIEST_DENSITY))
+        return [_Reason(standing, words, log(density / HEAVIEST_DENSITY))]
+    if density < LIGHTEST_DENSITY:
+        return [_Reason(Standing.DOUBTFUL, phrase("lighter than air"), log(LIGHTEST_DENSITY / density))]
+    return []
+
+
+def _of_comparison(comparison: Comparison, computed: MassProperties) -> list[_Reason]:
+    reasons = []
+    box = computed.equivalent_box()
+    part = 0.0 if box is None else comparison.center_distance / float(np.linalg.norm(box))
+    if part > _OFF:
+        words = phrase("its centre of mass is {length} from that of its shapes", length=_length(comparison))
+        reasons.append(_Reason(Standing.DOUBTFUL if part > _FAR else Standing.ROUGH, words, log(part / _OFF)))
+    ratios = [ratio for ratio in comparison.moment_ratios or () if ratio > 0]
+    if ratios:
+        ratio = max(ratios, key=lambda each: abs(log(each)))
+        times = max(ratio, 1 / ratio)
+        if times > _ROUGH:
+            shown = f"{times:.2g}" if times < _DOUBTFUL else grouped(times)
+            words = (
+                phrase("its moments are {times} times those of a solid of its shapes", times=shown)
+                if ratio > 1
+                else phrase("its moments are 1/{times} of those of a solid of its shapes", times=shown)
+            )
+            reasons.append(_Reason(Standing.DOUBTFUL if times > _DOUBTFUL else Standing.ROUGH, words, log(times)))
+    return reasons
+
+
+def _length(comparison: Comparison) -> str:
+    distance = comparison.center_distance
+    return f"{distance:.3g} m" if distance >= 1 else f"{distance * 1000:.3g} mm"
+
+
+def grouped(number: float) -> str:
+    """A number in full with its thousands apart, a small one with three digits."""
+    return f"{number:,.0f}".replace(",", " ") if number >= 100 else f"{number:.3g}"

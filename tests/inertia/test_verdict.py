@@ -1,0 +1,89 @@
+"""What is said of an `<inertial>` beside the shapes of its link."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.inertia import MeshLibrary, estimate
+from linkwright.inertia.verdict import Standing, judge
+from linkwright.packages import PackageFinder
+from linkwright.urdf import read
+from linkwright.urdf.bodies import Bodies
+from linkwright.xmltree import parse
+
+BALL = '<visual><geometry><sphere radius="0.1"/></geometry></visual>'
+
+
+def verdict_on(tmp_path, inertial, shapes=BALL, more=""):
+    """The verdict on a link 'a' that a joint turns."""
+    text = (
+        f'<robot name="r"><link name="world"/><link name="a">{inertial}{shapes}</link>'
+        '<joint name="j" type="continuous"><parent link="world"/><child link="a"/></joint>' + more + "</robot>"
+    )
+    robot = read(parse(text, "r.urdf")).robot
+    found = estimate(robot.links["a"], MeshLibrary(PackageFinder(start=[tmp_path]), tmp_path))
+    return judge(robot.links["a"], found, Bodies(robot))
+
+
+def inertial(mass=4.0, moment=0.016, origin="0 0 0"):
+    return (
+        f'<inertial><origin xyz="{origin}"/><mass value="{mass}"/>'
+        f'<inertia ixx="{moment}" ixy="0" ixz="0" iyy="{moment}" iyz="0" izz="{moment}"/></inertial>'
+    )
+
+
+@pytest.mark.parametrize(
+    ("block", "standing", "words"),
+    [
+        (inertial(), Standing.FITS, "fits its shapes"),
+        (inertial(mass=-1), Standing.IMPOSSIBLE, "the mass is not positive"),
+        (inertial(moment=-1), Standing.IMPOSSIBLE, "the inertia tensor is not positive definite"),
+        (inertial(mass=1e40), Standing.IMPOSSIBLE, "its numbers are beyond all bounds"),
+        (
+            inertial(mass=400, moment=1.6),
+            Standing.IMPOSSIBLE,
+            "denser than any solid: osmium has 22 600 kg/m3",
+        ),
+        (inertial(mass=0.004, moment=0.000016), Standing.DOUBTFUL, "lighter than air"),
+        (inertial(moment=16), Standing.DOUBTFUL, "its moments are 1 000 times those of a solid of its shapes"),
+        (inertial(moment=0.00016), Standing.DOUBTFUL, "its moments are 1/100 of those of a solid of its shapes"),
+        (inertial(moment=0.064), Standing.ROUGH, "its moments are 4 times those of a solid of its shapes"),
+        (inertial(origin="0 0.5 0"), Standing.DOUBTFUL, "its centre of mass is 500 mm from that of its shapes"),
+        (inertial(origin="0 0.05 0"), Standing.ROUGH, "its centre of mass is 50 mm from that of its shapes"),
+        ("", Standing.MISSING, "it has no <inertial>"),
+    ],
+)
+def test_a_ball(tmp_path, block, standing, words):
+    verdict = verdict_on(tmp_path, block)
+    assert (verdict.standing, verdict.words) == (standing, words)
+
+
+def test_the_worst_is_said_and_sorts_first(tmp_path):
+    verdict = verdict_on(tmp_path, inertial(mass=-1, moment=16))
+    assert verdict.standing is Standing.IMPOSSIBLE
+    worse = verdict_on(tmp_path, inertial(moment=16))
+    bad = verdict_on(tmp_path, inertial(moment=1.6))
+    fine = verdict_on(tmp_path, inertial())
+    assert sorted([fine, bad, worse, verdict], key=lambda each: each.place) == [verdict, worse, bad, fine]
+
+
+def test_a_part_of_the_shapes_tells_nothing(tmp_path):
+    shapes = BALL + '<visual><geometry><mesh filename="package://nowhere/a.stl"/></geometry></visual>'
+    verdict = verdict_on(tmp_path, inertial(mass=400), shapes)
+    assert (verdict.standing, verdict.density) == (Standing.UNJUDGED, None)
+
+
+def test_a_mass_may_be_that_of_a_neighbour_without_one(tmp_path):
+    joint = '<joint name="f" type="fixed"><parent link="{}"/><child link="{}"/></joint><link name="{}">{}</link>'
+    through_a_frame = joint.format("a", "frame", "frame", "") + joint.format("frame", "cover", "cover", BALL).replace(
+        '"f"', '"g"'
+    )
+    assert verdict_on(tmp_path, inertial(mass=400), more=through_a_frame).standing is Standing.UNJUDGED
+    heavy = joint.format("a", "cover", "cover", BALL + inertial())
+    assert verdict_on(tmp_path, inertial(mass=400), more=heavy).standing is Standing.IMPOSSIBLE
+
+
+def test_a_link_without_an_inertial_that_needs_none(tmp_path):
+    joint = '<joint name="f" type="fixed"><parent link="a"/><child link="b"/></joint><link name="b">{}</link>'
+    verdict = verdict_on(tmp_path, "", more=joint.format(inertial()))
+    assert verdict.words == "it is fixed to 'b', which has a mass"
