@@ -27,7 +27,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Write the file and say so."""
     from linkwright.descriptions import DescriptionLibrary, examine
     from linkwright.packages import PackageFinder
-    from linkwright.viewer.features.export import FORMATS, export_snapshot, format_of
+    from linkwright.viewer.features.export.feature import FORMATS, export_snapshot, format_of
     from linkwright.viewer.model_snapshot import snapshot_of_model
 
     if format_of(arguments.out) is None:

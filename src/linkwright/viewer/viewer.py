@@ -15,9 +15,8 @@ from linkwright.viewer.config.locations import keep_unsaved
 from linkwright.viewer.config.rviz_config import RvizConfig
 from linkwright.viewer.context import GraphChanges, ViewerContext
 from linkwright.viewer.displays.base.display import ViewerDisplay
-from linkwright.viewer.features.catalogue import make_features
 from linkwright.viewer.features.joints import JointsFeature
-from linkwright.viewer.features.page_feature import PageFeature
+from linkwright.viewer.features.page_feature import PageFeature, make_features
 from linkwright.viewer.frames.history import FrameHistory
 from linkwright.viewer.protocol.codec import encode
 from linkwright.viewer.protocol.message import PageMessage, ServerMessage

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.viewer.config import file as configuration_file
@@ -13,7 +13,7 @@ from linkwright.viewer.config.locations import RecentFiles, configuration_path, 
 from linkwright.viewer.config.rviz_config import RvizConfig
 from linkwright.viewer.config.schema import MAXIMUM_TEXT
 from linkwright.viewer.displays.catalogue import has_display
-from linkwright.viewer.features.display_choices import choices, show_topic, topic_choices
+from linkwright.viewer.features.displays import choices, show_topic, topic_choices
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
 from linkwright.viewer.protocol.configuration import (
     AddDisplay,
@@ -39,11 +39,13 @@ from linkwright.viewer.protocol.configuration import (
     Undo,
 )
 from linkwright.viewer.protocol.message import ServerMessage
+from linkwright.viewer.protocol.panels import Panels, ShowPanels
+from linkwright.viewer.web.audience import Page
 
 if TYPE_CHECKING:
     from linkwright.viewer.displays.base.display import ViewerDisplay
     from linkwright.viewer.visualization.manager import VisualizationManager
-    from linkwright.viewer.web.audience import Page
+
 
 _UNNAMED = "untitled.rviz"
 
@@ -276,3 +278,25 @@ def _name(text: str) -> str:
     if not name or len(name) > 200:
         raise ValueError("a display's name has 1 to 200 characters")
     return name
+
+
+class PanelsFeature(PageFeature):
+    """Each page has panels of its own and begins with the file's; the file gets those of whoever changed theirs last.
+
+    Other open pages are not notified: a page's panels are its own. Where there is no file there
+    is nothing to save either: the browser remembers the panels.
+    """
+
+    RECEIVES: ClassVar[tuple[type, ...]] = (ShowPanels,)
+
+    def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
+        """The panels that the file shows."""
+        config = manager.config
+        return [Panels(manager.opened, config.document.source.name, config.panels.shown)]
+
+    def receive(self, page: Page, message: Any) -> None:
+        """Have the file show what the page shows."""
+        manager = self.managers.of(page)
+        config = manager.config
+        if config.panels.show(message.shown) and config.path is not None:
+            manager.edited()

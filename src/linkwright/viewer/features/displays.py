@@ -1,12 +1,19 @@
-"""Messages of pages about single displays: property values, how meshes loaded, feedback of interactive markers."""
+"""Displays, for pages: values set, what was selected, and what the Add dialog offers."""
 
 from __future__ import annotations
 
 from typing import ClassVar
 
+from linkwright.graph import DurabilityPolicy, Node, ReliabilityPolicy
+from linkwright.viewer.config.former_names import GROUP
+from linkwright.viewer.config.schema import PropertySpec
+from linkwright.viewer.displays.base.display import ViewerDisplay
+from linkwright.viewer.displays.catalogue import display_classes
 from linkwright.viewer.features.page_feature import PageFeature
+from linkwright.viewer.protocol.configuration import DisplayClass, DisplayClasses, TopicChoice, TopicChoices
 from linkwright.viewer.protocol.displays import SetProperty
 from linkwright.viewer.protocol.interactive_markers import MarkerFeedback
+from linkwright.viewer.protocol.points import AskPoint, PointFields
 from linkwright.viewer.protocol.robot import MeshStatus
 from linkwright.viewer.web.audience import Page
 
@@ -23,3 +30,69 @@ class DisplaysFeature(PageFeature):
             manager.set_property(page, message.id, message.value)
         elif display := manager.display(message.display):
             display.receive(message)
+
+
+class PointsFeature(PageFeature):
+    """Answers questions about points: pages have only places and colours."""
+
+    RECEIVES = (AskPoint,)
+
+    def receive(self, page: Page, message: AskPoint) -> None:
+        """Answer, if the point is still shown."""
+        from linkwright.viewer.displays.point_clouds import CloudDisplay
+
+        display = self.managers.of(page).display(message.display)
+        if not isinstance(display, CloudDisplay):
+            return
+        fields = display.fields_of(message.key, message.index)
+        if fields is not None:
+            page.send(PointFields(message.display, message.key, message.index, fields))
+
+
+def choices() -> DisplayClasses:
+    """All classes of displays that can be added, groups last."""
+    classes = sorted(display_classes(), key=lambda display: (display.CLASS == GROUP, display.CLASS))
+    return DisplayClasses([DisplayClass(display.CLASS, list(display.messages_shown())) for display in classes])
+
+
+def topic_choices(node: Node) -> TopicChoices:
+    """The topics that another node publishes to, by name, with the displays that show them."""
+    by_message: dict[str, list[str]] = {}
+    for display in display_classes():
+        for message in display.messages_shown():
+            by_message.setdefault(message, []).append(display.CLASS)
+    topics = sorted(node.get_topic_names_and_types())
+    return TopicChoices(
+        [
+            TopicChoice(topic, message, sorted(by_message.get(message, [])))
+            for topic, messages in topics
+            for message in messages
+            if any(info.node_name != node.get_name() for info in node.get_publishers_info_by_topic(topic))
+        ]
+    )
+
+
+def show_topic(display: ViewerDisplay, topic: str) -> None:
+    """Have a display that was just made show a topic, with the quality of service that its publishers offer.
+
+    RViz takes its defaults, with which nothing comes of a sensor's Best Effort.
+    """
+    path = display.TOPIC
+    spec = next((spec for spec in display.schema() if (spec.name,) == path[:1]), None)
+    if spec is None:
+        return
+    display.properties.set(path, display.topic_value(topic))
+    parts = {part.name for part in _at(spec, path).children}
+    offers = [info.qos_profile for info in display.context.node.get_publishers_info_by_topic(topic)]
+    if not offers:
+        return
+    if "Reliability Policy" in parts and any(each.reliability is ReliabilityPolicy.BEST_EFFORT for each in offers):
+        display.properties.set((*path, "Reliability Policy"), "Best Effort")
+    if "Durability Policy" in parts and all(each.durability is DurabilityPolicy.TRANSIENT_LOCAL for each in offers):
+        display.properties.set((*path, "Durability Policy"), "Transient Local")
+
+
+def _at(spec: PropertySpec, path: tuple[str, ...]) -> PropertySpec:
+    for name in path[1:]:
+        spec = next(child for child in spec.children if child.name == name)
+    return spec

@@ -1,4 +1,7 @@
-"""The base class of page features: what pages can ask for besides displays."""
+"""Page features, what pages can ask for besides displays: their base class, and those that there are.
+
+They are found through the entry points ``linkwright.page_features``.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +9,7 @@ from collections.abc import Sequence
 from typing import Any, ClassVar, Protocol
 
 from linkwright.diagnostics import Diagnostic
+from linkwright.extensions import extensions
 from linkwright.viewer.context import ViewerContext
 from linkwright.viewer.protocol.message import ServerMessage
 from linkwright.viewer.visualization.manager import Managers, VisualizationManager
@@ -80,3 +84,24 @@ class PageFeature:
 
     def close(self) -> None:
         """End for good."""
+
+
+GROUP = "linkwright.page_features"
+"""Of the entry points."""
+
+
+def make_features(viewer: FeatureHost) -> list[PageFeature]:
+    """A feature of each kind; one of another package that cannot be made is told of in the log, and left out."""
+    made: list[PageFeature] = []
+    for name, entry in extensions(GROUP).items():
+        try:
+            feature = entry.load()(viewer)
+        except Exception as error:  # noqa: BLE001  # of a package that is not ours anything may be wrong
+            problem = f"{type(error).__name__}: {error}"
+        else:
+            if isinstance(feature, PageFeature):
+                made.append(feature)
+                continue
+            problem = f"{entry.value} makes no PageFeature"
+        viewer.context.node.get_logger().error(f"The page feature '{name}' cannot be had: {problem}")
+    return made

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.viewer.features.export import export_snapshot
+from linkwright.viewer.features.export.feature import export_snapshot
 from tests.browser.golden import GOLDEN, golden_links, link, mesh, robot_of
 from tests.browser.mesh_writers import dae, png
 from tests.viewer.features.export.robots import GRIPPER, Glb, snapshot

@@ -11,7 +11,8 @@ import pytest
 
 from linkwright.messages import get_message
 from linkwright.viewer import RvizConfig
-from linkwright.viewer.features.export import export_snapshot, format_of, html
+from linkwright.viewer.features.export import html
+from linkwright.viewer.features.export.feature import export_snapshot, format_of
 from linkwright.viewer.features.export.snapshot import snapshot_of
 from tests.browser.golden import link, mesh, robot_of
 from tests.browser.mesh_writers import dae, glb, obj, png, stl_binary

@@ -3,8 +3,7 @@ from __future__ import annotations
 import pytest
 
 from linkwright.messages import get_message
-from linkwright.viewer.features.monitor.field_list import plot_fields
-from linkwright.viewer.features.monitor.field_paths import FieldPath, FieldPathError
+from linkwright.viewer.features.monitor.field_paths import FieldPath, FieldPathError, plot_fields
 
 JOINT_STATE = get_message("sensor_msgs/msg/JointState")
 ODOMETRY = get_message("nav_msgs/msg/Odometry")

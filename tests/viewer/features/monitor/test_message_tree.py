@@ -1,7 +1,7 @@
 from __future__ import annotations
 
 from linkwright.messages import get_message
-from linkwright.viewer.features.monitor.message_tree import message_tree
+from linkwright.viewer.features.monitor.topics import message_tree
 from linkwright.viewer.protocol.topics import MessageField
 
 

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from linkwright.viewer.features.monitor.samples import MOST_SENT, SampleQueue, thinned
+from linkwright.viewer.features.monitor.plots import MOST_SENT, SampleQueue, thinned
 from linkwright.viewer.protocol.plots import SAMPLES_KIND, pack_samples
 
 

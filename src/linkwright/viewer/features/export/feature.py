@@ -1,21 +1,68 @@
-"""Pages ask for the robot as a file, and fetch it once."""
+"""Pages ask for the robot as a file, in one of the formats that there are, and fetch it once."""
 
 from __future__ import annotations
 
 import asyncio
 import re
 import traceback
+from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial
 from typing import ClassVar
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.diagnostics.translation import translated
-from linkwright.viewer.features.export.formats import FORMATS, export_snapshot
-from linkwright.viewer.features.export.snapshot import snapshot_of
+from linkwright.viewer.features.export.snapshot import Snapshot, snapshot_of
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
 from linkwright.viewer.protocol.export import AskExport, ExportFailed, ExportReady
 from linkwright.viewer.web.audience import Page
 from linkwright.viewer.web.files import Download
+
+
+@dataclass(frozen=True, slots=True)
+class Format:
+    """A kind of file.
+
+    Attributes:
+        content_type: its MIME type.
+        write: makes it.
+    """
+
+    content_type: str
+    write: Callable[[Snapshot], bytes]
+
+
+def _html(snapshot: Snapshot) -> bytes:
+    from linkwright.viewer.features.export.html import html_of
+
+    return html_of(snapshot)
+
+
+def _glb(snapshot: Snapshot) -> bytes:
+    from linkwright.viewer.features.export.gltf import glb_of
+
+    return glb_of(snapshot)
+
+
+FORMATS = {
+    "html": Format("text/html; charset=utf-8", _html),
+    "glb": Format("model/gltf-binary", _glb),
+}
+"""By the ending of the file."""
+
+
+def format_of(name: str) -> Format | None:
+    """The format that the ending of a file's name says."""
+    return FORMATS.get(name.rpartition(".")[2].lower()) if "." in name else None
+
+
+def export_snapshot(snapshot: Snapshot, ending: str) -> bytes:
+    """The file.
+
+    Raises:
+        LinkwrightError: it cannot be made; the diagnostic says why.
+    """
+    return FORMATS[ending].write(snapshot)
 
 
 class ExportFeature(PageFeature):

@@ -1,20 +1,26 @@
-"""What a viewer shows at one moment, apart from the program that shows it."""
+"""What a viewer shows at one moment, apart from the program that shows it, and the files that drawing it takes."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import json
+import re
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from math import atan2, isfinite, pi
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
+from urllib.parse import unquote, urlsplit
 
 import numpy as np
 from msgspec.structs import replace
 from numpy.typing import NDArray
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, foreign, phrase
+from linkwright.geometry.arrays import quaternion_inverse, quaternion_multiply, rotate
+from linkwright.geometry.single import quaternion_of
 from linkwright.nodes.joint_layout import layout_of
 from linkwright.nodes.joint_settings import JointSettings
-from linkwright.urdf import Robot
-from linkwright.viewer.features.export.joint_state import positions_now
+from linkwright.urdf import Joint, Robot
 from linkwright.viewer.protocol.displays import Display, DisplayProperties, Tree
 from linkwright.viewer.protocol.frames import FrameTable, unpack_transforms
 from linkwright.viewer.protocol.joints import JointControl, JointPositions, Joints
@@ -23,7 +29,7 @@ from linkwright.viewer.protocol.parts import Property
 from linkwright.viewer.protocol.robot import RobotScene
 from linkwright.viewer.protocol.session import Hello
 from linkwright.viewer.protocol.views import SavedViews, View, ViewClasses, ViewState
-from linkwright.viewer.web.files import MeshFolders
+from linkwright.viewer.web.files import FileRefusedError, MeshFolders
 from linkwright.viewer.web.outbox import ScaledData
 
 if TYPE_CHECKING:
@@ -31,6 +37,134 @@ if TYPE_CHECKING:
     from linkwright.viewer.features.page_feature import FeatureHost
     from linkwright.viewer.visualization.manager import VisualizationManager
     from linkwright.viewer.web.outbox import Payload
+
+
+Pose = NDArray[np.float64]
+"""x, y, z (metres), qx, qy, qz, qw; shape (7,)."""
+
+
+def positions_now(robot: Robot, poses: Mapping[str, Pose]) -> dict[str, float]:
+    """Positions (rad or m) of the revolute, continuous and prismatic joints whose links can be placed.
+
+    Args:
+        robot: the description.
+        poses: link -> where it is, all in one frame.
+    """
+    positions = {}
+    for joint in robot.joints.values():
+        if joint.type not in ("revolute", "continuous", "prismatic"):
+            continue
+        if joint.parent in poses and joint.child in poses:
+            position = _position(joint, poses[joint.parent], poses[joint.child])
+            if isfinite(position):
+                positions[joint.name] = position
+    return positions
+
+
+def _position(joint: Joint, parent: Pose, child: Pose) -> float:
+    back = quaternion_inverse(parent[3:])
+    axis = np.asarray(joint.axis, dtype=np.float64)
+    length = float(np.linalg.norm(axis))
+    if length == 0.0:
+        return 0.0
+    axis = axis / length
+    origin = np.asarray(quaternion_of(joint.origin), dtype=np.float64)
+    if joint.type == "prismatic":
+        shift = rotate(back, child[:3] - parent[:3]) - np.asarray(joint.origin.xyz)
+        return float(np.dot(rotate(quaternion_inverse(origin), shift), axis))
+    turn = quaternion_multiply(quaternion_inverse(origin), quaternion_multiply(back, child[3:]))
+    angle = 2.0 * atan2(float(np.dot(turn[:3], axis)), float(turn[3]))
+    angle = (angle + pi) % (2.0 * pi) - pi
+    return _within(joint, angle)
+
+
+def _within(joint: Joint, angle: float) -> float:
+    """The angle, or one a full turn away where that is within the limits."""
+    if joint.type == "continuous" or joint.limit is None:
+        return angle
+    for turned in (angle, angle + 2.0 * pi, angle - 2.0 * pi):
+        if joint.limit.lower - 1e-3 <= turned <= joint.limit.upper + 1e-3:
+            return turned
+    return angle
+
+
+_ADDRESS = re.compile(r"/mesh/([^/]+)/(.+)")
+_COLLADA_IMAGE = re.compile(r"<init_from>\s*(?:<ref>)?\s*([^<]+?)\s*<")
+_MATERIAL_FILE = re.compile(r"^[ \t]*mtllib[ \t]+(.+?)[ \t]*\r?$", re.MULTILINE)
+_MATERIAL_MAP = re.compile(r"^[ \t]*(?:map_\w+|bump|norm|disp)[ \t]+(.+?)[ \t]*\r?$", re.MULTILINE)
+
+
+def addresses(scenes: Iterable[RobotScene]) -> list[str]:
+    """The addresses of the meshes and textures that robots name, each once."""
+    found: dict[str, None] = {}
+    for scene in scenes:
+        for link in scene.links:
+            for shape in (*link.visuals, *link.collisions):
+                for address in (shape.url, shape.texture):
+                    if address is not None:
+                        found[address] = None
+    return list(found)
+
+
+class FileSet:
+    """Files by the path of their address, under the same rules by which pages are served.
+
+    Args:
+        meshes: the folders that may be read.
+    """
+
+    def __init__(self, meshes: MeshFolders) -> None:
+        self._meshes = meshes
+
+    def path(self, address: str) -> Path:
+        """The file at an address.
+
+        Raises:
+            FileRefusedError: it may not be read, or is not there.
+        """
+        found = _ADDRESS.fullmatch(urlsplit(address).path)
+        if found is None:
+            raise FileRefusedError(404, "no such file")
+        return self._meshes.file(found[1], unquote(found[2]))
+
+    def collect(self, wanted: Iterable[str]) -> dict[str, bytes]:
+        """The contents by the path of their address, with the files that meshes name; what is not there is left out."""
+        contents: dict[str, bytes] = {}
+        waiting = [urlsplit(address).path for address in wanted]
+        while waiting:
+            address = waiting.pop()
+            if address in contents:
+                continue
+            try:
+                path = self.path(address)
+                contents[address] = path.read_bytes()
+            except (FileRefusedError, OSError):
+                continue
+            folder = address.rpartition("/")[0]
+            waiting += [f"{folder}/{name}" for name in named_files(path.suffix.lower(), contents[address])]
+        return contents
+
+
+def named_files(ending: str, data: bytes) -> list[str]:
+    """Names of other files in a mesh or material file, as they stand in it, relative to its folder."""
+    names: list[str] = []
+    if ending == ".dae":
+        names = _COLLADA_IMAGE.findall(data.decode("utf-8", "replace"))
+    elif ending == ".obj":
+        names = _MATERIAL_FILE.findall(data.decode("utf-8", "replace"))
+    elif ending == ".mtl":
+        # Options and their numbers may stand before a name, which may hold spaces only without them.
+        lines = _MATERIAL_MAP.findall(data.decode("utf-8", "replace"))
+        names = [line.split()[-1] if line.startswith("-") else line for line in lines]
+    elif ending == ".gltf":
+        try:
+            document = json.loads(data)
+            parts = [*document.get("buffers", ()), *document.get("images", ())]
+            names = [str(part["uri"]) for part in parts if "uri" in part]
+        except (ValueError, AttributeError, TypeError):
+            return []
+    return [name for name in names if not name.startswith(("data:", "/", "file:", "http:", "https:"))]
+
 
 _TAKEN = (DisplayProperties, FrameTable, Hello, SavedViews, ViewClasses, ViewState)
 """Messages that go along as they are: nothing of the machine that the program runs on is in them."""

@@ -7,8 +7,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from linkwright.graph import MessageInfo
-from linkwright.viewer.features.monitor.pacing import Paced
-from linkwright.viewer.features.monitor.topic_tap import TopicTap
+from linkwright.viewer.features.monitor.topic_tap import Paced, TopicTap
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
 from linkwright.viewer.protocol.codec import encode
 from linkwright.viewer.protocol.log import LogLine, LogLines, WatchLog

@@ -2,22 +2,245 @@
 
 from __future__ import annotations
 
+import asyncio
+from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, cast
 
-from linkwright.diagnostics import LinkwrightError
-from linkwright.graph import MessageInfo
-from linkwright.viewer.features.monitor.node_parameters import RemoteNode
-from linkwright.viewer.features.monitor.topic_tap import TopicTap
+from linkwright.diagnostics import LinkwrightError, phrase
+from linkwright.graph import MessageInfo, Node, Parameter
+from linkwright.graph.parameters.client import AsyncParameterClient
+from linkwright.graph.parameters.file_text import parameter_file_text, plain_value
+from linkwright.graph.parameters.parameter import ParameterType
+from linkwright.viewer.features.monitor.topic_tap import Paced, TopicTap
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
 from linkwright.viewer.protocol.parameters import (
     DumpParameters,
     NodeParameters,
+    ParameterDump,
+    ParameterKind,
     ParameterNodes,
+    ParameterResult,
+    ParameterRow,
     SetParameter,
     WatchParameters,
 )
 from linkwright.viewer.web.audience import Page
+
+_KINDS: dict[ParameterType, ParameterKind] = {kind: cast("ParameterKind", kind.name.lower()) for kind in ParameterType}
+_TYPES = {text: kind for kind, text in _KINDS.items()}
+_ARTICLES = {
+    "bool": phrase("true or false"),
+    "integer": phrase("a whole number"),
+    "double": phrase("a number"),
+    "byte": phrase("a byte, 0 to 255"),
+}
+_BOOLS = {"true": True, "false": False}
+_LONGS = range(-(2**63), 2**63)
+
+
+def parameter_row(descriptor: Any, value: Any) -> ParameterRow:
+    """What the page shows of a parameter.
+
+    Args:
+        descriptor: rcl_interfaces/msg/ParameterDescriptor.
+        value: rcl_interfaces/msg/ParameterValue.
+    """
+    limits = [*descriptor.floating_point_range, *descriptor.integer_range]
+    minimum, maximum, step = ("", "", "")
+    if limits:
+        minimum, maximum = str(limits[0].from_value), str(limits[0].to_value)
+        step = str(limits[0].step) if limits[0].step else ""
+    kind, values = value_texts(value)
+    return ParameterRow(
+        name=descriptor.name,
+        kind=kind,
+        values=values,
+        description=descriptor.description,
+        constraints=descriptor.additional_constraints,
+        read_only=descriptor.read_only,
+        minimum=minimum,
+        maximum=maximum,
+        step=step,
+    )
+
+
+def value_texts(value: Any) -> tuple[ParameterKind, list[str]]:
+    """The kind of a value (rcl_interfaces/msg/ParameterValue), and a text for each of its elements."""
+    plain = plain_value(value)
+    kind = ParameterType(value.type)
+    if kind is ParameterType.NOT_SET:
+        return _KINDS[kind], []
+    return _KINDS[kind], [_text(each) for each in (plain if kind.is_array else [plain])]
+
+
+def parameter_of(wanted: SetParameter) -> Parameter:
+    """The parameter that a page wants to have set.
+
+    Raises:
+        ValueError: a text stands for no value of the kind; the text says which.
+    """
+    kind = _TYPES[wanted.kind]
+    if kind is ParameterType.NOT_SET:
+        return Parameter(wanted.name, kind)
+    element = wanted.kind.removesuffix("_array")
+    values = [_value(element, text) for text in wanted.values]
+    if kind.is_array:
+        return Parameter(wanted.name, kind, values)
+    if len(values) != 1:
+        raise ValueError(f"a {element} is one value, not {len(values)}")
+    return Parameter(wanted.name, kind, values[0])
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
+    return str(value[0]) if isinstance(value, bytes) else str(value)
+
+
+def _value(kind: str, text: str) -> Any:
+    if kind == "string":
+        return text
+    try:
+        if kind == "bool":
+            return _BOOLS[text.strip().lower()]
+        if kind == "double":
+            return float(text)
+        number = int(text, 0)
+        if kind == "byte":
+            return bytes([number])
+    except (ValueError, KeyError):
+        raise ValueError(f"'{text}' is not {_ARTICLES[kind]}") from None
+    if number not in _LONGS:
+        raise ValueError(f"{text} is more than 64 bits can hold")
+    return number
+
+
+_PATIENCE = 5.0
+"""Seconds for services to appear, and for an answer."""
+
+_LOOK_EVERY = 0.05
+_TELL_PERIOD = 0.05
+
+
+class NoAnswerError(Exception):
+    """A node did not answer in time; the text says what was asked."""
+
+
+class RemoteNode:
+    """Reads and sets the parameters of a node, and knows them while it is watched.
+
+    Args:
+        node: makes the clients.
+        name: full name of the node whose parameters these are.
+        tell: called with all parameters when they are known, and on every change.
+    """
+
+    def __init__(self, node: Node, name: str, tell: Callable[[NodeParameters], None]) -> None:
+        self.name = name
+        self.known: NodeParameters | None = None
+        self._tell = tell
+        self._client = AsyncParameterClient(node, name)
+        self._rows: dict[str, ParameterRow] = {}
+        self._tasks: set[asyncio.Task[None]] = set()
+        self._turn = Paced(self._tell_rows, _TELL_PERIOD)
+
+    def close(self) -> None:
+        """Stop asking."""
+        self._turn.cancel()
+        for task in self._tasks:
+            task.cancel()
+        self._client.destroy()
+
+    def refresh(self) -> None:
+        """Ask for everything again."""
+        self._run(self._refresh())
+
+    def take(self, event: Any) -> None:
+        """Take note of a rcl_interfaces/msg/ParameterEvent of the node."""
+        for parameter in event.deleted_parameters:
+            self._rows.pop(parameter.name, None)
+        for parameter in event.changed_parameters:
+            row = self._rows.get(parameter.name)
+            if row is not None:
+                row.kind, row.values = value_texts(parameter.value)
+        if any(parameter.name not in self._rows for parameter in event.new_parameters):
+            self.refresh()
+        elif self.known is not None:
+            self._turn.ask()
+
+    def set(self, wanted: SetParameter, answer: Callable[[ParameterResult], None]) -> None:
+        """Set a parameter, and answer with the outcome."""
+        self._run(self._set(wanted, answer))
+
+    def dump(self, answer: Callable[[ParameterDump], None]) -> None:
+        """Answer a parameter file with all the parameters."""
+        self._run(self._dump(answer))
+
+    def _run(self, work: Any) -> None:
+        task = asyncio.get_running_loop().create_task(work)
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+
+    async def _refresh(self) -> None:
+        try:
+            names = await self._names()
+            values = (await self._answer(self._client.get_parameters(names))).values if names else []
+            descriptors = (await self._answer(self._client.describe_parameters(names))).descriptors if names else []
+        except NoAnswerError as error:
+            self.known = NodeParameters(self.name, [], str(error))
+            self._tell(self.known)
+            return
+        pairs = zip(descriptors, values, strict=False)
+        self._rows = {descriptor.name: parameter_row(descriptor, value) for descriptor, value in pairs}
+        self._tell_rows()
+
+    def _tell_rows(self) -> None:
+        self.known = NodeParameters(self.name, [self._rows[name] for name in sorted(self._rows)], None)
+        self._tell(self.known)
+
+    async def _set(self, wanted: SetParameter, answer: Callable[[ParameterResult], None]) -> None:
+        try:
+            await self._ready()
+            response = await self._answer(self._client.set_parameters([parameter_of(wanted)]))
+        except (ValueError, NoAnswerError) as error:
+            answer(ParameterResult(self.name, wanted.name, False, str(error)))
+            return
+        result = response.results[0]
+        answer(ParameterResult(self.name, wanted.name, result.successful, result.reason))
+
+    async def _dump(self, answer: Callable[[ParameterDump], None]) -> None:
+        file = f"{self.name.strip('/').replace('/', '__')}.yaml"
+        try:
+            names = await self._names()
+            values = (await self._answer(self._client.get_parameters(names))).values if names else []
+        except NoAnswerError as error:
+            answer(ParameterDump(self.name, file, "", str(error)))
+            return
+        plain = {name: plain_value(value) for name, value in zip(names, values, strict=False)}
+        answer(ParameterDump(self.name, file, parameter_file_text(self.name, plain), None))
+
+    async def _names(self) -> list[str]:
+        await self._ready()
+        return sorted((await self._answer(self._client.list_parameters())).result.names)
+
+    async def _ready(self) -> None:
+        loop = asyncio.get_running_loop()
+        deadline = loop.time() + _PATIENCE
+        while not self._client.services_are_ready():
+            if loop.time() > deadline:
+                raise NoAnswerError(f"node '{self.name}' does not offer its parameters")
+            await asyncio.sleep(_LOOK_EVERY)
+
+    async def _answer(self, future: Awaitable[Any]) -> Any:
+        async def wait() -> Any:
+            return await future
+
+        try:
+            return await asyncio.wait_for(wait(), _PATIENCE)
+        except asyncio.TimeoutError:
+            raise NoAnswerError(f"node '{self.name}' did not answer in {_PATIENCE:g} s") from None
+
 
 _EVENTS = "/parameter_events"
 _LIST = "/list_parameters"

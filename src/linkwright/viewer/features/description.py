@@ -1,28 +1,106 @@
-"""Answers pages' questions about the descriptions of RobotModel displays."""
+"""Answers pages' questions about the descriptions of RobotModel displays, and shows what is wrong with them."""
 
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, ClassVar
+from collections.abc import Iterable, Mapping, Sequence
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, ClassVar, TypeVar
 
-from linkwright.diagnostics import Diagnostic
+from linkwright.diagnostics import Diagnostic, translated
+from linkwright.packages import PackageFinder
+from linkwright.urdf import Robot
 from linkwright.viewer.displays.robot_model import RobotModelDisplay
-from linkwright.viewer.features.description.known import KnownDescription
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
 from linkwright.viewer.protocol.description import (
     AskDescription,
     AskDescriptionText,
     AskInertia,
+    Description,
     DescriptionChanged,
     DescriptionText,
+    InertiaFindings,
 )
+from linkwright.viewer.protocol.diagnostics import DiagnosticItem, DiagnosticNote, Diagnostics
 from linkwright.viewer.protocol.message import ServerMessage, tag_of
 from linkwright.viewer.protocol.robot import AskProvenance
 
 if TYPE_CHECKING:
+    from linkwright.viewer.features.description_details import SourceTexts
     from linkwright.viewer.visualization.manager import VisualizationManager
     from linkwright.viewer.web.audience import Page
+
+
+Part = TypeVar("Part")
+
+
+class KnownDescription:
+    """One description of a display. All of it may be asked for in another thread.
+
+    Args:
+        display: the RobotModel display.
+        revision: counts the descriptions of the display.
+        robot: what was read.
+        text: what it was read from.
+        prefix: the display's TF Prefix.
+        files: what it was made from, as far as that is known.
+    """
+
+    def __init__(
+        self, display: str, revision: int, robot: Robot, text: str, prefix: str, files: Iterable[Path]
+    ) -> None:
+        self.display = display
+        self.revision = revision
+        self.robot = robot
+        self.text = text
+        self.prefix = prefix
+        self._files = tuple(files)
+
+    @cached_property
+    def texts(self) -> SourceTexts:
+        """The files it was made from."""
+        from linkwright.viewer.features.description_details import SourceTexts
+
+        return SourceTexts(self.robot.element, self._files)
+
+    @cached_property
+    def account(self) -> Description:
+        """Its links and joints."""
+        from linkwright.viewer.features.description_details import account
+
+        return account(
+            self.robot,
+            self.text,
+            self.texts.names,
+            display=self.display,
+            revision=self.revision,
+            prefix=self.prefix,
+        )
+
+    def changed_from(self, before: KnownDescription | None) -> DescriptionChanged:
+        """What is another than in the description before; all of a first one is as it was."""
+        links = _changed(before.robot.links, self.robot.links) if before else []
+        joints = _changed(before.robot.joints, self.robot.joints) if before else []
+        return DescriptionChanged(self.display, self.revision, links, joints)
+
+    def named_text(self, file: str) -> DescriptionText:
+        """One of its files, or the expanded text for an empty name; other files are refused."""
+        text = self.text if file == "" else self.texts.text(file)
+        return DescriptionText(self.display, self.revision, file, text)
+
+    def findings(self, finder: PackageFinder) -> InertiaFindings:
+        """What is implausible about its masses; found anew, for meshes may have changed."""
+        from linkwright.viewer.features.description_details import implausible
+
+        return InertiaFindings(self.display, self.revision, implausible(self.robot, finder))
+
+
+def _changed(before: Mapping[str, Part], after: Mapping[str, Part]) -> list[str]:
+    """The links or joints that a robot lacked before or had otherwise; where they are written does not count."""
+    # Elements, which know the places, take no part in comparisons of the model.
+    return [name for name, part in after.items() if before.get(name) != part]
+
 
 _Question = AskDescription | AskDescriptionText | AskInertia | AskProvenance
 
@@ -130,3 +208,48 @@ def _text(known: KnownDescription | None, faulty: dict[str, str], question: AskD
     if known is None:
         return DescriptionText(question.display, 0, file, None)
     return known.named_text(file)
+
+
+class DiagnosticsFeature(PageFeature):
+    """Shows every page what is wrong with the description."""
+
+    def __init__(self, viewer: FeatureHost) -> None:
+        super().__init__(viewer)
+        self._shown = Diagnostics([])
+
+    def opening(self) -> list[ServerMessage]:
+        """What is wrong now."""
+        return [self._shown]
+
+    def diagnostics_changed(self, diagnostics: Sequence[Diagnostic]) -> None:
+        """Show other findings; none clears the list."""
+        self._shown = Diagnostics([item_of(each) for each in diagnostics])
+        self.context.pages.publish(self._shown)
+
+
+def item_of(diagnostic: Diagnostic) -> DiagnosticItem:
+    """A diagnostic as the page shows it, in the language of the terminal, with the line of source it points to."""
+    (diagnostic,) = translated([diagnostic])
+    span, source = diagnostic.span, diagnostic.source
+    excerpt = source.line(span.line) if span and source and source.name == span.file else ""
+    return DiagnosticItem(
+        code=diagnostic.code,
+        severity=diagnostic.severity.value,
+        message=diagnostic.message,
+        file=span.file if span else None,
+        line=span.line if span else None,
+        column=span.column if span else None,
+        end_line=span.end_line if span else None,
+        end_column=span.end_column if span else None,
+        excerpt=excerpt,
+        notes=[
+            DiagnosticNote(
+                message=note.message,
+                file=note.span.file if note.span else None,
+                line=note.span.line if note.span else None,
+                column=note.span.column if note.span else None,
+            )
+            for note in diagnostic.notes
+        ],
+        hints=[diagnostic.hint] if diagnostic.hint else [],
+    )

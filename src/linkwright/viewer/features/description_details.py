@@ -1,0 +1,266 @@
+"""What pages show of a description: its links and joints with their places, its texts, and masses that are implausible.
+
+It is imported when the first page asks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from itertools import groupby, islice
+from math import isfinite
+from pathlib import Path
+
+import numpy as np
+
+from linkwright import descriptions
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, SourceText, translated
+from linkwright.geometry.single import quaternion_of, rpy_from_quaternion
+from linkwright.lint import Finding, Settings, Subject
+from linkwright.lint.fix import element_range
+from linkwright.lint.registry import all_rules
+from linkwright.lint.suppression import Suppressions
+from linkwright.packages import PackageFinder
+from linkwright.urdf import Joint, Link, Mimic, Reading, Robot
+from linkwright.urdf.plaintext import parse_as_urdfdom
+from linkwright.viewer.protocol.description import (
+    CallSite,
+    Description,
+    InertiaFinding,
+    JointDetails,
+    JointMimic,
+    LinkDetails,
+    SourceRange,
+    Written,
+)
+from linkwright.viewer.robot import frame_of, link_inertia
+from linkwright.xacro.origin import Frame, frames
+from linkwright.xmltree import Document, Element
+from linkwright.xmltree.decoding import decode
+from linkwright.xmltree.reader import read_bytes
+
+_EXPANDED = ""
+_MOST_CALLS = 20
+
+
+class Places:
+    """The places of the links and joints of one description.
+
+    Args:
+        text: the description, expanded.
+    """
+
+    def __init__(self, text: str) -> None:
+        self._expanded: dict[tuple[str, str], Element] = {}
+        try:
+            root = parse_as_urdfdom(text, _EXPANDED).root
+        except LinkwrightError:
+            return  # a robot was made of it, so that this does not happen
+        for element in root.elements():
+            key = (element.tag, element.attributes.get("name", ""))
+            self._expanded.setdefault(key, element)
+
+    def of(self, tag: str, name: str, element: Element | None) -> Written:
+        """Where a link or joint is written; `element` is the one that the robot was read from."""
+        twin = self._expanded.get((tag, name))
+        expanded = None if twin is None else _range(twin)
+        if element is None or element.source is None or element.source.name.startswith("<"):
+            return Written(expanded, None, [])
+        return Written(expanded, _range(element), list(islice(_calls(element), _MOST_CALLS)))
+
+
+def _calls(element: Element) -> Iterator[CallSite]:
+    """The calls and includes on the way to an element, innermost first; of calls from one place the innermost."""
+    innermost = element.origin
+    if not isinstance(innermost, Frame):
+        return
+    for site, group in groupby(frames(innermost), key=lambda frame: frame.site):
+        span = site.span()
+        if span is not None:
+            yield CallSite(next(group).macro, span.file, span.line, span.column)
+
+
+def _range(element: Element) -> SourceRange | None:
+    """The whole element; only its start tag's name where its end cannot be told."""
+    found = element_range(element)
+    span = element.span() if found is None or element.source is None else element.source.span(*found)
+    if span is None:
+        return None
+    return SourceRange(span.file, span.line, span.column, span.end_line, span.end_column)
+
+
+def account(robot: Robot, text: str, files: list[str], *, display: str, revision: int, prefix: str) -> Description:
+    """Everything about a robot but its shapes, which pages have already.
+
+    Takes as long as reading the text once more does.
+
+    Args:
+        robot: read from the text.
+        text: the description, expanded.
+        files: what it was made from.
+        display: the RobotModel display that shows it.
+        revision: counts the descriptions of the display.
+        prefix: the display's TF Prefix.
+    """
+    places = Places(text)
+    above = {joint.child: joint.name for joint in robot.joints.values()}
+    return Description(
+        display=display,
+        revision=revision,
+        name=robot.name,
+        root=robot.root,
+        links=[_link(link, above.get(link.name), prefix, places) for link in robot.links.values()],
+        joints=[_joint(joint, places) for joint in robot.joints.values()],
+        files=files,
+    )
+
+
+def _link(link: Link, parent_joint: str | None, prefix: str, places: Places) -> LinkDetails:
+    return LinkDetails(
+        name=link.name,
+        frame=frame_of(link.name, prefix),
+        parent_joint=parent_joint,
+        inertia=link_inertia(link.inertial),
+        written=places.of("link", link.name, link.element),
+    )
+
+
+def _joint(joint: Joint, places: Places) -> JointDetails:
+    limit, dynamics, safety = joint.limit, joint.dynamics, joint.safety
+    ranged = limit is not None and joint.type in ("revolute", "prismatic")
+    quaternion = quaternion_of(joint.origin)
+    return JointDetails(
+        name=joint.name,
+        kind=joint.type,
+        parent=joint.parent,
+        child=joint.child,
+        xyz=[_finite(part) or 0.0 for part in joint.origin.xyz],
+        rpy=[_finite(part) or 0.0 for part in rpy_from_quaternion(quaternion)],
+        quaternion=[_finite(part) or 0.0 for part in quaternion],
+        axis=_unit(joint.axis),
+        lower=_finite(limit.lower) if limit and ranged else None,
+        upper=_finite(limit.upper) if limit and ranged else None,
+        velocity=_finite(limit.velocity) if limit else None,
+        effort=_finite(limit.effort) if limit else None,
+        damping=_finite(dynamics.damping) if dynamics else None,
+        friction=_finite(dynamics.friction) if dynamics else None,
+        soft_lower=_finite(safety.soft_lower_limit) if safety else None,
+        soft_upper=_finite(safety.soft_upper_limit) if safety else None,
+        k_position=_finite(safety.k_position) if safety else None,
+        k_velocity=_finite(safety.k_velocity) if safety else None,
+        mimic=_mimic(joint.mimic),
+        written=places.of("joint", joint.name, joint.element),
+    )
+
+
+def _mimic(mimic: Mimic | None) -> JointMimic | None:
+    if mimic is None:
+        return None
+    return JointMimic(mimic.joint, _finite(mimic.multiplier) or 0.0, _finite(mimic.offset) or 0.0)
+
+
+def _finite(number: float) -> float | None:
+    return float(number) if isfinite(number) else None
+
+
+def _unit(axis: tuple[float, float, float]) -> list[float]:
+    """The axis in length one; zeros for one that is none."""
+    length = float(np.linalg.norm(axis))
+    if not (isfinite(length) and length > 0):
+        return [0.0, 0.0, 0.0]
+    return [part / length for part in axis]
+
+
+class SourceTexts:
+    """The files of one description, and no others.
+
+    What elements were written in is in memory, as it was when the description was made. A file that gave only values,
+    such as one of YAML, is read when somebody asks for it.
+
+    Args:
+        root: the root element of the description.
+        files: the files it was made from, the main one first, as far as that is known.
+    """
+
+    def __init__(self, root: Element | None, files: Iterable[Path]) -> None:
+        self._read = _sources(root)
+        self._files: dict[str, Path] = {str(path): path for path in files}
+
+    @property
+    def names(self) -> list[str]:
+        """The files, the main one first."""
+        return list(dict.fromkeys([*self._files, *self._read]))
+
+    def text(self, name: str) -> str | None:
+        """The text of a file; None for what the description was not made from, or is not there any more."""
+        source = self._read.get(name)
+        if source is not None:
+            return source.text
+        path = self._files.get(name)
+        if path is None:
+            return None
+        try:
+            return decode(read_bytes(path), name)
+        except LinkwrightError:
+            return None
+
+
+def _sources(root: Element | None) -> dict[str, SourceText]:
+    """The texts in which the elements, and the calls that brought them, are written."""
+    found: dict[str, SourceText] = {}
+    known: set[int] = set()
+    for element in root.walk() if root is not None else ():
+        for source in (element.source, *_sites(element, known)):
+            if source is not None and not source.name.startswith("<"):
+                found.setdefault(source.name, source)
+    return found
+
+
+def _sites(element: Element, known: set[int]) -> Iterator[SourceText | None]:
+    innermost = element.origin
+    if not isinstance(innermost, Frame) or id(innermost) in known:
+        return
+    known.add(id(innermost))
+    for frame in frames(innermost):
+        yield frame.site.source
+
+
+_RULES = "LW3"
+"""The rules about masses and inertias."""
+
+
+def implausible(robot: Robot, finder: PackageFinder) -> list[InertiaFinding]:
+    """What the rules about masses and inertias have to say of each link.
+
+    The links of a macro that is called four times are four links here, where `linkwright check` reports one place. May
+    take long, for meshes are read to see how large links are.
+    """
+    if robot.element is None:
+        return []
+    source = robot.element.source
+    name = source.name if source else robot.name
+    description = descriptions.Description(name, Document(robot.element, source), Reading(robot, ()))
+    subject = Subject(description, finder, Settings())
+    rules = [rule for rule in all_rules() if rule.default and rule.code.startswith(_RULES)]
+    found = [diagnostic for rule in rules for diagnostic in rule.check(subject)]
+    kept = Suppressions(subject, subject.settings).apply(found)
+    owners = _owners(robot)
+    return [
+        InertiaFinding(link, each.code, each.message, each.hint or "")
+        for each in translated([each for each in kept if each.severity is not Severity.INFO])
+        if (link := _link_of(each, owners)) is not None
+    ]
+
+
+def _owners(robot: Robot) -> dict[int, str]:
+    """Identity of every element inside of a link -> the link."""
+    owners: dict[int, str] = {}
+    for link in robot.links.values():
+        if link.element is not None:
+            owners.update((id(element), link.name) for element in link.element.walk())
+    return owners
+
+
+def _link_of(diagnostic: Diagnostic, owners: dict[int, str]) -> str | None:
+    if not isinstance(diagnostic, Finding) or diagnostic.element is None:
+        return None
+    return owners.get(id(diagnostic.element))
