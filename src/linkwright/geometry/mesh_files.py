@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import warnings
 from collections.abc import Iterator
 from io import BytesIO
 from typing import Any, NamedTuple
@@ -10,7 +11,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from linkwright.diagnostics import Phrase, foreign, phrase
 from linkwright.geometry.arrays import Array
+from linkwright.geometry.mesh_faults import fault_in
 
 MESH_ENDINGS = (".stl", ".dae", ".obj", ".glb", ".gltf")
 """The formats that are read, as RViz and Gazebo read them."""
@@ -36,7 +39,19 @@ class PlacedMesh(NamedTuple):
         return faces[:, ::-1] if np.linalg.det(self.matrix[:3, :3]) < 0 else faces
 
 
-def placed_meshes(data: bytes, kind: str, **options: Any) -> Iterator[PlacedMesh]:
+class BadMeshError(Exception):
+    """A mesh file cannot be used; says why.
+
+    Attributes:
+        why: a phrase, in the words of the file.
+    """
+
+    def __init__(self, why: Phrase) -> None:
+        super().__init__(why)
+        self.why = why
+
+
+def placed_meshes(data: bytes, kind: str, **options: Any) -> list[PlacedMesh]:
     """The triangle meshes of an STL, COLLADA, OBJ or glTF file; lines and points are left out.
 
     STL and OBJ say nothing of their unit; URDF takes their numbers as metres. The unit of COLLADA is told, its up axis
@@ -48,8 +63,32 @@ def placed_meshes(data: bytes, kind: str, **options: Any) -> Iterator[PlacedMesh
         options: for `trimesh.load_scene`.
 
     Raises:
-        Exception: whatever the parser of the format raises for bytes that it cannot read.
+        BadMeshError: it cannot be read, has no triangles, or numbers that are none.
+        ModuleNotFoundError: a library for the format is not installed.
     """
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            found = list(_parsed(data, kind, **options))
+    except ModuleNotFoundError:
+        raise
+    except Exception as error:  # noqa: BLE001 - a parser of foreign bytes may raise anything
+        raise BadMeshError(fault_in(data, kind) or said_by_parser(error)) from None
+    if not found:
+        raise BadMeshError(fault_in(data, kind) or phrase("it has no triangles"))
+    for placed in found:
+        vertices = placed.mesh.vertices
+        if np.shape(vertices)[1] != 3 or not (np.isfinite(vertices).all() and np.isfinite(placed.matrix).all()):
+            raise BadMeshError(fault_in(data, kind) or phrase("a coordinate is not a finite number"))
+        corner, count = int(placed.mesh.faces.max()), len(vertices)
+        if corner >= count:
+            raise BadMeshError(
+                phrase("a triangle has corner {corner}, and there are {count}", corner=corner, count=count)
+            )
+    return found
+
+
+def _parsed(data: bytes, kind: str, **options: Any) -> Iterator[PlacedMesh]:
     import trimesh  # not above: it costs 0.1 s, and most robots are checked without a look into their meshes
 
     logging.getLogger("trimesh").addHandler(logging.NullHandler())  # what it warns of is no concern of the user
@@ -60,6 +99,14 @@ def placed_meshes(data: bytes, kind: str, **options: Any) -> Iterator[PlacedMesh
         if isinstance(mesh, trimesh.Trimesh) and len(mesh.faces):
             unit = _collada_unit(mesh) if kind == "dae" else 1.0
             yield PlacedMesh(mesh, np.asarray(matrix, dtype=np.float64), unit)
+
+
+def said_by_parser(error: Exception) -> Phrase:
+    """Why a parser of foreign bytes failed, where nobody knows better: its own first line."""
+    if isinstance(error, FileNotFoundError):
+        return phrase("the file '{name}' that it names is not there", name=str(error.filename or error))
+    lines = str(error).strip().splitlines()
+    return phrase("its parser says: {said}", said=foreign(lines[0] if lines else type(error).__name__))
 
 
 def beside(path: str) -> Any:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import stat
-import warnings
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -22,7 +21,7 @@ from linkwright.diagnostics import (
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.hull import convex_hull
 from linkwright.geometry.mass import FARTHEST, MassProperties
-from linkwright.geometry.mesh_files import MESH_ENDINGS, beside, placed_meshes
+from linkwright.geometry.mesh_files import MESH_ENDINGS, BadMeshError, beside, placed_meshes
 from linkwright.geometry.polyhedron import Faces, is_closed, merged, polyhedron_properties
 from linkwright.geometry.vectors import Vector3
 
@@ -106,15 +105,11 @@ def read_mesh(path: Path) -> TriangleMesh:
     except OSError as error:
         raise unreadable(path, error.strerror or str(error)) from None
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            mesh = _parse(data, kind[1:], path)
+        mesh = _parse(data, kind[1:], path)
     except ModuleNotFoundError as error:
         raise missing_extra("INR104", error) from None
-    except Exception as error:  # noqa: BLE001 - a parser of foreign bytes may raise anything
-        raise unreadable(path, _first_line(error)) from None
-    if not len(mesh.faces):
-        raise unreadable(path, phrase("it has no triangles"))
+    except BadMeshError as error:
+        raise unreadable(path, error.why) from None
     if not np.abs(mesh.vertices).max() <= FARTHEST:
         raise unreadable(path, phrase("a coordinate is beyond all bounds"))
     return mesh
@@ -145,8 +140,3 @@ def unreadable(path: Path, why: str) -> LinkwrightError:
             "INR103", phrase("cannot read the mesh '{path}': {why}", path=display_path(path), why=why), hint=hint
         )
     )
-
-
-def _first_line(error: Exception) -> str:
-    lines = str(error).strip().splitlines()
-    return lines[0] if lines else type(error).__name__

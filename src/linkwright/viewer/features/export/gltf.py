@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright._version import __version__
-from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, missing_extra, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, display_path, missing_extra, phrase
+from linkwright.geometry.mesh_files import BadMeshError
 from linkwright.geometry.single import normalized
 from linkwright.nodes.robot_transforms import JointMotion
 from linkwright.viewer.features.export.meshes import (
@@ -228,8 +229,8 @@ class _RobotWriter:
             raise _unreadable(link, urlsplit(url).path, phrase("it is not there, or may not be read")) from None
         try:
             return read_parts(path, resolver=_Neighbours(self._files, url))
-        except ValueError as error:
-            raise _unreadable(link, display_path(path), str(error)) from None
+        except BadMeshError as error:
+            raise _unreadable(link, display_path(path), error.why) from None
 
     def _geometry(self, key: tuple[Any, ...], part: MeshPart) -> dict[str, Any]:
         if key not in self._geometries:
@@ -341,7 +342,7 @@ def _mesh_name(shape: Shape) -> str:
     return urlsplit(shape.url).path.rpartition("/")[2] if shape.url else shape.kind
 
 
-def _unreadable(link: LinkScene, name: str, why: str) -> LinkwrightError:
+def _unreadable(link: LinkScene, name: str, why: Phrase) -> LinkwrightError:
     hint = phrase("export the mesh again, or leave it out")
     return LinkwrightError(
         Diagnostic(
@@ -350,7 +351,7 @@ def _unreadable(link: LinkScene, name: str, why: str) -> LinkwrightError:
                 "cannot read the mesh '{name}' of link '{link_name}': {why}",
                 name=name,
                 link_name=link.name,
-                why=foreign(why),
+                why=why,
             ),
             hint=hint,
         )

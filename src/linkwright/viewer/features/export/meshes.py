@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from io import BytesIO
@@ -12,8 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.diagnostics import missing_extra, phrase
-from linkwright.geometry.mesh_files import PlacedMesh, placed_meshes
+from linkwright.diagnostics import missing_extra
+from linkwright.geometry.mesh_files import BadMeshError, PlacedMesh, placed_meshes, said_by_parser
 
 Array = NDArray[np.float64]
 _SIDES = 32
@@ -137,22 +136,18 @@ def read_parts(path: Path, *, resolver: Any) -> list[MeshPart]:
         resolver: gives trimesh the files that it names, by ``get(name)``.
 
     Raises:
-        ValueError: it cannot be read; says why.
+        BadMeshError: it cannot be read; says why.
         LinkwrightError: VIEW205, a library for it is not installed.
     """
     kind = path.suffix.lower().removeprefix(".")
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            parts = _parts(path.read_bytes(), "stl" if kind == "stlb" else kind, resolver)
+        return _parts(path.read_bytes(), "stl" if kind == "stlb" else kind, resolver)
     except ModuleNotFoundError as error:
         raise missing_extra("VIEW205", error) from None
-    except Exception as error:  # noqa: BLE001 - a parser of foreign bytes may raise anything
-        lines = str(error).strip().splitlines()
-        raise ValueError(lines[0] if lines else type(error).__name__) from None
-    if not parts:
-        raise ValueError(phrase("it has no triangles"))
-    return parts
+    except BadMeshError:
+        raise
+    except Exception as error:  # noqa: BLE001 - of a foreign picture or material anything may come
+        raise BadMeshError(said_by_parser(error)) from None
 
 
 def _parts(data: bytes, kind: str, resolver: Any) -> list[MeshPart]:

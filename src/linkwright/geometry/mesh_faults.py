@@ -1,0 +1,300 @@
+"""What is wrong with a mesh file that its parser refuses, in the words of the file: which line, element or number.
+
+The parser says it in words of its own, or of Python. This looks only into files that it could not read, for the
+faults that files have: cut short, not what their ending says, numbers that are none, names of what is not there.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import struct
+from collections.abc import Callable, Iterator
+from math import isfinite
+from typing import Any
+
+from linkwright.diagnostics import LinkwrightError, Phrase, foreign, phrase
+from linkwright.xmltree import Element, parse
+
+_POINTER = b"version https://git-lfs"
+_WEB_PAGE = re.compile(rb"\s*<(?:!doctype\s+)?html", re.IGNORECASE)
+
+_HEADER, _TRIANGLE = 84, 50  # bytes of a binary STL
+_GLB_HEADER, _CHUNK_HEADER = 12, 8
+_JSON_CHUNK = 0x4E4F534A
+_COMPONENTS = {5120: 1, 5121: 1, 5122: 2, 5123: 2, 5125: 4, 5126: 4}
+_PARTS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
+_NUMBERS_OF = {"matrix": 16, "translate": 3, "scale": 3, "rotate": 4}
+
+
+def fault_in(data: bytes, kind: str) -> Phrase | None:
+    """What is wrong with a mesh file; None where nothing is found.
+
+    Args:
+        data: the file.
+        kind: its ending, without the dot.
+    """
+    if not data.strip():
+        return phrase("it is empty")
+    if data.startswith(_POINTER):
+        return phrase("it is a pointer of Git LFS: the mesh itself was not fetched")
+    if _WEB_PAGE.match(data):
+        return phrase("it is a web page, not a mesh")
+    return next(_FAULTS[kind](data), None) if kind in _FAULTS else None
+
+
+# --- STL and OBJ ---------------------------------------------------------------------------------------------------
+
+
+def _stl_faults(data: bytes) -> Iterator[Phrase]:
+    if data.lstrip().startswith(b"solid") and b"facet" in data[:1000]:
+        yield from _text_stl_faults(data)
+        return
+    if len(data) < _HEADER:
+        yield phrase(
+            "it ends after {count} bytes, and the header of an STL has {header}", count=len(data), header=_HEADER
+        )
+        return
+    (said,) = struct.unpack_from("<I", data, _HEADER - 4)
+    there = (len(data) - _HEADER) // _TRIANGLE
+    if said > there:
+        yield phrase("its header says that it has {said} triangles, and there are {there}", said=said, there=there)
+
+
+def _text_stl_faults(data: bytes) -> Iterator[Phrase]:
+    corners = 0
+    for number, words in _lines(data):
+        if words[0] == "vertex":
+            corners += 1
+            yield from _number_faults(number, words[1:], 3)
+        elif words[0] == "endloop":
+            if corners != 3:
+                yield _at(number, phrase("a facet has {count} corners, not 3", count=corners))
+            corners = 0
+
+
+def _obj_faults(data: bytes) -> Iterator[Phrase]:
+    vertices = sum(words[0] == "v" for _, words in _lines(data))
+    for number, words in _lines(data):
+        if words[0] == "v":
+            yield from _number_faults(number, words[1:4], 3)
+        elif words[0] == "f":
+            for word in words[1:]:
+                try:
+                    index = int(word.partition("/")[0])
+                except ValueError:
+                    yield _at(number, phrase("'{word}' is not the number of a vertex", word=word))
+                    continue
+                if not 1 <= abs(index) <= vertices:
+                    yield _at(
+                        number, phrase("there is no vertex {index}; there are {count}", index=index, count=vertices)
+                    )
+
+
+def _lines(data: bytes) -> Iterator[tuple[int, list[str]]]:
+    for number, line in enumerate(data.decode("utf-8", "replace").splitlines(), 1):
+        words = line.split()
+        if words:
+            yield number, words
+
+
+def _number_faults(line: int, words: list[str], count: int) -> Iterator[Phrase]:
+    yield from (
+        _at(line, phrase("'{word}' is not a finite number", word=word)) for word in words if not _is_number(word)
+    )
+    if len(words) != count:
+        yield _at(line, phrase("{there} numbers, where {count} are needed", there=len(words), count=count))
+
+
+def _is_number(word: str) -> bool:
+    try:
+        return isfinite(float(word))
+    except ValueError:
+        return False
+
+
+def _at(line: int, what: Phrase) -> Phrase:
+    return phrase("line {line}: {what}", line=line, what=what)
+
+
+# --- COLLADA -------------------------------------------------------------------------------------------------------
+
+
+def _collada_faults(data: bytes) -> Iterator[Phrase]:
+    try:
+        root = parse(data, "<mesh>").root
+    except LinkwrightError as error:
+        found = error.diagnostics[0]
+        yield _at(found.span.line, found.message) if found.span else found.message
+        return
+    if root.tag != "COLLADA":
+        yield _of(root, phrase("the file begins with <{tag}>, not with <COLLADA>", tag=root.tag))
+        return
+    elements = list(root.walk())
+    known = {element.attributes["id"] for element in elements if "id" in element.attributes}
+    for element in elements:
+        yield from _element_faults(element, known)
+        if element.tag == "mesh":
+            yield from _index_faults(element)
+    if not any(element.tag == "geometry" for element in elements):
+        yield phrase("it has no <geometry>")
+    if not any(element.tag == "instance_geometry" for element in elements):
+        yield phrase("no <node> of it shows a geometry: it has no <instance_geometry>")
+
+
+def _element_faults(element: Element, known: set[str]) -> Iterator[Phrase]:
+    for name in ("source", "url"):
+        value = element.attributes.get(name, "")
+        if value.startswith("#") and value[1:] not in known:
+            message = phrase("<{tag}> names '{value}', which is not in the file", tag=element.tag, value=value)
+            yield _of(element, message)
+    if element.tag in ("triangles", "polylist", "polygons"):
+        for each in element.elements("input"):
+            if "offset" not in each.attributes:
+                yield _of(each, phrase("<{tag}> has no attribute '{name}'", tag="input", name="offset"))
+    if element.tag == "float_array" or element.tag in _NUMBERS_OF:
+        yield from _list_faults(element, _is_number, phrase("finite number"))
+        count = element.attributes.get("count") if element.tag == "float_array" else str(_NUMBERS_OF[element.tag])
+        there = len(element.text().split())
+        if count != str(there):
+            message = phrase(
+                "<{tag}> has {there} numbers, where {count} are needed",
+                tag=element.tag,
+                there=there,
+                count=count or "?",
+            )
+            yield _of(element, message)
+    elif element.tag in ("p", "vcount"):
+        yield from _list_faults(element, str.isdecimal, phrase("index"))
+
+
+def _index_faults(mesh: Element) -> Iterator[Phrase]:
+    """Indices that no list of the mesh is long enough for."""
+    counts = [each.attributes.get("count", "") for each in mesh.walk() if each.tag == "accessor"]
+    longest = max((int(count) for count in counts if count.isdecimal()), default=0)
+    for element in mesh.walk():
+        if element.tag == "p":
+            largest = max((int(word) for word in element.text().split() if word.isdecimal()), default=0)
+            if largest >= longest:
+                yield _of(
+                    element, phrase("there is no vertex {index}; there are {count}", index=largest, count=longest)
+                )
+
+
+def _list_faults(element: Element, is_good: Callable[[str], bool], what: Phrase) -> Iterator[Phrase]:
+    for word in element.text().split():
+        if not is_good(word):
+            message = phrase("'{word}' in <{tag}> is no {what}", word=word, tag=element.tag, what=what)
+            yield _of(element, message)
+
+
+def _of(element: Element, what: Phrase) -> Phrase:
+    span = element.span()
+    return what if span is None else _at(span.line, what)
+
+
+# --- glTF ----------------------------------------------------------------------------------------------------------
+
+
+def _glb_faults(data: bytes) -> Iterator[Phrase]:
+    if not data.startswith(b"glTF"):
+        yield phrase("it does not begin with the letters glTF")
+        return
+    if len(data) < _GLB_HEADER + _CHUNK_HEADER:
+        header = _GLB_HEADER + _CHUNK_HEADER
+        yield phrase(
+            "it ends after {count} bytes, and the header of a .glb has {header}", count=len(data), header=header
+        )
+        return
+    version, length, size, kind = struct.unpack_from("<IIII", data, 4)
+    if version != 2:
+        yield phrase("it is glTF {version}, and glTF 2 is read", version=version)
+    if length > len(data):
+        yield phrase("its header says that it has {said} bytes, and there are {there}", said=length, there=len(data))
+    if kind != _JSON_CHUNK:
+        yield phrase("its first chunk is not JSON")
+        return
+    rest = len(data) - (_GLB_HEADER + 2 * _CHUNK_HEADER + size)
+    yield from _document_faults(data[_GLB_HEADER + _CHUNK_HEADER :][:size], max(rest, 0))
+
+
+def _gltf_faults(data: bytes) -> Iterator[Phrase]:
+    return _document_faults(data, None)
+
+
+def _document_faults(text: bytes, binary: int | None) -> Iterator[Phrase]:
+    """Faults of the JSON; ``binary`` is how many bytes its first buffer has, where that is known."""
+    try:
+        document = json.loads(text)
+    except ValueError as error:
+        yield phrase("its JSON cannot be read: {error}", error=foreign(error))
+        return
+    if not isinstance(document, dict):
+        yield phrase("its JSON is not an object")
+        return
+    try:
+        yield from _reference_faults(document)
+        yield from _range_faults(document, binary)
+    except (AttributeError, TypeError, KeyError, IndexError):
+        yield phrase("its JSON has not the form of glTF")
+
+
+def _reference_faults(document: dict[str, Any]) -> Iterator[Phrase]:
+    for number, node in enumerate(document.get("nodes", ())):
+        yield from _missing(document, f"nodes[{number}].mesh", "meshes", node.get("mesh"))
+    for number, mesh in enumerate(document.get("meshes", ())):
+        for index, primitive in enumerate(mesh["primitives"]):
+            place = f"meshes[{number}].primitives[{index}]"
+            attributes = primitive["attributes"]
+            if "POSITION" not in attributes:
+                yield phrase("{place} has no attribute '{name}'", place=place, name="POSITION")
+            for name, accessor in attributes.items():
+                yield from _missing(document, f"{place}.attributes.{name}", "accessors", accessor)
+            yield from _missing(document, f"{place}.indices", "accessors", primitive.get("indices"))
+    for number, accessor in enumerate(document.get("accessors", ())):
+        place = f"accessors[{number}]"
+        yield from _missing(document, f"{place}.bufferView", "bufferViews", accessor.get("bufferView"))
+        for name, values in (("componentType", _COMPONENTS), ("type", _PARTS)):
+            if accessor.get(name) not in values:
+                yield phrase(
+                    "{place}.{name} is {value}, which glTF does not have",
+                    place=place,
+                    name=name,
+                    value=str(accessor.get(name)),
+                )
+    for number, view in enumerate(document.get("bufferViews", ())):
+        yield from _missing(document, f"bufferViews[{number}].buffer", "buffers", view["buffer"])
+
+
+def _missing(document: dict[str, Any], place: str, kind: str, index: int | None) -> Iterator[Phrase]:
+    count = len(document.get(kind, ()))
+    if index is not None and not 0 <= index < count:
+        yield phrase(
+            "{place} is {index}, and the number of {kind} is {count}", place=place, index=index, count=count, kind=kind
+        )
+
+
+def _range_faults(document: dict[str, Any], binary: int | None) -> Iterator[Phrase]:
+    views = document.get("bufferViews", [])
+    for number, view in enumerate(views):
+        buffer = document["buffers"][view["buffer"]]
+        there = binary if binary is not None and "uri" not in buffer else buffer["byteLength"]
+        if view.get("byteOffset", 0) + view["byteLength"] > there:
+            yield phrase(
+                "{place} reaches beyond the {there} bytes of its buffer", place=f"bufferViews[{number}]", there=there
+            )
+    for number, accessor in enumerate(document.get("accessors", ())):
+        if "bufferView" in accessor:
+            each = _COMPONENTS[accessor["componentType"]] * _PARTS[accessor["type"]]
+            needed = accessor.get("byteOffset", 0) + each * accessor["count"]
+            if needed > views[accessor["bufferView"]]["byteLength"]:
+                yield phrase("{place} reaches beyond its bufferView", place=f"accessors[{number}]")
+
+
+_FAULTS: dict[str, Callable[[bytes], Iterator[Phrase]]] = {
+    "stl": _stl_faults,
+    "obj": _obj_faults,
+    "dae": _collada_faults,
+    "glb": _glb_faults,
+    "gltf": _gltf_faults,
+}
