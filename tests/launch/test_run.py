@@ -306,3 +306,21 @@ class TestView:
         running.until("Robot initialized")
         assert running.end()[0] == 130
         assert "Traceback" not in running.err
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "import no_such_module\n",
+        "from ament_index_python.packages import get_package_share_directory\n"
+        "def generate_launch_description():\n    get_package_share_directory('no_such_package')\n",
+    ],
+)
+def test_what_the_launch_file_itself_lacks_cannot_be_left_out(write: Write, text: str) -> None:
+    target = LaunchTarget(str(write("whole.launch.py", text)))
+    for skip, notes in ((True, 1), (False, 0)):
+        with pytest.raises(LinkwrightError) as caught:
+            run_launch(target, options=LaunchOptions(skip_missing=skip, open_browser=False))
+        (found,) = caught.value.diagnostics
+        assert found.hint
+        assert len([note for note in found.notes if note.message.startswith("the launch file itself")]) == notes

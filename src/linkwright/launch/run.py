@@ -9,7 +9,9 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from linkwright.diagnostics import LinkwrightError
 from linkwright.launch.arguments import argument_listing, check_arguments
+from linkwright.launch.engine.omissions import note_that_nothing_is_left
 from linkwright.launch.engine.session import LaunchSession
 from linkwright.launch.engine.signals import SignalWatch, interruption_text
 from linkwright.launch.engine.supervisor import SessionOptions
@@ -95,10 +97,16 @@ def run_launch(
     """
     given = dict(arguments or {})
     finder = target.finder()
+    options = options or LaunchOptions()
 
     def load(log: LaunchLog) -> tuple[LaunchDescription, dict[str, Any]]:
         path = target.resolve(finder)
-        description = load_launch_file(path)
+        try:
+            description = load_launch_file(path)
+        except LinkwrightError as error:
+            if options.skip_missing:
+                note_that_nothing_is_left(error)
+            raise
         log.diagnostics(check_arguments(description, given))
         return description, {
             "current_launch_file_path": str(path),
@@ -106,7 +114,7 @@ def run_launch(
         }
 
     title = f"{target.package} {target.file}" if target.package else Path(target.file).name
-    return run_description(load, given, finder, options or LaunchOptions(), title)
+    return run_description(load, given, finder, options, title)
 
 
 def show_arguments(target: LaunchTarget) -> str:

@@ -95,6 +95,27 @@ class TestRequests:
         assert "'/***' is not a node name" in caught.value.diagnostics[0].message
 
 
+    @pytest.mark.parametrize(
+        ("section", "names", "told"),
+        [
+            ("/tkr", {"name": "tk"}, "no section of "),
+            ("/tk", {"name": "tk", "namespace": "ns"}, "is for node '/ns/tk'"),
+            ("/ns/tk", {"name": "tk", "namespace": "ns"}, ""),
+            ("/**", {"name": "tk"}, ""),
+            ("/other", {}, ""),  # the name that its code gives it is not known
+        ],
+    )
+    def test_a_file_with_nothing_for_the_node(
+        self, write: Write, capsys: pytest.CaptureFixture[str], section: str, names: dict[str, str], told: str
+    ) -> None:
+        path = write("p.yaml", f"{section}: {{ros__parameters: {{a: 1}}}}")
+        asked(talker(parameters=[str(path)], **names))
+        said = capsys.readouterr().err
+        assert ("warning[LAUNCH149]" in said) is bool(told)
+        assert told in said
+        assert not told or "test_components.py" in said
+
+
 class TestContainers:
     async def test_our_nodes_compose_in_the_launchers_process(self, launch) -> None:
         seen: dict[str, Any] = {}

@@ -63,6 +63,14 @@ class Omissions:
         return (*others, replace(last, notes=(*last.notes, note)))
 
 
+def note_that_nothing_is_left(error: LinkwrightError) -> None:
+    """Add to an error that kept the launch file itself from being read why no part of it can be left out."""
+    *others, last = error.diagnostics
+    if _is_missing(error) and last.span is not None:
+        note = Note(phrase("the launch file itself needs it: without it there are no parts that could be left out"))
+        error.diagnostics = (*others, replace(last, notes=(*last.notes, note)))
+
+
 def _is_missing(error: LinkwrightError) -> bool:
     if isinstance(error, (ModuleNotFoundError, FileNotFoundError)) or getattr(error, "missing", False):
         return True

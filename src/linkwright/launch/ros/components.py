@@ -20,7 +20,7 @@ from linkwright.launch.model.substitution import (
 from linkwright.launch.ros.deprecated_arguments import with_deprecated_arguments
 from linkwright.launch.ros.names import make_namespace_absolute, prefix_namespace
 from linkwright.launch.ros.parameter_lists import normalize_parameters
-from linkwright.launch.ros.parameters import FileSource, own_parameters, scope_parameters
+from linkwright.launch.ros.parameters import FileSource, NodeParameters, own_parameters, scope_parameters
 from linkwright.launch.ros.parsing import Entities, parse_parameters, parse_remappings
 from linkwright.launch.ros.remappings import RemapRule, evaluated_rules, normalize_remap_rules
 from linkwright.launch.ros.scoping import NAMESPACE, PARAMETERS, REMAPPINGS
@@ -188,14 +188,11 @@ def get_composable_node_load_request(description: ComposableNode, context: Launc
     request.remap_rules = [f"{source}:={target}" for source, target in rules]
     full_name = f"{(namespace or '').rstrip('/')}/{request.node_name}"
     try:
-        request.parameters = _messages(
-            context,
-            full_name,
-            [
-                *scope_parameters(context.launch_configurations.get(PARAMETERS) or (), context).sources,
-                *own_parameters(description.parameters or (), context).sources,
-            ],
-        )
+        scope = scope_parameters(context.launch_configurations.get(PARAMETERS) or (), context)
+        own = own_parameters(description.parameters or (), context)
+        parameters = NodeParameters([*scope.sources, *own.sources])
+        request.parameters = _messages(context, full_name, parameters.sources)
+        parameters.check(context, full_name if request.node_name else None, description.place)
         request.extra_arguments = _messages(
             context, full_name, own_parameters(description.extra_arguments or (), context).sources
         )
