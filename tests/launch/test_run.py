@@ -308,14 +308,15 @@ class TestView:
         assert "Traceback" not in running.err
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
-        "import no_such_module\n",
-        "from ament_index_python.packages import get_package_share_directory\n"
-        "def generate_launch_description():\n    get_package_share_directory('no_such_package')\n",
-    ],
-)
+LACKS_A_PACKAGE = """\
+from ament_index_python.packages import get_package_share_directory
+
+def generate_launch_description():
+    get_package_share_directory("no_such_package")
+"""
+
+
+@pytest.mark.parametrize("text", ["import no_such_module\n", LACKS_A_PACKAGE])
 def test_what_the_launch_file_itself_lacks_cannot_be_left_out(write: Write, text: str) -> None:
     target = LaunchTarget(str(write("whole.launch.py", text)))
     for skip, notes in ((True, 1), (False, 0)):

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -7,7 +8,9 @@ import pytest
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError
 from linkwright.launch.frontend import python_file
+from linkwright.launch.frontend.launch_file import load_launch_file
 from linkwright.launch.frontend.python_file import load_python_launch_file
+from linkwright.packages.share_layout import share_of_sources
 
 Write = Callable[[str, str], Path]
 
@@ -204,3 +207,42 @@ def test_no_description(write: Write, text: str, code: str, message: str) -> Non
 def test_entities_that_are_none(write: Write) -> None:
     diagnostic = fault(write("a.launch.py", "from launch.actions import GroupAction\nGroupAction(['a node'])\n"))
     assert "expected launch actions, got 'a node' of type str" in diagnostic.message
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="links need a right there, without which none are made")
+class TestFilesThatArePutElsewhere:
+    """A package whose sources are not laid out as its share folder has one of links, which messages see through."""
+
+    @pytest.fixture
+    def share(self, write: Write, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
+        monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+        write("arm/package.xml", "<package format='3'><name>arm</name><version>1.0.0</version></package>")
+        write(
+            "arm/CMakeLists.txt", "project(arm)\ninstall(DIRECTORY start/ DESTINATION share/${PROJECT_NAME}/launch)\n"
+        )
+        write("arm/start/sound.launch.py", "def generate_launch_description():\n    raise ValueError(__file__)\n")
+        write("arm/start/syntax.launch.py", "def generate_launch_description(\n")
+        write("arm/start/tag.launch.xml", "<launch><let name='a'/></launch>")
+        write("arm/start/other.launch.py", "")
+        return share_of_sources("arm", tmp_path / "arm")
+
+    @pytest.mark.parametrize("name", ["sound.launch.py", "syntax.launch.py", "tag.launch.xml"])
+    def test_messages_name_the_users_own_file(self, share: Path, tmp_path: Path, name: str) -> None:
+        assert share != tmp_path / "arm"
+        with pytest.raises(LinkwrightError) as caught:
+            load_launch_file(share / "launch" / name)
+        (found,) = caught.value.diagnostics
+        assert found.span is not None
+        assert found.span.file == str(tmp_path / "arm" / "start" / name)
+
+    def test_the_file_sees_itself_where_the_package_installs_it(self, share: Path) -> None:
+        with pytest.raises(LinkwrightError) as caught:
+            load_launch_file(share / "launch" / "sound.launch.py")
+        assert str(share / "launch" / "sound.launch.py") in caught.value.diagnostics[0].message
+
+    def test_a_message_without_a_line_names_it_too(self, share: Path, tmp_path: Path) -> None:
+        with pytest.raises(LinkwrightError) as caught:
+            load_launch_file(share / "launch" / "other.launch.py")
+        message = caught.value.diagnostics[0].message
+        assert str(Path("start", "other.launch.py")) in message
+        assert str(tmp_path / "cache") not in message

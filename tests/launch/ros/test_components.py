@@ -94,7 +94,6 @@ class TestRequests:
         assert isinstance(caught.value, LinkwrightError)
         assert "'/***' is not a node name" in caught.value.diagnostics[0].message
 
-
     @pytest.mark.parametrize(
         ("section", "names", "told"),
         [

@@ -10,6 +10,7 @@ from linkwright.launch.errors.exceptions import InvalidLaunchFileError
 from linkwright.launch.errors.places import error_at
 from linkwright.launch.frontend.python_file import load_python_launch_file, read_launch_file
 from linkwright.launch.model.description import LaunchDescription
+from linkwright.packages.share_layout import source_of
 
 _MARKUP = {".xml": "xml", ".launch": "xml", ".yaml": "yaml", ".yml": "yaml"}
 
@@ -50,6 +51,6 @@ def load_markup_launch_file(path: Path, text: str | None = None) -> LaunchDescri
     from linkwright.launch.frontend.parser import Parser
 
     opened = io.StringIO(read_launch_file(path).text if text is None else text)
-    opened.name = str(path)
+    opened.name = source_of(str(path))
     entity, parser = Parser.load(opened)
     return parser.parse_description(entity)

@@ -24,6 +24,7 @@ from linkwright.launch.errors.ros_exceptions import as_ros_error
 from linkwright.launch.errors.user_code import explain
 from linkwright.launch.model.description import LaunchDescription
 from linkwright.packages.launch_files import is_launch_file_name
+from linkwright.packages.share_layout import source_of
 
 _FUNCTION = "generate_launch_description"
 _MODULE_NAME = "python_launch_file"
@@ -38,19 +39,19 @@ def load_python_launch_file(path: Path) -> LaunchDescription:
     """
     with not_reading():
         source = read_launch_file(path)
-        module = _run(source)
+        module = _run(source, path)
         function = getattr(module, _FUNCTION, None)
         if not callable(function):
             hint = did_you_mean(_FUNCTION, vars(module)) or phrase("define {function}() in it", function=_FUNCTION)
             message = phrase(
-                "launch file '{path}' has no function '{function}'", path=display_path(path), function=_FUNCTION
+                "launch file '{path}' has no function '{function}'", path=display_path(source.name), function=_FUNCTION
             )
             text = f"launch file at '{path}' does not contain the required function '{_FUNCTION}()'"
             raise error_at(None, "LAUNCH105", message, hint, ros_error=InvalidPythonLaunchFileError(text))
         try:
             description = function()
         except Exception as error:
-            raise explain(error, phrase("launch file '{path}'", path=display_path(path))) from error
+            raise explain(error, phrase("launch file '{path}'", path=display_path(source.name))) from error
     if not isinstance(description, LaunchDescription):
         line = function.__code__.co_firstlineno if hasattr(function, "__code__") else 1
         start = source.offset(line, 1)
@@ -71,38 +72,39 @@ def load_python_module(path: Path) -> ModuleType:
         LinkwrightError: LAUNCH101 to LAUNCH104, see `load_python_launch_file`.
     """
     with not_reading():
-        return _run(read_launch_file(path))
+        return _run(read_launch_file(path), path)
 
 
-def _run(source: SourceText) -> ModuleType:
-    path = Path(source.name)
+def _run(source: SourceText, path: Path) -> ModuleType:
+    """Run a launch file that is found at a path, which it sees as its own; messages name the user's file."""
     try:
-        code = compile(source.text, str(path), "exec", dont_inherit=True)
+        code = compile(source.text, source.name, "exec", dont_inherit=True)
     except SyntaxError as error:
         raise as_ros_error(error, _syntax_diagnostic(error, source)) from error
     except ValueError as error:  # a null byte, before Python 3.12
         raise _error(
             "LAUNCH103",
-            phrase("launch file '{path}' is not Python: {error}", path=display_path(path), error=foreign(error)),
+            phrase("launch file '{path}' is not Python: {error}", path=display_path(source.name), error=foreign(error)),
         ) from error
     module = ModuleType(_MODULE_NAME)
     module.__file__ = str(path)
     try:
         exec(code, module.__dict__)  # noqa: S102 - a launch file is a program that the user asks to run
     except Exception as error:
-        raise explain(error, phrase("launch file '{path}'", path=display_path(path))) from error
+        raise explain(error, phrase("launch file '{path}'", path=display_path(source.name))) from error
     return module
 
 
 def read_launch_file(path: Path) -> SourceText:
-    """The text of a launch file of any kind.
+    """The text of a launch file of any kind, by the name of the user's own file (see `source_of`).
 
     Raises:
         LinkwrightError: LAUNCH101 no such file, LAUNCH102 unreadable.
     """
-    shown = display_path(path)
+    name = source_of(str(path))
+    shown = display_path(name)
     try:
-        return SourceText(str(path), read_text(path, "utf-8-sig"))
+        return SourceText(name, read_text(path, "utf-8-sig"))
     except FileNotFoundError as error:
         hint = missing_file_hint(path, is_launch_file_name)
         message = phrase("launch file '{shown}' does not exist", shown=shown)

@@ -189,8 +189,8 @@ def get_composable_node_load_request(description: ComposableNode, context: Launc
     full_name = f"{(namespace or '').rstrip('/')}/{request.node_name}"
     try:
         scope = scope_parameters(context.launch_configurations.get(PARAMETERS) or (), context)
-        own = own_parameters(description.parameters or (), context)
-        parameters = NodeParameters([*scope.sources, *own.sources])
+        given = own_parameters(description.parameters or (), context)
+        parameters = NodeParameters([*scope.sources, *given.sources])
         request.parameters = _messages(context, full_name, parameters.sources)
         parameters.check(context, full_name if request.node_name else None, description.place)
         request.extra_arguments = _messages(

@@ -27,6 +27,7 @@ from linkwright.launch.model.substitution import (
     normalize_to_list_of_substitutions,
     perform_substitutions,
 )
+from linkwright.packages.share_layout import source_of
 
 if TYPE_CHECKING:
     from linkwright.graph.parameters.rules import ParameterRules
@@ -149,9 +150,10 @@ class ParameterFile(Placed):
 
 
 def _read(path: Path, place: Place | None) -> SourceText:
-    shown = display_path(path)
+    name = source_of(str(path))
+    shown = display_path(name)
     try:
-        return SourceText(str(path), read_text(path))
+        return SourceText(name, read_text(path))
     except FileNotFoundError as error:
         message, hint = phrase("parameter file '{shown}' does not exist", shown=shown), missing_file_hint(path)
         raise error_at(place, "LAUNCH133", message, hint, ros_error=error) from error
