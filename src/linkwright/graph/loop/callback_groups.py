@@ -16,10 +16,11 @@ class CallbackGroup:
     def __init__(self) -> None:
         super().__init__()
         self.entities: set[weakref.ref[Any]] = set()
+        self._forget = self.entities.discard
 
     def add_entity(self, entity: Any) -> None:
         """Make something of a node a member; its callbacks then run as the group says."""
-        self.entities.add(weakref.ref(entity, self.entities.discard))
+        self.entities.add(weakref.ref(entity, self._forget))
 
     def has_entity(self, entity: Any) -> bool:
         """Whether something is a member."""
