@@ -7,7 +7,6 @@ template up in that language's catalogue and fills that in with the same argumen
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from string import Formatter
 from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
@@ -79,6 +78,8 @@ class Phrase(str):
     def _filled(self, template: str, wording: Wording) -> str:
         if not self.arguments:
             return template
+        from string import Formatter  # here, because commands that speak English need none of it
+
         text = ""
         after_phrase = False
         for literal, name, spec, _ in Formatter().parse(template):

@@ -18,7 +18,9 @@ _DIGITS = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 _NUMBER = re.compile(rf"[ \t\n\v\f\r]*{_DIGITS}").fullmatch
 _PIECE = rf"[\t\n\v\f\r]*({_DIGITS})"
 _VECTOR3 = re.compile(rf" *{_PIECE} +{_PIECE} +{_PIECE} *").fullmatch
-# What consists of these signs alone is a number to Python exactly when it is one to urdfdom, and is soon told apart.
+# What consists of these signs alone is a number to Python exactly when it is one to urdfdom, and is soon told apart:
+# a single one, which is short, soonest by stripping them.
+_PLAIN_SIGNS = "-+.0123456789eE "
 _PLAIN = re.compile(r"[-+.0-9eE ]*").fullmatch
 
 _UNITS = {
@@ -44,7 +46,7 @@ def number(text: str) -> float:
     Raises:
         ValueError: it says none, or one too large for a double.
     """
-    if not (_PLAIN(text) and text[-1:] != " ") and not _NUMBER(text):
+    if (text.strip(_PLAIN_SIGNS) or text[-1:] == " ") and not _NUMBER(text):
         raise ValueError(text)
     value = float(text)
     if isinf(value):
