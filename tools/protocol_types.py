@@ -20,7 +20,7 @@ from typing import Any
 import msgspec
 
 from linkwright.viewer import protocol
-from linkwright.viewer.protocol.data import Bytes, Floats
+from linkwright.viewer.protocol.binary import Bytes, Floats
 from linkwright.viewer.protocol.message import DataContent, PageMessage, Record, ServerMessage
 
 FOLDER = Path(__file__).resolve().parent.parent / "frontend" / "src" / "protocol"

@@ -17,7 +17,7 @@ export interface DisplayData {
   content: DataContent;
 }
 
-/** Reads what `pack_data` of `viewer/protocol/data.py` wrote; null when the bytes are something else. */
+/** Reads what `pack_data` of `viewer/protocol/binary.py` wrote; null when the bytes are something else. */
 export function unpackData(buffer: ArrayBuffer): DisplayData | null {
   if (buffer.byteLength < HEADER_BYTES) return null;
   const header = new DataView(buffer);

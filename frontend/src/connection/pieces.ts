@@ -2,7 +2,7 @@ import { PIECE_KIND } from "../protocol";
 
 const HEADER_BYTES = 16;
 
-/** Puts binary frames together that come in pieces, as `pack_piece` of `viewer/protocol/pieces.py` cuts them. */
+/** Puts binary frames together that come in pieces, as `pack_piece` of `viewer/protocol/binary.py` cuts them. */
 export class Pieces {
   private number = 0;
   private whole = new Uint8Array();

@@ -15,7 +15,7 @@ export interface Transforms {
   ages: Float32Array;
 }
 
-/** Reads what `pack_transforms` of `viewer/protocol/frames.py` wrote; null when the bytes are something else. */
+/** Reads what `pack_transforms` of `viewer/protocol/binary.py` wrote; null when the bytes are something else. */
 export function unpackTransforms(buffer: ArrayBuffer): Transforms | null {
   if (buffer.byteLength < HEADER_BYTES) return null;
   const header = new DataView(buffer);

@@ -178,3 +178,19 @@ export interface SaveConfiguration {
 export interface AskConfigurationText {
   type: "ask_configuration_text";
 }
+
+export type PanelName = "displays" | "selection" | "tool-properties" | "views" | "time" | "transformation";
+
+/** What the configuration says of panels. */
+export interface Panels {
+  opened: number;
+  origin: string;
+  shown: PanelName[] | null;
+  type: "panels";
+}
+
+/** The user opened or closed one of these panels, and these are open in the page now. The file takes that over. */
+export interface ShowPanels {
+  shown: PanelName[];
+  type: "show_panels";
+}

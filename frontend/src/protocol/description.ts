@@ -136,3 +136,32 @@ export interface AskInertia {
   display: string;
   type: "ask_inertia";
 }
+
+/** A note of a diagnostic. */
+export interface DiagnosticNote {
+  message: string;
+  file: string | null;
+  line: number | null;
+  column: number | null;
+}
+
+/** A diagnostic for the page; `excerpt` is the source line, if there is one. */
+export interface DiagnosticItem {
+  code: string;
+  severity: "error" | "warning" | "info";
+  message: string;
+  file: string | null;
+  line: number | null;
+  column: number | null;
+  end_line: number | null;
+  end_column: number | null;
+  excerpt: string;
+  notes: DiagnosticNote[];
+  hints: string[];
+}
+
+/** What is wrong with the description now; none clears the list. */
+export interface Diagnostics {
+  items: DiagnosticItem[];
+  type: "diagnostics";
+}

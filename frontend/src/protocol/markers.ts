@@ -47,3 +47,68 @@ export interface MarkersChanged {
   markers: MarkerShape[];
   kind: "markers_changed";
 }
+
+export type OrientationMode = "inherit" | "fixed" | "view_facing";
+
+export type InteractionMode =
+  | "none"
+  | "menu"
+  | "button"
+  | "move_axis"
+  | "move_plane"
+  | "rotate_axis"
+  | "move_rotate"
+  | "move_3d"
+  | "rotate_3d"
+  | "move_rotate_3d";
+
+export type FeedbackEvent = "pose_update" | "menu_select" | "button_click" | "mouse_down" | "mouse_up";
+
+/** A handle of an interactive marker. */
+export interface InteractiveControl {
+  name: string;
+  description: string;
+  mode: InteractionMode;
+  orientation_mode: OrientationMode;
+  orientation: number[];
+  always_visible: boolean;
+  independent_orientation: boolean;
+  markers: MarkerShape[];
+}
+
+/** An entry of a marker's menu; `parent` is 0 at the top. */
+export interface MarkerMenuEntry {
+  id: number;
+  parent: number;
+  title: string;
+}
+
+/** An interactive marker in the frame of the content; `pose` is x y z qx qy qz qw, `scale` metres. */
+export interface InteractiveMarkerShape {
+  name: string;
+  description: string;
+  pose: number[];
+  scale: number;
+  controls: InteractiveControl[];
+  menu: MarkerMenuEntry[];
+  kind: "interactive_marker";
+}
+
+/** An interactive marker has another pose in the frame of the content. */
+export interface InteractiveMarkerMoved {
+  name: string;
+  pose: number[];
+  kind: "interactive_marker_moved";
+}
+
+/** The user did something to an interactive marker; poses and points are in the marker's frame. */
+export interface MarkerFeedback {
+  display: string;
+  marker: string;
+  control: string;
+  event: FeedbackEvent;
+  pose: number[];
+  menu_entry: number;
+  mouse_point: number[];
+  type: "marker_feedback";
+}

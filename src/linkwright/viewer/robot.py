@@ -25,7 +25,7 @@ from linkwright.viewer.config.property_store import PropertyStore, qos_of
 from linkwright.viewer.config.schema import PropertySpec, topic_spec
 from linkwright.viewer.context import ViewerContext
 from linkwright.viewer.protocol.description import LinkInertia
-from linkwright.viewer.protocol.parts import Place
+from linkwright.viewer.protocol.displays import Place
 from linkwright.viewer.protocol.robot import JointScene, LinkScene, Shape
 from linkwright.viewer.web.files import IMAGE_TYPES, MESH_TYPES, MeshIndex
 from linkwright.xacro.origin import origin_of

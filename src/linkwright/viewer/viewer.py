@@ -18,8 +18,7 @@ from linkwright.viewer.displays.base.display import ViewerDisplay
 from linkwright.viewer.features.joints import JointsFeature
 from linkwright.viewer.features.page_feature import PageFeature, make_features
 from linkwright.viewer.frames.history import FrameHistory
-from linkwright.viewer.protocol.codec import encode
-from linkwright.viewer.protocol.message import PageMessage, ServerMessage
+from linkwright.viewer.protocol.message import PageMessage, ServerMessage, encode
 from linkwright.viewer.protocol.session import PROTOCOL_VERSION, Hello
 from linkwright.viewer.visualization.manager import Managers, VisualizationManager
 from linkwright.viewer.web.access import Gate

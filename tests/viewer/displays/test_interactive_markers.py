@@ -11,8 +11,8 @@ from linkwright.messages import get_message, get_service
 from linkwright.packages import PackageFinder
 from linkwright.viewer import RvizConfig
 from linkwright.viewer.markers import BadMarkerError
-from linkwright.viewer.markers.controls import read_interactive_marker
-from linkwright.viewer.protocol.interactive_markers import MarkerFeedback
+from linkwright.viewer.markers.interactive import read_interactive_marker
+from linkwright.viewer.protocol.markers import MarkerFeedback
 from linkwright.viewer.web.files import MeshIndex
 from tests.viewer.contents import contents
 from tests.viewer.scene import world

@@ -215,7 +215,7 @@ async def test_a_page_that_opens_later_is_sent_all_markers():
 
 
 def test_a_page_that_missed_more_than_is_remembered_is_sent_everything(monkeypatch):
-    monkeypatch.setattr("linkwright.viewer.markers.store._MOST_GONE", 2)
+    monkeypatch.setattr("linkwright.viewer.markers.shapes._MOST_GONE", 2)
     store = MarkerStore("d")
     page = Watcher(store)
     shapes = [read_marker(marker(number), index()).shape for number in range(5)]

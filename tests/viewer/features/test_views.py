@@ -5,7 +5,7 @@ import yaml
 
 from linkwright.viewer import RvizConfig
 from linkwright.viewer.config.views import CURRENT_NAME, ORBIT, PITCH_LIMIT, VIEW_SCHEMAS, view_classes
-from linkwright.viewer.protocol.views import View
+from linkwright.viewer.protocol.views_and_tools import View
 from tests.viewer.scene import page, world
 
 FLYING = """\

@@ -13,7 +13,7 @@ from hypothesis.extra.numpy import arrays
 
 from linkwright.messages import get_message
 from linkwright.viewer.images import BadImageError, ImageCompressor, ImageSource, Unpacker
-from linkwright.viewer.images.rvl import BadRvlError, decoded
+from linkwright.viewer.images.compressed_depth import BadRvlError, decoded
 from linkwright.viewer.protocol.images import ImageFrame
 from tests.viewer.contents import contents
 from tests.viewer.displays import test_cloud_displays as clouds

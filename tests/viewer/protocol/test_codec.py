@@ -8,15 +8,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from msgspec import to_builtins
 
-from linkwright.viewer.protocol.codec import BadMessageError, decode, encode, redundancy_key
+from linkwright.viewer.protocol.binary import pack_data
 from linkwright.viewer.protocol.configuration import Folder
-from linkwright.viewer.protocol.data import pack_data
-from linkwright.viewer.protocol.displays import DisplayProperties, PropertyChanged, SetProperty
+from linkwright.viewer.protocol.displays import DisplayProperties, Property, PropertyChanged, SetProperty
 from linkwright.viewer.protocol.geometry import PolygonLine
 from linkwright.viewer.protocol.joints import CenterJoints, JointPositions, Joints, RandomizeJoints, SetJoint
-from linkwright.viewer.protocol.parts import Property
+from linkwright.viewer.protocol.message import BadMessageError, decode, encode, redundancy_key
 from linkwright.viewer.protocol.robot import MeshStatus, RobotScene
-from linkwright.viewer.protocol.views import View, ViewChanged
+from linkwright.viewer.protocol.views_and_tools import View, ViewChanged
 
 FLOATS = st.floats(allow_nan=False, allow_infinity=False)
 MESSAGES = st.one_of(

@@ -7,8 +7,8 @@ import sys
 import numpy as np
 import pytest
 
-from linkwright.viewer.protocol.frames import pack_transforms
-from linkwright.viewer.protocol.parts import StatusRow
+from linkwright.viewer.protocol.binary import pack_transforms
+from linkwright.viewer.protocol.displays import StatusRow
 from tests.places import REPOSITORY
 from tests.repository_tools import load_tool
 
@@ -39,10 +39,10 @@ def test_types_that_no_module_declares_are_found_and_removed(tmp_path, monkeypat
 
 def test_a_file_of_types_imports_what_others_declare():
     files = protocol_types.generate()
-    assert 'import type { MarkerShape } from "./markers";' in files["interactive-markers.ts"]
-    assert "  markers: MarkerShape[];" in files["interactive-markers.ts"]
-    assert "export interface MarkerShape {" in files["markers.ts"]
-    assert 'export * from "./markers";' in files["index.ts"]
+    assert 'import type { LinkInertia } from "./description";' in files["robot.ts"]
+    assert "  inertia: LinkInertia | null;" in files["robot.ts"]
+    assert "export interface LinkInertia {" in files["description.ts"]
+    assert 'export * from "./description";' in files["index.ts"]
     assert max(text.count("\n") for text in files.values()) < 400
 
 

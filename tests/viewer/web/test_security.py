@@ -11,8 +11,7 @@ import aiohttp
 import psutil
 import pytest
 
-from linkwright.viewer.protocol.displays import DisplayStatus
-from linkwright.viewer.protocol.parts import StatusRow
+from linkwright.viewer.protocol.displays import DisplayStatus, StatusRow
 from linkwright.viewer.web.access import MAXIMUM_CONNECTIONS
 from linkwright.viewer.web.audience import MAXIMUM_PAGES
 from linkwright.viewer.web.server import MAXIMUM_MESSAGE

@@ -12,7 +12,7 @@ import pytest
 
 from linkwright.messages import get_message
 from linkwright.viewer import RvizConfig
-from linkwright.viewer.protocol.pieces import PIECE_KIND
+from linkwright.viewer.protocol.binary import PIECE_KIND
 from linkwright.viewer.web.outbox import Line
 from tests.skipping import skipping
 from tests.viewer.contents import unpack as unpack_content

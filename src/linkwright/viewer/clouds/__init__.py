@@ -2,9 +2,15 @@
 
 from linkwright.viewer.clouds.colours import AXES, TRANSFORMERS, ColourSettings, coloured, supported_transformers
 from linkwright.viewer.clouds.depth import DepthCamera, DepthCloudBuilder
-from linkwright.viewer.clouds.laser import ScanProjector
-from linkwright.viewer.clouds.points import BadCloudError, Points, decimated, points_of_cloud, points_of_legacy_cloud
-from linkwright.viewer.clouds.sweep import swept
+from linkwright.viewer.clouds.points import (
+    BadCloudError,
+    Points,
+    ScanProjector,
+    decimated,
+    points_of_cloud,
+    points_of_legacy_cloud,
+    swept,
+)
 
 __all__ = [
     "AXES",

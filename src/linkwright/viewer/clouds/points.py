@@ -1,4 +1,7 @@
-"""The points of a sensor_msgs/msg/PointCloud2: where they are, and what else is known of each."""
+"""The points of clouds and laser scans: where they are, and what else is known of each.
+
+Scans are projected as laser_geometry does.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +13,7 @@ import numpy as np
 from msgspec.structs import replace
 from numpy.typing import NDArray
 
+from linkwright.geometry.arrays import rotate, slerp
 from linkwright.viewer.protocol.points import CloudPoints
 
 # sensor_msgs/msg/PointField: constants of its `datatype`
@@ -138,3 +142,60 @@ def decimated(cloud: CloudPoints, size: int) -> CloudPoints:
     if step <= 1:
         return cloud
     return replace(cloud, positions=cloud.positions[::step], colours=cloud.colours[::step], step=step)
+
+
+class ScanProjector:
+    """Projects scans; the directions of the rays are kept as long as scans of the same shape come."""
+
+    def __init__(self) -> None:
+        self._shape: tuple[float, float, int] = (0.0, 0.0, 0)
+        self._directions: NDArray[np.float32] = np.empty((0, 2), np.float32)
+
+    def points(self, scan: Any) -> Points:
+        """The points of the rays that hit something, in the frame of the scanner.
+
+        A ray counts whose range is at least `range_min` and less than `range_max`; rays without an echo are infinite or
+        NaN. The channels are ``intensity`` (where the scan has one for each ray), ``range`` and ``index``.
+        """
+        ranges = np.frombuffer(scan.ranges, np.float32)
+        with np.errstate(invalid="ignore"):
+            hits = np.flatnonzero((ranges >= scan.range_min) & (ranges < scan.range_max))
+        distances = ranges[hits]
+        positions = np.zeros((len(hits), 3), np.float32)
+        directions = self._rays(scan.angle_min, scan.angle_increment, len(ranges))
+        np.multiply(directions[hits], distances[:, np.newaxis], out=positions[:, :2])
+        channels: dict[str, NDArray[Any]] = {}
+        intensities = np.frombuffer(scan.intensities, np.float32)
+        if len(intensities) == len(ranges):
+            channels["intensity"] = intensities[hits]
+        channels["range"] = distances
+        channels["index"] = hits.astype(np.int32)
+        finite = np.isfinite(positions.sum())
+        if finite:
+            return Points(positions, channels)
+        valid = np.isfinite(positions).all(axis=1)
+        return Points(positions[valid], {name: values[valid] for name, values in channels.items()})
+
+    def _rays(self, first: float, step: float, count: int) -> NDArray[np.float32]:
+        """Cosine and sine of each ray's angle."""
+        shape = (first, step, count)
+        if shape != self._shape:
+            with np.errstate(all="ignore"):
+                angles = first + step * np.arange(count, dtype=np.float64)
+                self._directions = np.stack([np.cos(angles), np.sin(angles)], axis=1).astype(np.float32)
+            self._shape = shape
+        return self._directions
+
+
+def swept(points: Points, parts: NDArray[Any], first: NDArray[np.float64], last: NDArray[np.float64]) -> Points:
+    """Points that were seen on the way from one pose to another, in the frame that the poses are in.
+
+    Args:
+        points: in the moving frame.
+        parts: of the way, 0 to 1, on which each point was seen; shape (N,).
+        first: pose at the beginning, x y z qx qy qz qw.
+        last: pose at the end.
+    """
+    turned = rotate(slerp(first[3:], last[3:], parts), points.positions)
+    moved = turned + first[:3] + parts[:, np.newaxis] * (last[:3] - first[:3])
+    return Points(moved.astype(np.float32), points.channels)

@@ -20,7 +20,7 @@ from types import MappingProxyType
 from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.viewer.config.former_names import is_former
 from linkwright.viewer.config.yaml_tree import Section, entries, insert_section, new_section, remove_section
-from linkwright.viewer.protocol.panels import PanelName
+from linkwright.viewer.protocol.configuration import PanelName
 from linkwright.viewer.protocol.time import SyncMode
 
 _DOCK = b"\xfb"

@@ -10,8 +10,7 @@ from linkwright.graph import DurabilityPolicy, HistoryPolicy, QoSProfile, Reliab
 from linkwright.viewer.config.former_names import FormerKey
 from linkwright.viewer.config.schema import Path, PropertySpec, Schema, accept, from_text, in_place_of, to_text
 from linkwright.viewer.config.yaml_tree import Made, Memory, Scalar, Section, make_section, unmake
-from linkwright.viewer.protocol.displays import PropertyChanged
-from linkwright.viewer.protocol.parts import Property, PropertyValue, TopicOffer
+from linkwright.viewer.protocol.displays import Property, PropertyChanged, PropertyValue, TopicOffer
 
 
 def property_id(owner: str, path: Iterable[str]) -> str:

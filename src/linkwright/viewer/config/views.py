@@ -22,8 +22,8 @@ from linkwright.viewer.config.yaml_tree import (
     new_section,
     remove_section,
 )
-from linkwright.viewer.protocol.parts import Property, PropertyValue
-from linkwright.viewer.protocol.views import View, ViewClass
+from linkwright.viewer.protocol.displays import Property, PropertyValue
+from linkwright.viewer.protocol.views_and_tools import View, ViewClass
 
 ORBIT = "rviz_default_plugins/Orbit"
 FPS = "rviz_default_plugins/FPS"

@@ -13,7 +13,7 @@ from linkwright.extensions import extensions
 from linkwright.viewer.config.former_names import GROUP as GROUP_CLASS
 from linkwright.viewer.config.rviz_config import DisplayConfig
 from linkwright.viewer.displays.base.display import DisplayHost, ViewerDisplay
-from linkwright.viewer.protocol.parts import StatusRow
+from linkwright.viewer.protocol.displays import StatusRow
 
 
 class GroupDisplay(ViewerDisplay):

@@ -20,9 +20,9 @@ from linkwright.viewer.config.schema import (
 from linkwright.viewer.displays.base.display import Pose, ViewerDisplay
 from linkwright.viewer.displays.base.topic_display import TOPIC, RecentDisplay, TopicDisplay
 from linkwright.viewer.frames.stream import transform_status
+from linkwright.viewer.protocol.displays import StatusLevel
 from linkwright.viewer.protocol.geometry import PointMarks, PolygonLine, RangeCone
 from linkwright.viewer.protocol.message import DataContent
-from linkwright.viewer.protocol.parts import StatusLevel
 from linkwright.viewer.protocol.points import CellGrid
 
 _FRAME = "Reference Frame"

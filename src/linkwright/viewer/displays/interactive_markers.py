@@ -14,11 +14,10 @@ from linkwright.viewer.config.rviz_config import DisplayConfig
 from linkwright.viewer.config.schema import Path, PropertySpec
 from linkwright.viewer.displays.base.display import DataDisplay, DisplayHost, Pose
 from linkwright.viewer.markers import BadMarkerError
-from linkwright.viewer.markers.client import ClientEvents, InteractiveMarkerClient
-from linkwright.viewer.markers.controls import read_interactive_marker
+from linkwright.viewer.markers.interactive import ClientEvents, InteractiveMarkerClient, read_interactive_marker
 from linkwright.viewer.markers.shapes import pose_of
-from linkwright.viewer.protocol.interactive_markers import InteractiveMarkerMoved, MarkerFeedback
-from linkwright.viewer.protocol.parts import StatusLevel
+from linkwright.viewer.protocol.displays import StatusLevel
+from linkwright.viewer.protocol.markers import InteractiveMarkerMoved, MarkerFeedback
 from linkwright.viewer.web.files import MeshIndex
 
 _NAMESPACE = "Interactive Markers Namespace"

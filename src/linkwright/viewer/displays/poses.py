@@ -21,7 +21,7 @@ from linkwright.viewer.config.schema import (
 )
 from linkwright.viewer.displays.base.display import DisplayHost
 from linkwright.viewer.displays.base.topic_display import RecentDisplay
-from linkwright.viewer.protocol.data import Floats
+from linkwright.viewer.protocol.binary import Floats
 from linkwright.viewer.protocol.geometry import PoseMarks
 from linkwright.viewer.protocol.message import DataContent
 

@@ -9,9 +9,8 @@ from linkwright.urdf import Joint, Link, Robot
 from linkwright.viewer.config.rviz_config import DisplayConfig
 from linkwright.viewer.config.schema import Path, PropertySpec, Schema, alpha
 from linkwright.viewer.displays.base.display import DisplayHost, ViewerDisplay
-from linkwright.viewer.protocol.displays import PropertyChanged
+from linkwright.viewer.protocol.displays import PropertyChanged, StatusRow
 from linkwright.viewer.protocol.message import ServerMessage
-from linkwright.viewer.protocol.parts import StatusRow
 from linkwright.viewer.protocol.robot import LinkProvenance, MeshStatus, RobotScene
 from linkwright.viewer.robot import DESCRIPTION_SPECS, DescriptionSource, SceneBuilder
 from linkwright.viewer.web.files import MeshIndex

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 from linkwright.viewer.config.rviz_config import DisplayConfig
 from linkwright.viewer.config.schema import Path, PropertySpec, Schema
 from linkwright.viewer.displays.base.display import DisplayHost, ViewerDisplay
-from linkwright.viewer.protocol.displays import PropertyChanged
-from linkwright.viewer.protocol.parts import StatusRow
+from linkwright.viewer.protocol.displays import PropertyChanged, StatusRow
 
 if TYPE_CHECKING:
     from linkwright.graph.names.expressions import Expression

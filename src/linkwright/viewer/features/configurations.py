@@ -30,16 +30,17 @@ from linkwright.viewer.protocol.configuration import (
     MoveDisplays,
     NewConfiguration,
     OpenConfiguration,
+    Panels,
     Question,
     Redo,
     RemoveDisplays,
     RenameDisplay,
     RevertConfiguration,
     SaveConfiguration,
+    ShowPanels,
     Undo,
 )
 from linkwright.viewer.protocol.message import ServerMessage
-from linkwright.viewer.protocol.panels import Panels, ShowPanels
 from linkwright.viewer.web.audience import Page
 
 if TYPE_CHECKING:

@@ -20,9 +20,11 @@ from linkwright.viewer.protocol.description import (
     Description,
     DescriptionChanged,
     DescriptionText,
+    DiagnosticItem,
+    DiagnosticNote,
+    Diagnostics,
     InertiaFindings,
 )
-from linkwright.viewer.protocol.diagnostics import DiagnosticItem, DiagnosticNote, Diagnostics
 from linkwright.viewer.protocol.message import ServerMessage, tag_of
 from linkwright.viewer.protocol.robot import AskProvenance
 

@@ -12,7 +12,7 @@ from linkwright.viewer.displays.catalogue import display_classes
 from linkwright.viewer.features.page_feature import PageFeature
 from linkwright.viewer.protocol.configuration import DisplayClass, DisplayClasses, TopicChoice, TopicChoices
 from linkwright.viewer.protocol.displays import SetProperty
-from linkwright.viewer.protocol.interactive_markers import MarkerFeedback
+from linkwright.viewer.protocol.markers import MarkerFeedback
 from linkwright.viewer.protocol.points import AskPoint, PointFields
 from linkwright.viewer.protocol.robot import MeshStatus
 from linkwright.viewer.web.audience import Page

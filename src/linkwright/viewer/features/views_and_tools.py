@@ -14,23 +14,21 @@ from linkwright.viewer.config.tools import TOOL_KINDS, ToolEntry, ToolsConfig, t
 from linkwright.viewer.config.views import view_classes
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
 from linkwright.viewer.protocol.message import ServerMessage
-from linkwright.viewer.protocol.tools import (
+from linkwright.viewer.protocol.views_and_tools import (
     AddTool,
+    ChangeSavedView,
     PointChosen,
     PoseChosen,
+    RemoveSavedView,
     RemoveTool,
+    SavedView,
+    SavedViews,
+    SaveView,
     SetToolProperty,
     Tool,
     ToolClass,
     ToolPropertyChanged,
     Tools,
-)
-from linkwright.viewer.protocol.views import (
-    ChangeSavedView,
-    RemoveSavedView,
-    SavedView,
-    SavedViews,
-    SaveView,
     ViewChanged,
     ViewClasses,
     ViewState,

@@ -26,8 +26,8 @@ from linkwright.graph import (
 from linkwright.messages import TFMessage
 from linkwright.viewer.config.schema import FIXED_FRAME
 from linkwright.viewer.frames.history import FrameHistory
-from linkwright.viewer.protocol.frames import FrameTable, pack_transforms
-from linkwright.viewer.protocol.parts import StatusRow
+from linkwright.viewer.protocol.binary import FrameTable, pack_transforms
+from linkwright.viewer.protocol.displays import StatusRow
 from linkwright.viewer.protocol.time import SyncMode
 
 _SHORTEST_PAUSE = 0.004

@@ -1,17 +1,18 @@
-"""A sensor_msgs/msg/Image as 8-bit grey, RGB or RGBA pixels."""
+"""A sensor_msgs/msg/Image as 8-bit grey, RGB or RGBA pixels.
+
+Video cameras send luma and chroma (ITU-R BT.601, studio range); images taken through a Bayer filter are demosaiced;
+grey of more than 8 bits is shown in a range, RViz's Normalize Range.
+"""
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-
-from linkwright.viewer.images.bayer import demosaiced
-from linkwright.viewer.images.ranges import RangeFinder
-from linkwright.viewer.images.yuv import from_nv, from_packed
 
 Pixels = NDArray[np.uint8]
 
@@ -129,6 +130,52 @@ def _rows(message: Any, kind: str, channels: int = 1) -> NDArray[Any]:
     return rows
 
 
+@dataclass(frozen=True, slots=True)
+class Range:
+    """The values shown black and white."""
+
+    black: float = 0.0
+    white: float = 1.0
+
+
+class RangeFinder:
+    """Finds the range of the images of a stream.
+
+    Attributes:
+        fixed: the range to be used, or None to look for it in the images.
+        window: over so many images the median of their least and largest values is taken.
+    """
+
+    def __init__(self) -> None:
+        self.fixed: Range | None = None
+        self.window = 5
+        self._least: deque[float] = deque()
+        self._largest: deque[float] = deque()
+
+    def reset(self) -> None:
+        """Forget the images before."""
+        self._least.clear()
+        self._largest.clear()
+
+    def range_of(self, values: NDArray[Any]) -> Range:
+        """The range for an image; values that are no numbers do not count."""
+        if self.fixed is not None:
+            return self.fixed
+        least, largest = (float(values.min()), float(values.max())) if values.size else (0.0, 0.0)
+        if not np.isfinite(least + largest):
+            finite = values[np.isfinite(values)]
+            least, largest = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 0.0)
+        return Range(self._median(self._least, least), self._median(self._largest, largest))
+
+    def _median(self, seen: deque[float], value: float) -> float:
+        if self.window <= 1:
+            return value
+        while len(seen) > self.window - 1:
+            seen.pop()
+        seen.appendleft(value)
+        return sorted(seen)[len(seen) // 2]
+
+
 def _normalized(values: NDArray[Any], ranges: RangeFinder) -> Pixels:
     found = ranges.range_of(values)
     span = found.white - found.black
@@ -148,6 +195,41 @@ def _normalized(values: NDArray[Any], ranges: RangeFinder) -> Pixels:
     np.clip(scaled, 0.0, 255.0, out=scaled)
     pixels: Pixels = scaled.astype(np.uint8)
     return pixels
+
+
+def demosaiced(mosaic: Pixels, pattern: str) -> Pixels:
+    """RGB, shape (height, width, 3), each missing colour the mean of its neighbours that have it.
+
+    Args:
+        mosaic: shape (height, width).
+        pattern: the colours of the first two pixels of the first and the second row, such as ``rggb``.
+    """
+    height, width = mosaic.shape
+    if height < 2 or width < 2:
+        return np.repeat(mosaic[..., np.newaxis], 3, axis=2)
+    padded = np.pad(mosaic, 1, mode="reflect").astype(np.uint16)
+    around = [padded[1 + dy : 1 + dy + height, 1 + dx : 1 + dx + width] for dy in (-1, 0, 1) for dx in (-1, 0, 1)]
+    _, up, _, left, _, right, _, down, _ = around
+    sideways = (left + right) >> 1
+    upright = (up + down) >> 1
+    cross = (left + right + up + down) >> 2
+    corners = (around[0] + around[2] + around[6] + around[8]) >> 2
+    result = np.empty((height, width, 3), np.uint8)
+    for place, colour in enumerate(pattern):
+        rows, columns = slice(place // 2, None, 2), slice(place % 2, None, 2)
+        own = mosaic[rows, columns]
+        parts: tuple[NDArray[Any], ...]
+        if colour == "g":
+            red_in_row = pattern[place ^ 1] == "r"
+            red, blue = (sideways, upright) if red_in_row else (upright, sideways)
+            parts = (red[rows, columns], own, blue[rows, columns])
+        elif colour == "r":
+            parts = (own, cross[rows, columns], corners[rows, columns])
+        else:
+            parts = (corners[rows, columns], cross[rows, columns], own)
+        for index, part in enumerate(parts):
+            result[rows, columns, index] = part
+    return result
 
 
 def _packed_yuv(first: str) -> Callable[[Any], Pixels]:
@@ -180,3 +262,50 @@ _YUV: dict[str, Callable[[Any], Pixels]] = {
     "nv21": _planar_yuv("nv21"),
     "nv24": _planar_yuv("nv24"),
 }
+
+
+def from_packed(pairs: Pixels, layout: str) -> Pixels:
+    """RGB of an image whose pixels share chroma two by two.
+
+    Args:
+        pairs: shape (height, width, 2): luma and one chroma of each pixel, blue's and red's in turn.
+        layout: ``uyvy`` with the chroma first, or ``yuyv``.
+    """
+    luma, chroma = (pairs[..., 1], pairs[..., 0]) if layout == "uyvy" else (pairs[..., 0], pairs[..., 1])
+    width = luma.shape[1]
+    even = chroma[:, : width - width % 2]
+    blue, red = np.repeat(even[:, 0::2], 2, axis=1), np.repeat(even[:, 1::2], 2, axis=1)
+    if width % 2 and width > 1:  # the last pixel of an odd row has no partner
+        blue, red = (np.concatenate([part, part[:, -1:]], axis=1) for part in (blue, red))
+    elif width == 1:
+        blue = red = np.full_like(luma, 128)
+    return _rgb(luma, blue, red)
+
+
+def from_nv(luma: Pixels, chroma: Pixels, layout: str) -> Pixels:
+    """RGB of an image with the chroma after the luma.
+
+    Args:
+        luma: shape (height, width).
+        chroma: of ``nv21``, shape (height / 2, width), red and blue in turn for two by two pixels; of ``nv24``, shape
+            (height, 2 width), blue and red in turn for each pixel.
+        layout: ``nv21`` or ``nv24``.
+    """
+    height, width = luma.shape
+    if layout == "nv24":
+        return _rgb(luma, chroma[:, 0::2], chroma[:, 1::2])
+    red, blue = (
+        np.repeat(np.repeat(part, 2, axis=0), 2, axis=1)[:height, :width] for part in (chroma[:, 0::2], chroma[:, 1::2])
+    )
+    return _rgb(luma, blue, red)
+
+
+def _rgb(luma: Pixels, blue: Pixels, red: Pixels) -> Pixels:
+    y = (luma.astype(np.int32) - 16) * 298
+    b = blue.astype(np.int32) - 128
+    r = red.astype(np.int32) - 128
+    parts = ((y + 409 * r + 128) >> 8, (y - 100 * b - 208 * r + 128) >> 8, (y + 516 * b + 128) >> 8)
+    result = np.empty((*luma.shape, 3), np.uint8)
+    for index, part in enumerate(parts):
+        result[..., index] = np.clip(part, 0, 255)
+    return result

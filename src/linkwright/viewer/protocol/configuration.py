@@ -11,8 +11,6 @@ Question = Literal["unsaved", "exists", "changed_on_disk"]
 
 
 # --- server to page ------------------------------------------------------------------------------------------------
-
-
 class EditName(Record):
     """What undo or redo would do: the kind of edit, and the name of the property or display."""
 
@@ -100,8 +98,6 @@ class ConfigurationRefused(ServerMessage):
 
 
 # --- page to server ------------------------------------------------------------------------------------------------
-
-
 class AddDisplay(PageMessage):
     """Add a display of a class, enabled; into a group, if one is named, and showing a topic, if one is named."""
 
@@ -202,3 +198,27 @@ class SaveConfiguration(PageMessage):
 
 class AskConfigurationText(PageMessage):
     """The file as it would be saved now, to be kept on the browser's machine."""
+
+
+PanelName = Literal["displays", "selection", "tool-properties", "views", "time", "transformation"]
+"""The panels that RViz has, too; the names are the page's."""
+
+
+class Panels(ServerMessage):
+    """What the configuration says of panels.
+
+    Attributes:
+        opened: counts the configurations of this page's displays: with another number the page shows these panels.
+        origin: by what a page knows a configuration again that has no file.
+        shown: the panels that are open, in the order of the file; None where the file says nothing of panels.
+    """
+
+    opened: int
+    origin: str
+    shown: list[PanelName] | None
+
+
+class ShowPanels(PageMessage):
+    """The user opened or closed one of these panels, and these are open in the page now. The file takes that over."""
+
+    shown: list[PanelName]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Literal
 
 from linkwright.viewer.protocol.message import PageMessage, ServerMessage
-from linkwright.viewer.protocol.views import View
+from linkwright.viewer.protocol.views_and_tools import View
 
 
 class AskExport(PageMessage):

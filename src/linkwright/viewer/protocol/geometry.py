@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from linkwright.viewer.protocol.data import Floats
+from linkwright.viewer.protocol.binary import Floats
 from linkwright.viewer.protocol.message import DataContent
 
 

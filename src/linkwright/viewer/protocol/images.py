@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from linkwright.viewer.protocol.data import Bytes
+from linkwright.viewer.protocol.binary import Bytes
 from linkwright.viewer.protocol.message import DataContent, Record
 
 

@@ -1,11 +1,11 @@
-"""Content of the Marker and MarkerArray displays."""
+"""Markers: content of the Marker and MarkerArray displays, and markers that can be moved, turned and clicked."""
 
 from __future__ import annotations
 
 from typing import Literal
 
-from linkwright.viewer.protocol.data import Bytes, Floats
-from linkwright.viewer.protocol.message import DataContent, Record
+from linkwright.viewer.protocol.binary import Bytes, Floats
+from linkwright.viewer.protocol.message import DataContent, PageMessage, Record
 
 MarkerKind = Literal[
     "arrow",
@@ -69,3 +69,79 @@ class MarkersChanged(DataContent):
     everything: bool
     gone: list[str]
     markers: list[MarkerShape]
+
+
+OrientationMode = Literal["inherit", "fixed", "view_facing"]
+"""In the order of visualization_msgs' numbers, as the modes below."""
+
+InteractionMode = Literal[
+    "none",
+    "menu",
+    "button",
+    "move_axis",
+    "move_plane",
+    "rotate_axis",
+    "move_rotate",
+    "move_3d",
+    "rotate_3d",
+    "move_rotate_3d",
+]
+FeedbackEvent = Literal["pose_update", "menu_select", "button_click", "mouse_down", "mouse_up"]
+
+
+class InteractiveControl(Record):
+    """A handle of an interactive marker.
+
+    Its axis is the x axis of `orientation` (x y z w, in the frame that the orientation mode says). The poses of
+    `markers` are in the frame of the control, or in that of the interactive marker when `independent_orientation`.
+    """
+
+    name: str
+    description: str
+    mode: InteractionMode
+    orientation_mode: OrientationMode
+    orientation: list[float]
+    always_visible: bool
+    independent_orientation: bool
+    markers: list[MarkerShape]
+
+
+class MarkerMenuEntry(Record):
+    """An entry of a marker's menu; `parent` is 0 at the top."""
+
+    id: int
+    parent: int
+    title: str
+
+
+class InteractiveMarkerShape(DataContent, tag="interactive_marker"):
+    """An interactive marker in the frame of the content; `pose` is x y z qx qy qz qw, `scale` metres."""
+
+    name: str
+    description: str
+    pose: list[float]
+    scale: float
+    controls: list[InteractiveControl]
+    menu: list[MarkerMenuEntry]
+
+
+class InteractiveMarkerMoved(DataContent):
+    """An interactive marker has another pose in the frame of the content."""
+
+    name: str
+    pose: list[float]
+
+
+class MarkerFeedback(PageMessage):
+    """The user did something to an interactive marker; poses and points are in the marker's frame.
+
+    `mouse_point` is where the mouse met the marker, or none.
+    """
+
+    display: str
+    marker: str
+    control: str
+    event: FeedbackEvent
+    pose: list[float]
+    menu_entry: int
+    mouse_point: list[float]

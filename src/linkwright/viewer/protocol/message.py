@@ -1,10 +1,17 @@
-"""What messages are derived from. To define a message is to register it: the codec and the page's types follow."""
+"""What messages are derived from, and how they become text and are read from it.
+
+To define a message is to register it: the codec and the page's types follow. Of what pages send nothing is taken on
+trust.
+"""
 
 from __future__ import annotations
 
+import json
 import re
-from typing import ClassVar
+from functools import lru_cache
+from typing import Any, ClassVar, Union
 
+import msgspec
 from msgspec import Struct
 
 
@@ -36,3 +43,59 @@ class DataContent(Struct, tag_field="kind", tag=_tag):
 def tag_of(message: Struct) -> str:
     """By what JSON names the class of a message."""
     return str(message.__struct_config__.tag)
+
+
+class BadMessageError(ValueError):
+    """A page sent something that is not a message of the protocol; the text says why."""
+
+
+def plain(value: Any) -> Any:
+    """A text or number of a derived class, such as those of numpy, as the plain one that JSON has."""
+    if isinstance(value, str):
+        return str.__str__(value)
+    if isinstance(value, float):
+        return float(value)
+    if isinstance(value, int):
+        return int(value)
+    raise TypeError(f"JSON has nothing for a {type(value).__name__}")
+
+
+_ENCODER = msgspec.json.Encoder(enc_hook=plain)
+
+
+def encode(message: ServerMessage) -> str:
+    """A message as JSON. Half characters, as names of files may have that are not in UTF-8, become question marks."""
+    try:
+        return _ENCODER.encode(message).decode()
+    except UnicodeEncodeError:
+        text = json.dumps(msgspec.to_builtins(message, enc_hook=plain), ensure_ascii=False, separators=(",", ":"))
+        return text.encode("utf-8", "replace").decode()
+
+
+def redundancy_key(message: ServerMessage) -> str:
+    """Messages with one key make those before them needless: of each class, or of each thing its `NEWEST_OF` names."""
+    return "\n".join((tag_of(message), *(str(getattr(message, name)) for name in message.NEWEST_OF)))
+
+
+def decode(text: str) -> PageMessage:
+    """The message that a page sent.
+
+    Raises:
+        BadMessageError: it is not JSON, of no known type, or its fields are not exactly those of the type.
+    """
+    try:
+        message: PageMessage = _decoder(len(PageMessage.__subclasses__())).decode(text)
+    except (msgspec.DecodeError, ValueError, RecursionError) as error:
+        raise BadMessageError(str(error)) from None
+    return message
+
+
+@lru_cache(maxsize=1)
+def _decoder(_known: int) -> msgspec.json.Decoder[Any]:
+    """Reads every message that is defined; made anew when one more is, by a feature that was imported since."""
+    by_tag: dict[str, type[PageMessage]] = {}
+    for cls in PageMessage.__subclasses__():
+        tag = str(cls.__struct_config__.tag)
+        if by_tag.get(tag, cls).__module__ == cls.__module__:  # another package cannot take the name of a message
+            by_tag[tag] = cls
+    return msgspec.json.Decoder(Union[tuple(by_tag.values())])  # noqa: UP007  # made of a tuple

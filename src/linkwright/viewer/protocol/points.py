@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from linkwright.viewer.protocol.data import Bytes, Floats
+from linkwright.viewer.protocol.binary import Bytes, Floats
 from linkwright.viewer.protocol.message import DataContent, PageMessage, ServerMessage
 
 

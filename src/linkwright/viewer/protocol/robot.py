@@ -7,8 +7,8 @@ from typing import ClassVar, Literal
 from msgspec import field
 
 from linkwright.viewer.protocol.description import LinkInertia
+from linkwright.viewer.protocol.displays import Place
 from linkwright.viewer.protocol.message import PageMessage, Record, ServerMessage
-from linkwright.viewer.protocol.parts import Place
 
 ShapeKind = Literal["box", "cylinder", "capsule", "sphere", "mesh"]
 

@@ -20,11 +20,10 @@ from linkwright.viewer.displays.base.display import ViewerDisplay, worst
 from linkwright.viewer.displays.robot_model import RobotModelDisplay
 from linkwright.viewer.displays.tf import TfDisplay
 from linkwright.viewer.frames.stream import FrameStream, FrameView, TimeControl
+from linkwright.viewer.protocol.binary import FrameTable
 from linkwright.viewer.protocol.configuration import EditName
-from linkwright.viewer.protocol.displays import DisplayStatus, PropertyChanged, Tree
-from linkwright.viewer.protocol.frames import FrameTable
+from linkwright.viewer.protocol.displays import DisplayStatus, PropertyChanged, StatusRow, Tree
 from linkwright.viewer.protocol.message import ServerMessage
-from linkwright.viewer.protocol.parts import StatusRow
 from linkwright.viewer.protocol.time import SyncMode, TimeState
 from linkwright.viewer.visualization.display_tree import DisplayTree
 from linkwright.viewer.visualization.history import Edit, History

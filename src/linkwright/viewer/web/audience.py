@@ -10,8 +10,14 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from linkwright.graph import run_logged
-from linkwright.viewer.protocol.codec import BadMessageError, decode, encode, redundancy_key
-from linkwright.viewer.protocol.message import PageMessage, ServerMessage
+from linkwright.viewer.protocol.message import (
+    BadMessageError,
+    PageMessage,
+    ServerMessage,
+    decode,
+    encode,
+    redundancy_key,
+)
 from linkwright.viewer.protocol.session import Received
 from linkwright.viewer.web.outbox import BULK, TRANSFORMS, InPieces, Line, Made, Outbox, Payload, ScaledData
 

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
 
+from linkwright.viewer.protocol.binary import pack_piece
 from linkwright.viewer.protocol.message import DataContent
-from linkwright.viewer.protocol.pieces import pack_piece
 
 Pack = Callable[[DataContent], bytes]
 Shrink = Callable[[int], DataContent]

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 from linkwright.messages import get_message
 from linkwright.viewer.features.monitor.topics import message_tree
-from linkwright.viewer.protocol.topics import MessageField
+from linkwright.viewer.protocol.monitor import MessageField
 
 
 def row(rows: list[MessageField], *path: str) -> MessageField:

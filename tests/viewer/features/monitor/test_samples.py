@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from linkwright.viewer.features.monitor.plots import MOST_SENT, SampleQueue, thinned
-from linkwright.viewer.protocol.plots import SAMPLES_KIND, pack_samples
+from linkwright.viewer.protocol.monitor import SAMPLES_KIND, pack_samples
 
 
 def test_samples_are_taken_once_and_in_order():

@@ -16,10 +16,16 @@ from linkwright.viewer.config.schema import FIXED_FRAME, Path, Schema
 from linkwright.viewer.config.yaml_tree import Memory
 from linkwright.viewer.context import ViewerContext
 from linkwright.viewer.frames.stream import FrameView, TimeControl
-from linkwright.viewer.protocol.data import DisplayForgotten, pack_data
-from linkwright.viewer.protocol.displays import Display, DisplayProperties, DisplayStatus, PropertyChanged
+from linkwright.viewer.protocol.binary import DisplayForgotten, pack_data
+from linkwright.viewer.protocol.displays import (
+    Display,
+    DisplayProperties,
+    DisplayStatus,
+    PropertyChanged,
+    StatusLevel,
+    StatusRow,
+)
 from linkwright.viewer.protocol.message import DataContent, ServerMessage
-from linkwright.viewer.protocol.parts import StatusLevel, StatusRow
 from linkwright.viewer.web.audience import PageGroup
 from linkwright.viewer.web.outbox import Payload, ScaledData, Shrink
 

@@ -10,7 +10,7 @@ import json
 from linkwright._version import __version__
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.viewer.features.export.snapshot import FileSet, Snapshot, addresses
-from linkwright.viewer.protocol.codec import encode
+from linkwright.viewer.protocol.message import encode
 from linkwright.viewer.protocol.robot import RobotScene
 from linkwright.viewer.web.server import PAGE_FOLDER
 

@@ -21,14 +21,13 @@ from linkwright.geometry.single import quaternion_of
 from linkwright.nodes.joint_layout import layout_of
 from linkwright.nodes.joint_settings import JointSettings
 from linkwright.urdf import Joint, Robot
-from linkwright.viewer.protocol.displays import Display, DisplayProperties, Tree
-from linkwright.viewer.protocol.frames import FrameTable, unpack_transforms
+from linkwright.viewer.protocol.binary import FrameTable, unpack_transforms
+from linkwright.viewer.protocol.displays import Display, DisplayProperties, Property, Tree
 from linkwright.viewer.protocol.joints import JointControl, JointPositions, Joints
 from linkwright.viewer.protocol.message import ServerMessage
-from linkwright.viewer.protocol.parts import Property
 from linkwright.viewer.protocol.robot import RobotScene
 from linkwright.viewer.protocol.session import Hello
-from linkwright.viewer.protocol.views import SavedViews, View, ViewClasses, ViewState
+from linkwright.viewer.protocol.views_and_tools import SavedViews, View, ViewClasses, ViewState
 from linkwright.viewer.web.files import FileRefusedError, MeshFolders
 from linkwright.viewer.web.outbox import ScaledData
 
@@ -285,7 +284,7 @@ def _whole(payload: Payload) -> bytes | str | None:
 
 
 def _marker_meshes(payloads: Sequence[Payload]) -> list[str]:
-    from linkwright.viewer.markers.store import MarkerStore  # most programs never export
+    from linkwright.viewer.markers.shapes import MarkerStore
 
     shapes = [shape for payload in payloads if isinstance(payload, MarkerStore) for shape in payload.shapes]
     return [shape.mesh.url for shape in shapes if shape.mesh is not None and shape.mesh.url is not None]

@@ -9,8 +9,8 @@ from typing import Any
 from linkwright.graph import MessageInfo
 from linkwright.viewer.features.monitor.topic_tap import Paced, TopicTap
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
-from linkwright.viewer.protocol.codec import encode
-from linkwright.viewer.protocol.log import LogLine, LogLines, WatchLog
+from linkwright.viewer.protocol.message import encode
+from linkwright.viewer.protocol.monitor import LogLine, LogLines, WatchLog
 from linkwright.viewer.web.audience import Page
 
 _TOPIC = "/rosout"

@@ -6,7 +6,7 @@ from linkwright.graph import EndpointKind
 from linkwright.graph.introspection.graph_queries import GraphQueries
 from linkwright.graph.names.rules import join
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
-from linkwright.viewer.protocol.node_graph import GraphTopic, NodeGraph, WatchNodeGraph
+from linkwright.viewer.protocol.monitor import GraphTopic, NodeGraph, WatchNodeGraph
 from linkwright.viewer.web.audience import Page
 
 

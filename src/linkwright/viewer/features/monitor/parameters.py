@@ -14,7 +14,7 @@ from linkwright.graph.parameters.file_text import parameter_file_text, plain_val
 from linkwright.graph.parameters.parameter import ParameterType
 from linkwright.viewer.features.monitor.topic_tap import Paced, TopicTap
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
-from linkwright.viewer.protocol.parameters import (
+from linkwright.viewer.protocol.monitor import (
     DumpParameters,
     NodeParameters,
     ParameterDump,

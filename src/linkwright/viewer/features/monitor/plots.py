@@ -17,7 +17,7 @@ from linkwright.viewer.context import ViewerContext
 from linkwright.viewer.features.monitor.field_paths import FieldPath, FieldPathError, plot_fields
 from linkwright.viewer.features.monitor.topic_tap import Paced, TopicTap
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
-from linkwright.viewer.protocol.plots import (
+from linkwright.viewer.protocol.monitor import (
     AskFields,
     PlotSeries,
     SeriesState,

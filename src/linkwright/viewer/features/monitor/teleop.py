@@ -9,7 +9,7 @@ from typing import Any
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import EndpointKind, Node, Publisher
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
-from linkwright.viewer.protocol.teleop import AimTeleop, Drive, TeleopState, TeleopTarget
+from linkwright.viewer.protocol.monitor import AimTeleop, Drive, TeleopState, TeleopTarget
 from linkwright.viewer.web.audience import Page
 
 _SILENCE = 0.4

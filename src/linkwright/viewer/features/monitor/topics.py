@@ -15,7 +15,7 @@ from linkwright.messages.definition import Container, Field
 from linkwright.viewer.context import ViewerContext
 from linkwright.viewer.features.monitor.topic_tap import Paced, TopicTap
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
-from linkwright.viewer.protocol.topics import (
+from linkwright.viewer.protocol.monitor import (
     MessageField,
     TopicFigures,
     TopicList,

@@ -1,9 +1,9 @@
-"""What displays draw of the messages they take: content with large arrays, as binary frames.
+"""What goes to pages as binary frames, little endian: transforms, content with large arrays, and pieces of these.
 
-A frame is four uint32 (kind 2, bytes of the header, 0, 0), the header as JSON in UTF-8, and the arrays; the header and
-each array are padded to a multiple of 8 bytes. The header is ``{"display", "key", "frame", "stamp", "pose",
-"content"}``; where the content has an array the JSON has ``{"$": [type, offset, count]}``: the type is ``f4``, little
-endian, or ``u1``, and the offset counts bytes from the end of the padded header.
+Content is what displays draw of the messages they take. Its frame is four uint32 (kind 2, bytes of the header, 0, 0),
+the header as JSON in UTF-8, and the arrays; the header and each array are padded to a multiple of 8 bytes. The header
+is ``{"display", "key", "frame", "stamp", "pose", "content"}``; where the content has an array the JSON has ``{"$":
+[type, offset, count]}``: the type is ``f4`` or ``u1``, and the offset counts bytes from the end of the padded header.
 """
 
 from __future__ import annotations
@@ -16,8 +16,51 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.viewer.protocol.codec import plain
-from linkwright.viewer.protocol.message import DataContent, ServerMessage
+from linkwright.viewer.protocol.message import DataContent, ServerMessage, plain
+
+_TRANSFORMS_HEADER = struct.Struct("<IIIId")
+TRANSFORMS_KIND = 1
+
+
+class FrameTable(ServerMessage):
+    """Names and parents (index, -1 for a root) of the frames in the binary frames with this revision."""
+
+    revision: int
+    names: list[str]
+    parents: list[int]
+
+
+def pack_transforms(revision: int, stamp: float, poses: NDArray[Any], ages: NDArray[Any]) -> bytes:
+    """One binary frame: header, poses, ages, little endian.
+
+    The header is four uint32 (kind 1, revision of the frame table, number of frames N, 0) and a float64 stamp in
+    seconds; then float32 N x 7 (x y z qx qy qz qw in the fixed frame, NaN where there is no transform) and float32 N
+    (seconds since each frame was last heard of; 0 for static frames).
+
+    Args:
+        revision: of the `FrameTable` that names the rows.
+        stamp: time of the newest transform in it, seconds.
+        poses: array, shape (N, 7).
+        ages: array, shape (N,).
+
+    Raises:
+        ValueError: when the shapes do not agree.
+    """
+    count = len(poses)
+    if poses.shape != (count, 7) or ages.shape != (count,):
+        raise ValueError(f"poses must be (N, 7) and ages (N,), not {poses.shape} and {ages.shape}")
+    header = _TRANSFORMS_HEADER.pack(TRANSFORMS_KIND, revision, count, 0, stamp)
+    return header + poses.astype("<f4").tobytes() + np.asarray(ages).astype("<f4").tobytes()
+
+
+def unpack_transforms(frame: bytes) -> tuple[int, NDArray[np.float64]]:
+    """Revision and poses, shape (N, 7), of a frame of `pack_transforms`; revision -1 for another kind of frame."""
+    if len(frame) < _TRANSFORMS_HEADER.size or _TRANSFORMS_HEADER.unpack_from(frame)[0] != TRANSFORMS_KIND:
+        return -1, np.empty((0, 7))
+    _, revision, count, _, _ = _TRANSFORMS_HEADER.unpack_from(frame)
+    numbers = np.frombuffer(frame, "<f4", count * 7, _TRANSFORMS_HEADER.size)
+    return revision, numbers.reshape(count, 7).astype(np.float64)
+
 
 DATA_KIND = 2
 _HEADER = struct.Struct("<IIII")
@@ -122,3 +165,21 @@ def _json(header: dict[str, Any], arrays: _Arrays) -> bytes:
 
 def _padding(length: int) -> bytes:
     return b"\0" * (-length % _ALIGNMENT)
+
+
+PIECE_KIND = 4
+
+
+def pack_piece(frame: bytes, number: int, offset: int, size: int) -> bytes:
+    """A binary frame with a part of another.
+
+    It is four uint32, little endian (kind 4, number, offset, length of the whole frame), and the bytes from the offset
+    on. The page takes the whole frame as received when it has the last piece; a piece with the offset 0 begins another.
+
+    Args:
+        frame: the whole.
+        number: the same for all pieces of the frame, and another for those of the next.
+        offset: where the piece begins, bytes.
+        size: of the piece at most, bytes.
+    """
+    return _HEADER.pack(PIECE_KIND, number, offset, len(frame)) + frame[offset : offset + size]
