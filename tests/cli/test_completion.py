@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shlex
 import shutil
 import subprocess
 import sys
@@ -163,6 +164,65 @@ def test_in_bash(line: str, offered: list[str]) -> None:
     done = subprocess.run(["bash", "-c", program], capture_output=True, text=True, check=True)
     assert done.stdout.split() == offered
     assert "_linkwright_complete" in done.stderr
+
+
+SHELL_LINES = [
+    (["linkwright", "lau"], ["launch"]),
+    (["linkwright", "launch", "arm", ""], ["a.launch.py", "b.launch.xml", "c_launch.yaml"]),
+    (["linkwright", "launch", "arm", "b.launch.xml", "gui:=1", "s"], ["speed:="]),
+    (["linkwright", "topic", "echo", "--qos-reliability", "best"], ["best_effort", "best_available"]),
+    (["linkwright", "topic", "pub", "/a", "arm/msg/"], ["arm/msg/Grip"]),
+    (["linkwright", "nonsense", ""], []),
+]
+"""What shells hand over, the word at the cursor last, and what they are to offer for it."""
+
+
+@pytest.mark.parametrize(("words", "offered"), SHELL_LINES)
+def test_what_any_shell_hands_over(words: list[str], offered: list[str]) -> None:
+    assert complete(words) == offered
+
+
+@pytest.mark.parametrize("quote", ["'", '"'])
+def test_a_quote_that_is_still_open(quote: str) -> None:
+    assert complete(["linkwright", "topic", "pub", "/a", f"{quote}arm/msg/"]) == ["arm/msg/Grip"]
+    assert after(f"linkwright topic pub /a {quote}arm/msg/") == ["arm/msg/Grip"]
+
+
+ZSH_WITHOUT_ITS_COMPLETION = """
+compdef() { print -ru2 -- compdef $@ }
+compadd() { while [[ "$1" != -- ]] { shift }; shift; (( $# )) && print -rl -- "$@" }
+_files() { print -r -- FILES }
+"""
+"""What zsh's completion system offers, here as functions that print what they are given."""
+
+
+@pytest.mark.skipif(shutil.which("zsh") is None, reason="there is no zsh")
+@pytest.mark.parametrize(("words", "offered"), [*SHELL_LINES, (["linkwright", "check", "ar"], ["FILES"])])
+def test_in_zsh(words: list[str], offered: list[str]) -> None:
+    typed = " ".join(f"'{word}'" for word in [*words[:-1], words[-1] + "after-the-cursor"])
+    program = (
+        ZSH_WITHOUT_ITS_COMPLETION
+        + script("zsh", sys.executable, ["linkwright"])
+        + f"words=({typed}); CURRENT=$#words\n"
+        + f"PREFIX={shlex.quote(words[-1])}; _linkwright_complete"
+    )
+    done = subprocess.run(["zsh", "-f", "-c", program], capture_output=True, text=True, check=False)
+    assert done.stdout.split() == offered
+    assert done.stderr == "compdef _linkwright_complete linkwright\n"
+
+
+@pytest.mark.skipif(shutil.which("fish") is None, reason="there is no fish")
+@pytest.mark.parametrize(
+    ("words", "offered"), [*SHELL_LINES, (["linkwright", "check", "arm/a"], ["arm/arm.urdf.xacro"])]
+)
+def test_in_fish(words: list[str], offered: list[str], tmp_path: Path) -> None:
+    program = script("fish", sys.executable, ["linkwright"]) + f"complete -C {shlex.quote(' '.join(words))}"
+    environment = {**os.environ, "HOME": str(tmp_path)}
+    done = subprocess.run(
+        ["fish", "--no-config", "-c", program], capture_output=True, text=True, check=True, env=environment
+    )
+    assert sorted(line.partition("\t")[0] for line in done.stdout.splitlines()) == sorted(offered)
+    assert done.stderr == ""
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
+import pytest
+
 from linkwright.packages.launch_files import is_launch_file_name, launch_files_below
+from linkwright.packages.share_layout import share_of_sources
 
 
 def test_names_are_those_that_ros2launch_takes_for_launch_files():
@@ -24,5 +28,17 @@ def test_folders_that_are_built_hidden_or_too_deep_are_left_out(tmp_path: Path):
     for folder in ("install/launch", ".git", "build", "log", "1/2/3/4/5"):
         (tmp_path / folder).mkdir(parents=True)
         (tmp_path / folder / "a.launch.py").touch()
-    assert list(launch_files_below(tmp_path)) == []
-    assert list(launch_files_below(tmp_path / "nowhere")) == []
+    assert launch_files_below(tmp_path) == []
+    assert launch_files_below(tmp_path / "nowhere") == []
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="links need a right there, without which none are made")
+def test_one_that_is_in_the_sources_and_where_it_is_installed_comes_once(tmp_path: Path, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    package = tmp_path / "arm"
+    (package / "start").mkdir(parents=True)
+    (package / "start" / "a.launch.py").touch()
+    (package / "CMakeLists.txt").write_text("project(arm)\ninstall(DIRECTORY start/ DESTINATION share/arm/launch)\n")
+    share = share_of_sources("arm", package)
+    assert launch_files_below(share) == [share / "launch" / "a.launch.py"]
+    assert (share / "start" / "a.launch.py").exists()

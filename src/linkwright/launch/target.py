@@ -46,7 +46,7 @@ class LaunchTarget:
         return self._search(share)
 
     def _search(self, share: Path) -> Path:
-        present = sorted(launch_files_below(share))
+        present = launch_files_below(share)
         found = [path for path in present if path.name == self.file]
         if len(found) == 1:
             return found[0]
@@ -111,7 +111,7 @@ def _is_path(word: str) -> bool:
 
 def _files_of_package(name: str) -> list[Path]:
     share = PackageFinder().find(name)
-    return [] if share is None else sorted(launch_files_below(share))
+    return [] if share is None else launch_files_below(share)
 
 
 def _incomplete(message: Phrase, hint: Phrase) -> LinkwrightError:

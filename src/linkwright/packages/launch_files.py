@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
+from linkwright.packages.share_layout import source_of
+
 _ENDINGS = ("launch.py", "launch.xml", "launch.yaml", "launch.yml")
 _DEPTH = 4
 _BUILT = ("build", "install", "log")
@@ -15,11 +17,19 @@ def is_launch_file_name(name: str) -> bool:
     return name.endswith(_ENDINGS)
 
 
-def launch_files_below(folder: Path, depth: int = _DEPTH) -> Iterator[Path]:
-    """The launch files in a folder and so many levels of folders below, those of a folder by name.
+def launch_files_below(folder: Path) -> list[Path]:
+    """The launch files in a folder and a few levels of folders below, those of a folder by name.
 
-    Hidden folders are left out, and those that colcon builds into.
+    Hidden folders are left out, and those that colcon builds into. A file that the share folder of a package has in two
+    places, where its sources have it and where it is installed (see `share_layout`), comes once.
     """
+    found: dict[str, Path] = {}
+    for path in _below(folder, _DEPTH):
+        found.setdefault(source_of(str(path)), path)
+    return list(found.values())
+
+
+def _below(folder: Path, depth: int) -> Iterator[Path]:
     try:
         entries = sorted(folder.iterdir())
     except OSError:
@@ -27,6 +37,6 @@ def launch_files_below(folder: Path, depth: int = _DEPTH) -> Iterator[Path]:
     for entry in entries:
         if entry.is_dir():
             if depth and not entry.name.startswith(".") and entry.name not in _BUILT:
-                yield from launch_files_below(entry, depth - 1)
+                yield from _below(entry, depth - 1)
         elif is_launch_file_name(entry.name):
             yield entry

@@ -33,6 +33,7 @@ def complete(words: Sequence[str]) -> list[str]:
     """What may stand in the place of the last word; `scripts.FILES` for any file."""
     program, *given = words
     *before, current = given or [""]
+    current = current.lstrip("'\"")  # of a quote that is still open
     found = _candidates(Path(program).name, before, current, json.loads(TABLE.read_text(encoding="utf-8")))
     return [each for each in dict.fromkeys(found) if each.startswith((current, ":"))]
 

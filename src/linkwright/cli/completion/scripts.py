@@ -30,7 +30,7 @@ complete -F _linkwright_complete COMMANDS
 _ZSH = """\
 _linkwright_complete() {
   local -a found
-  found=("${(@f)$(PYTHON -m linkwright.cli.completion "${(@Q)words[1,CURRENT]}" 2>/dev/null)}")
+  found=("${(@f)$(PYTHON -m linkwright.cli.completion "${(@Q)words[1,CURRENT-1]}" "${(Q)PREFIX}" 2>/dev/null)}")
   found=(${found:#})
   (( ${found[(Ie)FILES]} )) && _files
   found=(${found:#FILES})
