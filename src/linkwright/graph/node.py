@@ -14,6 +14,8 @@ from linkwright.graph.endpoints.service import Service
 from linkwright.graph.endpoints.service_introspection import EVENT_TOPIC_SUFFIX
 from linkwright.graph.endpoints.subscription import Subscription
 from linkwright.graph.introspection.node_queries import NodeQueries
+from linkwright.graph.introspection.type_descriptions import PARAMETER as TYPE_DESCRIPTIONS
+from linkwright.graph.introspection.type_descriptions import TypeDescriptions, is_usual
 from linkwright.graph.local_graph import LocalGraph
 from linkwright.graph.log.logger import Logger
 from linkwright.graph.log.rosout import LOG_TYPE, ROSOUT_TOPIC, Rosout
@@ -26,7 +28,7 @@ from linkwright.graph.names.identity import NodeIdentity
 from linkwright.graph.names.remapping import Remappings
 from linkwright.graph.names.rules import absolute_namespace, check_node_name
 from linkwright.graph.parameters.node_parameters import NodeParameters
-from linkwright.graph.parameters.parameter import Parameter
+from linkwright.graph.parameters.parameter import Parameter, ParameterDescriptor
 from linkwright.graph.parameters.qos_overrides import QoSOverridingOptions, override_qos
 from linkwright.graph.parameters.services import EVENTS_TOPIC, EVENTS_TYPE, ParameterEvents, ParameterServices
 from linkwright.graph.parameters.store import ParameterStore
@@ -116,10 +118,22 @@ class Node(NodeParameters, NodeQueries):
                 NodeParameters.declare_parameters_from_overrides(self)
             if start_parameter_services:
                 ParameterServices(self, name, partial(Node.create_service, self))
+            if self.__describes_types(store):
+                TypeDescriptions(handle, partial(Node.create_service, self))
             SimulatedTime(handle, self, self.__clock)
         except BaseException:
             handle.destroy()
             raise
+
+    def __describes_types(self, store: ParameterStore) -> bool:
+        """Whether others can ask for its types: as is usual where it runs, unless its parameter says otherwise."""
+        if TYPE_DESCRIPTIONS not in store.overrides and not is_usual():
+            return False
+        if not NodeParameters.has_parameter(self, TYPE_DESCRIPTIONS):
+            said = "Start the ~/get_type_description service for this node."
+            descriptor = ParameterDescriptor(description=said, read_only=True)
+            NodeParameters.declare_parameter(self, TYPE_DESCRIPTIONS, True, descriptor)
+        return bool(NodeParameters.get_parameter(self, TYPE_DESCRIPTIONS).value)
 
     @cached_property
     def graph(self) -> LocalGraph:

@@ -13,6 +13,7 @@ from enum import Enum
 from xml.sax.saxutils import quoteattr
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, phrase
+from linkwright.graph.introspection.type_descriptions import BEFORE_IRON
 from linkwright.wire.dds.discovery_info import GID_SIZE, OLD_GID_SIZE
 from linkwright.wire.dds.interfaces import own_addresses
 
@@ -25,7 +26,6 @@ PARTICIPANTS = 99
 LEASE = 5
 """Seconds of silence after which a process counts as gone, where the configuration is our own."""
 
-_OLD_DISTRIBUTIONS = ("dashing", "eloquent", "foxy", "galactic", "humble")
 _STATIC_PEERS_SEPARATOR = ";"
 
 
@@ -87,7 +87,7 @@ def read_settings(environment: Mapping[str, str] | None = None, *, domain_id: in
         domain_id=_domain(variables, domain_id),
         range=reach,
         configurations=tuple(",".join(part for part in (each, user) if part) for each in own),
-        gid_size=OLD_GID_SIZE if not distribution or distribution in _OLD_DISTRIBUTIONS else GID_SIZE,
+        gid_size=OLD_GID_SIZE if not distribution or distribution in BEFORE_IRON else GID_SIZE,
         warnings=tuple(warnings),
         user_configuration=user,
         own_configurations=own,

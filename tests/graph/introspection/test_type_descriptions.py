@@ -1,0 +1,98 @@
+"""The service of nodes that describes the types they use."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from linkwright.graph import Graph, Node
+from linkwright.messages import get_message, get_service, type_hash
+
+JOINT_STATE = "sensor_msgs/msg/JointState"
+
+
+@pytest.fixture(autouse=True)
+def jazzy(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROS_DISTRO", "jazzy")
+
+
+async def asked(graph: Graph, node: Node, **request: Any) -> Any:
+    asking = graph.create_node("asking")
+    service = get_service("type_description_interfaces/srv/GetTypeDescription")
+    client = asking.create_client(service, f"{node.get_fully_qualified_name()}/get_type_description")
+    answer = client.call_async(service.Request(**request))
+    await graph.settle()
+    asking.destroy_node()
+    return answer.result()
+
+
+async def test_a_type_and_all_within_it(graph: Graph) -> None:
+    node = graph.create_node("node", namespace="ns")
+    node.create_publisher(get_message(JOINT_STATE), "joint_states", 1)
+    response = await asked(graph, node, type_name=JOINT_STATE, type_hash=type_hash(JOINT_STATE))
+    assert (response.successful, response.failure_reason) == (True, "")
+    described = response.type_description
+    assert described.type_description.type_name == JOINT_STATE
+    assert [field.name for field in described.type_description.fields] == [
+        "header",
+        "name",
+        "position",
+        "velocity",
+        "effort",
+    ]
+    nested = ["builtin_interfaces/msg/Time", "std_msgs/msg/Header"]
+    assert [each.type_name for each in described.referenced_type_descriptions] == nested
+    assert [(each.type_name, each.encoding) for each in response.type_sources] == [
+        (name, "msg") for name in (JOINT_STATE, *nested)
+    ]
+    assert "float64[] position" in response.type_sources[0].raw_file_contents
+
+
+async def test_a_service_whose_parts_stand_in_no_file_of_their_own(graph: Graph) -> None:
+    node = graph.create_node("node")
+    node.create_client(get_service("std_srvs/srv/SetBool"), "switch")
+    response = await asked(graph, node, type_name="std_srvs/srv/SetBool", type_hash=type_hash("std_srvs/srv/SetBool"))
+    encodings = {each.type_name: each.encoding for each in response.type_sources}
+    assert encodings["std_srvs/srv/SetBool"] == "srv"
+    assert encodings["std_srvs/srv/SetBool_Request"] == "implicit"
+
+
+async def test_without_the_texts(graph: Graph) -> None:
+    node = graph.create_node("node")
+    name = "rcl_interfaces/msg/ParameterEvent"
+    response = await asked(graph, node, type_name=name, type_hash=type_hash(name), include_type_sources=False)
+    assert response.successful
+    assert list(response.type_sources) == []
+
+
+@pytest.mark.parametrize(
+    ("name", "sent", "reason"),
+    [
+        (JOINT_STATE, type_hash(JOINT_STATE), "Type not currently in use by this node"),
+        ("rcl_interfaces/msg/ParameterEvent", type_hash(JOINT_STATE), "Type not currently in use by this node"),
+        ("rcl_interfaces/msg/ParameterEvent", "RIHS01_12", "Failed to parse type hash"),
+    ],
+)
+async def test_what_cannot_be_told(graph: Graph, name: str, sent: str, reason: str) -> None:
+    response = await asked(graph, graph.create_node("node"), type_name=name, type_hash=sent)
+    assert (response.successful, response.failure_reason) == (False, reason)
+
+
+@pytest.mark.parametrize("distribution", ["", "humble", "Humble"])
+async def test_nodes_of_humble_have_none(graph: Graph, monkeypatch: pytest.MonkeyPatch, distribution: str) -> None:
+    monkeypatch.setenv("ROS_DISTRO", distribution)
+    node = graph.create_node("node")
+    assert "/node/get_type_description" not in dict(node.get_service_names_and_types())
+    assert not node.has_parameter("start_type_description_service")
+
+
+@pytest.mark.parametrize(("distribution", "wanted"), [("humble", True), ("jazzy", False)])
+async def test_the_parameter_decides(
+    graph: Graph, monkeypatch: pytest.MonkeyPatch, distribution: str, wanted: bool
+) -> None:
+    monkeypatch.setenv("ROS_DISTRO", distribution)
+    node = graph.create_node("node", parameters={"start_type_description_service": wanted})
+    assert ("/node/get_type_description" in dict(node.get_service_names_and_types())) is wanted
+    assert node.get_parameter("start_type_description_service").value is wanted
+    assert node.describe_parameter("start_type_description_service").read_only
