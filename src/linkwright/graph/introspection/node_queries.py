@@ -15,16 +15,6 @@ P = ParamSpec("P")
 R = TypeVar("R")
 
 
-def _of_graph(question: Callable[Concatenate[GraphQueries, P], R]) -> Callable[Concatenate[NodeQueries, P], R]:
-    """The method by which a node asks its graph the same question."""
-
-    @wraps(question)
-    def ask(node: NodeQueries, /, *args: P.args, **kwargs: P.kwargs) -> R:
-        return question(node._NodeQueries__graph, *args, **kwargs)  # type: ignore[attr-defined]  # mangled by hand
-
-    return ask
-
-
 class NodeQueries:
     """What a node can ask about the graph; `Node` derives from it. Names are the node's own, which are remapped."""
 
@@ -32,6 +22,16 @@ class NodeQueries:
         # The names are mangled, for users' nodes to have attributes of these names.
         self.__graph = graph
         self.__handle = handle
+
+    @staticmethod
+    def _of_graph(question: Callable[Concatenate[GraphQueries, P], R]) -> Callable[Concatenate[NodeQueries, P], R]:
+        """The method by which a node asks its graph the same question; for the lines below."""
+
+        @wraps(question)
+        def ask(node: NodeQueries, /, *args: P.args, **kwargs: P.kwargs) -> R:
+            return question(node.__graph, *args, **kwargs)
+
+        return ask
 
     def resolve_topic_name(self, topic: str, *, only_expand: bool = False) -> str:
         """The absolute name of a topic as this node names it, expanded and, unless `only_expand`, remapped.
@@ -67,6 +67,7 @@ class NodeQueries:
     get_service_names_and_types_by_node = _of_graph(GraphQueries.get_service_names_and_types_by_node)
     get_client_names_and_types_by_node = _of_graph(GraphQueries.get_client_names_and_types_by_node)
     wait_for_node = _of_graph(GraphQueries.wait_for_node)
+    del _of_graph  # a user's node may have an attribute of the name
 
     def get_publishers_info_by_topic(self, topic_name: str, no_mangle: bool = False) -> list[TopicEndpointInfo]:
         """The publishers of a topic, as this node names it unless `no_mangle` says that it is the name itself."""
