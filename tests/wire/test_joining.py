@@ -53,7 +53,7 @@ def test_a_switch_keeps_a_process_to_itself(graph, log, monkeypatch):
 
 
 def test_without_a_wheel_a_process_says_so_and_goes_on(graph, log, monkeypatch):
-    monkeypatch.setattr("linkwright.wire.dds.availability.find_spec", lambda _name: None)
+    monkeypatch.setattr("linkwright.wire.dds.joining.find_spec", lambda _name: None)
     assert "'cyclonedds' is not installed" in why_not()
     assert join(graph) is None
     (text,) = texts(log)

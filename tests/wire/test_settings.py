@@ -6,8 +6,7 @@ import pytest
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.wire.dds.discovery_info import GID_SIZE, OLD_GID_SIZE
-from linkwright.wire.dds.interfaces import own_addresses
-from linkwright.wire.dds.settings import Range, read_settings
+from linkwright.wire.dds.settings import Range, own_addresses, read_settings
 
 
 def elements(settings):

@@ -245,7 +245,7 @@ def run_dump(arguments: argparse.Namespace) -> int:
     """Print the file or write it."""
 
     async def job(session: Session) -> int:
-        from linkwright.graph.parameters.file_text import parameter_file_text, plain_value
+        from linkwright.graph.parameters.files import parameter_file_text, plain_value
 
         parameters = await RemoteParameters.of(session, arguments)
         names = await parameters.names()

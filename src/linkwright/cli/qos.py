@@ -108,7 +108,7 @@ def fitting_profile(node: Node, topic: str, arguments: argparse.Namespace) -> Qo
     That is what ros2cli does: reliable and transient local where all are, so that what was published once is shown.
     Where no depth is asked for, the queue is longer than ros2's, so that a burst is counted and shown in full.
     """
-    from linkwright.graph.qos.fitting import fit
+    from linkwright.graph.qos.compatibility import fit
 
     chosen = profile(arguments)
     if any(getattr(arguments, name) is not None for name in (*_SINGLE, _LEASE)):

@@ -12,15 +12,13 @@ from linkwright.graph.endpoints.service import Service
 from linkwright.graph.endpoints.subscription import Subscription
 from linkwright.graph.endpoints.transport import Transport
 from linkwright.graph.faults import InterruptedWaitError, InvalidHandleError, NodeNotFoundError
-from linkwright.graph.log.console import print_to_console
-from linkwright.graph.log.format import console_line
+from linkwright.graph.log.console import console_line, print_to_console
 from linkwright.graph.log.levels import LogLevel
 from linkwright.graph.log.logger import Logger, run_logged
 from linkwright.graph.log.record import LogRecord, LogSink
 from linkwright.graph.loop.entity import Entity, GuardCondition
 from linkwright.graph.loop.future import Future
-from linkwright.graph.loop.rate import Rate
-from linkwright.graph.loop.timer import Timer, TimerInfo
+from linkwright.graph.loop.timer import Rate, Timer, TimerInfo
 from linkwright.graph.names.identity import NodeIdentity
 from linkwright.graph.names.rules import (
     InvalidNameError,

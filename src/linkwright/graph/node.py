@@ -22,8 +22,7 @@ from linkwright.graph.log.rosout import LOG_TYPE, ROSOUT_TOPIC, Rosout
 from linkwright.graph.loop.callback_groups import FREE_GROUP, CallbackGroup
 from linkwright.graph.loop.entity import GuardCondition
 from linkwright.graph.loop.node_handle import NodeHandle
-from linkwright.graph.loop.rate import Rate
-from linkwright.graph.loop.timer import Timer
+from linkwright.graph.loop.timer import Rate, Timer
 from linkwright.graph.names.identity import NodeIdentity
 from linkwright.graph.names.remapping import Remappings
 from linkwright.graph.names.rules import absolute_namespace, check_node_name

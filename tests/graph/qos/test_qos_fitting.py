@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from linkwright.graph.qos.fitting import fit
+from linkwright.graph.qos.compatibility import fit
 from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
 WANTED = QoSProfile(depth=7, reliability=ReliabilityPolicy.BEST_EFFORT)

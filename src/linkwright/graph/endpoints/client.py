@@ -9,9 +9,8 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any, Generic, Protocol, TypeVar
 
-from linkwright.graph.endpoints.copies import copy_of
 from linkwright.graph.endpoints.info import EndpointKind
-from linkwright.graph.endpoints.service import Service
+from linkwright.graph.endpoints.service import Service, copy_of
 from linkwright.graph.endpoints.service_introspection import EventType, IntrospectedEndpoint, RequestId
 from linkwright.graph.loop.callback_groups import CallbackGroup
 from linkwright.graph.loop.entity import Entity

@@ -8,13 +8,13 @@ from functools import partial
 from inspect import isawaitable
 from typing import Any, Generic, TypeVar
 
-from linkwright.graph.endpoints.copies import copy_of
 from linkwright.graph.endpoints.info import EndpointKind
 from linkwright.graph.endpoints.service_introspection import NO_REQUEST_ID, EventType, IntrospectedEndpoint, RequestId
 from linkwright.graph.loop.callback_groups import CallbackGroup
 from linkwright.graph.loop.entity import Entity
 from linkwright.graph.loop.node_handle import NodeHandle
 from linkwright.graph.qos.profile import QoSProfile
+from linkwright.messages import deserialize, serialize
 
 Request = TypeVar("Request")
 Response = TypeVar("Response")
@@ -124,3 +124,16 @@ class Service(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         events = self.service_events
         if events is not None:
             events.tell(EventType.RESPONSE_SENT, request_id, response=response)
+
+
+M = TypeVar("M")
+
+
+def copy_of(message: M) -> M:
+    """An equal message that shares nothing with a message.
+
+    Raises:
+        MessageDataError: what is in the message is not what its type says.
+    """
+    copied: Any = message
+    return deserialize(serialize(copied), type(copied))  # type: ignore[no-any-return]  # the same type

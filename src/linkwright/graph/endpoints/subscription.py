@@ -17,9 +17,8 @@ from linkwright.graph.endpoints.endpoint_events import SubscriptionEvents
 from linkwright.graph.endpoints.event_types import EventHandler, SubscriptionEventCallbacks
 from linkwright.graph.endpoints.info import EndpointKind, MessageInfo
 from linkwright.graph.loop.callback_groups import CallbackGroup
-from linkwright.graph.loop.entity import Entity
+from linkwright.graph.loop.entity import Entity, accepts
 from linkwright.graph.loop.node_handle import Dispatcher, NodeHandle
-from linkwright.graph.loop.signatures import accepts
 from linkwright.graph.qos.profile import QoSProfile
 from linkwright.messages import deserialize, serialize
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 
-from linkwright.graph.executors.spinning import SpinningExecutor
+from linkwright.graph.executors.base import SpinningExecutor
 from linkwright.graph.faults import ConditionReachedException, ShutdownException, TimeoutException
 
 

@@ -1,14 +1,83 @@
-"""Log records to the console, as rcutils writes them: which stream, which colours."""
+"""Log records on the console, as rcutils writes them: the format of a line, the stream, the colours.
+
+RCUTILS_CONSOLE_OUTPUT_FORMAT changes the format, which is that of log files too.
+"""
 
 from __future__ import annotations
 
 import os
+import re
 import sys
+import threading
+from collections.abc import Callable
+from datetime import datetime
+from functools import lru_cache
+from pathlib import PurePath
 from typing import TextIO
 
-from linkwright.graph.log.format import console_line
 from linkwright.graph.log.levels import LogLevel
 from linkwright.graph.log.record import LogRecord
+
+DEFAULT_FORMAT = "[{severity}] [{time}] [{name}]: {message}"
+
+_NANOSECONDS_PER_SECOND = 1_000_000_000
+_MAX_FORMAT_LENGTH = 2047
+_TOKEN = re.compile(r"\{(\w+)\}")
+_ESCAPES = {"a": "\a", "b": "\b", "n": "\n", "r": "\r", "t": "\t", "x1b": "\x1b"}
+_ESCAPE = re.compile(r"\\(x1b|[abnrt])")
+
+Part = Callable[["LogRecord"], str]
+
+
+def console_line(record: LogRecord) -> str:
+    """A record as rcutils prints it, by default ``[INFO] [1700000000.123456789] [node]: text``."""
+    return "".join(part(record) for part in _parts(os.environ.get("RCUTILS_CONSOLE_OUTPUT_FORMAT") or DEFAULT_FORMAT))
+
+
+@lru_cache(maxsize=8)
+def _parts(format_text: str) -> tuple[Part, ...]:
+    """What puts a line together: fixed texts, and what stands for the tokens. Unknown tokens stay as they are."""
+    text = _ESCAPE.sub(lambda match: _ESCAPES[match[1]], format_text[:_MAX_FORMAT_LENGTH])
+    parts: list[Part] = []
+    end = 0
+    for match in _TOKEN.finditer(text):
+        token = _TOKENS.get(match[1])
+        if token is not None:
+            parts += [_fixed(text[end : match.start()]), token]
+            end = match.end()
+    parts.append(_fixed(text[end:]))
+    return tuple(parts)
+
+
+def _fixed(text: str) -> Part:
+    return lambda _: text
+
+
+def _seconds(record: LogRecord) -> str:
+    seconds, nanoseconds = divmod(record.stamp_ns, _NANOSECONDS_PER_SECOND)
+    return f"{seconds}.{nanoseconds:09d}"
+
+
+def _date_time(record: LogRecord) -> str:
+    seconds, nanoseconds = divmod(record.stamp_ns, _NANOSECONDS_PER_SECOND)
+    moment = datetime.fromtimestamp(seconds).astimezone()
+    return f"{moment:%Y-%m-%d %H:%M:%S}.{nanoseconds // 1_000_000:03d}"
+
+
+_TOKENS: dict[str, Part] = {
+    "severity": lambda record: record.level.name,
+    "name": lambda record: record.node,
+    "message": lambda record: record.text,
+    "function_name": lambda record: record.function,
+    "file_name": lambda record: record.file,
+    "short_file_name": lambda record: PurePath(record.file).name,
+    "time": _seconds,
+    "time_as_nanoseconds": lambda record: str(record.stamp_ns),
+    "date_time_with_ms": _date_time,
+    "line_number": lambda record: str(record.line),
+    "thread_id": lambda _: str(threading.get_native_id()),
+}
+
 
 _NORMAL = "\x1b[0m"
 _COLOURS = {

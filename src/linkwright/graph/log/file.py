@@ -9,7 +9,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TextIO
 
-from linkwright.graph.log.format import console_line
+from linkwright.graph.log.console import console_line
 from linkwright.graph.log.levels import LogLevel
 from linkwright.graph.log.record import LogRecord
 

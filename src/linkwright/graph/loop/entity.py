@@ -8,6 +8,7 @@ is one dispatcher (`linkwright.graph.loop.dispatcher`), the executors of rclpy a
 
 from __future__ import annotations
 
+import inspect
 from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Callable
@@ -135,3 +136,22 @@ class GuardCondition(Entity):
             return None
         self._triggered = False
         return self.callback
+
+
+def accepts(callback: Callable[..., object], count: int, *, unknown: bool) -> bool:
+    """Whether a callback can be called with so many positional arguments.
+
+    Args:
+        callback: the callback.
+        count: how many.
+        unknown: the answer for a callable of which Python does not know.
+    """
+    try:
+        signature = inspect.signature(callback)
+    except ValueError:
+        return unknown
+    try:
+        signature.bind(*(None,) * count)
+    except TypeError:
+        return False
+    return True

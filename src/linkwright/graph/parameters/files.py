@@ -1,14 +1,14 @@
 """Parameter files: YAML that names nodes, and below ``ros__parameters`` the values of their parameters.
 
 Read as rcl_yaml_param_parser reads it: nested names of namespaces and nodes, nested parameter names, its own idea of
-scalars (see `parameter_scalars`), lists of one type, neither anchors nor lists in lists. What it would refuse is
-refused here, with the place.
+scalars (see `scalar_value`), lists of one type, neither anchors nor lists in lists. What it would refuse is
+refused here, with the place. `parameter_file_text` writes one, as ``ros2 param dump`` does.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -25,7 +25,6 @@ from linkwright.diagnostics import (
 )
 from linkwright.graph.parameters.errors import ParameterFileNotFoundError
 from linkwright.graph.parameters.rules import ParameterRules
-from linkwright.graph.parameters.scalars import scalar_value
 from linkwright.input_files import read_text
 
 PARAMETERS_KEY = "ros__parameters"
@@ -270,3 +269,93 @@ def _uniform_hint(first: Any, value: Any, text: str) -> Phrase:
     if type(first) is str:
         return phrase('write "{text}"', text=text)
     return phrase("all values of a list must be of one type")
+
+
+_TRUE = frozenset({"Y", "y", "yes", "Yes", "YES", "true", "True", "TRUE", "on", "On", "ON"})
+_FALSE = frozenset({"N", "n", "no", "No", "NO", "false", "False", "FALSE", "off", "Off", "OFF"})
+_INTEGER = re.compile(r"\s*[+-]?(0[xX][0-9a-fA-F]+|0[0-7]*|[1-9][0-9]*)")
+_FLOAT = re.compile(
+    r"\s*[+-]?([0-9]+\.?[0-9]*([eE][+-]?[0-9]+)?|\.[0-9]+([eE][+-]?[0-9]+)?|inf(inity)?|nan)", re.IGNORECASE
+)
+_HEXADECIMAL_FLOAT = re.compile(r"\s*[+-]?0x[0-9a-f]*\.?[0-9a-f]*(p[+-]?[0-9]+)?", re.IGNORECASE)
+_SPECIAL = {
+    f"{sign}.{word}": f"{sign}{word}"
+    for sign in ("", "+", "-")
+    for word in ("inf", "Inf", "INF", "nan", "NaN", "NAN")
+    if not (sign and word.lower() == "nan")
+}
+_MIN, _MAX = -(2**63), 2**63 - 1
+
+
+def scalar_value(text: str, *, plain: bool) -> Any:
+    """The value of a YAML scalar: bool, int, float or str, by the rules of rcl_yaml_param_parser.
+
+    Booleans are those of YAML 1.1 with ``y`` and ``n``; numbers are what C's ``strtol`` (any base) and ``strtod`` read
+    whole; everything else, also a quoted number, is text.
+
+    Args:
+        text: the scalar.
+        plain: whether it stands without quotes.
+    """
+    if not plain:
+        return text
+    if text in _TRUE:
+        return True
+    if text in _FALSE:
+        return False
+    if _INTEGER.fullmatch(text):
+        number = _integer(text.strip())
+        if _MIN <= number <= _MAX:
+            return number
+    if text in _SPECIAL or _FLOAT.fullmatch(text):
+        return float(_SPECIAL.get(text, text))
+    if _HEXADECIMAL_FLOAT.fullmatch(text) and any(each.isdigit() for each in text):
+        return _hexadecimal_float(text)
+    return text
+
+
+def _integer(text: str) -> int:
+    digits = text.lstrip("+-")
+    base = 16 if digits[:2] in ("0x", "0X") else 8 if digits.startswith("0") and digits != "0" else 10
+    return int(text, base)
+
+
+def _hexadecimal_float(text: str) -> float | str:
+    try:
+        return float.fromhex(text.strip())
+    except (ValueError, OverflowError):
+        return text
+
+
+def parameter_file_text(node: str, values: Mapping[str, Any]) -> str:
+    """The file, in YAML.
+
+    Args:
+        node: the node's full name.
+        values: by the parameters' names, as plain Python data; see `plain_value`.
+    """
+    import yaml
+
+    tree: dict[str, Any] = {}
+    for name, value in values.items():
+        _insert(tree, name.split("."), value)
+    return yaml.dump({node: {"ros__parameters": tree}}, default_flow_style=False, allow_unicode=True)
+
+
+def plain_value(value: Any) -> Any:
+    """A rcl_interfaces/msg/ParameterValue as plain Python data; arrays as lists, None when it is not set."""
+    from linkwright.graph.parameters.parameter import parameter_value_to_python
+
+    found = parameter_value_to_python(value)
+    return found if found is None or isinstance(found, (bool, int, float, str)) else list(found)
+
+
+def _insert(tree: dict[str, Any], path: list[str], value: Any) -> None:
+    """Put a value below the parts of its name; where a part has a value itself the name stays whole."""
+    for at, part in enumerate(path[:-1]):
+        below = tree.setdefault(part, {})
+        if not isinstance(below, dict):
+            tree[".".join(path[at:])] = value
+            return
+        tree = below
+    tree[path[-1]] = value

@@ -136,7 +136,7 @@ class FoxgloveBridge(SingleNode):
             session.graph_changed(gone)
 
     def _parameters_changed(self, event: Any) -> None:
-        from linkwright.graph.parameters.file_text import plain_value
+        from linkwright.graph.parameters.files import plain_value
 
         watching = [session for session in self._sessions if session.parameters is not None]
         if not watching:

@@ -9,7 +9,7 @@ from typing import Any
 
 from linkwright.graph import EndpointKind, Node, Parameter
 from linkwright.graph.parameters.client import AsyncParameterClient
-from linkwright.graph.parameters.file_text import plain_value
+from linkwright.graph.parameters.files import plain_value
 from linkwright.nodes.foxglove.names import NameFilter
 
 _PATIENCE = 2.0

@@ -8,7 +8,7 @@ from typing import Any
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import EndpointKind, MessageInfo, Node, Publisher, QoSProfile, Subscription
-from linkwright.graph.qos.fitting import fit
+from linkwright.graph.qos.compatibility import fit
 from linkwright.graph.qos.profile import QoSPresetProfiles
 from linkwright.messages import deserialize, get_message
 from linkwright.messages.schema_text import schema_of

@@ -1,17 +1,47 @@
-"""Joins a graph to a DDS domain."""
+"""Joins a graph to a DDS domain, if DDS is installed: that is found out without the import, which takes 0.15 s."""
 
 from __future__ import annotations
 
+import os
+import platform
 from collections.abc import Mapping
+from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
-from linkwright.diagnostics import LinkwrightError
-from linkwright.wire.dds.availability import SWITCH, why_not
+from linkwright.diagnostics import LinkwrightError, Phrase, phrase
 from linkwright.wire.dds.settings import read_settings
 from linkwright.wire.dds.transport import DdsTransport, log_join_failure
 
 if TYPE_CHECKING:
     from linkwright.graph.computation_graph import Graph
+
+
+SWITCH = "LINKWRIGHT_DDS"
+
+
+def why_not(environment: Mapping[str, str] | None = None) -> Phrase:
+    """Why this process does not use DDS; empty when it does.
+
+    Args:
+        environment: the environment variables; those of the process when left out.
+    """
+    variables = os.environ if environment is None else environment
+    if variables.get(SWITCH, "1") == "0":
+        return phrase("the environment variable {switch} is 0", switch=SWITCH)
+    if find_spec("cyclonedds") is None:
+        return phrase(
+            "the package 'cyclonedds' is not installed: run pip install 'linkwright[dds]' (there are wheels of it for"
+            " Linux x86_64, Windows and macOS arm64; this is {system} {machine} with Python {version})",
+            system=platform.system(),
+            machine=platform.machine(),
+            version=platform.python_version(),
+        )
+    return Phrase("")
+
+
+def available(environment: Mapping[str, str] | None = None) -> bool:
+    """Whether DDS can be joined."""
+    return not why_not(environment)
 
 
 def join(

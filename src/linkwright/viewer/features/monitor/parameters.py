@@ -10,7 +10,7 @@ from typing import Any, cast
 from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.graph import MessageInfo, Node, Parameter
 from linkwright.graph.parameters.client import AsyncParameterClient
-from linkwright.graph.parameters.file_text import parameter_file_text, plain_value
+from linkwright.graph.parameters.files import parameter_file_text, plain_value
 from linkwright.graph.parameters.parameter import ParameterType
 from linkwright.viewer.features.monitor.topic_tap import Paced, TopicTap
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature

@@ -15,7 +15,7 @@ from linkwright.graph import (
     Subscription,
     qos_check_compatible,
 )
-from linkwright.graph.qos.fitting import fit
+from linkwright.graph.qos.compatibility import fit
 from linkwright.graph.qos.profile import QoSPresetProfiles
 from linkwright.viewer.context import ViewerContext
 
