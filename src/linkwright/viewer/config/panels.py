@@ -211,7 +211,7 @@ def read_synchronization(document: Section) -> Synchronization:
 
 
 def write_synchronization(document: Section, wanted: Synchronization) -> bool:
-    """Make the Time panel say it, in a file that has one; whether anything was another."""
+    """Write it into the Time panel of a file that has one; returns whether that changed anything."""
     panel = _time_panel(document)
     if panel is None or read_synchronization(document) == wanted:
         return False

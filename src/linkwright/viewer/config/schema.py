@@ -120,7 +120,7 @@ def accept(spec: PropertySpec, value: object) -> PropertyValue:
     """The value to store for one that a page sent: of the kind's type, clamped into the bounds.
 
     Raises:
-        ValueError: when it is none for this property; the text says what is expected.
+        ValueError: the property takes no such value; the text says what is expected.
     """
     if spec.read_only:
         raise ValueError("only the program sets it")

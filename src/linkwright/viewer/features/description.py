@@ -81,7 +81,7 @@ class KnownDescription:
         )
 
     def changed_from(self, before: KnownDescription | None) -> DescriptionChanged:
-        """What is another than in the description before; all of a first one is as it was."""
+        """What has changed since the description before; of a first one nothing has."""
         links = _changed(before.robot.links, self.robot.links) if before else []
         joints = _changed(before.robot.joints, self.robot.joints) if before else []
         return DescriptionChanged(self.display, self.revision, links, joints)

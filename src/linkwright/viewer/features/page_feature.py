@@ -65,7 +65,7 @@ class PageFeature:
         return []
 
     def edited(self, manager: VisualizationManager) -> None:
-        """Undo, redo or whether something of a configuration is unsaved may be another."""
+        """Undo, redo or whether something of a configuration is unsaved may have changed."""
 
     def manager_closed(self, manager: VisualizationManager) -> None:
         """A manager was closed: drop what is kept for it."""

@@ -91,7 +91,7 @@ class TimeControl:
 
     Args:
         clock: the viewer's.
-        changed: called when one of the attributes is another.
+        changed: called when one of the attributes has changed.
         signalled: called when the source took a message, so that frames must be looked at.
 
     Attributes:
@@ -283,7 +283,7 @@ class FrameStream:
         self._wake()
 
     def refresh(self) -> None:
-        """Look now, whoever watches: the Fixed Frame or the robot is another, or a page opens."""
+        """Look now, even if nobody watches: the Fixed Frame or the robot has changed, or a page opens."""
         if self._later is not None:
             self._later.cancel()
         self._look()

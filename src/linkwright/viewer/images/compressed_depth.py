@@ -36,7 +36,7 @@ def unpacked_depth(message: Any) -> RawImage:
         message: sensor_msgs/msg/CompressedImage with a format such as ``16UC1; compressedDepth png``.
 
     Raises:
-        BadImageError: the format is another, or the data are not what it says.
+        BadImageError: the format is not known, or the data are not in it.
     """
     encoding = encoding_of(message)
     packing = _PACKINGS.get(message.format.partition(";")[2].strip())

@@ -209,7 +209,7 @@ class Panels(ServerMessage):
 
     Attributes:
         opened: counts the configurations of this page's displays: with another number the page shows these panels.
-        origin: by what a page knows a configuration again that has no file.
+        origin: the name under which a page remembers a configuration that has no file.
         shown: the panels that are open, in the order of the file; None where the file says nothing of panels.
     """
 

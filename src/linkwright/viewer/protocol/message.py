@@ -16,7 +16,7 @@ from msgspec import Struct
 
 
 def _tag(name: str) -> str:
-    """By what JSON names a class: ``SetJoint`` is ``set_joint``."""
+    """The name of a class in JSON: ``SetJoint`` is ``set_joint``."""
     return re.sub(r"(?<!^)(?=[A-Z])", "_", name).lower()
 
 
@@ -41,7 +41,7 @@ class DataContent(Struct, tag_field="kind", tag=_tag):
 
 
 def tag_of(message: Struct) -> str:
-    """By what JSON names the class of a message."""
+    """The name of a message's class in JSON."""
     return str(message.__struct_config__.tag)
 
 

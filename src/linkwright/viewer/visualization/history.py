@@ -44,7 +44,7 @@ class History:
     """The edits that can be undone and redone, and which of them are in the saved file.
 
     Args:
-        changed: called whenever `undoable`, `redoable` or `unsaved` may be another.
+        changed: called whenever `undoable`, `redoable` or `unsaved` may have changed.
         clock: seconds.
     """
 
@@ -121,7 +121,7 @@ class History:
         self._changed()
 
     def clear(self) -> None:
-        """Forget everything: the file is another."""
+        """Forget everything: another file was opened."""
         self._done.clear()
         self._undone.clear()
         self._end_drag()

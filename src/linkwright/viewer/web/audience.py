@@ -41,7 +41,7 @@ class Page:
 
     Args:
         socket: of the page.
-        own: by what the page names displays of its own; empty for one that shares those of all.
+        own: the name that the page has for displays of its own; empty for a page that shares the common ones.
     """
 
     def __init__(self, socket: WebSocketResponse, own: str = "") -> None:
@@ -196,7 +196,7 @@ class Audience(PageGroup):
         opening: what a page is sent first, the whole state as it is.
         receive: called with each message of a page.
         gone: called when a page has closed.
-        logger: for messages that are none.
+        logger: told of messages outside of the protocol.
     """
 
     def __init__(
@@ -229,7 +229,7 @@ class Audience(PageGroup):
             self._expected -= 1
 
     async def attend(self, socket: WebSocketResponse, own: str = "") -> None:
-        """Serve a page until it goes; `own` is by what it names displays of its own."""
+        """Serve a page until it goes; `own` is its name for displays of its own."""
         page = Page(socket, own)
         page.open(self._opening(page))
         self.add(page)

@@ -247,7 +247,7 @@ class Line:
         return self._answers and not self._on_the_way
 
     def sending(self, size: int) -> float:
-        """A message of so many bytes is handed to the socket; the time, for `sent`."""
+        """A message of so many bytes is handed to the socket; returns the time, which `sent` takes."""
         now = self._clock()
         self._number += 1
         if self._number == 1:

@@ -218,7 +218,7 @@ class WebServer:
 
 
 def _own_displays(request: web.Request) -> str:
-    """By what a page names displays of its own in the address of its socket; empty for one that shares those of all."""
+    """A page's name for displays of its own, from the address of its socket; empty when it shares the common ones."""
     key = request.query.get("own", "")
     return key if _OWN_KEY.fullmatch(key) else ""
 

@@ -136,7 +136,7 @@ class TopicDisplay(DataDisplay):
         raise NotImplementedError
 
     def reset(self) -> None:
-        """Forget everything shown: the topic, the Fixed Frame or time is another."""
+        """Forget everything shown: the topic or the Fixed Frame has changed, or time was reset."""
         self.forget()
 
     def transforms_came(self) -> None:
@@ -206,7 +206,7 @@ class TopicDisplay(DataDisplay):
         self.reset()
 
     def fixed_frame_changed(self) -> bool:
-        """Whether the Fixed Frame is another than when this was asked last."""
+        """Whether the Fixed Frame has changed since this was asked last."""
         before, self._fixed_frame = self._fixed_frame, self.host.frames.fixed_frame
         return before != self._fixed_frame
 
