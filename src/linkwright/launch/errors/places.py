@@ -13,7 +13,7 @@ from typing import Any, TypeVar
 
 import linkwright
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, SourceText, Span
-from linkwright.launch.errors.ros_exceptions import as_ros_error
+from linkwright.launch.errors.exceptions import as_ros_error
 
 T = TypeVar("T", bound="Placed")
 

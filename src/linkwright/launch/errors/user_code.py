@@ -24,8 +24,8 @@ from linkwright.diagnostics import (
     phrase,
     quoted_names,
 )
+from linkwright.launch.errors.exceptions import as_ros_error
 from linkwright.launch.errors.places import CodePlace, Place, is_ours, located, read_source
-from linkwright.launch.errors.ros_exceptions import as_ros_error
 
 _LIBRARY = tuple({sysconfig.get_path("stdlib"), sysconfig.get_path("purelib"), sysconfig.get_path("platlib")})
 _CANNOT_IMPORT = re.compile(r"cannot import name '([^']+)' from '([^']+)'")

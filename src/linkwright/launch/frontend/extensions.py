@@ -1,25 +1,27 @@
-"""What brings tags, substitutions and languages of launch files: our own modules, and those of installed packages.
-
-Packages name theirs in entry points, as for ROS 2's own launch. Ours are entry points too, but are not written into the
-metadata of our distribution: where ROS is installed beside it, ROS's launch would load them.
-"""
+"""What brings tags, substitutions and languages of launch files: our modules, installed packages, the workspace's."""
 
 from __future__ import annotations
 
+import importlib
+import sys
 import traceback
 import warnings
 from collections.abc import Iterator
 from importlib.metadata import EntryPoint, entry_points
+from importlib.util import module_from_spec
+from pathlib import Path
 from typing import Any
+
+from linkwright.packages import PackageFinder, current_finder, install_prefix, is_installed
+from linkwright.packages.programs.python_modules import find_module
+from linkwright.packages.programs.workspace_environment import python_folders
+from linkwright.packages.readers.entry_points import in_metadata, in_pyproject, in_setup_cfg, in_setup_py, text_of
 
 ACTIONS = "launch.frontend.launch_extension"
 """The group of modules that expose actions and substitutions when they are imported."""
-
 PARSERS = "launch.frontend.parser"
 """The group of parsers, each by the name of its language."""
-
 _KINDS = {ACTIONS: "launch extension", PARSERS: "parser extension"}
-
 _OURS = {
     ACTIONS: {
         "actions": "linkwright.launch.model.actions",
@@ -42,3 +44,50 @@ def load(group: str) -> Iterator[tuple[str, Any]]:
             warnings.warn(problem, stacklevel=2)
         else:
             yield entry_point.name, loaded
+
+
+_loaded: set[tuple[Path, str]] = set()
+
+
+def load_workspace_extensions() -> None:
+    """Import the modules with tags and substitutions of the packages that the finder in force finds, each once."""
+    finder = current_finder()
+    for package, share in finder.packages().items():
+        for module in _modules(package, share):
+            if (share, module) not in _loaded:
+                _loaded.add((share, module))
+                _import(module, finder)
+
+
+def _import(module: str, finder: PackageFinder) -> None:
+    try:
+        top = module.partition(".")[0]
+        spec = None if top in sys.modules else find_module(finder, top)
+        if spec is not None and spec.loader is not None:
+            sys.modules[top] = module_from_spec(spec)
+            spec.loader.exec_module(sys.modules[top])
+        importlib.import_module(module)
+    except Exception:  # noqa: BLE001 - a broken package must not stop the others
+        warnings.warn(f"Failed to load the launch extension: {module}\n{traceback.format_exc()}", stacklevel=3)
+
+
+def _modules(package: str, share: Path) -> Iterator[str]:
+    """The modules that a package's entry points name."""
+    if is_installed(share):
+        for folder in python_folders(install_prefix(share), package):
+            for path in folder.glob("*-info/entry_points.txt"):
+                yield from _named(in_metadata(text_of(path), ACTIONS))
+        return
+    for name, read in (("setup.py", in_setup_py), ("setup.cfg", in_setup_cfg), ("pyproject.toml", in_pyproject)):
+        text = text_of(share / name)
+        if ACTIONS in text:
+            yield from _named(read(text, ACTIONS))
+
+
+def _named(lines: list[str]) -> Iterator[str]:
+    """The modules of lines ``name = module:attribute``."""
+    for line in lines:
+        _, equals, target = line.partition("=")
+        module = target.partition(":")[0].strip()
+        if equals and module:
+            yield module

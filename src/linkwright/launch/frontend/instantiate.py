@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 def _method(methods: dict[str, Any], name: str) -> Any:
     """What reads a tag or substitution; when nobody knows it, those of packages that were not built are loaded."""
     if name not in methods:
-        from linkwright.launch.frontend.workspace_extensions import load_workspace_extensions
+        from linkwright.launch.frontend.extensions import load_workspace_extensions
 
         load_workspace_extensions()
     return methods.get(name)

@@ -10,9 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, phrase
-from linkwright.launch.errors.exceptions import InvalidFrontendLaunchFileError
+from linkwright.launch.errors.exceptions import InvalidFrontendLaunchFileError, as_ros_error
 from linkwright.launch.errors.places import error_at
-from linkwright.launch.errors.ros_exceptions import as_ros_error
 from linkwright.launch.frontend import extensions, grammar
 from linkwright.launch.frontend.instantiate import instantiate_action
 

@@ -18,9 +18,8 @@ from linkwright.diagnostics import (
     phrase,
 )
 from linkwright.input_files import read_text
-from linkwright.launch.errors.exceptions import InvalidPythonLaunchFileError
+from linkwright.launch.errors.exceptions import InvalidPythonLaunchFileError, as_ros_error
 from linkwright.launch.errors.places import error_at, not_reading
-from linkwright.launch.errors.ros_exceptions import as_ros_error
 from linkwright.launch.errors.user_code import explain
 from linkwright.launch.model.description import LaunchDescription
 from linkwright.packages.launch_files import is_launch_file_name

@@ -7,8 +7,8 @@ from typing import Any
 import yaml
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText, foreign, phrase
+from linkwright.launch.errors.exceptions import as_ros_error
 from linkwright.launch.errors.places import MarkupPlace, Place, error_at
-from linkwright.launch.errors.ros_exceptions import as_ros_error
 from linkwright.launch.frontend.markup_entity import MarkupEntity
 from linkwright.launch.frontend.parser import Parser as AnyParser
 from linkwright.launch.frontend.parser import read_file

@@ -4,7 +4,7 @@ Both collect parameters from the files of a package. With them such packages loa
 ``robot_state_publisher`` and viewer run; the programs of MoveIt themselves are compiled ones.
 """
 
-from linkwright.launch.moveit.builder import MoveItConfigsBuilder
+from linkwright.launch.moveit.builder import MoveItConfigsBuilder, ParameterBuilder
 from linkwright.launch.moveit.configs import MoveItConfigs
 from linkwright.launch.moveit.files import (
     ParameterBuilderFileNotFoundError,
@@ -15,6 +15,8 @@ from linkwright.launch.moveit.files import (
     load_yaml,
 )
 from linkwright.launch.moveit.launches import (
+    DeclareBooleanLaunchArg,
+    add_debuggable_node,
     generate_demo_launch,
     generate_move_group_launch,
     generate_moveit_rviz_launch,
@@ -24,8 +26,6 @@ from linkwright.launch.moveit.launches import (
     generate_static_virtual_joint_tfs_launch,
     generate_warehouse_db_launch,
 )
-from linkwright.launch.moveit.nodes import DeclareBooleanLaunchArg, add_debuggable_node
-from linkwright.launch.moveit.parameters import ParameterBuilder
 from linkwright.launch.moveit.xacro import Xacro
 
 __all__ = [

@@ -22,6 +22,8 @@ from linkwright.launch.ros.names import (
     is_namespace_absolute,
     is_root_namespace,
     make_namespace_absolute,
+    normalize_remap_rule,
+    normalize_remap_rules,
     prefix_namespace,
 )
 from linkwright.launch.ros.node import Node
@@ -34,7 +36,6 @@ from linkwright.launch.ros.parameter_lists import (
     normalize_parameters,
 )
 from linkwright.launch.ros.parameter_values import Parameter, ParameterValue
-from linkwright.launch.ros.remappings import normalize_remap_rule, normalize_remap_rules
 from linkwright.launch.ros.scoping import (
     PushRosNamespace,
     SetParameter,

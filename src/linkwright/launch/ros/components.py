@@ -18,11 +18,16 @@ from linkwright.launch.model.substitution import (
     perform_substitutions,
 )
 from linkwright.launch.ros.deprecated_arguments import with_deprecated_arguments
-from linkwright.launch.ros.names import make_namespace_absolute, prefix_namespace
+from linkwright.launch.ros.names import (
+    RemapRule,
+    evaluated_rules,
+    make_namespace_absolute,
+    normalize_remap_rules,
+    prefix_namespace,
+)
 from linkwright.launch.ros.parameter_lists import normalize_parameters
 from linkwright.launch.ros.parameters import FileSource, NodeParameters, own_parameters, scope_parameters
 from linkwright.launch.ros.parsing import Entities, parse_parameters, parse_remappings
-from linkwright.launch.ros.remappings import RemapRule, evaluated_rules, normalize_remap_rules
 from linkwright.launch.ros.scoping import NAMESPACE, PARAMETERS, REMAPPINGS
 
 if TYPE_CHECKING:
@@ -242,7 +247,7 @@ def _of_file(source: FileSource, context: LaunchContext, full_name: str) -> dict
 
 
 def _as_runtime_error(error: LinkwrightError, path: Path) -> LinkwrightError:
-    from linkwright.launch.errors.ros_exceptions import as_ros_error
+    from linkwright.launch.errors.exceptions import as_ros_error
 
     return as_ros_error(RuntimeError(f"{path}: {error.diagnostics[0].message}"), *error.diagnostics)
 

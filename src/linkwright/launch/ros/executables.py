@@ -20,7 +20,7 @@ from linkwright.diagnostics import (
     joined,
     phrase,
 )
-from linkwright.launch.errors.ros_exceptions import as_ros_error
+from linkwright.launch.errors.exceptions import as_ros_error
 from linkwright.launch.model.plans import VIEWER, is_viewer
 from linkwright.packages import PackageFinder, PackageNotFoundError, install_prefix, is_installed
 from linkwright.packages.programs.child_python import python_command

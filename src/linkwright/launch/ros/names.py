@@ -1,12 +1,19 @@
-"""Names of nodes and namespaces, and how many nodes of a name a launch has started (``launch_ros.utilities``)."""
+"""Names of nodes and namespaces, rules that remap names, and how many nodes of a name a launch has started."""
 
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Iterable
 from typing import Any
 
 from linkwright.diagnostics import LinkwrightError, foreign, phrase
-from linkwright.launch.errors.places import error_at
+from linkwright.launch.errors.places import Place, error_at
+from linkwright.launch.model.context import LaunchContext
+from linkwright.launch.model.substitution import (
+    Substitution,
+    normalize_to_list_of_substitutions,
+    perform_substitutions,
+)
 
 _COUNTS = "unique_ros_node_names"
 
@@ -116,3 +123,41 @@ def check_namespace(namespace: str) -> str:
 def _reason(error: LinkwrightError) -> str:
     """What is wrong with a name, without the name."""
     return error.diagnostics[0].message.rpartition(": ")[2]
+
+
+RemapRule = tuple[tuple[Substitution, ...], tuple[Substitution, ...]]
+
+
+def normalize_remap_rule(remap_rule: Any) -> RemapRule:
+    """A pair of names as tuples of substitutions.
+
+    Raises:
+        TypeError: LAUNCH135, it is no pair of names.
+    """
+    if not isinstance(remap_rule, tuple) or len(remap_rule) != 2:
+        hint = phrase("write a pair: remappings=[('from', 'to')]")
+        message = phrase("a remapping must be a pair of names, not {remap_rule}", remap_rule=repr(remap_rule))
+        ros_error = TypeError(f"remap_rule must be a tuple of length 2, got {remap_rule!r}")
+        raise error_at(Place.of_caller(), "LAUNCH135", message, hint, ros_error=ros_error)
+    source, target = remap_rule
+    return tuple(normalize_to_list_of_substitutions(source)), tuple(normalize_to_list_of_substitutions(target))
+
+
+def normalize_remap_rules(remap_rules: Iterable[Any]) -> Iterable[RemapRule]:
+    """Several pairs of names as tuples of substitutions.
+
+    Raises:
+        TypeError: LAUNCH135, they are no pairs of names.
+    """
+    if isinstance(remap_rules, (str, dict)) or not isinstance(remap_rules, Iterable):
+        message = phrase("'remappings' must be a list of pairs of names, not {name}", name=type(remap_rules).__name__)
+        hint = phrase("write pairs in a list: remappings=[('from', 'to')]")
+        raise error_at(Place.of_caller(), "LAUNCH135", message, hint, ros_error=TypeError(message))
+    return [normalize_remap_rule(rule) for rule in remap_rules]
+
+
+def evaluated_rules(context: LaunchContext, rules: Iterable[RemapRule]) -> list[tuple[str, str]]:
+    """The names of the pairs."""
+    return [
+        (perform_substitutions(context, source), perform_substitutions(context, target)) for source, target in rules
+    ]

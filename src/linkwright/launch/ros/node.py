@@ -26,7 +26,9 @@ from linkwright.launch.ros.executables import Executable, find_executable, is_ho
 from linkwright.launch.ros.names import (
     check_name,
     check_namespace,
+    evaluated_rules,
     make_namespace_absolute,
+    normalize_remap_rules,
     prefix_namespace,
     repeated_name,
 )
@@ -34,7 +36,6 @@ from linkwright.launch.ros.node_extensions import node_extensions
 from linkwright.launch.ros.parameter_lists import normalize_parameters
 from linkwright.launch.ros.parameters import NodeParameters, own_parameters, scope_parameters
 from linkwright.launch.ros.parsing import parse_node
-from linkwright.launch.ros.remappings import evaluated_rules, normalize_remap_rules
 from linkwright.launch.ros.scoping import NAMESPACE, PARAMETERS, REMAPPINGS
 from linkwright.launch.ros.substitutions import ExecutableInPackage
 from linkwright.packages.programs.workspace_environment import workspace_environment
