@@ -6,6 +6,7 @@ import asyncio
 import os
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
@@ -210,7 +211,7 @@ class NodeHost:
         for name, value in parameters.items():
             call = session.descriptions.call_of(value) if isinstance(value, str) else None
             if call is not None:
-                session.reload.bind(call, lambda text, name=name: self._set(process_name, running, name, text))  # type: ignore[misc]
+                session.reload.bind(call, partial(self._set, process_name, running, name))
             if name == _DESCRIPTION and isinstance(running, RobotStatePublisher):
                 reading = session.descriptions.library.read(value)
                 warnings = session.descriptions.warnings_of(call) if call else ()

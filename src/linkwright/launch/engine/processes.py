@@ -8,6 +8,7 @@ import os
 import signal
 import time
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import foreign, phrase
@@ -183,7 +184,7 @@ class RunningProcess:
                 os.close(inner)
         for number, (outer, _) in enumerate(terminals, 1):
             pipe = os.fdopen(outer, "rb", 0)
-            await loop.connect_read_pipe(lambda number=number: _Terminal(self, number), pipe)  # type: ignore[misc]
+            await loop.connect_read_pipe(partial(_Terminal, self, number), pipe)
 
     def started(self, transport: asyncio.SubprocessTransport) -> None:
         """Take note that the process runs; nothing of its output comes before this."""

@@ -7,6 +7,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from itertools import islice
 from pathlib import Path
 from types import CodeType, FrameType
 from typing import Any, TypeVar
@@ -153,7 +154,7 @@ class CodePlace(Place):
         """The expression at the place, or its line where Python (3.10) keeps no columns."""
         positions = getattr(self.code, "co_positions", None)
         if positions is not None:
-            exact = _nth(positions(), self.instruction // 2)
+            exact = next(islice(positions(), self.instruction // 2, None), None)
             if exact is not None and None not in exact:
                 return self._exact_span(exact, source)
         text = source.line(self.line) if source else ""
@@ -211,13 +212,6 @@ def error_at(
         ros_error: what ROS raises here; the error is of its class too, and has its text for programs that look at it.
     """
     return located(as_ros_error(ros_error, Diagnostic(code, message, notes=notes, hint=hint)), place)
-
-
-def _nth(positions: object, index: int) -> tuple[int, int, int, int] | None:
-    for number, position in enumerate(positions):  # type: ignore[var-annotated,arg-type]
-        if number == index:
-            return position  # type: ignore[no-any-return]
-    return None
 
 
 def _characters(line: str, byte_offset: int) -> int:

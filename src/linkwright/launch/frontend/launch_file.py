@@ -110,7 +110,7 @@ def get_launch_description_from_any_launch_file(
     errors: list[Exception] = []
     for load in (in_python, in_markup) if path.suffix == ".py" else (in_markup, in_python):
         try:
-            return load(launch_file_path)  # type: ignore[no-any-return]
+            return load(launch_file_path)  # type: ignore[no-any-return]  # it may be a user's function
         except Exception as error:  # noqa: BLE001, PERF203 - launch files are programs, and there are two tries
             errors.append(error)
     ros_error = InvalidLaunchFileError(path.suffix[1:], likely_errors=errors, launch_file_path=launch_file_path)

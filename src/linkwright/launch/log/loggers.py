@@ -52,14 +52,14 @@ class ForEachLogger:
         formatter = self._formatters.get(record.name)
         if formatter is not None:
             return formatter.format(record)
-        return str(super().format(record))  # type: ignore[misc]
+        return str(super().format(record))  # type: ignore[misc]  # the class that it is mixed into has it
 
 
 class Handler(ForEachLogger, logging.Handler):
     """A handler that users derive from."""
 
 
-class StreamHandler(ForEachLogger, logging.StreamHandler):  # type: ignore[type-arg]
+class StreamHandler(ForEachLogger, logging.StreamHandler):  # type: ignore[type-arg]  # no generic at run time
     """Writes lines to a stream."""
 
 

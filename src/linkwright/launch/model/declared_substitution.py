@@ -89,7 +89,7 @@ class OptionalTexts(Texts):
 
     if TYPE_CHECKING:
         # What is read of an instance may be None; mypy sees only the method of another type.
-        def __get__(self, owner: Any, kind: type | None = None) -> list[Substitution] | None:  # type: ignore[override]
+        def __get__(self, owner: Any, kind: type | None = None) -> list[Substitution] | None:  # type: ignore[override]  # see above
             ...
 
     def __set__(self, owner: Any, value: SomeSubstitutionsType | Path | None) -> None:
@@ -126,10 +126,10 @@ class TextLists(Texts):
     # What is given and read is a list more than of `Texts`; nobody holds both by the type of the latter.
     if TYPE_CHECKING:
 
-        def __get__(self, owner: Any, kind: type | None = None) -> list[list[Substitution]]:  # type: ignore[override]
+        def __get__(self, owner: Any, kind: type | None = None) -> list[list[Substitution]]:  # type: ignore[override]  # see above
             ...
 
-    def __set__(self, owner: Any, value: Iterable[SomeSubstitutionsType]) -> None:  # type: ignore[override]
+    def __set__(self, owner: Any, value: Iterable[SomeSubstitutionsType]) -> None:  # type: ignore[override]  # see above
         """Take what is given, checked and brought into one form."""
         owner.__dict__[self.name] = self.read(value)
 

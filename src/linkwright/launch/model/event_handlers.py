@@ -159,7 +159,7 @@ class OnActionEventBase(_ReactingHandler):
                 return False
             if action_matcher is None:
                 return True
-            source = event.action  # type: ignore[attr-defined]
+            source = event.action  # type: ignore[attr-defined]  # the events of actions have it
             return source is action_matcher if is_action else bool(action_matcher(source))
 
         super().__init__(matcher=matches, reaction=on_event, name="on_event", handle_once=handle_once)

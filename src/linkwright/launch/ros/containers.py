@@ -177,7 +177,7 @@ class ComposableNodeContainer(Node):
         valid = [
             description
             for description in self.__composable_node_descriptions or ()
-            if description.condition() is None or description.condition().evaluate(context)  # type: ignore[union-attr]
+            if (condition := description.condition()) is None or condition.evaluate(context)
         ]
         if valid:
             # What holds in the scope now must hold for the nodes too, so their requests are made at once.

@@ -21,7 +21,7 @@ def with_deprecated_arguments(**present: str) -> Callable[[_Class], _Class]:
     """
 
     def extend(kind: _Class) -> _Class:
-        initialize = kind.__init__  # type: ignore[misc]
+        initialize = kind.__init__  # type: ignore[misc]  # of the class itself, not of an instance
 
         @functools.wraps(initialize)
         def __init__(self: Any, *args: Any, **kwargs: Any) -> None:  # noqa: N807 - becomes the method of that name
@@ -34,7 +34,7 @@ def with_deprecated_arguments(**present: str) -> Callable[[_Class], _Class]:
                 kwargs[name] = kwargs.pop(former)
             initialize(self, *args, **kwargs)
 
-        kind.__init__ = __init__  # type: ignore[misc]
+        kind.__init__ = __init__  # type: ignore[misc]  # that is what is to be done
         return kind
 
     return extend

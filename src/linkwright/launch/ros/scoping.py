@@ -176,7 +176,7 @@ class SetUseSimTime(SetParameter):
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> Parsed:
         """Reads ``value``."""
-        _, kwargs = Action.parse.__func__(cls, entity, parser)  # type: ignore[attr-defined]
+        _, kwargs = Action.parse.__func__(cls, entity, parser)  # type: ignore[attr-defined]  # past SetParameter's
         kwargs["value"] = parser.parse_if_substitutions(entity.get_attr("value", data_type=bool, can_be_str=True))
         return cls, kwargs
 

@@ -91,9 +91,12 @@ class ExecuteLocal(Action):
         self._output = dict(output) if isinstance(output, Mapping) else normalize_to_list_of_substitutions(output)
         self._output_format = output_format
         self._log_cmd = log_cmd
-        is_function = callable(on_exit) and not isinstance(on_exit, LaunchDescriptionEntity)
-        self._after_exit: Callable[..., Any] | None = on_exit if is_function else None  # type: ignore[assignment]
-        self._on_exit = [] if is_function else as_entities(on_exit)
+        self._after_exit: Callable[..., Any] | None = None
+        self._on_exit: list[LaunchDescriptionEntity] = []
+        if callable(on_exit) and not isinstance(on_exit, LaunchDescriptionEntity):
+            self._after_exit = on_exit
+        else:
+            self._on_exit = as_entities(on_exit)
         self._respawn = normalize_typed_substitution(_plain(respawn), bool)
         self._respawn_delay = respawn_delay
         self._respawn_max_retries = respawn_max_retries

@@ -58,4 +58,4 @@ def keep_alive(test_description: F) -> F:
         description.add_action(KeepAliveProc())
         return made
 
-    return wrapper  # type: ignore[return-value]
+    return wrapper  # type: ignore[return-value]  # wraps gives it the signature of F

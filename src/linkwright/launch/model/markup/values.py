@@ -222,7 +222,7 @@ def normalize_typed_substitution(value: Any, data_type: Any) -> Any:
         raise TypeError(f"value='{value}' is a list, and {data_type} is expected")
     items = [normalize_to_list_of_substitutions(item) if is_substitution(item) else item for item in value]
     plain = [item for item in items if not isinstance(item, list)]
-    if not is_instance_of(plain, None if scalar is None else list[scalar]):  # type: ignore[valid-type]
+    if not is_instance_of(plain, None if scalar is None else list[scalar]):  # type: ignore[valid-type]  # a type made here
         raise TypeError(f"value='{value}' is not a list of {data_type if scalar is None else scalar}")
     return items
 

@@ -175,7 +175,7 @@ class ThisLaunchFileDir(DeclaredSubstitution, tag="dirname"):
         Raises:
             SubstitutionFailure: LAUNCH123, if the description comes from no file.
         """
-        path: str = ThisLaunchFile.perform(self, context)  # type: ignore[arg-type]
+        path: str = ThisLaunchFile.perform(self, context)  # type: ignore[arg-type]  # asks nothing of self
         return str(Path(path).parent)
 
 
