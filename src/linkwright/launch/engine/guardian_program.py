@@ -44,7 +44,7 @@ def main(mark: str) -> None:
 
 
 def marked_groups(mark: bytes) -> set[int]:
-    """The groups of processes that have the mark; what was started a moment before the launcher ended is found so."""
+    """The groups of processes with the mark, also those started a moment before the launcher ended."""
     try:
         entries = os.listdir("/proc")  # noqa: PTH208 - without pathlib, which takes longer to import than all else here
     except OSError:  # no Linux
@@ -79,7 +79,7 @@ def end(groups: set[int]) -> None:
 
 
 def send(group: int, number: int) -> bool:
-    """Send a signal to a group; whether there is such a group."""
+    """Send a signal to a group; returns whether there is such a group."""
     try:
         os.killpg(group, number)
     except OSError:

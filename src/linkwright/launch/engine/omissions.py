@@ -34,7 +34,7 @@ class Omissions:
         self._untold: list[Note] = []
 
     def take(self, error: LinkwrightError) -> bool:
-        """Leave out what an error kept from running, if that is wanted and something is missing; whether it is."""
+        """Leave out what an error kept from running, if something is missing and that is wanted; whether it was."""
         consequence = self._any and any(each.code in _CONSEQUENCES for each in error.diagnostics)
         if not self._wanted or not (consequence or _is_missing(error)):
             return False

@@ -39,7 +39,7 @@ class ProcessTable:
         self._session.spawn(self._follow(plan, name))
 
     def stop_matching(self, matcher: ProcessMatcher) -> None:
-        """Ask the processes to end whose actions a matcher accepts, in the time that they are given."""
+        """Ask the processes whose actions a matcher accepts to end, each in the time that its plan gives."""
         for process in tuple(self._running):
             if matcher(process.plan.action):
                 self._session.spawn(process.stop())

@@ -141,7 +141,7 @@ class LaunchSession:
             self._omissions.tell()
 
     def could_not_start(self, what: object, error: LinkwrightError) -> None:
-        """Tell why something does not run, which others do without."""
+        """Report why something could not be started; the launch goes on without it."""
         if self._omissions.take(error):
             self._omissions.tell()
             return
@@ -171,7 +171,7 @@ class LaunchSession:
         self.processes.start(plan, name)
 
     def would_handle(self, event: events.Event) -> bool:
-        """Whether any handler is for an event."""
+        """Whether any handler takes an event."""
         return self.context.would_handle_event(event)
 
     def report(self, about: object, findings: Sequence[Diagnostic]) -> None:
@@ -353,7 +353,7 @@ class LaunchSession:
             self.emit(events.Shutdown(reason="the robot cannot be read, and there is no viewer to wait in"))
 
     def hold(self, future: asyncio.Future[Any]) -> None:
-        """Have the launch not end before something that an entity began is done."""
+        """Keep the launch running until something that an entity began is done."""
         if future.done() or future in self._held:
             return
         self._held.add(future)

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class AsyncSafeSignalManager:
-    """Has an event loop call handlers of signals while it is entered, in the main thread; it may be entered again.
+    """Runs signal handlers on an event loop inside a ``with`` block, in the main thread; blocks may be nested.
 
     Args:
         loop: calls the handlers.
@@ -37,7 +37,7 @@ class AsyncSafeSignalManager:
             self._give_back(number)
 
     def handle(self, signum: int, handler: Callable[[int], object] | None) -> Callable[[int], object] | None:
-        """Have a handler called with the number of a signal when that comes, or, with None, no longer.
+        """Set the handler of a signal, which is called with the signal's number; None removes it.
 
         Returns:
             What handled the signal before; None for nothing.

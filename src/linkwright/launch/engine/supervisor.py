@@ -59,10 +59,10 @@ class Supervisor(RunningLaunch, Protocol):
         """Put an event into the queue."""
 
     def would_handle(self, event: Event) -> bool:
-        """Whether any handler is for an event."""
+        """Whether any handler takes an event."""
 
     def could_not_start(self, what: object, error: LinkwrightError) -> None:
-        """Tell why something does not run, which others do without."""
+        """Report why something could not be started; the launch goes on without it."""
 
     def mend(self, what: object) -> None:
         """Clear a failure: what had failed works now."""

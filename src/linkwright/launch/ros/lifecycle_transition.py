@@ -1,4 +1,4 @@
-"""Leading lifecycle nodes through several transitions, each when the one before is made."""
+"""Taking lifecycle nodes through several transitions, one after another."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _GOALS = {
 
 
 class LifecycleTransition(Action):
-    """Asks lifecycle nodes for transitions, one after another; an error in one ends the row.
+    """Asks lifecycle nodes for transitions, one after another; an error ends the sequence.
 
     Args:
         lifecycle_node_names: the nodes' names; a missing first slash is added.

@@ -83,7 +83,7 @@ def _counts(context: Any) -> defaultdict[str, int]:
 
 
 def check_name(name: str) -> str:
-    """The name of a node, if it is one.
+    """A node name, once it is checked.
 
     Raises:
         LinkwrightError: LAUNCH134, it is not valid.
@@ -104,7 +104,7 @@ def check_name(name: str) -> str:
 
 
 def check_namespace(namespace: str) -> str:
-    """An absolute namespace, if it is one.
+    """An absolute namespace, once it is checked.
 
     Raises:
         LinkwrightError: LAUNCH134, it is not valid.

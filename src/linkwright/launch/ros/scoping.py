@@ -168,7 +168,7 @@ class SetRemap(Action):
 
 @expose_action("set_use_sim_time")
 class SetUseSimTime(SetParameter):
-    """Has all nodes that follow go by the time of ``/clock``, or not."""
+    """Sets ``use_sim_time`` for all nodes that follow."""
 
     def __init__(self, value: bool | SomeSubstitutionsType, **kwargs: Any) -> None:
         super().__init__("use_sim_time", value, **kwargs)
@@ -181,7 +181,7 @@ class SetUseSimTime(SetParameter):
         return cls, kwargs
 
     def execute(self, context: LaunchContext) -> None:
-        """Have them, and the launcher's own timers.
+        """Set it, for the launcher's own timers too.
 
         Raises:
             LinkwrightError: LAUNCH132, the value is neither true nor false.
