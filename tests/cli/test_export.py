@@ -67,3 +67,32 @@ def test_a_model_that_is_broken_is_explained(model, capsys):
     assert main(["export", "x.glb", "broken.urdf"]) == 1
     assert "broken.urdf" in capsys.readouterr().err
     assert not (model / "x.glb").exists()
+
+
+def test_files_outside_the_packages_that_went_in_are_told(model, capsys, monkeypatch):
+    """Neither what lies below the folder of the description, nor what is in a package, is a surprise."""
+    home, other, package = (model / name for name in ("home", "other", "package"))
+    for folder in (home / "parts", other, package):
+        folder.mkdir(parents=True)
+    (package / "package.xml").write_text("<package><name>package</name></package>")
+    empty = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro"/>'
+    for path in (home / "parts" / "own.xacro", other / "secret.xacro", package / "shared.xacro"):
+        path.write_text(empty)
+    (other / "secret.yaml").write_text("size: 3")
+    (other / "secret.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    (home / "box.xacro").write_text(f"""\
+<robot name="box" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:include filename="parts/own.xacro"/>
+  <xacro:include filename="{package}/shared.xacro"/>
+  <xacro:include filename="../other/secret.xacro"/>
+  <xacro:property name="read" value="${{xacro.load_yaml('../other/secret.yaml')}}"/>
+  <link name="base"><visual><geometry><box size="${{read.size}} 1 1"/></geometry></visual>
+    <visual><geometry><mesh filename="file://{other}/secret.obj"/></geometry></visual></link>
+</robot>
+""")
+    monkeypatch.chdir(home)
+    assert main(["export", "box.glb", "box.xacro"]) == 0
+    said = capsys.readouterr().err
+    assert "what 3 files outside the packages say is in it" in said
+    named = [word for word in said.split() if "secret" in word or "own" in word or "shared" in word]
+    assert [name.rpartition("/")[2] for name in named] == ["secret.xacro", "secret.yaml", "secret.obj"]

@@ -26,7 +26,10 @@ export class ShareMenu {
     this.element = h("span", { class: "recorder", role: "status" }, this.stop);
     this.video?.changed.on(() => this.showTime());
     this.showTime();
-    session.connection.on("export_ready", ({ url, name }) => saveFrom(name, new URL(url, document.baseURI).href));
+    session.connection.on("export_ready", ({ url, name, outside }) => {
+      saveFrom(name, new URL(url, document.baseURI).href);
+      if (outside.length > 0) tell(strings.sharing.exportOutside, outside.join(", "));
+    });
     session.connection.on("export_failed", ({ message }) => tell(strings.sharing.exportFailed, message));
   }
 

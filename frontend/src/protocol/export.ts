@@ -13,6 +13,7 @@ export interface AskExport {
 export interface ExportReady {
   url: string;
   name: string;
+  outside: string[];
   type: "export_ready";
 }
 

@@ -4,11 +4,22 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 from linkwright.assignments import parse_assignments
 from linkwright.cli.output import write_output
-from linkwright.diagnostics import LinkwrightError, print_diagnostics
+from linkwright.diagnostics import (
+    Diagnostic,
+    LinkwrightError,
+    Note,
+    Severity,
+    counted,
+    display_path,
+    foreign,
+    phrase,
+    print_diagnostics,
+)
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -52,7 +63,21 @@ def run(arguments: argparse.Namespace) -> int:
         return 1
     write_output(Path(arguments.out), data)
     print(f"Created file {arguments.out} ({_size(len(data))})")
+    if snapshot.outside:
+        print_diagnostics([_from_outside(snapshot.outside)], sys.stderr)
     return 1 if snapshot.problems else 0
+
+
+def _from_outside(files: Sequence[Path]) -> Diagnostic:
+    """That files of no package are in what is given away: an include or ``file://`` reaches any file of the machine."""
+    message = counted(
+        "what a file outside the packages says is in it",
+        "what {count} files outside the packages say is in it",
+        len(files),
+    )
+    names = tuple(Note(foreign(display_path(path))) for path in files)
+    hint = phrase("look whether everybody may see them before you give it away")
+    return Diagnostic("VIEW206", message, severity=Severity.WARNING, notes=names, hint=hint)
 
 
 def _size(count: int) -> str:

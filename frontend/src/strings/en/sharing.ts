@@ -22,6 +22,7 @@ export const sharing = {
   exportHtml: "Export HTML…",
   exportGlb: "Export glb…",
   exportFailed: "The robot could not be exported",
+  exportOutside: "The file has in it what these files outside the packages say",
   exported: {
     made: (program: string): string => `Made with ${program}`,
     joints: "Joints",

@@ -15,6 +15,7 @@ export const sharing: typeof english = {
   exportHtml: "导出 HTML…",
   exportGlb: "导出 glb…",
   exportFailed: "无法导出机器人",
+  exportOutside: "导出的文件包含下列软件包之外的文件的内容",
   exported: {
     made: (program) => `由 ${program} 生成`,
     joints: "关节",

@@ -16,10 +16,14 @@ class AskExport(PageMessage):
 
 
 class ExportReady(ServerMessage):
-    """The file can be fetched, once, from an address of the server; answers `AskExport`."""
+    """The file can be fetched, once, from an address of the server; answers `AskExport`.
+
+    `outside` are the paths of files in no package, nor below the folder of the description, whose contents are in it.
+    """
 
     url: str
     name: str
+    outside: list[str]
 
 
 class ExportFailed(ServerMessage):

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import ClassVar
 
-from linkwright.diagnostics import LinkwrightError
+from linkwright.diagnostics import LinkwrightError, display_path
 from linkwright.diagnostics.translation import translated
 from linkwright.viewer.features.export.snapshot import Snapshot, snapshot_of
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
@@ -102,4 +102,5 @@ class ExportFeature(PageFeature):
             return
         name = re.sub(r"[^\w.-]+", "_", snapshot.name).strip("._") or "robot"
         file = Download(f"{name}.{message.format}", FORMATS[message.format].content_type, data)
-        page.send(ExportReady(self.context.downloads.put(file), file.name))
+        outside = [display_path(path) for path in snapshot.outside]
+        page.send(ExportReady(self.context.downloads.put(file), file.name, outside))

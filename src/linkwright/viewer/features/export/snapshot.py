@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import re
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from math import atan2, isfinite, pi
+from os.path import normpath
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 from urllib.parse import unquote, urlsplit
@@ -20,6 +23,7 @@ from linkwright.geometry.arrays import quaternion_inverse, quaternion_multiply, 
 from linkwright.geometry.single import quaternion_of
 from linkwright.nodes.joint_layout import layout_of
 from linkwright.nodes.joint_settings import JointSettings
+from linkwright.packages import enclosing_package
 from linkwright.urdf import Joint, Robot
 from linkwright.viewer.protocol.binary import FrameTable, unpack_transforms
 from linkwright.viewer.protocol.displays import Display, DisplayProperties, Property, Tree
@@ -187,6 +191,7 @@ class Snapshot:
         problems: what of the robot cannot be drawn.
         marker_meshes: addresses of the meshes that markers show.
         fit: nobody chose where the camera is: it is to show all of the robot.
+        outside: the files in no package, nor below the folder of the description, whose contents are part of it.
     """
 
     name: str
@@ -199,6 +204,7 @@ class Snapshot:
     problems: Sequence[Diagnostic] = ()
     marker_meshes: Sequence[str] = ()
     fit: bool = False
+    outside: Sequence[Path] = ()
 
 
 def snapshot_of(viewer: FeatureHost, manager: VisualizationManager, view: View | None = None) -> Snapshot:
@@ -219,7 +225,33 @@ def snapshot_of(viewer: FeatureHost, manager: VisualizationManager, view: View |
     told, frames = viewer.opening_messages(manager)
     if view is not None:
         told = [ViewState(view, each.revision) if isinstance(each, ViewState) else each for each in told]
-    return take_snapshot(model, told, frames, viewer.context.meshes)
+    snapshot = take_snapshot(model, told, frames, viewer.context.meshes)
+    read = viewer.context.library.files(model.text)
+    return dataclasses.replace(snapshot, outside=files_outside(read, snapshot.scene, snapshot.meshes))
+
+
+def files_outside(read: Sequence[Path], scene: RobotScene, meshes: MeshFolders) -> list[Path]:
+    """The files that a description is made of which who gets it may not be meant to see.
+
+    Includes, ``load_yaml`` and ``file://`` reach any file of the machine, as under ROS.
+
+    Args:
+        read: what the text was made from, the main file first.
+        scene: names the meshes and textures.
+        meshes: the folders that these may be read from.
+
+    Returns:
+        Those that are in no package, and not below the folder of the main file.
+    """
+    files = FileSet(meshes)
+    found = dict.fromkeys(Path(normpath(path.absolute())) for path in read)  # of which some have `..` in them
+    for address in addresses([scene]):
+        with suppress(FileRefusedError):
+            found[files.path(address)] = None
+    home = read[0].absolute().parent if read else None
+    return [
+        path for path in found if not (home and path.is_relative_to(home)) and enclosing_package(path.parent) is None
+    ]
 
 
 def take_snapshot(
