@@ -6,6 +6,7 @@ import yaml
 from linkwright.viewer.config import yaml_tree
 from linkwright.viewer.config.property_store import PropertyStore, property_id
 from linkwright.viewer.config.schema import PropertySpec
+from tests.work import lines_run
 
 SCHEMA = (
     PropertySpec("Alpha", "float", 0.5, minimum=0.0, maximum=1.0),
@@ -141,3 +142,13 @@ def test_a_box_says_no_only_in_the_ways_that_rviz_knows(reported, text, value, t
     assert len(reported) == told
     if told:
         assert reported[0].message == f"'Selectable': true or false is expected, not '{text}'; True is used"
+
+
+def test_the_properties_of_many_links_are_read_in_time_that_grows_with_their_number():
+    def work(count):
+        links = tuple(PropertySpec(f"link_{number}", "bool", True) for number in range(count))
+        schema = (PropertySpec("Links", "group", children=links),)
+        store = PropertyStore("display-1", yaml_tree.parse("{}", "x"), lambda: schema, lambda _: None)
+        return lines_run(lambda: [store.get("Links", link.name) for link in links])
+
+    assert work(1000) < 12 * work(100)

@@ -12,6 +12,9 @@ from linkwright.viewer.config.schema import Path, PropertySpec, Schema, accept, 
 from linkwright.viewer.config.yaml_tree import Made, Memory, Scalar, Section, make_section, unmake
 from linkwright.viewer.protocol.displays import Property, PropertyChanged, PropertyValue, TopicOffer
 
+_MANY = 30
+"""Properties beside each other; so many are looked up by name."""
+
 
 def property_id(owner: str, path: Iterable[str]) -> str:
     """The id of the property at a path of names below a display (or ``global``), as `protocol` describes it."""
@@ -44,6 +47,7 @@ class PropertyStore:
         self._owner = owner
         self._section = section
         self._schema = schema
+        self._many: tuple[Schema, dict[str, PropertySpec]] = ((), {})
         self._report = report
         self._base = base
         self._frames = frames
@@ -256,11 +260,19 @@ class PropertyStore:
         except KeyError:
             return False
 
+    def _named(self, specs: Schema, name: str) -> PropertySpec | None:
+        """The first of that name; of many, such as the links of a robot, it is not looked for from the beginning."""
+        if len(specs) < _MANY:
+            return next((spec for spec in specs if spec.name == name), None)
+        if self._many[0] is not specs:
+            self._many = specs, {spec.name: spec for spec in reversed(specs)}
+        return self._many[1].get(name)
+
     def _spec(self, path: Path) -> PropertySpec:
         specs = self._schema()
         found: PropertySpec | None = None
         for name in path:
-            found = next((spec for spec in specs if spec.name == name), None)
+            found = self._named(specs, name)
             if found is None:
                 raise KeyError(f"no property {' > '.join(path)} in {self._owner}")
             specs = found.children
