@@ -1,0 +1,75 @@
+"""Ctrl-C while a command has much to do: it ends with the status for that, and without a traceback."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+from contextlib import suppress
+from pathlib import Path
+
+import psutil
+import pytest
+
+from tests.begun import BEGUN, telling
+from tests.waiting import SECONDS, wait_until
+
+MOMENTS = (0.0, 0.5, 1.0)
+"""Of the work: seconds of the processor since the command began."""
+
+_PART = "".join(
+    f'<part{number} a="${{n + {number}}}" b="${{n * {number}}}" c="${{[n, {number}]}}"/>' for number in range(400)
+)
+HARD = (
+    '<robot name="hard" xmlns:xacro="http://ros.org/wiki/xacro">'
+    f'<xacro:macro name="many" params="n"><gazebo>{_PART}</gazebo></xacro:macro>'
+    + "".join(f'<xacro:many n="{number}"/>' for number in range(1000))
+    + '<link name="base"/></robot>'
+)
+"""Within all bounds but that of time, which ends it after 20 s of the processor."""
+ENDLESS = "def generate_launch_description():\n    while True:\n        sum(range(1000))\n"
+
+COMMANDS = [
+    ["xacro", "hard.xacro"],
+    ["check", "hard.xacro"],
+    ["inertia", "hard.xacro"],
+    ["diagram", "hard.xacro"],
+    ["export", "hard.glb", "hard.xacro"],
+    ["view", "--no-open", "hard.xacro"],
+    ["launch", "--print", "endless.launch.py"],
+]
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows cannot send SIGINT to one process")
+@pytest.mark.parametrize("words", COMMANDS, ids=lambda words: words[0])
+def test_a_command_that_works_ends_when_it_is_told(words: list[str], tmp_path: Path) -> None:
+    (tmp_path / "hard.xacro").write_text(HARD)
+    (tmp_path / "endless.launch.py").write_text(ENDLESS)
+    for moment in MOMENTS:
+        process = subprocess.Popen(
+            telling("linkwright", *words), cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        )
+        try:
+            assert process.stdout is not None
+            assert process.stdout.readline() == BEGUN + "\n"
+            watched = psutil.Process(process.pid)
+            begun = _work(watched)
+            wait_until(lambda: _work(watched) >= begun + moment, what=words)  # noqa: B023 - called at once
+            process.send_signal(signal.SIGINT)
+            _, said = process.communicate(timeout=SECONDS)
+        finally:
+            process.kill()
+            process.wait()
+        assert process.returncode == 130, said
+        assert "Traceback" not in said
+
+
+def _work(process: psutil.Process) -> float:
+    """Seconds of the processor that a process and its children took until now."""
+    total = 0.0
+    for each in (process, *process.children(recursive=True)):
+        with suppress(psutil.NoSuchProcess):
+            used = each.cpu_times()
+            total += used.user + used.system
+    return total
