@@ -11,9 +11,20 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Protocol
 
 ROOT = Path(__file__).resolve().parents[1]
 LINKWRIGHT = str(Path(sys.executable).with_name("linkwright"))
+
+
+class Measured(Protocol):
+    """A row of a table."""
+
+    def cells(self) -> tuple[str, ...]:
+        """What stands in the table of the page."""
+
+    def line(self) -> str:
+        """What is printed to the terminal."""
 
 
 @dataclass
@@ -43,15 +54,19 @@ class Row:
         shown = f"{self.ours:.3g}" if abs(self.ours) < 1000 else f"{self.ours:.0f}"
         return self.what, f"{shown} {self.unit}", self.target, ", ".join(others)
 
+    def line(self) -> str:
+        """The row on a terminal."""
+        what, ours, target, others = self.cells()
+        return f"{what:58} {ours:>12}   {f'(promised: {target})  ' if target else ''}{others}"
+
     def _compared(self, value: float) -> str:
         return f" ({value / self.ours:.1f}x)" if self.ours else ""
 
 
-def show(rows: Sequence[Row]) -> None:
+def show(rows: Sequence[Measured]) -> None:
     """Print rows to the terminal."""
     for row in rows:
-        what, ours, target, others = row.cells()
-        print(f"{what:58} {ours:>12}   {f'(promised: {target})  ' if target else ''}{others}")
+        print(row.line())
 
 
 def side_by_side(

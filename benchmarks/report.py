@@ -8,12 +8,13 @@ from __future__ import annotations
 import json
 import os
 import platform
+from collections.abc import Sequence
 from datetime import datetime, timezone
 from importlib import metadata
 from pathlib import Path
 
 from benchmarks import peers
-from benchmarks.measure import ROOT, Row
+from benchmarks.measure import ROOT, Measured
 from linkwright import __version__
 
 KEPT = ROOT / ".build" / "benchmarks.json"
@@ -25,6 +26,7 @@ TITLES = {
     "launch": ("Launch", "启动"),
     "viewer": ("Viewer", "查看器"),
     "page": ("Page", "网页"),
+    "sizes": ("Sizes", "规模"),
 }
 _ENGLISH = """# Benchmarks
 
@@ -48,6 +50,23 @@ _HEADS = (
     "| what | Linkwright | promised | others |\n| --- | --- | --- | --- |\n",
     "| 项目 | Linkwright | 承诺 | 其他程序 |\n| --- | --- | --- | --- |\n",
 )
+_RULE_OF_SIZES = "| --- | --- | --- | --- | --- | --- |\n"
+_HEADS_OF_SIZES = (
+    f"| command | many of what | 1 000 | 10 000 | 100 000 | ten times as many (time, memory) |\n{_RULE_OF_SIZES}",
+    f"| 命令 | 数量变化的内容 | 1 000 | 10 000 | 100 000 | 数量增加十倍时（时间、内存） |\n{_RULE_OF_SIZES}",
+)
+_ABOUT_SIZES = (
+    """Time of the processor and the most memory at once, of a process for each figure. What a bound of the program
+refuses is `refused`; `-` is what would take more than a minute. The last column compares the two largest that were
+measured, their times without what the command takes for a single thing.
+
+""",
+    """每个数值来自一个单独的进程：处理器时间，以及同一时刻占用的最大内存。
+`refused` 表示超出程序设定的上限而被拒绝，`-` 表示需要一分钟以上。
+最后一列比较测到的最大两个规模，时间已减去命令处理单个对象所需的部分。
+
+""",
+)
 _INPUTS = {
     True: (
         "58 expansions of real robots, and robots made for measuring",
@@ -57,7 +76,7 @@ _INPUTS = {
 }
 
 
-def keep(name: str, rows: list[Row], *, corpus: bool) -> None:
+def keep(name: str, rows: Sequence[Measured], *, corpus: bool) -> None:
     """Remember what one measurement gave."""
     known = json.loads(KEPT.read_text(encoding="utf-8")) if KEPT.is_file() else {}
     known[name] = {
@@ -78,18 +97,19 @@ def write() -> list[Path]:
         parts = [text.format(machine=_machine(), inputs=_INPUTS[corpus][place]), _versions()]
         for name, titles in TITLES.items():
             if name in known:
-                parts.append(f"## {titles[place]}\n\n{_section(known[name], place)}")
+                heads, about = (_HEADS_OF_SIZES, _ABOUT_SIZES[place]) if name == "sizes" else (_HEADS, "")
+                parts.append(f"## {titles[place]}\n\n{about}{_section(known[name], heads[place])}")
         target = ROOT / path
         target.write_text("\n".join(parts), encoding="utf-8")
         written.append(target)
     return written
 
 
-def _section(section: dict[str, object], place: int) -> str:
+def _section(section: dict[str, object], head: str) -> str:
     date = f"{section['date']}\n\n"
     rows = section["rows"]
     assert isinstance(rows, list)
-    return date + _HEADS[place] + "".join("| " + " | ".join(cells) + " |\n" for cells in rows)
+    return date + head + "".join("| " + " | ".join(cells) + " |\n" for cells in rows)
 
 
 def _machine() -> str:
