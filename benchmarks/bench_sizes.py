@@ -119,7 +119,7 @@ def cases() -> Iterator[Case]:
         ("inertia", "links in a chain"),
         ("export OUT.html", "links in a star"),
         ("export OUT.glb", "links in a star"),
-        ("diagram", "links in a star"),
+        ("diagram", "links in a star, laid out by Graphviz"),
     ):
         yield _description(command, thing, partial(_robot, chain="chain" in thing))
     for thing, text in _PLAIN.items():
