@@ -202,3 +202,24 @@ def test_cold_import_stays_light() -> None:
     code = "import sys, linkwright.xacro; print(*sorted(sys.modules))"
     names = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout.split()
     assert not {"yaml", "numpy", "asyncio", "xml.dom", "linkwright.packages", "datetime"} & set(names)
+
+
+def test_of_a_file_that_is_not_utf_8_one_warning_says_that_ros_cannot_read_it(tmp_path: Path) -> None:
+    latin = '<?xml version="1.0" encoding="ISO-8859-1"?><robot name="é"><a v="é"/></robot>'.encode("latin-1")
+    (tmp_path / "latin.xacro").write_bytes(latin)
+    (tmp_path / "wide.yaml").write_bytes("a: é".encode("utf-16"))
+    (tmp_path / "main.xacro").write_text(
+        f"""{ROOT}<xacro:include filename="latin.xacro"/><xacro:include filename="latin.xacro"/>"""
+        """<b v="${xacro.load_yaml('wide.yaml')['a']}"/></robot>""",
+        encoding="utf-8",
+    )
+    expansion = expand(tmp_path / "main.xacro")
+    assert [element.attributes["v"] for element in expansion.document.root.elements()] == ["é", "é", "é"]
+    assert [(found.code, found.span.file.rpartition("/")[2]) for found in expansion.diagnostics if found.span] == [
+        ("XAC905", "latin.xacro"),
+        ("XAC905", "wide.yaml"),
+    ]
+    (tmp_path / "marked.xacro").write_bytes('<robot name="é"/>'.encode("utf-8-sig"))
+    (tmp_path / "declared.xacro").write_bytes(latin.decode("latin-1").encode("utf-8"))
+    for readable in ("marked.xacro", "declared.xacro"):
+        assert not expand(tmp_path / readable).diagnostics

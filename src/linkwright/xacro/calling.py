@@ -12,12 +12,12 @@ from linkwright.xacro import sandbox
 from linkwright.xacro.bounded import HASHING, check_codec, keys
 from linkwright.xacro.budget import Budget
 from linkwright.xacro.functions import Function
-from linkwright.xacro.yamldata import YamlDict, YamlList
+from linkwright.xacro.yamldata import YamlDict, YamlList, YamlMapping
 
 _CALL = 2
 _ITEMS_A_STEP = 2
 _CHARACTERS_A_STEP = 32
-_LONG_ITEMS = (list, tuple, dict, set, frozenset, range, YamlList, YamlDict)
+_LONG_ITEMS = (list, tuple, dict, set, frozenset, range, YamlList, YamlDict, YamlMapping)
 _SHARES = {**dict.fromkeys(_LONG_ITEMS, _ITEMS_A_STEP), str: _CHARACTERS_A_STEP, bytes: _CHARACTERS_A_STEP}
 _QUICK = frozenset(
     {

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, NoReturn
 
 from linkwright.diagnostics import Note, counted, did_you_mean, joined, phrase, quoted_names
-from linkwright.xacro.expander import Expander, Site
+from linkwright.xacro.expander import Container, Expander, Site
 from linkwright.xacro.faults import Fault, attribute_name, definition_elsewhere
 from linkwright.xacro.macros import Macro, MacroTable, Parameter, parse_parameters
 from linkwright.xacro.origin import Frame
@@ -218,7 +218,7 @@ class _Call:
         expander.enter(Frame(macro.name, self._node, around))
         try:
             body = macro.body
-            container = Element(body.tag)
+            container = Container(body.tag)
             for name, value in body.attributes.items():
                 if name == "xmlns:xacro" or ("$" not in value and not name.startswith("xmlns:")):
                     continue

@@ -21,7 +21,7 @@ from linkwright.xacro.faults import Fault
 from linkwright.xacro.functions import Function, bind_parameters
 from linkwright.xacro.refusal import RefusalError
 from linkwright.xacro.scope import Environment
-from linkwright.xacro.yamldata import YamlDict
+from linkwright.xacro.yamldata import COPIED, YamlDict, YamlMapping, wrapped
 
 Closure = Callable[[Any], Any]
 _Binder = Callable[["Environment", Any], None]
@@ -308,12 +308,18 @@ class Compiler:
         def attribute(env: Environment) -> Any:
             owner = value(env)
             try:
-                return sandbox.attribute(owner, name)
+                result = sandbox.attribute(owner, name)
             except AttributeError as error:
+                if owner.__class__ is YamlMapping and name in owner:
+                    _warn_of_plain_mapping(env, name)
+                    return wrapped(owner[name])
                 hint = env.session.nearest_attribute(owner, name)
                 raise Fault("XAC205", foreign(error), start_of_name, end, hint) from None
             except FAILURES as error:
                 raise self._failure(error, start, end) from None
+            if result.__class__ in COPIED:
+                env.session.budget.step(cost(result))
+            return result
 
         return attribute
 
@@ -335,8 +341,8 @@ class Compiler:
                 raise Fault("XAC205", words, start, end, hint) from None
             except FAILURES as error:
                 raise self._failure(error, start, end) from None
-            if index.__class__ is slice and (steps := cost(result)):
-                env.session.budget.step(steps)
+            if index.__class__ is slice or result.__class__ in COPIED:
+                env.session.budget.step(cost(result))
             return result
 
         return subscript
@@ -481,7 +487,7 @@ class Compiler:
         def run(env: Environment, depth: int) -> Iterator[Environment]:
             bind, items, conditions = loops[depth]
             for item in items(env):
-                env.session.budget.step()
+                env.session.budget.step(2 + cost(item) if item.__class__ in COPIED else 2)
                 bind(env, item)
                 if all(condition(env) for condition in conditions):
                     if depth + 1 < len(loops):
@@ -520,6 +526,15 @@ class Compiler:
             start,
             end,
         )
+
+
+def _warn_of_plain_mapping(env: Environment, name: str) -> None:
+    message = phrase(
+        "ros/xacro fails at '.{name}': what 'get', 'pop', 'values', '+' and their like give of YAML data is a plain"
+        " dict, whose items have no dot",
+        name=name,
+    )
+    env.session.warn("XAC902", message, hint=phrase("write ['{name}'] in the place of .{name}", name=name))
 
 
 _METHODS: dict[type[ast.AST], Callable[[Compiler, Any], Closure]] = {

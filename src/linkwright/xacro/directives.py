@@ -8,7 +8,7 @@ from typing import Any
 
 from linkwright.diagnostics import did_you_mean, phrase, term
 from linkwright.xacro.calls import call_dynamically, define_macro
-from linkwright.xacro.expander import Directive, Expander, Site
+from linkwright.xacro.expander import Container, Directive, Expander, Site
 from linkwright.xacro.includes import include
 from linkwright.xacro.literals import truth
 from linkwright.xacro.properties import define_property
@@ -52,7 +52,7 @@ def expand_condition(expander: Expander, site: Site) -> None:
     if keep is (node.tag == "xacro:if"):
         if "$" in node.attributes["value"] and session.changes(node.attributes["value"]):
             expander.attributes(node, scope)  # ros/xacro evaluates the attributes of what it keeps once more
-        container = Element(node.tag)
+        container = Container(node.tag)
         expander.children(node, container, scope, site.macros)
         expander.splice(container, site)
     if waiting:
@@ -66,7 +66,7 @@ def insert_block(expander: Expander, site: Site) -> None:
     name = node.attributes["name"]
     if f"**{name}" in scope:
         block: Element = scope.lookup(f"**{name}")
-        container = Element(node.tag)
+        container = Container(block.tag)
         expander.children(block, container, scope, site.macros)
         expander.splice(container, site)
     elif f"*{name}" in scope:
@@ -103,7 +103,41 @@ def set_attribute(expander: Expander, site: Site) -> None:
     check_attributes(expander, node, ("name", "value"), ())
     name = expander.text_value(node, "name", site.scope)
     _check_name(expander, node, "name", "attribute", name)
-    site.parent.attributes[name] = expander.text_value(node, "value", site.scope)
+    value = expander.value(node, "value", site.scope)
+    if isinstance(site.parent, Container) and not name.startswith("xmlns:"):
+        message = phrase(
+            "ros/xacro drops the attribute '{name}': it stands in <{tag}> and not directly in the element it is for",
+            name=name,
+            tag=site.parent.tag,
+        )
+        hint = phrase(
+            "write it directly in the element, with an expression that chooses its value,"
+            " or choose between whole elements"
+        )
+        expander.session.warn("XAC901", message, node.span(), hint)
+    elif not isinstance(value, str):
+        _warn_of_value(expander, node, name, value)
+    site.parent.attributes[name] = expander.written(node, "value", value)
+
+
+def _warn_of_value(expander: Expander, node: Element, name: str, value: object) -> None:
+    kind = term(type(value).__name__)
+    message = (
+        phrase(
+            "ros/xacro fails to write the attribute '{name}': its value is no text but of type {kind}",
+            name=name,
+            kind=kind,
+        )
+        if value
+        else phrase(
+            "ros/xacro writes the attribute '{name}' empty: its value is no text but of type {kind}",
+            name=name,
+            kind=kind,
+        )
+    )
+    written = node.attributes["value"].strip()
+    hint = phrase("make it a text: {written}", written="${str(" + written[2:-1].strip() + ")}")
+    expander.session.warn("XAC903", message, node.attribute_span("value"), hint)
 
 
 def _check_name(expander: Expander, node: Element, attribute: str, what: str, name: str) -> None:

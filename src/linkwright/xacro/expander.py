@@ -24,6 +24,12 @@ from linkwright.xmltree import Comment, Document, Element, Node, Text
 _MOST_ERRORS = 20
 
 
+class Container(Element):
+    """Holds what a tag that leaves nothing of itself expands to; the tag is that of the language."""
+
+    __slots__ = ()
+
+
 class Site(NamedTuple):
     """A tag of the language, where it stands.
 
@@ -88,7 +94,7 @@ class Expander:
     def walk(self, document: Document) -> Document | None:
         """What a document expands to in spite of the mistakes in `errors`; None where the walk had to stop."""
         root = document.root
-        container = Element("")
+        container = Container("")
         target = root.attributes.get("xacro:targetNamespace")
         if target:
             root = _with_attribute(root, "xmlns", target)
@@ -164,7 +170,7 @@ class Expander:
 
     def blocks(self, node: Element, scope: Scope, macros: MacroTable) -> Element:
         """What the elements inside of a macro call expand to, in a container."""
-        container = Element(node.tag)
+        container = Container(node.tag)
         if node.children:
             self.children(node, container, scope, macros)
         return container
@@ -245,12 +251,12 @@ class Expander:
 
     def text_value(self, node: Element, name: str, scope: Scope) -> str:
         """The value of an attribute that the element has, as it would be written."""
-        text = node.attributes[name]
-        if "$" not in text:
-            return text
-        self.session.place, self.session.attribute = node, name
+        return self.written(node, name, self.value(node, name, scope))
+
+    def written(self, node: Element, name: str, value: object) -> str:
+        """What is written for a value that an attribute of the element has."""
         try:
-            return self.session.evaluate_text(text, scope)
+            return self.session.written(node.attributes[name], value)
         except Fault as fault:
             fault.place_in_attribute(node, name)
             self.fail(fault)

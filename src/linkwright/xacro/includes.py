@@ -6,7 +6,7 @@ import os
 import re
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, display_path, phrase
-from linkwright.xacro.expander import Expander, Site
+from linkwright.xacro.expander import Container, Expander, Site
 from linkwright.xacro.literals import truth
 from linkwright.xacro.macros import MacroTable
 from linkwright.xacro.origin import Frame, trail
@@ -96,9 +96,9 @@ def _content(
     session.file = path
     try:
         root = document.root
-        container = Element(root.tag, expander.attributes(root, scope), root.source, root.offset)
-        declared = {name: value for name, value in container.attributes.items() if name.startswith("xmlns:")}
-        container.attributes = declared
+        attributes = expander.attributes(root, scope)
+        declared = {name: value for name, value in attributes.items() if name.startswith("xmlns:")}
+        container = Container(site.node.tag, declared)
         expander.children(root, container, scope, macros)
     finally:
         session.frame, session.file = around, file

@@ -16,7 +16,7 @@ from linkwright.diagnostics import phrase
 from linkwright.xacro import bounded
 from linkwright.xacro.refusal import RefusalError
 from linkwright.xacro.scope import Namespace
-from linkwright.xacro.yamldata import YamlDict, YamlList
+from linkwright.xacro.yamldata import YamlDict, YamlList, YamlMapping
 
 MAX_LENGTH = 1_000_000
 """How many characters a string, or items a list, may have."""
@@ -64,6 +64,7 @@ _ATTRIBUTES: dict[type, set[str]] = {
     tuple: _SEQUENCE,
     dict: _DICT,
     YamlDict: _DICT,
+    YamlMapping: _DICT,
     set: {*_SET, "add", "clear", "discard", "pop", "remove", "update"},
     frozenset: _SET,
     range: {*_SEQUENCE, "start", "step", "stop"},

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any, Protocol
 
-from linkwright.diagnostics import Phrase, phrase
+from linkwright.diagnostics import Phrase, Span, phrase
 from linkwright.xacro.budget import Budget
 from linkwright.xacro.faults import Fault
 from linkwright.xacro.limits import Limits
@@ -45,6 +45,10 @@ class Context(Protocol):
 
     def evaluate(self, text: str, scope: Scope) -> Any:
         """The value of a text in a scope; raises a `Fault` when it has none."""
+        ...
+
+    def warn(self, code: str, message: Phrase, span: Span | None = None, hint: Phrase | None = None) -> None:
+        """Note a finding that does not stop the expansion; without a span, at what is being evaluated."""
         ...
 
     def argument(self, name: str) -> str:

@@ -7,7 +7,16 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any, Protocol
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, Severity, did_you_mean, foreign, phrase
+from linkwright.diagnostics import (
+    Diagnostic,
+    LinkwrightError,
+    Phrase,
+    Severity,
+    SourceText,
+    did_you_mean,
+    foreign,
+    phrase,
+)
 from linkwright.xacro import sandbox, sources, symbols
 from linkwright.xacro.bounded import keys
 from linkwright.xacro.budget import Budget
@@ -20,8 +29,9 @@ from linkwright.xacro.sandbox import Module
 from linkwright.xacro.scope import Namespace, Scope
 from linkwright.xacro.substitution import package_fault
 from linkwright.xacro.template import compile_template, templates
-from linkwright.xacro.yamldata import YamlDict, YamlError, dotted
+from linkwright.xacro.yamldata import YamlDict, YamlError
 from linkwright.xmltree import Document, Element, Overlay, Text
+from linkwright.xmltree.decoding import UTF_8
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -111,9 +121,18 @@ class Session:
         """
         template = templates.get(text) or compile_template(text)
         value = template.evaluate(scope)
+        if value.__class__ is str and value.isprintable():
+            return value
+        return self.written(text, value)
+
+    def written(self, text: str, value: Any) -> str:
+        """What is written for a value that a text has.
+
+        Raises:
+            Fault: XML cannot hold it, or it is too long.
+        """
         if value.__class__ is str:
-            if not value.isprintable():
-                _check_characters(value)
+            _check_characters(value)
             return value
         try:
             return sandbox.as_text(value)
@@ -218,7 +237,10 @@ class Session:
 
     def read(self, path: str) -> Document:
         """The document of a file; see `sources.read`."""
-        return sources.read(self.on_disk(path), self._overlay)
+        document = sources.read(self.on_disk(path), self._overlay)
+        if document.encoding != UTF_8 and document.source is not None:
+            self._warn_of_encoding(document.source, document.encoding)
+        return document
 
     def absolute(self, name: str) -> str:
         """A file name relative to the file being processed, with that file's folder before it."""
@@ -239,7 +261,7 @@ class Session:
         path = self.absolute(name)
         self.depends_on(path)
         try:
-            text = self._overlay.read(self.on_disk(path))
+            text, encoding = self._overlay.read(self.on_disk(path))
         except LinkwrightError as error:
             fault = Fault("XAC506", error.diagnostics[0].message, hint=_nearest_file(self.on_disk(path)))
             raise fault from None
@@ -247,14 +269,16 @@ class Session:
             return yamldata.load(text, self._unit_value)
         except YamlError as error:
             raise _yaml_fault(path, text, error) from None
+        finally:
+            if encoding != UTF_8:
+                self._warn_of_encoding(SourceText(path, text), encoding)
 
     def _unit_value(self, expression: str) -> Any:
         return compile_expression(expression).evaluate(self.globals)
 
     def dotify(self, mapping: Any = (), **items: Any) -> YamlDict:
         """A mapping whose items are reached with a dot too."""
-        result: YamlDict = dotted(dict(keys(mapping), **items))
-        return result
+        return YamlDict(keys(mapping), **items)
 
     # findings
 
@@ -310,6 +334,20 @@ class Session:
             return text_part(place, start, end)
         return attribute_part(place, attribute or "", start, end) or place.span()
 
+    def _warn_of_encoding(self, source: SourceText, encoding: str) -> None:
+        told = ("XAC905", source.name, None)
+        if told in self._told:
+            return
+        self._told.add(told)
+        message = phrase(
+            "ros/xacro cannot read '{path}': it is in {encoding} and not in UTF-8",
+            path=source.name,
+            encoding=encoding.upper(),
+        )
+        hint = phrase("save it as UTF-8, without another encoding in its XML declaration")
+        notes = trail(self.frame)
+        self.diagnostics.append(Diagnostic("XAC905", message, source.span(0), Severity.WARNING, notes, hint, source))
+
     def deprecated(self, better: str, function: Callable[..., Any]) -> Callable[..., Any]:
         """A function that still has a bare name and warns when it is called by it."""
         bare = better.partition(".")[2]
@@ -347,8 +385,6 @@ def _check_characters(text: str) -> None:
 
 
 def _yaml_fault(path: str, text: str, error: YamlError) -> Fault:
-    from linkwright.diagnostics import SourceText
-
     fault = Fault("XAC506", phrase("'{path}' is not valid YAML: {message}", path=path, message=foreign(error.message)))
     if error.line:
         fault.source = source = SourceText(path, text)

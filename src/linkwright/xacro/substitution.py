@@ -20,6 +20,10 @@ from linkwright.xacro.symbols import MATHEMATICS
 
 _COMMANDS = ("arg", "find", "env", "optenv", "dirname", "cwd", "eval")
 _KNOWN = phrase("the commands are {commands}", commands=joined(_COMMANDS))
+_NO_DIRECTORY = phrase("ros/xacro knows the command 'dirname' but fails wherever it stands")
+_INSTEAD_OF_DIRECTORY = phrase(
+    "write $(find PACKAGE)/FOLDER, or ${xacro.abs_filename('FILE')} for a file beside this one"
+)
 _REFERENCE = re.compile(r"\$\(([^()$]+)\)")
 
 
@@ -118,6 +122,7 @@ def _optional_variable(words: list[str], _session: Context) -> str:
 
 
 def _directory(_words: list[str], session: Context) -> str:
+    session.warn("XAC904", _NO_DIRECTORY, hint=_INSTEAD_OF_DIRECTORY)
     return os.path.dirname(os.path.realpath(session.file))  # noqa: PTH120 - pathlib takes long to import
 
 

@@ -7,7 +7,7 @@ Six tags turn an expression with a unit into metres or radians. PyYAML is import
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
 from linkwright.diagnostics import phrase
@@ -23,22 +23,50 @@ UNITS = {
 """What one of each unit is in metres or radians."""
 
 
+class YamlMapping(dict[Any, Any]):
+    """A mapping as it lies in YAML data: ros/xacro has a plain dict for it, which knows no dots."""
+
+    __slots__ = ()
+
+
 class YamlDict(dict[Any, Any]):
-    """A mapping whose items are reached with a dot too."""
+    """A mapping whose items are reached with a dot too.
+
+    As in ros/xacro, the mappings and lists inside get what they lack, a dot, when they are reached for, and are copies
+    of what lies there: a loop that empties ``data.joints`` leaves ``data`` as it is. What a method gives, such as
+    ``get`` or ``values``, is what lies there.
+    """
 
     __slots__ = ()
 
     def __getitem__(self, key: Any) -> Any:
         try:
-            return super().__getitem__(key)
+            return wrapped(super().__getitem__(key))
         except KeyError:
             raise AttributeError(phrase("the YAML mapping has no key '{key}'", key=key)) from None
 
 
 class YamlList(list[Any]):
-    """A sequence read from YAML."""
+    """A sequence read from YAML; its items are as those of a `YamlDict`."""
 
     __slots__ = ()
+
+    def __getitem__(self, index: Any) -> Any:
+        return wrapped(super().__getitem__(index))
+
+    def __iter__(self) -> Iterator[Any]:
+        return map(wrapped, super().__iter__())
+
+
+COPIED: frozenset[type] = frozenset({YamlDict, YamlList})
+"""What is made anew whenever it is reached for."""
+
+
+def wrapped(value: Any) -> Any:
+    """A value of YAML data as expressions reach it."""
+    if isinstance(value, dict):
+        return YamlDict(value)
+    return YamlList(value) if isinstance(value, list) else value
 
 
 class YamlError(Exception):
@@ -96,26 +124,26 @@ def _load(text: str, evaluate: Callable[[str], Any] | None) -> Any:
 
 
 def dotted(value: Any) -> Any:
-    """A value with every dict in it made a `YamlDict` and every list a `YamlList`."""
-    return _dotted(value, {})
+    """A copy of a value, all of it, as expressions reach it."""
+    return wrapped(_copied(value, {}))
 
 
-def _dotted(value: Any, seen: dict[int, Any]) -> Any:
+def _copied(value: Any, seen: dict[int, Any]) -> Any:
     if not isinstance(value, (dict, list)):
         return value
     known = seen.get(id(value))
     if known is not None:
         return known
     if isinstance(value, dict):
-        mapping = seen[id(value)] = YamlDict(value)
+        mapping = seen[id(value)] = YamlMapping(value)
         for key, item in value.items():
             if isinstance(item, (dict, list)):
-                mapping[key] = _dotted(item, seen)
+                mapping[key] = _copied(item, seen)
         return mapping
-    sequence = seen[id(value)] = YamlList(value)
+    sequence = seen[id(value)] = value.copy()
     for at, item in enumerate(value):
         if isinstance(item, (dict, list)):
-            sequence[at] = _dotted(item, seen)
+            sequence[at] = _copied(item, seen)
     return sequence
 
 

@@ -8,17 +8,26 @@ from __future__ import annotations
 
 import codecs
 import re
+from typing import NamedTuple
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, SourceText, phrase
 
+UTF_8 = "utf-8"
 _DECLARED = re.compile(rb"""^\s*<\?xml[^>]*?\bencoding\s*=\s*["']([A-Za-z][A-Za-z0-9._-]*)["']""")
 _BYTE_ORDER_MARKS = (
-    (codecs.BOM_UTF8, "utf-8"),
+    (codecs.BOM_UTF8, UTF_8),
     (codecs.BOM_UTF32_LE, "utf-32-le"),
     (codecs.BOM_UTF32_BE, "utf-32-be"),
     (codecs.BOM_UTF16_LE, "utf-16-le"),
     (codecs.BOM_UTF16_BE, "utf-16-be"),
 )
+
+
+class Decoded(NamedTuple):
+    """The text of a file, without its byte order mark, and the encoding that it was in."""
+
+    text: str
+    encoding: str = UTF_8
 
 
 def decode(data: bytes, name: str) -> str:
@@ -27,22 +36,27 @@ def decode(data: bytes, name: str) -> str:
     Raises:
         LinkwrightError: XML104 when the bytes are no text in the encoding that holds for them.
     """
+    return decoded(data, name).text
+
+
+def decoded(data: bytes, name: str) -> Decoded:
+    """The same with the encoding that the text was in."""
     for mark, encoding in _BYTE_ORDER_MARKS:
         if data.startswith(mark):
             return _decode(data[len(mark) :], encoding, name, phrase("its byte order mark says so"))
     try:
-        return data.decode("utf-8")
+        return Decoded(data.decode(UTF_8))
     except UnicodeDecodeError:
         declared = _DECLARED.match(data)
         if declared is None:
-            return _decode(data, "utf-8", name, phrase("it declares no other encoding"))
+            return _decode(data, UTF_8, name, phrase("it declares no other encoding"))
         encoding = declared[1].decode("ascii")
         return _decode(data, encoding, name, phrase("its XML declaration says so"))
 
 
-def _decode(data: bytes, encoding: str, name: str, reason: Phrase) -> str:
+def _decode(data: bytes, encoding: str, name: str, reason: Phrase) -> Decoded:
     try:
-        return data.decode(encoding)
+        return Decoded(data.decode(encoding), encoding)
     except LookupError:
         message = phrase("'{name}' declares the unknown encoding '{encoding}'", name=name, encoding=encoding)
         raise LinkwrightError(Diagnostic("XML104", message, hint=phrase("save the file as UTF-8"))) from None

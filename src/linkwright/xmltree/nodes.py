@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from linkwright.diagnostics import SourceText, Span
+from linkwright.xmltree.decoding import UTF_8
 
 
 class Text:
@@ -128,9 +129,10 @@ class Document:
         doctype: the document type declaration as it is written back, or None.
         doctype_index: how many nodes of the prolog stand before the document type declaration.
         source: the text it was read from; None for a document made by a program.
+        encoding: what the file was in; ``utf-8`` for all that is valid as such, and for what was no file.
     """
 
-    __slots__ = ("doctype", "doctype_index", "epilog", "prolog", "root", "source")
+    __slots__ = ("doctype", "doctype_index", "encoding", "epilog", "prolog", "root", "source")
 
     def __init__(self, root: Element, source: SourceText | None = None) -> None:
         self.prolog: list[Comment | ProcessingInstruction] = []
@@ -138,4 +140,5 @@ class Document:
         self.epilog: list[Comment | ProcessingInstruction] = []
         self.doctype: str | None = None
         self.doctype_index = 0
+        self.encoding = UTF_8
         self.source = source

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 
-from linkwright.xmltree.decoding import decode
+from linkwright.xmltree.decoding import Decoded, decoded
 from linkwright.xmltree.nodes import Document
 from linkwright.xmltree.reader import parse, read_bytes
 
@@ -38,14 +38,14 @@ class Overlay:
             self._documents[path] = parse(text, path)
         return self._documents[path]
 
-    def read(self, path: str) -> str:
-        """The text of a file.
+    def read(self, path: str) -> Decoded:
+        """The text of a file, and the encoding that it is in.
 
         Raises:
             LinkwrightError: XML101 to XML104, there is none to be had.
         """
         text = self.text(path)
-        return decode(read_bytes(path), path) if text is None else text
+        return decoded(read_bytes(path), path) if text is None else Decoded(text)
 
 
 def _key(path: str | os.PathLike[str]) -> str:

@@ -11,7 +11,7 @@ from xml.parsers.expat import ExpatError, ParserCreate
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, SourceText, foreign, missing_file_hint, phrase
 from linkwright.input_files import LARGEST_TEXT, NoWriterError, read_file
-from linkwright.xmltree.decoding import decode
+from linkwright.xmltree.decoding import Decoded, decoded
 from linkwright.xmltree.entities import GROWTH_LIMIT, EntityGuard
 from linkwright.xmltree.nodes import Comment, Document, Element, Node, ProcessingInstruction, Text
 
@@ -35,9 +35,10 @@ def parse(text: str | bytes, name: str, *, blanks: bool = True) -> Document:
     Raises:
         LinkwrightError: XML104 (not text), XML105 (empty), XML2xx (not well-formed XML), with the place.
     """
-    if isinstance(text, bytes):
-        text = decode(text, name)
-    return _Reader(SourceText(name, text), blanks=blanks).read()
+    text, encoding = decoded(text, name) if isinstance(text, bytes) else Decoded(text)
+    document = _Reader(SourceText(name, text), blanks=blanks).read()
+    document.encoding = encoding
+    return document
 
 
 def parse_file(path: str | Path) -> Document:
