@@ -106,7 +106,7 @@ def test_more_than_one_token_is_a_string() -> None:
 
 
 def test_unknown_kinds_of_node_are_refused() -> None:
-    for source in ("(yield)", "f'x'", "await x"):
+    for source in ("(yield)", "await x"):
         with pytest.raises(Fault) as caught:
             evaluate("${" + source + "}")
         assert caught.value.code in ("XAC102", "XAC204")
@@ -115,7 +115,7 @@ def test_unknown_kinds_of_node_are_refused() -> None:
 def test_every_node_of_the_grammar_is_compiled_or_refused() -> None:
     from linkwright.xacro.compiler import Compiler
 
-    refused = {"Await", "FormattedValue", "Interpolation", "JoinedStr", "Starred", "TemplateStr", "Yield", "YieldFrom"}
+    refused = {"Await", "Interpolation", "Starred", "TemplateStr", "Yield", "YieldFrom"}
     old = {"Bytes", "Ellipsis", "NameConstant", "Num", "Str"}
     kinds = {kind.__name__ for kind in ast.expr.__subclasses__()} - old - {"Index", "ExtSlice"}
     compiled = {kind for kind in kinds if hasattr(Compiler, f"_{kind.lower()}")}

@@ -223,3 +223,24 @@ def test_a_yaml_file_cannot_run_code() -> None:
     ):
         with pytest.raises(YamlError):
             load(text, float)
+
+
+@pytest.mark.parametrize(
+    ("source", "code"),
+    [
+        ("f'{items.__class__}'", "XAC204"),
+        ("f'{str.mro}'", "XAC204"),
+        ("f'{1:{items.__len__}}'", "XAC204"),
+        ("f'{1:>99999999999}'", "XAC204"),
+        ("f'{1:>{99999}}'", "XAC204"),
+        ("f'{1.5:.1001f}'", "XAC204"),
+        ("f'{items:>5}'", "XAC202"),
+        ("f'{1:Q}'", "XAC202"),
+        ("f'{nope}'", "XAC201"),
+    ],
+)
+def test_fields_of_f_strings_reach_no_further_than_other_expressions(source: str, code: str) -> None:
+    with pytest.raises(Fault) as caught:
+        evaluate(f"$(eval {source})".replace("items", "list"))
+    assert caught.value.code == code
+    assert caught.value.start is not None

@@ -205,6 +205,27 @@ class Compiler:
         value = node.value
         return lambda _env: value
 
+    def _joinedstr(self, node: ast.JoinedStr) -> Closure:
+        for part in ast.walk(node):  # before Python 3.12 the places inside of an f-string are not those in the text
+            if isinstance(part, ast.expr):
+                ast.copy_location(part, node)
+        parts = [self.compile(part) for part in node.values]
+        return lambda env: sandbox.joined([part(env) for part in parts])
+
+    def _formattedvalue(self, node: ast.FormattedValue) -> Closure:
+        value, conversion = self.compile(node.value), node.conversion
+        specification = self.compile(node.format_spec) if node.format_spec else lambda _env: ""
+        start, end = self._place(node)
+
+        def formatted(env: Environment) -> Any:
+            try:
+                result = sandbox.formatted(made(env.session.budget, value(env)), conversion, specification(env))
+                return made(env.session.budget, result)
+            except FAILURES as error:
+                raise self._failure(error, start, end) from None
+
+        return formatted
+
     def _namedexpr(self, node: ast.NamedExpr) -> Closure:
         name, value = node.target.id, self.compile(node.value)
         self.name(name, 0)

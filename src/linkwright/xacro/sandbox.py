@@ -287,6 +287,38 @@ def modulo(left: Any, right: Any) -> Any:
     return left % right
 
 
+_DIGITS = re.compile(r"\d+")
+_CONVERSIONS: dict[int, Callable[[Any], str]] = {ord("s"): str, ord("r"): repr, ord("a"): ascii}
+_PLAIN: frozenset[type] = frozenset({bool, complex, float, int, str})
+
+
+def formatted(value: Any, conversion: int, specification: str) -> str:
+    """What a field of an f-string gives, such as ``{value!r:>8}``.
+
+    Args:
+        value: its value.
+        conversion: the letter after its exclamation mark, as a number; -1 where there is none.
+        specification: what follows its colon.
+
+    Raises:
+        RefusalError: it would be too long.
+        TypeError: values of this kind have no form that can be specified.
+    """
+    check_size(value)
+    if conversion in _CONVERSIONS:
+        value = _CONVERSIONS[conversion](value)
+    if not specification:
+        return as_text(value)
+    for digits in (specification, *_DIGITS.findall(specification)):
+        if len(digits) > MAX_DIGITS or (digits.isdecimal() and int(digits) > MAX_DIGITS):
+            raise RefusalError(
+                phrase("the width or precision may be no more than {max_digits:,}", max_digits=MAX_DIGITS)
+            )
+    if value.__class__ not in _PLAIN and value.__class__.__module__ != "datetime":
+        raise TypeError(phrase("'{kind}' has no form with ':'", kind=value.__class__.__name__))
+    return format(value, specification)
+
+
 OPERATORS: dict[str, Callable[[Any, Any], Any]] = {
     "Add": add,
     "Sub": operator.sub,
