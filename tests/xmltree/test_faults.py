@@ -128,3 +128,15 @@ def test_prefixes_are_in_scope_only_below_their_declaration() -> None:
     with pytest.raises(LinkwrightError) as caught:
         parse('<a><b xmlns:k="u"/><k:c/></a>', "x")
     assert caught.value.diagnostics[0].code == "XML205"
+
+
+@pytest.mark.parametrize("name", ["arm.urdf", "arm.xacro"])
+def test_a_pointer_of_git_lfs_is_named_as_such(name: str, tmp_path: Path) -> None:
+    path = tmp_path / name
+    path.write_bytes(b"version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\nsize 12345\n")
+    with pytest.raises(LinkwrightError) as caught:
+        parse_file(path)
+    (found,) = caught.value.diagnostics
+    assert found.code == "XML106"
+    assert "pointer of Git LFS" in found.message
+    assert "git lfs pull" in (found.hint or "")

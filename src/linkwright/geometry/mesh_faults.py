@@ -14,9 +14,9 @@ from math import isfinite
 from typing import Any
 
 from linkwright.diagnostics import LinkwrightError, Phrase, foreign, phrase
+from linkwright.diagnostics.pointers import is_pointer
 from linkwright.xmltree import Element, parse
 
-_POINTER = b"version https://git-lfs"
 _WEB_PAGE = re.compile(rb"\s*<(?:!doctype\s+)?html", re.IGNORECASE)
 
 _HEADER, _TRIANGLE = 84, 50  # bytes of a binary STL
@@ -36,7 +36,7 @@ def fault_in(data: bytes, kind: str) -> Phrase | None:
     """
     if not data.strip():
         return phrase("it is empty")
-    if data.startswith(_POINTER):
+    if is_pointer(data):
         return phrase("it is a pointer of Git LFS: the mesh itself was not fetched")
     if _WEB_PAGE.match(data):
         return phrase("it is a web page, not a mesh")

@@ -263,7 +263,12 @@ class Session:
         try:
             text, encoding = self._overlay.read(self.on_disk(path))
         except LinkwrightError as error:
-            fault = Fault("XAC506", error.diagnostics[0].message, hint=_nearest_file(self.on_disk(path)))
+            found = error.diagnostics[0]
+            fault = Fault(
+                "XAC506",
+                found.message,
+                hint=found.hint if found.code == "XML106" else _nearest_file(self.on_disk(path)),
+            )
             raise fault from None
         try:
             return yamldata.load(text, self._unit_value)

@@ -11,6 +11,7 @@ import re
 from typing import NamedTuple
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, SourceText, phrase
+from linkwright.diagnostics.pointers import FETCH, IS_POINTER, is_pointer
 
 UTF_8 = "utf-8"
 _DECLARED = re.compile(rb"""^\s*<\?xml[^>]*?\bencoding\s*=\s*["']([A-Za-z][A-Za-z0-9._-]*)["']""")
@@ -40,7 +41,14 @@ def decode(data: bytes, name: str) -> str:
 
 
 def decoded(data: bytes, name: str) -> Decoded:
-    """The same with the encoding that the text was in."""
+    """The same with the encoding that the text was in.
+
+    Raises:
+        LinkwrightError: XML104, or XML106 where the file itself was never fetched.
+    """
+    if is_pointer(data):
+        message = phrase("cannot read '{path}': {reason}", path=name, reason=IS_POINTER)
+        raise LinkwrightError(Diagnostic("XML106", message, hint=FETCH))
     for mark, encoding in _BYTE_ORDER_MARKS:
         if data.startswith(mark):
             return _decode(data[len(mark) :], encoding, name, phrase("its byte order mark says so"))

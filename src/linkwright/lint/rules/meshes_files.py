@@ -6,14 +6,13 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, counted, display_path, phrase
+from linkwright.diagnostics.pointers import is_pointer_file
 from linkwright.lint.fix import replace_value
 from linkwright.lint.meshes import MeshUse
 from linkwright.lint.rule import Rule
 from linkwright.lint.rules.meshes_addresses import HOME, KNOWN, file_hint, malformed, normal, written
 from linkwright.lint.subject import Subject
 from linkwright.packages import PackageNotFoundError, enclosing_package
-
-_LFS = b"version https://git-lfs"
 
 
 def case_twin(path: Path) -> Path | None:
@@ -290,7 +289,7 @@ class UnreadableMesh(Rule):
             if problem is None or problem.diagnostics[0].code != "INR103":
                 continue
             found = problem.diagnostics[0]
-            hint = phrase("it is a pointer of Git LFS: run `git lfs pull`") if _is_lfs_pointer(path) else found.hint
+            hint = phrase("it is a pointer of Git LFS: run `git lfs pull`") if is_pointer_file(path) else found.hint
             yield self.report(found.message, use.element, "filename", hint=hint)
 
 
@@ -307,11 +306,3 @@ def _with_case(uri: str, twin: Path) -> str:
 def _last_folder(path: Path) -> Path:
     """The deepest folder on the way to a file that is there."""
     return next((folder for folder in path.parents if folder.is_dir()), Path(path.anchor))
-
-
-def _is_lfs_pointer(path: Path) -> bool:
-    try:
-        with path.open("rb") as file:
-            return file.read(len(_LFS)) == _LFS
-    except OSError:
-        return False

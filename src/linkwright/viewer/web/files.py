@@ -17,6 +17,7 @@ from pathlib import Path, PurePosixPath
 from urllib.parse import quote
 
 from linkwright.diagnostics import LinkwrightError, phrase
+from linkwright.diagnostics.pointers import FETCH, IS_POINTER, is_pointer_file
 from linkwright.packages import PackageFinder, PackageNotFoundError, enclosing_package
 
 MESH_TYPES = {
@@ -113,6 +114,8 @@ class MeshIndex:
         if path.suffix.lower() not in types:
             known = ", ".join(sorted(suffix[1:].upper() for suffix in types))
             return Located(None, f"'{path}' is of no format that is shown: {known}")
+        if is_pointer_file(path):
+            return Located(None, phrase("'{path}': {why}; {how}", path=path, why=IS_POINTER, how=FETCH))
         folder = self._folder_of(uri, path)
         relative = path.relative_to(folder.root)
         try:

@@ -1,0 +1,28 @@
+"""Pointers of Git LFS: what stands in the place of a large file until it is fetched."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from linkwright.diagnostics.phrase import phrase
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+_BEGINS = b"version https://git-lfs.github.com/spec/"
+IS_POINTER = phrase("it is only a pointer of Git LFS")
+FETCH = phrase("run `git lfs pull` in the repository that it is from")
+
+
+def is_pointer(data: bytes) -> bool:
+    """Whether the bytes of a file, or the first of them, are such a pointer."""
+    return data.startswith(_BEGINS)
+
+
+def is_pointer_file(path: Path) -> bool:
+    """Whether a file is one; False where it cannot be read."""
+    try:
+        with path.open("rb") as file:
+            return is_pointer(file.read(len(_BEGINS)))
+    except OSError:
+        return False
