@@ -30,6 +30,8 @@ BUILT_IN = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
 _LIMITS = Limits()
 _SMALL_LIMITS = Limits(depth=40, elements=5_000, steps=100_000)
 """For whole descriptions: half of what a fuzzer finds interesting is recursion that runs into the limits."""
+_LONGEST_OUTPUT = 10_000_000
+"""Characters; a fuzzer's inputs are a few hundred bytes."""
 _FIXED = {"items": [3, 1, 2], "data": {"a": 1, "b": [1, {"c": 2}]}, "name": "r", "a": 1, "b": 2.5, "n": 3}
 
 
@@ -66,6 +68,7 @@ def check_expansion(files: documents.Files) -> None:
     except LinkwrightError as error:
         _check_printable(error)
         return
+    assert len(written) <= _LONGEST_OUTPUT
     if expansion.document.doctype is None and not any(ord(sign) < 32 and sign not in "\t\n\r" for sign in written):
         parse(written, "expansion.xml")
 
@@ -104,8 +107,7 @@ def check_urdf(text: str) -> None:
     if robot is None:
         assert reading.diagnostics
         return
-    to_gv(robot)
-    tree_text(robot)
+    assert len(to_gv(robot)) + len(tree_text(robot)) <= _LONGEST_OUTPUT
     tree = KinematicTree(robot)
     tree.forward([0.0] * len(tree.joint_names))
     saved = save(robot)
@@ -137,6 +139,7 @@ def check_rviz(text: str) -> None:
 
 
 def _check_printable(error: LinkwrightError) -> None:
+    assert sum(len(render(diagnostic)) for diagnostic in error.diagnostics) <= _LONGEST_OUTPUT
     for diagnostic in error.diagnostics:
         assert diagnostic.code in render(diagnostic)
         assert to_data(diagnostic)["message"]
@@ -195,6 +198,41 @@ def seeds(name: str) -> list[bytes]:
         return decisions
     return [write_text(Choices(data)).encode("utf-8", "replace") for data in decisions]
 
+
+def hard_seeds(name: str) -> list[str]:
+    """Texts of the kinds that once took too long, or too much memory."""
+    return _HARD_SEEDS.get(name, [])
+
+
+_CHAIN = "".join(
+    f'<link name="{n}"/><joint name="j{n}" type="fixed"><parent link="{n}"/><child link="{n + 1}"/></joint>'
+    for n in range(20)
+)
+_HARD_EXPRESSIONS = [
+    r"xacro.tokenize('\\' + 'a'*34, '\\\\](a+)+b')",
+    "len(python.set([i*2305843009213693951 for i in python.range(60000)]))",
+    "dict([(i*2305843009213693951, i) for i in python.range(60000)])",
+    "9**9**9",
+    "[[x for x in python.range(1000)] for y in python.range(1000)]",
+    "'%99999999d' % 1",
+    "f'{1:>99999999999",
+    "'a'*10**6*10**6",
+]
+_HARD_SEEDS: dict[str, list[str]] = {
+    "expression-text": _HARD_EXPRESSIONS,
+    "xacro-text": [f'{BUILT_IN}<a v="${{{each.replace("<", "&lt;")}}}"/></robot>' for each in _HARD_EXPRESSIONS],
+    "yaml-text": [
+        "{" + ", ".join(f"{n * 2305843009213693951}: 1" for n in range(60)) + "}",
+        "a: &a [x, x, x]\nb: &b [*a, *a, *a]\nc: &c [*b, *b, *b]\nd: [*c, *c, *c]",
+        "[" * 150 + "]" * 150,
+    ],
+    "urdf-text": [f'<robot name="r">{_CHAIN}<link name="20"/></robot>'],
+    "xml-text": [
+        "<a>" * 250 + "</a>" * 250,
+        "<a " + " ".join(f'a{n}="1"' for n in range(200)) + "/>",
+        '<!DOCTYPE a [<!ENTITY b "cccccccc"><!ENTITY d "&b;&b;&b;&b;&b;">]><a>&d;&d;&d;&d;</a>',
+    ],
+}
 
 _SEEDS = 300
 _SEED_TEXTS: dict[str, Callable[[Choices], str]] = {

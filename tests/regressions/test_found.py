@@ -35,3 +35,12 @@ def test_what_was_found_stays_mended(path: Path, tmp_path: Path, monkeypatch: py
     started = time.process_time()
     check(path.read_bytes().decode("utf-8", "surrogatepass"))
     assert time.process_time() - started < 3.0
+
+
+@pytest.mark.parametrize("name", [name for name in targets.TARGETS if targets.hard_seeds(name)])
+def test_what_was_slow_or_large_once_is_read_or_refused(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for text in targets.hard_seeds(name):
+        targets.TARGETS[name](text.encode())
