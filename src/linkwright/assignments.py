@@ -7,7 +7,8 @@ from collections.abc import Callable, Iterable
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, phrase
 
-_SINGLE_SIGN = re.compile(r"^-*([A-Za-z_][\w-]*)(=|:)(?!=)(.*)$", re.DOTALL)
+# Not compiled here: few commands have a word that needs it.
+_SINGLE_SIGN = r"^-*([A-Za-z_][\w-]*)(=|:)(?!=)(.*)$"
 
 
 def _malformed(word: str, hint: Phrase) -> Diagnostic:
@@ -41,7 +42,7 @@ def parse_assignments(
 
 
 def _hint(word: str) -> Phrase:
-    found = _SINGLE_SIGN.match(word)
+    found = re.match(_SINGLE_SIGN, word, re.DOTALL)
     if found:
         return phrase("write {name}:={value}", name=found[1], value=found[3])
     return phrase("arguments are written name:=value")

@@ -379,11 +379,12 @@ class Session:
         return said
 
 
-_NOT_XML = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
+# Not compiled here: what is printable, as nearly every value is, has none of these.
+_NOT_XML = "[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]"
 
 
 def _check_characters(text: str) -> None:
-    found = _NOT_XML.search(text)
+    found = None if text.isprintable() else re.search(_NOT_XML, text)
     if found:
         message = phrase("the value has a character that XML cannot hold: U+{ord:04X}", ord=ord(found[0]))
         raise Fault("XAC206", message, hint=phrase("'\\' in a text begins an escape; write '\\\\' for a backslash"))
