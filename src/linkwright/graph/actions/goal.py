@@ -73,7 +73,7 @@ class GoalKeeper(Protocol):
         """The class of the action."""
 
     def start_execution(self, goal: ServerGoalHandle, callback: Callable[[ServerGoalHandle], Any] | None) -> None:
-        """Have a goal worked on soon."""
+        """Schedule the execution of a goal."""
 
     def publish_feedback(self, goal_id: Any, feedback: Any) -> None:
         """Publish the feedback of a goal."""
@@ -168,7 +168,7 @@ class ServerGoalHandle:
         self._end(GoalEvent.ABORT, response)
 
     def canceled(self, response: Any = None) -> None:
-        """The work was broken off, as was asked for; see `succeed`."""
+        """The goal was canceled, as requested; see `succeed`."""
         self._end(GoalEvent.CANCELED, response)
 
     def update(self, event: GoalEvent) -> None:

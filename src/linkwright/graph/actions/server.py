@@ -37,17 +37,17 @@ def default_goal_callback(goal_request: Any) -> GoalResponse:  # noqa: ARG001  #
 
 
 def default_handle_accepted_callback(goal_handle: ServerGoalHandle) -> None:
-    """Begin the work at once."""
+    """Execute the goal at once."""
     goal_handle.execute()
 
 
 def default_cancel_callback(cancel_request: ServerGoalHandle) -> CancelResponse:  # noqa: ARG001
-    """Let nothing be canceled."""
+    """Refuse every request to cancel."""
     return CancelResponse.REJECT
 
 
 async def outcome_of(value: Any) -> Any:
-    """What a callback gave, or what came of it when it was a coroutine."""
+    """What a callback returned; the result of the coroutine where it returned one."""
     return await value if isawaitable(value) else value
 
 
@@ -124,7 +124,7 @@ class ActionServer(ActionEndpoint):
         self._handle.add_cleanup(self.destroy)
 
     def register_execute_callback(self, execute_callback: Callable[[ServerGoalHandle], Any]) -> None:
-        """Have goals worked on by another callback.
+        """Execute goals with another callback from now on.
 
         Raises:
             TypeError: it cannot be called.
@@ -166,7 +166,7 @@ class ActionServer(ActionEndpoint):
     # --- for goal handles --------------------------------------------------------------------------------------------
 
     def start_execution(self, goal: ServerGoalHandle, callback: Callable[[ServerGoalHandle], Any] | None) -> None:
-        """Have a goal worked on soon."""
+        """Schedule the execution of a goal."""
         if not self._destroyed:
             self._executions.add(partial(self._execute, callback or self._execute_callback, goal))
 

@@ -38,7 +38,7 @@ class Context(Protocol):
     """What says whether the program is to go on (rclpy ``Context``)."""
 
     def ok(self) -> bool:
-        """Whether it is."""
+        """Whether the program is to go on."""
 
     def on_shutdown(self, callback: Callable[[], None]) -> None:
         """Have something called at the end."""
@@ -407,7 +407,7 @@ def _raise_fault(task: Task[Any]) -> None:
 
 
 class SpinningExecutor(Executor):
-    """Takes turns until it is to end."""
+    """An executor whose spinning is a loop; subclasses say what one turn of it does."""
 
     def spin(self) -> None:
         """Run callbacks until the executor or the context is shut down."""

@@ -149,7 +149,7 @@ class Workers:
         return self._unfinished < self._limit
 
     def submit(self, job: Callable[[], None]) -> None:
-        """Have a thread do something, which may not raise."""
+        """Run a job in a thread of the pool; the job must not raise."""
         with self._lock:
             self._unfinished += 1
             if self._unfinished > len(self._threads) and len(self._threads) < self._limit:
@@ -159,7 +159,7 @@ class Workers:
         self._jobs.put(job)
 
     def close(self, timeout_sec: float | None = None) -> bool:
-        """Have the threads end after what they were given; wait for that.
+        """End the threads after the jobs that were submitted, and wait for them.
 
         Args:
             timeout_sec: the longest wait, in seconds; no limit when None.

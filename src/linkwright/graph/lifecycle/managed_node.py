@@ -38,7 +38,7 @@ _CALLBACKS = {
 
 
 class LifecycleTransitionError(LinkwrightError, RclError):
-    """A transition is asked for that does not begin where the node stands; rcl's two texts about it are its message."""
+    """A transition is requested that does not start from the node's current state; the message is rcl's."""
 
     def __init__(self, asked: object, state: LifecycleState, available: Iterable[str]) -> None:
         names = list(dict.fromkeys(available))
@@ -52,7 +52,7 @@ class LifecycleTransitionError(LinkwrightError, RclError):
 
 
 class LifecycleNodeMixin(ManagedEntity):
-    """What makes a node a managed one; to be mixed with a class of nodes, and initialised after it.
+    """Makes a class of nodes managed ones: to be mixed in, and initialised after the node.
 
     The callbacks ``on_configure``, ``on_activate``, ``on_deactivate``, ``on_cleanup``, ``on_shutdown`` and
     ``on_error`` get the state that the transition begins in and give a `TransitionCallbackReturn`; unless overridden
@@ -134,7 +134,7 @@ class LifecycleNodeMixin(ManagedEntity):
         return publisher
 
     def destroy_lifecycle_publisher(self, publisher: LifecyclePublisher) -> Any:
-        """Take such a publisher away."""
+        """Destroy a lifecycle publisher."""
         if publisher in self._managed_entities:
             self._managed_entities.remove(publisher)
         node: Any = self

@@ -103,7 +103,7 @@ TRANSITIONS = (
 
 
 class StateMachine:
-    """Where a managed node stands, and the services by which others drive it, which are None where they cannot."""
+    """The current state of a managed node, and the services by which others drive it; None where it offers none."""
 
     service_change_state: Any = None
     service_get_state: Any = None
@@ -120,7 +120,7 @@ class StateMachine:
         return self.state.state_id, self.state.label
 
     def available(self) -> list[Transition]:
-        """The transitions that begin where the node stands."""
+        """The transitions that start from the current state."""
         return [each for each in TRANSITIONS if each.start == self.state]
 
     def by_id(self, transition_id: int) -> Transition | None:

@@ -6,6 +6,7 @@ the other parts of a node know this, not the node: so a user's class may have an
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
@@ -16,13 +17,6 @@ from linkwright.graph.names.identity import NodeIdentity
 from linkwright.graph.names.remapping import Remappings
 from linkwright.graph.names.rules import expand_service_name, expand_topic_name
 from linkwright.graph.time.timebase import AlarmSetter, Timebase
-
-if TYPE_CHECKING:
-    from typing_extensions import Self
-
-
-import weakref
-from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from typing_extensions import Self

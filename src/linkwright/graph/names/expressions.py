@@ -19,7 +19,7 @@ _MOST_CHARACTERS = 2000
 
 
 class ExpressionError(ValueError):
-    """A text is no regular expression; it says why."""
+    """A text is not a valid regular expression; the message says why."""
 
 
 class TooCostlyError(ExpressionError):

@@ -65,7 +65,7 @@ class AsyncParameterClient:
         return all(client.service_is_ready() for client in self._clients.values())
 
     def wait_for_services(self, timeout_sec: float | None = None) -> bool:
-        """Wait, in a thread that need not spin, until the node offers all the services.
+        """Block the calling thread until the node offers all the services; another thread need not spin.
 
         Args:
             timeout_sec: how long, seconds; None for as long as it takes.
@@ -81,7 +81,7 @@ class AsyncParameterClient:
         return True
 
     def destroy(self) -> None:
-        """Take the clients away."""
+        """Destroy the clients of the services."""
         for client in self._clients.values():
             self.node.destroy_client(client)
         self._clients.clear()

@@ -51,7 +51,7 @@ class ParameterAlreadyDeclaredException(ParameterException):
 
 
 class InvalidParameterException(ParameterException):
-    """A parameter is declared with a name that is none."""
+    """A parameter is declared under a name that is not valid."""
 
     def __init__(self, parameter_name: str) -> None:
         super().__init__(phrase("Invalid parameter name"), parameter_name, code="GRAPH205")

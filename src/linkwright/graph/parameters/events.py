@@ -15,7 +15,7 @@ H = TypeVar("H")
 
 @dataclass(eq=False)
 class ParameterCallbackHandle:
-    """A callback for one parameter of one node; kept to take it away again."""
+    """A callback for one parameter of one node; kept in order to remove it."""
 
     parameter_name: str
     node_name: str
@@ -24,7 +24,7 @@ class ParameterCallbackHandle:
 
 @dataclass(eq=False)
 class ParameterEventCallbackHandle:
-    """A callback for all events; kept to take it away again."""
+    """A callback for all events; kept in order to remove it."""
 
     callback: Callable[[Any], object]
 
@@ -45,14 +45,14 @@ class _Callbacks:
     def add_parameter_callback(
         self, parameter_name: str, node_name: str, callback: Callable[[Any], object]
     ) -> ParameterCallbackHandle:
-        """Add one for a parameter of the node of a full name."""
+        """Add a callback for one parameter of one node, given by its full name."""
         handle = ParameterCallbackHandle(parameter_name, node_name, callback)
         with self._lock:
             self.parameter_callbacks.setdefault((parameter_name, node_name), []).insert(0, handle)
         return handle
 
     def remove_parameter_callback(self, handle: ParameterCallbackHandle) -> None:
-        """Take one away; raises RuntimeError when it is not there."""
+        """Remove a callback; raises RuntimeError when it is not there."""
         key = (handle.parameter_name, handle.node_name)
         with self._lock:
             _remove(handle, self.parameter_callbacks.get(key, []))
@@ -60,19 +60,19 @@ class _Callbacks:
                 del self.parameter_callbacks[key]
 
     def add_parameter_event_callback(self, callback: Callable[[Any], object]) -> ParameterEventCallbackHandle:
-        """Add one for all events."""
+        """Add a callback for all events."""
         handle = ParameterEventCallbackHandle(callback)
         with self._lock:
             self.event_callbacks.insert(0, handle)
         return handle
 
     def remove_parameter_event_callback(self, handle: ParameterEventCallbackHandle) -> None:
-        """Take one away; raises RuntimeError when it is not there."""
+        """Remove a callback; raises RuntimeError when it is not there."""
         with self._lock:
             _remove(handle, self.event_callbacks)
 
     def event_callback(self, event: Any) -> None:
-        """Tell of an event."""
+        """Call the callbacks that an event concerns."""
         with self._lock:
             of_parameters = [handle for handles in self.parameter_callbacks.values() for handle in handles]
             of_events = list(self.event_callbacks)
@@ -91,7 +91,7 @@ def _remove(handle: H, handles: list[H]) -> None:
 
 
 class ParameterEventHandler:
-    """Subscribes to ``/parameter_events`` and tells of single parameters, or of whole events.
+    """Subscribes to ``/parameter_events`` and calls back for single parameters, or for whole events.
 
     Callbacks that were added last are called first.
 
@@ -115,7 +115,7 @@ class ParameterEventHandler:
         )
 
     def destroy(self) -> None:
-        """Listen no more."""
+        """Destroy the subscription."""
         self.node.destroy_subscription(self.parameter_event_subscription)
 
     def add_parameter_callback(
@@ -131,7 +131,7 @@ class ParameterEventHandler:
         return self._callbacks.add_parameter_callback(parameter_name, self._resolve_path(node_name), callback)
 
     def remove_parameter_callback(self, handle: ParameterCallbackHandle) -> None:
-        """Take a callback away.
+        """Remove a callback.
 
         Raises:
             RuntimeError: it is not there.
@@ -143,7 +143,7 @@ class ParameterEventHandler:
         return self._callbacks.add_parameter_event_callback(callback)
 
     def remove_parameter_event_callback(self, handle: ParameterEventCallbackHandle) -> None:
-        """Take a callback away.
+        """Remove a callback.
 
         Raises:
             RuntimeError: it is not there.

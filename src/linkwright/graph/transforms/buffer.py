@@ -23,7 +23,7 @@ Poses = NDArray[np.float64]
 
 
 class FrameTree:
-    """Who is whose parent among n frames, worked up for `poses_in_roots`.
+    """The tree of n frames, prepared so that `poses_in_roots` needs few operations on arrays.
 
     Args:
         parents: array, shape (n,), of each frame's parent; -1 for frames without one.
@@ -186,7 +186,7 @@ class TransformBuffer:
         return compose(invert(poses[target_row]), poses[source_row])
 
     def frames(self) -> tuple[str, ...]:
-        """The names of all frames, in the order in which they came up."""
+        """The names of all frames, in the order in which they were first seen."""
         return self._names
 
     def remove(self, names: Iterable[str]) -> None:

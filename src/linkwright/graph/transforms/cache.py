@@ -67,11 +67,11 @@ class FrameCache(ABC):
 
     @abstractmethod
     def latest(self) -> tuple[int, int] | None:
-        """Stamp of the latest transform (0 when it always holds) and number of its parent; None without any."""
+        """Stamp of the latest transform (0 for a static one) and number of its parent; None without any."""
 
     @abstractmethod
     def oldest_ns(self) -> int:
-        """Stamp of the oldest transform; 0 without any, or when it always holds."""
+        """Stamp of the oldest transform, in nanoseconds; 0 without any, or for a static one."""
 
     @abstractmethod
     def __len__(self) -> int: ...
@@ -116,7 +116,7 @@ class StaticCache(FrameCache):
         return 1
 
     def clear(self) -> None:
-        """Nothing: what does not move holds on, as in tf2."""
+        """Does nothing: static transforms stay, as in tf2."""
 
 
 class MovingCache(FrameCache):
@@ -135,7 +135,7 @@ class MovingCache(FrameCache):
         self._first = 0
 
     def add(self, stamp_ns: int, sample: Sample) -> bool:
-        """Take in a transform, at its place in time; one that is there already is not kept twice."""
+        """Insert a transform by its stamp; one that is there already is not kept twice."""
         stamps = self._stamps
         if len(stamps) == self._first:
             stamps.append(stamp_ns)
@@ -161,7 +161,7 @@ class MovingCache(FrameCache):
         return True
 
     def at(self, time_ns: int) -> tuple[int, Transform]:
-        """Number of the parent and pose at a time, between two transforms in proportion."""
+        """Number of the parent and pose at a time, interpolated between the transforms around it."""
         place = self._place(time_ns)
         sample = self._samples[place]
         if time_ns in (0, self._stamps[place]):

@@ -66,7 +66,7 @@ class BufferCore:
         self._walker = Walker(self._caches, self._names, self.all_frames_as_string)
 
     def set_transform(self, transform: Any, authority: str) -> None:
-        """Take in a geometry_msgs/msg/TransformStamped. One that is not taken is told of in the log.
+        """Take in a geometry_msgs/msg/TransformStamped. One that tf2 would refuse is dropped, and the log says why.
 
         Args:
             transform: the message.
@@ -75,7 +75,7 @@ class BufferCore:
         self._set_message(transform, authority, static=False)
 
     def set_transform_static(self, transform: Any, authority: str) -> None:
-        """Take in a transform that always holds; see `set_transform`."""
+        """Take in a static transform; see `set_transform`."""
         self._set_message(transform, authority, static=True)
 
     def update(self, message: Any, *, static: bool, now_ns: int = 0, authority: str = "default_authority") -> None:  # noqa: ARG002
@@ -222,7 +222,7 @@ class BufferCore:
             )
 
     def clear(self) -> None:
-        """Forget all transforms that do not always hold."""
+        """Forget all transforms but the static ones."""
         with self._lock:
             for cache in self._caches:
                 if cache is not None:
@@ -239,7 +239,7 @@ class BufferCore:
             return frames_as_text(self._facts(with_empty=True))
 
     def frame_names(self) -> list[str]:
-        """The names of all frames, in the order in which they came up."""
+        """The names of all frames, in the order in which they were first seen."""
         with self._lock:
             return self._names[1:]
 

@@ -35,7 +35,7 @@ class ConnectivityException(TransformException):
 
 
 class InvalidArgumentException(TransformException):
-    """A frame name cannot be one."""
+    """A text is not valid as the name of a frame."""
 
     def __init__(self, text: str = "") -> None:
         super().__init__(text, code="GRAPH304")
@@ -69,7 +69,7 @@ def unknown_frame(argument: str, frame: str, known: Iterable[str]) -> LookupExce
 
 
 def bad_frame_name(argument: str, frame: str) -> InvalidArgumentException | None:
-    """The error for a name that no frame can have; None when it can be one."""
+    """The error for a name that is not valid for a frame; None when it is valid."""
     reason = bad_frame_reason(frame)
     if reason is None:
         return None
@@ -81,7 +81,7 @@ def bad_frame_name(argument: str, frame: str) -> InvalidArgumentException | None
 
 
 def bad_frame_reason(frame: str) -> Phrase | None:
-    """Why no frame can have a name; None when one can."""
+    """Why a name is not valid for a frame; None when it is valid."""
     if not frame:
         return phrase("in tf2 frame_ids cannot be empty")
     if frame.startswith("/"):

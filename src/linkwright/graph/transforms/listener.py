@@ -61,7 +61,7 @@ class TransformListener:
             )
 
     def unregister(self) -> None:
-        """Listen no more."""
+        """Destroy the subscriptions; the buffer keeps what it has."""
         for subscription in self._subscriptions:
             self.node.destroy_subscription(subscription)
         self._subscriptions = []

@@ -41,17 +41,17 @@ class Buffer(BufferCore):
             )
 
     def set_transform(self, transform: Any, authority: str) -> None:
-        """Take in a transform; see `BufferCore`. Who waits is woken."""
+        """Take in a transform; see `BufferCore`. Pending lookups that it satisfies end."""
         super().set_transform(transform, authority)
         self._call_new_data_callbacks()
 
     def set_transform_static(self, transform: Any, authority: str) -> None:
-        """Take in a transform that always holds; see `BufferCore`. Who waits is woken."""
+        """Take in a static transform; see `BufferCore`. Pending lookups that it satisfies end."""
         super().set_transform_static(transform, authority)
         self._call_new_data_callbacks()
 
     def update(self, message: Any, *, static: bool, now_ns: int = 0, authority: str = "default_authority") -> None:
-        """Take in a message; see `BufferCore`. Who waits is woken."""
+        """Take in a message; see `BufferCore`. Pending lookups that it satisfies end."""
         super().update(message, static=static, now_ns=now_ns, authority=authority)
         self._call_new_data_callbacks()
 
