@@ -77,6 +77,15 @@ describe("RobotDrawing", () => {
     expect(draw(row)["drawnTogether"]).toBe(2);
   });
 
+  it("tells how large what is seen of it is, and without anything to see how far its links reach", () => {
+    const row = robot(ROW);
+    draw(row);
+    expect([row.drawing.linksPosed, row.drawing.linkCount]).toEqual([4, 4]);
+    expect(row.drawing.bounds().max.toArray()).toEqual([1.1, expect.closeTo(3.1), 0.5]);
+    draw(row, new PropertyRows([new PropertyNode(property({ id: "v", name: "Visual Enabled", value: false }))]));
+    expect(row.drawing.bounds().max.toArray()).toEqual([0, 3, 0]);
+  });
+
   it("lets rays meet what is drawn together, and cameras see it once", () => {
     const row = robot(ROW);
     draw(row);

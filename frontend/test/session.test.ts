@@ -83,11 +83,14 @@ describe("the selection", () => {
 });
 
 describe("the view", () => {
-  const view = (yaw: number, revision = 1): ServerMessage => ({
+  const view = (yaw: number, revision = 1, wholeRobot = false): ServerMessage => ({
     type: "view_state",
     view: { ...session.view.current, values: { ...session.view.values, Yaw: yaw, Distance: 1.7 } },
     revision,
+    whole_robot: wholeRobot,
   });
+  const size = { width: 800, height: 600 };
+  const box = { min: [-1, -1, 0], max: [1, 1, 2] } as const;
 
   it("is taken from the server once; a reconnect does not move the user's camera", () => {
     receive(view(1));
@@ -104,6 +107,33 @@ describe("the view", () => {
     session.view.update({ Yaw: 2 });
     receive(view(3, 2));
     expect(session.view.values["Yaw"]).toBe(3);
+  });
+
+  it("that nobody chose goes where all of the robot is seen, again while more of its links come", () => {
+    receive(view(1, 1, true));
+    expect(session.view.awaitsFit(0)).toBe(false);
+    expect(session.view.awaitsFit(2)).toBe(true);
+    session.view.fitFirst(box, size, 2, 3);
+    expect(session.view.values).toMatchObject({ Yaw: 1, "Focal Point/X": 0, "Focal Point/Z": 1 });
+    expect(session.view.awaitsFit(2)).toBe(false);
+    expect(session.view.awaitsFit(3)).toBe(true);
+    session.view.fitFirst(box, size, 3, 3);
+    expect(session.view.awaitsFit(4)).toBe(false);
+    session.view.reset();
+    expect(session.view.awaitsFit(3)).toBe(true);
+  });
+
+  it("stays where the user has put it, or the file", () => {
+    receive(view(1));
+    expect(session.view.awaitsFit(3)).toBe(false);
+    receive(view(1, 2, true));
+    session.view.update({ Yaw: 2 });
+    expect(session.view.awaitsFit(3)).toBe(false);
+    receive(view(1, 2, true));
+    expect(session.view.awaitsFit(3)).toBe(false);
+    session.view.reset();
+    session.view.setClass("rviz_default_plugins/FPS");
+    expect(session.view.awaitsFit(3)).toBe(false);
   });
 
   it("is told to the server when the user moves it, a few times a second", () => {

@@ -1,6 +1,7 @@
 import { describe, expect, it } from "vitest";
 import { FIELD_OF_VIEW, onGround, rayThrough, type Camera } from "../src/state/views/camera";
 import { controllerOf } from "../src/state/views/catalog";
+import { fitted } from "../src/state/views/fit";
 import type { Drag, ViewController, ViewValues } from "../src/state/views/view-controller";
 import type { Vector } from "../src/state/views/vector";
 
@@ -220,5 +221,43 @@ describe("another class of view", () => {
     const values = ORBIT.mimic(look("TopDownOrtho", { X: 1, Y: 2, Angle: 0 }));
     expect(values["Distance"]).toBeCloseTo(100);
     expect(ORBIT.camera(values).up[1]).toBeGreaterThan(0.99);
+  });
+});
+
+describe("a fitted view", () => {
+  /** How far from the middle of the canvas the corners of a box are seen: 1 is at its edge, right and up. */
+  function reach(values: ViewValues, min: Vector, max: Vector, { width, height }: typeof SIZE): [number, number] {
+    const camera = ORBIT.camera(values);
+    const edge = Math.tan(FIELD_OF_VIEW / 2);
+    const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((i): Vector => {
+      return [(i & 1 ? min : max)[0], (i & 2 ? min : max)[1], (i & 4 ? min : max)[2]];
+    });
+    const places = corners.map((corner) => seen(camera, corner));
+    const most = (axis: 0 | 1): number => Math.max(...places.map((place) => Math.abs(place[axis])));
+    return [(most(0) / edge) * (height / width), most(1) / edge];
+  }
+
+  it("shows all of a box of any size and shape, from any side, in any window, with some room around it", () => {
+    for (const size of [0.05, 1, 20]) {
+      for (const edges of [[1, 1, 1], [0.1, 0.1, 1], [1, 0.2, 0.01]] as Vector[]) {
+        for (const canvas of [SIZE, { width: 300, height: 900 }, { width: 1600, height: 200 }]) {
+          for (const start of [FOCUSED, { ...FOCUSED, Yaw: 0, Pitch: 0 }, { ...FOCUSED, Pitch: 1.5 }]) {
+            const min: Vector = [3, -1, 2];
+            const max: Vector = [3 + size * edges[0], -1 + size * edges[1], 2 + size * edges[2]];
+            const [across, up] = reach({ ...start, ...fitted(start, { min, max }, canvas) }, min, max, canvas);
+            expect(Math.max(across, up)).toBeLessThan(0.85);
+            expect(Math.max(across, up)).toBeGreaterThan(0.5);
+          }
+        }
+      }
+    }
+  });
+
+  it("keeps its distance from what is a single point", () => {
+    expect(fitted(FOCUSED, { min: [1, 1, 1], max: [1, 1, 1] }, SIZE)).toEqual({
+      "Focal Point/X": 1,
+      "Focal Point/Y": 1,
+      "Focal Point/Z": 1,
+    });
   });
 });

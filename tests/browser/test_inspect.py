@@ -70,6 +70,11 @@ def test_joint_axes_show_limits_and_where_joints_stand(page):
 
 
 def test_frames_by_depth_and_collisions_in_contrast(page):
+    page.keyboard.press("z")
+    distance = page.locator(".row").filter(has=page.get_by_text("Distance", exact=True)).locator("input").first
+    distance.fill("3")
+    distance.press("Enter")
+    until(page, "lw.view.distance === 3")  # the base is in the middle
     switch(page, "frames")
     until(page, "String(lw.inspected.frames) === '1,1,1,1,1'")
     page.locator(".inspect-depth input").fill("2")

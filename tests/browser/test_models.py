@@ -20,6 +20,17 @@ MODELS = {
     "mbot_base.xacro": 12,
 }
 
+TOWER = """
+<robot name="tower">
+  <link name="base">
+    <visual>
+      <origin xyz="0 0 {middle}"/>
+      <geometry><box size="{width} {width} {height}"/></geometry>
+    </visual>
+  </link>
+</robot>
+"""
+
 
 def launch_words(model: str, package: Path = PACKAGE) -> list[str]:
     launch = "display_xacro.launch.py" if model.endswith(".xacro") else "display.launch.py"
@@ -38,6 +49,21 @@ def test_model_shows(start, open_page, model, links):
     assert (view["distance"], view["pitch"], view["yaw"]) == pytest.approx((1.7, 0.33, 5.5))
     assert [display["name"] for display in state(page, "displays")] == ["Grid", "RobotModel", "TF"]
     becomes(lambda: {display["level"] for display in state(page, "displays")}, {"ok"})
+
+
+@pytest.mark.parametrize("size", [0.05, 20.0])
+def test_a_model_without_a_configuration_is_shown_whole_whatever_its_size(start, open_page, tmp_path, size):
+    model = tmp_path / "tower.urdf"
+    model.write_text(TOWER.format(width=size / 5, height=size, middle=size / 2))
+    page = open_page(start("view", str(model)))
+    view = state(page, "view")
+    assert view["focalPoint"] == pytest.approx([0, 0, size / 2], rel=1e-3, abs=size / 100)
+    assert 1.2 * size < view["distance"] < 2.5 * size
+    page.mouse.move(640, 400)
+    page.mouse.wheel(0, 120)
+    until(page, f"lw.view.distance !== {view['distance']}")
+    page.keyboard.press("Shift+Z")
+    until(page, f"Math.abs(lw.view.distance - {view['distance']}) < {size / 100}")
 
 
 @pytest.mark.parametrize("package", TUTORIAL_PACKAGES, ids=lambda package: package.parent.name)

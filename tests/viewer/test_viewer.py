@@ -123,17 +123,19 @@ async def test_a_refused_value_is_answered_with_the_one_that_stands():
 
 
 async def test_every_page_begins_with_the_view_of_the_file():
-    config = RvizConfig.for_model("base", distance=1.5)
+    config = RvizConfig.for_model("base")
     async with world(config) as made:
         async with page(made.viewer) as client:
-            view = (await client.opened())["view_state"]["view"]
-            assert view["values"]["Distance"] == 1.5
+            state = (await client.opened())["view_state"]
+            view = state["view"]
+            assert (view["values"]["Distance"], state["whole_robot"]) == (3.0, True)
             await client.send("view_changed", view=view | {"values": view["values"] | {"Distance": 7.0}})
             await client.send("view_changed", view=view | {"values": {"Focal Point": 1.0}})
             await client.set("display-1/Alpha", 1.0)
             await client.until("property_changed")
         async with page(made.viewer) as client:
-            assert (await client.opened())["view_state"]["view"]["values"]["Distance"] == 1.5
+            state = (await client.opened())["view_state"]
+            assert (state["view"]["values"]["Distance"], state["whole_robot"]) == (3.0, True)
     assert RvizConfig.parse(config.text()).views.current.values["Distance"] == 7.0
     assert "a view that is none" in made.logged()
 

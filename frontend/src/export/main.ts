@@ -33,7 +33,6 @@ function start(app: HTMLElement, recorded: HTMLElement): void {
   const connection = new RecordedConnection(recording);
   const session = new Session(connection);
   connection.open();
-  const begin = { ...session.view.current };
 
   const container = h("div", { class: "canvas-box", role: "region", aria: { label: strings.scene.label } });
   const corner = h("div", { class: "corner" }, new SelectionCard(session).element);
@@ -41,18 +40,13 @@ function start(app: HTMLElement, recorded: HTMLElement): void {
   const scene = h("main", { class: "scene-box" }, container, overlay);
   app.append(scene);
   const stage = makeStage(container, session, new RecordedFiles(recording.files));
-  const fit = (): void => {
-    if (stage) lookFrom("iso", session, stage, display);
-  };
   const actions = {
     lookFrom: (side: Parameters<typeof lookFrom>[0]): void => {
-      if (stage) lookFrom(side, session, stage, display);
+      if (stage) lookFrom(side, session, stage);
     },
     reset: (): void => {
       connection.reset();
-      session.view.setClass(begin.cls);
-      session.view.update(begin.values);
-      if (recording.fit) fit();
+      session.view.reset();
     },
   };
   app.append(new Sidebar(session, display, recording.program, theme, actions).element);
@@ -60,18 +54,8 @@ function start(app: HTMLElement, recorded: HTMLElement): void {
   if (stage && toolbox) {
     const controls = new Controls(stage, session.view, (event) => toolbox.current.pointer(event));
     new Keyboard(session, stage, toolbox, controls);
-    if (recording.fit) onceReady(stage, fit);
   }
   publishInspection(session, stage, toolbox, {});
-}
-
-/** Runs `work` after the first frame with all of the robot. */
-function onceReady(stage: Stage, work: () => void): void {
-  const stop = stage.loop.drawn.on(() => {
-    if (!stage.ready) return;
-    stop();
-    work();
-  });
 }
 
 function makeStage(container: HTMLElement, session: Session, files: RecordedFiles): Stage | null {

@@ -6,8 +6,6 @@ export interface Recording {
   program: string;
   /** The RobotModel display whose joints can be moved. */
   display: string;
-  /** The camera is to be put where all of the robot is seen. */
-  fit: boolean;
   messages: ServerMessage[];
   /** Binary frames, base64. */
   frames: string[];

@@ -1,11 +1,7 @@
-import { Sphere } from "three";
 import type { Stage } from "../scene/stage";
 import type { Session } from "../state/session";
-import { FIELD_OF_VIEW } from "../state/views/camera";
 
 const ORBIT = "rviz_default_plugins/Orbit";
-/** Room around the robot. */
-const MARGIN = 1.25;
 
 export type Side = "front" | "left" | "top" | "iso";
 
@@ -17,18 +13,8 @@ const SIDES: Readonly<Record<Side, { Yaw: number; Pitch: number }>> = {
 };
 
 /** Looks at all of the robot from a side. */
-export function lookFrom(side: Side, session: Session, stage: Stage, display: string): void {
-  const around = stage.boundsOf(display).getBoundingSphere(new Sphere());
-  if (around.radius <= 0) return;
-  const { width, height } = stage.viewport.size;
-  const half = Math.atan(Math.tan(FIELD_OF_VIEW / 2) * Math.min(1, width / height));
-  const { x, y, z } = around.center;
+export function lookFrom(side: Side, session: Session, stage: Stage): void {
   session.view.setClass(ORBIT);
-  session.view.update({
-    ...SIDES[side],
-    Distance: (around.radius * MARGIN) / Math.sin(half),
-    "Focal Point/X": x,
-    "Focal Point/Y": y,
-    "Focal Point/Z": z,
-  });
+  session.view.update(SIDES[side]);
+  stage.fitRobots();
 }

@@ -26,6 +26,7 @@ export interface ViewClasses {
 export interface ViewState {
   view: View;
   revision: number;
+  whole_robot: boolean;
   type: "view_state";
 }
 

@@ -1,6 +1,7 @@
 import { Box3, type Object3D } from "three";
 import type { DisplayState } from "../state/displays";
 import type { Session } from "../state/session";
+import type { Span } from "../state/views/fit";
 import type { PanelHost } from "./displays/display-panel";
 import type { Drawing, DrawnScene } from "./displays/drawing";
 import { Pacing } from "./displays/pacing";
@@ -68,11 +69,7 @@ export class Stage {
 
   /** Visuals of all robots drawn in the last frame. */
   get visualsDrawn(): number {
-    let count = 0;
-    for (const { drawing } of this.drawings.values()) {
-      if (drawing instanceof RobotModelDrawing) count += drawing.visualsDrawn;
-    }
-    return count;
+    return this.robots().reduce((sum, robot) => sum + robot.visualsDrawn, 0);
   }
 
   /** What a display draws, for tests. */
@@ -110,6 +107,12 @@ export class Stage {
   focusSelected(): void {
     const middle = this.picker.middleOfSelection();
     if (middle) this.session.view.lookAt(middle);
+  }
+
+  /** Looks at all of the robots, from the side that the camera is at. */
+  fitRobots(): void {
+    const box = this.boundsOfRobots();
+    if (box) this.session.view.fit(box, this.viewport.size);
   }
 
   /** Tells the drawings whether their things can be moved now. */
@@ -205,13 +208,35 @@ export class Stage {
       if (pacing.due(now, 1000 * display.rows.number(0, "Update Interval"))) drawing.update();
       settled &&= drawing.settled?.() ?? true;
     }
+    this.robotSettled ||= settled && this.visualsDrawn > 0;
+    if (settled) this.fitFirst();
     this.marks.update();
     this.outline.set(this.selectedObjects());
     this.viewport.render(fine);
     this.outline.render();
     this.flash.render();
     this.drawElsewhere();
-    this.robotSettled ||= settled && this.visualsDrawn > 0;
+  }
+
+  /** Puts the camera that nobody has put anywhere before the robot, as far as that is there. */
+  private fitFirst(): void {
+    const { view } = this.session;
+    const robots = this.robots();
+    const posed = robots.reduce((sum, robot) => sum + robot.linksPosed, 0);
+    if (!view.awaitsFit(posed)) return;
+    const box = this.boundsOfRobots();
+    if (!box) return;
+    view.fitFirst(box, this.viewport.size, posed, robots.reduce((sum, robot) => sum + robot.linkCount, 0));
+    this.viewport.aim(view);
+  }
+
+  private robots(): RobotModelDrawing[] {
+    return [...this.enabled()].flatMap(([, drawing]) => (drawing instanceof RobotModelDrawing ? [drawing] : []));
+  }
+
+  private boundsOfRobots(): Span | null {
+    const box = this.robots().reduce((sum, robot) => sum.union(robot.bounds()), new Box3());
+    return box.isEmpty() ? null : { min: box.min.toArray(), max: box.max.toArray() };
   }
 
   /** Has the displays draw that show the scene in panels of their own. */

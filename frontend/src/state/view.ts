@@ -2,8 +2,9 @@ import type { Property, PropertyValue, SavedView, View, ViewClass } from "../pro
 import type { Connection } from "../connection/connection";
 import type { FrameStore } from "./frames";
 import { Signal } from "./signal";
-import { cameraInFixed, cameraInTarget, FIXED, toTarget, type Camera, type Target } from "./views/camera";
+import { cameraInFixed, cameraInTarget, FIXED, toTarget, type Camera, type Target, type ViewSize } from "./views/camera";
 import { controllerOf } from "./views/catalog";
+import { fitted, type Span } from "./views/fit";
 import type { Vector } from "./views/vector";
 import type { Drag, ViewController, ViewValues } from "./views/view-controller";
 
@@ -22,6 +23,9 @@ export class ViewState {
   saved: readonly SavedView[] = [];
   private view: View = { cls: ORBIT, name: CURRENT_NAME, values: controllerOf(ORBIT).zero() };
   private configured: View | null = null;
+  private showsWholeRobot = false;
+  /** Links of the robot that were seen when the camera was last put where it shows all of it; null: it is not put. */
+  private linksSeen: number | null = null;
   private revision: number | null = null;
   private lastTarget: Target = FIXED;
   private timer: ReturnType<typeof setTimeout> | undefined;
@@ -38,7 +42,7 @@ export class ViewState {
       this.saved = views;
       this.listsChanged.emit();
     });
-    connection.on("view_state", ({ view, revision }) => this.configure(view, revision));
+    connection.on("view_state", ({ view, revision, whole_robot }) => this.configure(view, revision, whole_robot));
   }
 
   get current(): Readonly<View> {
@@ -78,6 +82,22 @@ export class ViewState {
 
   propertiesOf(cls: string): readonly Property[] {
     return this.classes.find((each) => each.cls === cls)?.properties ?? [];
+  }
+
+  /** Nobody has said where the camera is, and more links have a place than when it was last put before the robot. */
+  awaitsFit(posed: number): boolean {
+    return this.linksSeen !== null && posed > this.linksSeen;
+  }
+
+  /** Looks at all of a box in the fixed frame, from the side it is seen from, in a canvas of this size. */
+  fit(box: Span, size: ViewSize): void {
+    this.update(fitted(this.view.values, box, size));
+  }
+
+  /** As `fit`, for a camera that nobody has put anywhere; it waits for the robot's other links. */
+  fitFirst(box: Span, size: ViewSize, posed: number, links: number): void {
+    this.fit(box, size);
+    if (posed < links) this.linksSeen = posed;
   }
 
   /** Takes values, each within the bounds of its property. */
@@ -129,10 +149,13 @@ export class ViewState {
     this.update(this.controller.zero());
   }
 
-  /** Back to the view of the configuration file. */
+  /** Back to the view of the configuration file, or to all of the robot where it has none. */
   reset(): void {
-    if (this.configured) this.change(copyOf(this.configured));
-    else this.zero();
+    if (!this.configured) this.zero();
+    else {
+      this.linksSeen = this.showsWholeRobot ? 0 : null;
+      this.show(copyOf(this.configured));
+    }
   }
 
   // --- saved views -----------------------------------------------------------------------------------------------
@@ -167,16 +190,23 @@ export class ViewState {
   // --------------------------------------------------------------------------------------------------------------
 
   /** The view of a configuration: taken once; a reconnect does not move the user's camera, another file does. */
-  private configure(view: View, revision: number): void {
+  private configure(view: View, revision: number, showsWholeRobot: boolean): void {
     const known = this.revision === revision;
     this.configured = view;
     this.revision = revision;
+    this.showsWholeRobot = showsWholeRobot;
     if (known) return;
+    this.linksSeen = showsWholeRobot ? 0 : null;
     this.view = copyOf(view);
     this.changed.emit();
   }
 
   private change(view: View): void {
+    this.linksSeen = null;
+    this.show(view);
+  }
+
+  private show(view: View): void {
     this.view = view;
     this.changed.emit();
     this.timer ??= setTimeout(() => {

@@ -18,6 +18,7 @@ from linkwright.launch.run import LaunchOptions, run_description
 from linkwright.packages import PackageFinder
 
 if TYPE_CHECKING:
+    from linkwright.urdf import Robot
     from linkwright.viewer import RvizConfig
 
 _PUBLISH_FREQUENCY = 60.0
@@ -62,9 +63,12 @@ class ModelViewer(Node):
         """What makes the configuration, with the model's root link as the fixed frame."""
 
         def make() -> RvizConfig:
-            from linkwright.viewer import RvizConfig
+            from linkwright.viewer import RvizConfig, size_of
 
-            return RvizConfig.for_model(_root_link(self._call, context), name=str(self._call.path))
+            robot = _robot(self._call, context)
+            frame = robot.root if robot is not None else _first_link(self._call.path)
+            size = size_of(robot) if robot is not None else None
+            return RvizConfig.for_model(frame, size=size, name=str(self._call.path))
 
         return make
 
@@ -108,17 +112,19 @@ def describe_view(call: XacroCall) -> LaunchDescription:
     )
 
 
-def _root_link(call: XacroCall, context: LaunchContext) -> str:
-    """The root link of the model; of one that is broken, the first link that its text names."""
+def _robot(call: XacroCall, context: LaunchContext) -> Robot | None:
+    """The model; None of one that is broken."""
     descriptions = context.session.descriptions
     try:
-        robot = descriptions.library.read(descriptions.expand(call)).robot
+        return descriptions.library.read(descriptions.expand(call)).robot
     except LinkwrightError:
-        robot = None
-    if robot is not None:
-        return robot.root
+        return None
+
+
+def _first_link(path: Path) -> str:
+    """The first link that the text of a broken model names, for most the root."""
     try:
-        found = _FIRST_LINK.search(call.path.read_text(encoding="utf-8", errors="replace"))
+        found = _FIRST_LINK.search(path.read_text(encoding="utf-8", errors="replace"))
     except OSError:
         found = None
     return found.group(1) if found else "base_link"

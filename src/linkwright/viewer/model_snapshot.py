@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import time
-from dataclasses import replace
 
 from linkwright.descriptions import DescriptionLibrary
 from linkwright.graph import DESCRIPTION_QOS, STATIC_TF_PUBLISHER_QOS, TF_QOS, Graph
@@ -16,9 +15,8 @@ from linkwright.packages import PackageFinder
 from linkwright.urdf import Robot
 from linkwright.viewer.config.rviz_config import RvizConfig
 from linkwright.viewer.features.export.snapshot import Snapshot, snapshot_of
+from linkwright.viewer.size import size_of
 from linkwright.viewer.viewer import Viewer
-
-_VIEW_DISTANCE = 3.0
 
 
 def snapshot_of_model(text: str, robot: Robot, library: DescriptionLibrary, finder: PackageFinder) -> Snapshot:
@@ -35,7 +33,7 @@ def snapshot_of_model(text: str, robot: Robot, library: DescriptionLibrary, find
 
 async def _take(text: str, robot: Robot, library: DescriptionLibrary, finder: PackageFinder) -> Snapshot:
     graph = Graph(on_log=lambda _: None)
-    config = RvizConfig.for_model(robot.root, distance=_VIEW_DISTANCE)
+    config = RvizConfig.for_model(robot.root, size=size_of(robot))
     for display in config.displays:
         display.checked = not display.cls.endswith("/TF")  # one tick away, and without it the robot is seen better
     viewer = Viewer(graph, library=library, finder=finder, config=config, title=robot.name)
@@ -53,7 +51,7 @@ async def _take(text: str, robot: Robot, library: DescriptionLibrary, finder: Pa
     node.create_publisher(TFMessage, "/tf", TF_QOS).publish(TFMessage(batch=moving))
     await graph.settle()
     try:
-        return replace(snapshot_of(viewer, viewer.manager), fit=True)
+        return snapshot_of(viewer, viewer.manager)
     finally:
         await viewer.close()
         await graph.close()

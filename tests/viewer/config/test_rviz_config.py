@@ -8,6 +8,7 @@ import yaml
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.viewer import RvizConfig
+from linkwright.viewer.config.model_size import ModelSize
 from tests.corpora import CORPORA
 from tests.places import TUTORIAL_PACKAGES
 
@@ -51,12 +52,44 @@ def test_the_default_is_rviz_default():
 
 
 def test_a_model_gets_grid_robot_and_tf():
-    config = RvizConfig.for_model("base_link", distance=2.0)
+    config = RvizConfig.for_model("base_link")
     assert [display.name for display in config.displays] == ["Grid", "RobotModel", "TF"]
     assert all(display.enabled for display in config.displays)
     again = RvizConfig.parse(config.text())
     assert [display.cls for display in again.displays] == [display.cls for display in config.displays]
-    assert (again.options.text("Fixed Frame"), again.views.current.values["Distance"]) == ("base_link", 2.0)
+    assert (again.options.text("Fixed Frame"), again.views.current.values["Distance"]) == ("base_link", 3.0)
+
+
+@pytest.mark.parametrize(
+    ("size", "cell", "marker_scale", "distance"),
+    [
+        (ModelSize(0.05, 0.01), 0.01, 0.025, 0.1),
+        (ModelSize(0.34, 0.1), 0.1, 0.17, 0.68),
+        (ModelSize(1.9, 0.05), 1.0, 0.24, 3.8),
+        (ModelSize(20.0, 4.0), 10.0, 10.0, 40.0),
+    ],
+)
+def test_grid_and_axes_are_as_large_as_the_model_asks_for(size, cell, marker_scale, distance):
+    config = RvizConfig.for_model("base_link", size=size)
+    again = RvizConfig.parse(config.text())
+    grid, _, tf = again.displays
+    assert grid.section.scalar("Cell Size").text == f"{cell:g}"
+    assert tf.section.scalar("Marker Scale").text == f"{marker_scale:g}"
+    assert again.views.current.values["Distance"] == distance
+    assert again.views.current.values["Focal Shape Size"] <= min(0.05, size.diagonal / 10)
+
+
+def test_a_model_is_shown_whole_until_somebody_says_where_the_camera_is():
+    config = RvizConfig.for_model("base_link")
+    assert config.shows_whole_robot
+    assert config.copy().shows_whole_robot
+    assert not RvizConfig.parse(config.text()).shows_whole_robot  # saved, and opened as a file
+    assert not RvizConfig.default().shows_whole_robot
+    view = config.views.current
+    view.values["Distance"] = 2.0
+    config.views.current = view
+    assert not config.shows_whole_robot
+    assert not config.copy().shows_whole_robot
 
 
 def test_groups_hold_displays_and_old_classes_are_understood():

@@ -1,4 +1,4 @@
-import { Group, Matrix4, Vector3, type Object3D, type Raycaster } from "three";
+import { Box3, Group, Matrix4, Vector3, type Object3D, type Raycaster } from "three";
 import type { RobotScene } from "../../protocol";
 import { framePose } from "../pose";
 import { RobotDrawing } from "../robot/robot-drawing";
@@ -31,6 +31,20 @@ export class RobotModelDrawing implements Drawing {
   /** Visuals drawn now. */
   get visualsDrawn(): number {
     return this.root.visible ? (this.shown?.visualsDrawn ?? 0) : 0;
+  }
+
+  /** Links that have a place. */
+  get linksPosed(): number {
+    return this.shown?.linksPosed ?? 0;
+  }
+
+  get linkCount(): number {
+    return this.shown?.linkCount ?? 0;
+  }
+
+  /** The box around what is seen, in the fixed frame, m; around the links' origins where nothing is. */
+  bounds(): Box3 {
+    return this.shown?.bounds() ?? new Box3();
   }
 
   propertiesChanged(): void {

@@ -1,4 +1,4 @@
-import { Group, type Object3D, type Raycaster } from "three";
+import { Box3, Group, Vector3, type Object3D, type Raycaster } from "three";
 import type { RobotScene } from "../../protocol";
 import type { PropertyRows } from "../../state/properties";
 import type { FrameStore } from "../../state/frames";
@@ -50,6 +50,24 @@ export class RobotDrawing {
     let count = 0;
     for (const link of this.links.values()) count += link.visualsDrawn;
     return count;
+  }
+
+  get linkCount(): number {
+    return this.links.size;
+  }
+
+  get linksPosed(): number {
+    return [...this.links.values()].filter((link) => link.pose !== null).length;
+  }
+
+  /** The box around what is seen, in the fixed frame, m; around the links' origins where nothing is. */
+  bounds(): Box3 {
+    const box = new Box3();
+    this.root.updateWorldMatrix(true, true);
+    for (const link of this.links.values()) for (const mesh of link.visibleMeshes) box.expandByObject(mesh, true);
+    if (!box.isEmpty()) return box;
+    for (const { pose } of this.links.values()) if (pose) box.expandByPoint(new Vector3().setFromMatrixPosition(pose));
+    return box;
   }
 
   /** `contrast` draws collisions over pale visuals. */

@@ -11,7 +11,7 @@ export const tools = {
     current: "Current View",
     zero: "Zero",
     zeroHint: "The starting view of this type (Z)",
-    resetHint: "The view of the configuration file (Shift+Z)",
+    resetHint: "The view of the configuration file, or all of the robot where it has none (Shift+Z)",
     save: "Save",
     saveHint: "Keep the current view in the list",
     remove: "Remove",

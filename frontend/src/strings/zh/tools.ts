@@ -8,7 +8,7 @@ export const tools: typeof english = {
     current: "当前视角",
     zero: "归零",
     zeroHint: "此类型的初始视角（Z）",
-    resetHint: "恢复配置文件中的视角（Shift+Z）",
+    resetHint: "恢复配置文件中的视角；没有配置文件时显示整个机器人（Shift+Z）",
     save: "保存",
     saveHint: "把当前视角加入列表",
     remove: "移除",

@@ -11,12 +11,14 @@ from linkwright.viewer.config import file as configuration_file
 from linkwright.viewer.config import yaml_tree
 from linkwright.viewer.config.file import FileForm, FileState
 from linkwright.viewer.config.former_names import GROUP, modern_class
+from linkwright.viewer.config.model_size import ModelSize
 from linkwright.viewer.config.panels import PanelsConfig
 from linkwright.viewer.config.property_store import PropertyStore
 from linkwright.viewer.config.schema import PropertySpec, is_on
 from linkwright.viewer.config.tools import ToolsConfig
 from linkwright.viewer.config.views import ViewsConfig
 from linkwright.viewer.config.yaml_tree import Arranged, Made, Memory, Section
+from linkwright.viewer.protocol.views_and_tools import View
 
 __all__ = ["GLOBAL_OPTIONS", "Arrangement", "DisplayConfig", "RvizConfig"]
 
@@ -203,6 +205,9 @@ _MODEL_DISPLAYS: tuple[tuple[str, dict[str, str]], ...] = (
     ("RobotModel", {"Description Topic": "/robot_description"}),
     ("TF", {}),
 )
+_MODEL_DISTANCE = 3.0
+_MODEL_PITCH = 0.5
+"""From a little above: a robot that stands hides less of itself than from RViz's 45 degrees."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -252,6 +257,7 @@ class RvizConfig:
         self.views = ViewsConfig(document, self.warnings.append)
         self.tools = ToolsConfig(document, self.warnings.append)
         self.panels = PanelsConfig(document, self.warnings.append)
+        self._unchosen_view: View | None = None
 
     @classmethod
     def load(cls, path: str | Path) -> RvizConfig:
@@ -285,12 +291,12 @@ class RvizConfig:
         return cls.parse(_DEFAULT, "<default>")
 
     @classmethod
-    def for_model(cls, fixed_frame: str, *, distance: float = 3.0, name: str = "<model>") -> RvizConfig:
+    def for_model(cls, fixed_frame: str, *, size: ModelSize | None = None, name: str = "<model>") -> RvizConfig:
         """Grid, RobotModel and TF about one robot.
 
         Args:
             fixed_frame: the Fixed Frame, usually the robot's root link.
-            distance: of the eye from the origin, metres.
+            size: of the robot, by which grid and axes are made; None leaves them as RViz has them.
             name: of the model's file, by which edits that are not saved are kept.
         """
         config = cls.parse(_DEFAULT, name)
@@ -301,13 +307,26 @@ class RvizConfig:
             config.insert(display)
         config.options.set(("Fixed Frame",), fixed_frame)
         view = config.views.current
-        view.values["Distance"] = distance
+        view.values |= {"Distance": _MODEL_DISTANCE, "Pitch": _MODEL_PITCH}
+        if size is not None:
+            grid, _, tf = (display.section for display in config.displays)
+            grid.put(("Cell Size",), f"{size.cell:g}")
+            tf.put(("Marker Scale",), f"{size.marker_scale:g}")
+            view.values |= {"Distance": size.distance, "Focal Shape Size": size.focal_shape}
         config.views.current = view
+        config._unchosen_view = config.views.current
         return config
+
+    @property
+    def shows_whole_robot(self) -> bool:
+        """Whether nobody has said yet where the camera is: pages put it where they see all of the robot."""
+        return self._unchosen_view == self.views.current
 
     def copy(self) -> RvizConfig:
         """A copy that belongs to no file."""
-        return RvizConfig.parse(self.text(), self.document.source.name)
+        copied = RvizConfig.parse(self.text(), self.document.source.name)
+        copied._unchosen_view = self._unchosen_view
+        return copied
 
     # --- displays ----------------------------------------------------------------------------------------------
 

@@ -54,7 +54,7 @@ class ViewsFeature(PageFeature):
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
         """The view of the file, wherever pages have gone since, and the saved ones."""
-        return [ViewState(manager.view, manager.opened), self._saved(manager)]
+        return [ViewState(manager.view, manager.opened, manager.shows_whole_robot), self._saved(manager)]
 
     def receive(self, page: Page, message: Any) -> None:
         """Keep the views that pages send; those that are not valid are refused."""

@@ -38,10 +38,12 @@ class ViewState(ServerMessage):
     """The view of a configuration; the page owns the camera from then on.
 
     `revision` counts the configurations that were opened: a page that comes back keeps its camera while it is the same.
+    `whole_robot` says that nobody chose this view: the camera goes where all of the robot is seen, once it is drawn.
     """
 
     view: View
     revision: int
+    whole_robot: bool = False
 
 
 class SavedView(Record):

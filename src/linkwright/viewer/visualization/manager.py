@@ -69,6 +69,7 @@ class VisualizationManager:
         context: what all of the viewer works with.
         pages: those that see it.
         view: where the camera of a page that opens is, wherever others have gone.
+        shows_whole_robot: nobody put it there: pages move it so that all of the robot is seen.
         config: the configuration now.
         opened: counts the configurations that it has had.
         frames: the frames now.
@@ -81,7 +82,7 @@ class VisualizationManager:
         self.context = context
         self.pages = PageGroup()
         self.config = config
-        self.view = config.views.current
+        self.view, self.shows_whole_robot = config.views.current, config.shows_whole_robot
         self.opened = 1
         self.history = History(lambda: owner.edited(self))
         self._owner = owner
@@ -119,7 +120,7 @@ class VisualizationManager:
         """Show another configuration; what was edited in the one before is forgotten."""
         self.tree.stop()
         self.config = config
-        self.view = config.views.current
+        self.view, self.shows_whole_robot = config.views.current, config.shows_whole_robot
         self.opened += 1
         self._read_options()
         self._warn()

@@ -53,7 +53,7 @@ def test_the_page_has_everything_a_server_would_tell():
     ]
     positions = next(message for message in told["messages"] if message["type"] == "joint_positions")["positions"]
     assert positions == pytest.approx({"turn": 0.0, "open": 0.25, "open_too": -0.45}, abs=1e-6)
-    assert told["fit"] is True
+    assert next(message for message in told["messages"] if message["type"] == "view_state")["whole_robot"] is True
 
 
 def test_only_the_one_script_may_run_and_nothing_may_be_fetched():
@@ -130,4 +130,3 @@ async def test_what_else_is_shown_goes_along():
     told = recorded(export_snapshot(taken, "html").decode())
     frames = [base64.b64decode(frame) for frame in told["frames"]]
     assert any(b"markers_changed" in frame for frame in frames)
-    assert told["fit"] is False

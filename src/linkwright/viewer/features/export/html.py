@@ -79,7 +79,6 @@ def _recorded(snapshot: Snapshot, program: str) -> str:
     rest = {
         "program": program,
         "display": snapshot.scene.display,
-        "fit": snapshot.fit,
         "frames": [base64.b64encode(frame).decode() for frame in snapshot.frames],
         "files": {address: base64.b64encode(data).decode() for address, data in files.items()},
     }

@@ -190,7 +190,6 @@ class Snapshot:
         meshes: finds the files that `scene` names.
         problems: what of the robot cannot be drawn.
         marker_meshes: addresses of the meshes that markers show.
-        fit: nobody chose where the camera is: it is to show all of the robot.
         outside: the files in no package, nor below the folder of the description, whose contents are part of it.
     """
 
@@ -203,7 +202,6 @@ class Snapshot:
     meshes: MeshFolders = field(repr=False)
     problems: Sequence[Diagnostic] = ()
     marker_meshes: Sequence[str] = ()
-    fit: bool = False
     outside: Sequence[Path] = ()
 
 

@@ -1,0 +1,49 @@
+"""What a configuration that is made for a robot has of other sizes than RViz's defaults."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+_RVIZ_AXIS = 0.2
+"""Length of an axis of the TF display at Marker Scale 1, m."""
+_LARGEST_FOCAL_SHAPE = 0.05
+
+
+@dataclass(frozen=True, slots=True)
+class ModelSize:
+    """Lengths of a robot, m.
+
+    Attributes:
+        diagonal: of the box around it.
+        spacing: from a link's frame to that of its parent, for most links.
+    """
+
+    diagonal: float
+    spacing: float
+
+    @property
+    def distance(self) -> float:
+        """From where all of it is seen, until a page that has its meshes knows better, m."""
+        return _rounded(2.0 * self.diagonal)
+
+    @property
+    def marker_scale(self) -> float:
+        """Of TF, so that axes are seen beside the links and do not cover them."""
+        axis = min(max(self.spacing / 2, self.diagonal / 40), self.diagonal / 10)
+        return _rounded(axis / _RVIZ_AXIS)
+
+    @property
+    def focal_shape(self) -> float:
+        """Diameter of the disc at the focal point, m; RViz's where that is small beside the robot."""
+        return min(_LARGEST_FOCAL_SHAPE, _rounded(self.diagonal / 15))
+
+    @property
+    def cell(self) -> float:
+        """Of the grid, m: a power of ten; ten cells are wider than the robot, and one is not much wider."""
+        return float(10.0 ** math.floor(math.log10(self.diagonal * 1.5)))
+
+
+def _rounded(length: float) -> float:
+    """A length with two digits, as somebody would type it."""
+    return float(f"{length:.2g}")
