@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 from contextlib import suppress
 from pathlib import Path
 from urllib.parse import urlsplit
@@ -360,6 +361,59 @@ async def test_requests_beyond_all_bounds_are_refused(served, said):
     writer.close()
     assert memory() - before < 16 << 20
     assert (await raw(served.viewer, mesh_url(served.viewer)))[0] == 200
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        b"\x00\xff\xfe nonsense\r\n\r\n",
+        bytes.fromhex("16030100c8010000c40303") + bytes(range(200)) + b"\r\n\r\n",
+        b"GET / HTTP/1.1\r\nHost: localhost\r\nX: " + b"a" * 1_000_000 + b"\r\n\r\n",
+        b"GET / HTTP/9.9\r\n\r\n",
+        b"GET / HTTP/1.1\r\n\r\n",
+        b"G@T / HTTP/1.1\r\nHost: localhost\r\n\r\n",
+        b"GET http://[::1 HTTP/1.1\r\nHost: localhost\r\n\r\n",
+        b"GET / HTTP/1.1\r\nHost: localhost\r\nContent-Length: -5\r\n\r\n",
+        b"GET / HTTP/1.1\r\nHost: localhost\r\nCookie: \x01\r\n\r\n",
+        b"POST / HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: chunked\r\n\r\nZZZ\r\nnonsense\r\n",
+        b"POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 5\r\nTransfer-Encoding: chunked\r\n\r\n0\r\n\r\n",
+        b"POST / HTTP/1.1\r\nHost: localhost\r\nContent-Encoding: gzip\r\nContent-Length: 4\r\n\r\nabcd",
+        b"GET /ws HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n\r\n",
+        b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n",
+    ],
+    ids=[
+        "bytes",
+        "tls",
+        "header",
+        "version",
+        "no-host",
+        "method",
+        "url",
+        "length",
+        "cookie",
+        "chunk",
+        "both",
+        "gzip",
+        "ws",
+        "h2",
+    ],
+)
+async def test_what_is_no_request_writes_nothing_on_the_terminal(served, said, caplog):
+    address = urlsplit(served.viewer.url)
+    reader, writer = await asyncio.open_connection(address.hostname, address.port)
+    with suppress(ConnectionError):
+        writer.write(said)
+        answer = await reader.read(4096)
+        assert answer == b"" or answer.split(b" ")[1][:1] == b"4"
+    writer.close()
+    assert (await raw(served.viewer, mesh_url(served.viewer)))[0] == 200
+    servers = ("aiohttp.server", "linkwright.viewer.web.server")
+    assert [record.getMessage() for record in caplog.records if record.name in servers] == []
+
+
+def test_a_fault_of_ours_is_still_told(caplog):
+    logging.getLogger("linkwright.viewer.web.server").error("Error handling request", exc_info=RuntimeError("ours"))
+    assert "ours" in caplog.text
 
 
 async def test_a_flood_of_messages_slows_its_sender_alone(served):

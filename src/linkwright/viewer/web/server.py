@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import errno
 import ipaddress
+import logging
 import os
 import re
 import socket
@@ -14,6 +15,7 @@ from typing import TYPE_CHECKING, cast
 from urllib.parse import quote
 
 from aiohttp import web
+from aiohttp.http_exceptions import HttpProcessingError
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.viewer.web.access import TOKEN_PARAMETER, Admission, Gate, security_headers
@@ -74,6 +76,15 @@ MOST_UNSENT = 16 * 1024
 _NOT_SENT_LOW_WATER: int | None = getattr(socket, "TCP_NOTSENT_LOWAT", None)
 
 
+def _is_no_malformed_request(record: logging.LogRecord) -> bool:
+    """Keep faults of ours; whoever sends what is no HTTP is answered with 400 and writes nothing on the terminal."""
+    return not (record.exc_info and isinstance(record.exc_info[1], (HttpProcessingError, web.RequestPayloadError)))
+
+
+_LOGGER = logging.getLogger(__name__)
+_LOGGER.addFilter(_is_no_malformed_request)
+
+
 class WebServer:
     """Serves one viewer.
 
@@ -112,7 +123,12 @@ class WebServer:
         application.router.add_get("/export/{key}/{name}", self._export, allow_head=False)
         application.router.add_get("/{path:.+}", self._page_file)
         self._runner = web.AppRunner(
-            application, handle_signals=False, access_log=None, shutdown_timeout=_GOODBYE, keepalive_timeout=_IDLE
+            application,
+            handle_signals=False,
+            access_log=None,
+            logger=_LOGGER,
+            shutdown_timeout=_GOODBYE,
+            keepalive_timeout=_IDLE,
         )
         await self._runner.setup()
         loop = asyncio.get_running_loop()
