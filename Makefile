@@ -98,7 +98,7 @@ fuzz: .build/fuzz/venv/.ready
 
 .build/fuzz/venv/.ready: | $(UV)
 	$(UV) venv --quiet --clear --python $(or $(VERSION),3.11) .build/fuzz/venv
-	$(UV) pip install --quiet --python .build/fuzz/venv/bin/python atheris numpy pyyaml
+	$(UV) pip install --quiet --python .build/fuzz/venv/bin/python atheris msgspec numpy pyyaml regex
 	touch $@
 
 # What ros/xacro and urdfdom make of the descriptions in the tests, recorded in the repository. ros/xacro writes attributes
