@@ -56,6 +56,15 @@ def test_the_meaning_of_an_attribute(capsys, word):
     assert "N m" in text
 
 
+def test_the_meaning_of_an_element_in_chinese(capsys):
+    assert main(["--lang", "zh", "explain", "joint.safety_controller"]) == 0
+    heading, meaning, attributes = capsys.readouterr().out.split("\n\n")
+    assert heading == "# `joint.safety_controller`"
+    assert meaning == "`<safety_controller>`：安全控制器的增益和软限位"
+    assert "- `k_velocity`：" in attributes
+    assert "必需" in attributes
+
+
 def test_the_meaning_of_an_element_in_all_its_places(capsys):
     assert main(["explain", "origin"]) == 0
     text = capsys.readouterr().out

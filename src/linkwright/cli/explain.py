@@ -36,5 +36,5 @@ def run(arguments: argparse.Namespace) -> int:
         )
         message = phrase("there is no code, rule, element or attribute '{code}'", code=arguments.code)
         raise LinkwrightError(Diagnostic("CLI301", message, hint=hint))
-    print("\n\n".join(found))
+    print("\n\n".join(map(localized, found)))
     return 0

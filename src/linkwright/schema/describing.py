@@ -2,43 +2,63 @@
 
 from __future__ import annotations
 
+from linkwright.diagnostics import Phrase, joined, phrase, term
 from linkwright.schema.rules import AttributeRule, ElementRule, Version
 
 
-def describe_element(rule: ElementRule) -> str:
+def describe_element(rule: ElementRule) -> Phrase:
     """An element in Markdown: what it is, what it must and may carry and contain."""
-    since = f", since version {_shown(rule.since)}" if rule.since > (1, 0) else ""
-    lines = [f"`<{rule.tag}>`{since}: {rule.meaning}", ""]
-    lines += [f"- {describe_attribute(attribute)}" for attribute in rule.attributes]
+    tag = joined([f"`<{rule.tag}>`", *_since(rule.since)])
+    head = phrase("{name}: {meaning}", name=tag, meaning=term(rule.meaning))
+    lines = [phrase("- {line}", line=describe_attribute(attribute)) for attribute in rule.attributes]
     if rule.text is not None:
-        lines.append(f"- the text inside: {rule.text.meaning} ({', '.join(_facts(rule.text))})")
-    inner = [f"`<{child.tag}>`{_times(child)}" for child in rule.children]
-    inner += [f"`<{rule.tag}>` (any number)"] if rule.nests else []
+        meaning, facts = term(rule.text.meaning), joined(_facts(rule.text))
+        lines.append(phrase("- the text inside: {meaning} ({facts})", meaning=meaning, facts=facts))
+    inner = [_with_count(child.tag, many=child.many, required=child.required) for child in rule.children]
+    inner += [_with_count(rule.tag, many=True, required=False)] if rule.nests else []
     if inner:
-        lines.append(f"- contains {'one of ' if rule.choice else ''}{', '.join(inner)}")
-    return "\n".join(lines).rstrip()
+        several = joined(inner)
+        lines.append(
+            phrase("- contains one of {elements}", elements=several)
+            if rule.choice
+            else phrase("- contains {elements}", elements=several)
+        )
+    return joined([head, "", *lines], "\n") if lines else head
 
 
-def describe_attribute(attribute: AttributeRule) -> str:
+def describe_attribute(attribute: AttributeRule) -> Phrase:
     """An attribute in one line of Markdown: meaning, type, unit, default, versions."""
-    return f"`{attribute.name}`: {attribute.meaning} ({', '.join(_facts(attribute))})"
+    return phrase(
+        "{name}: {meaning} ({facts})",
+        name=f"`{attribute.name}`",
+        meaning=term(attribute.meaning),
+        facts=joined(_facts(attribute)),
+    )
 
 
-def _facts(attribute: AttributeRule) -> list[str]:
-    facts = [attribute.type.name + (f" in {attribute.unit}" if attribute.unit else "")]
+def _facts(attribute: AttributeRule) -> list[Phrase]:
+    kind = term(attribute.type.name)
+    facts = [phrase("{type} in {unit}", type=kind, unit=term(attribute.unit)) if attribute.unit else kind]
     if attribute.required:
-        facts.append(f"required before version {_shown(attribute.until)}" if attribute.until else "required")
+        facts.append(
+            phrase("required before version {version}", version=_shown(attribute.until))
+            if attribute.until
+            else phrase("required")
+        )
     elif attribute.default:
-        facts.append(f"`{attribute.default}` when absent")
-    if attribute.since > (1, 0):
-        facts.append(f"since version {_shown(attribute.since)}")
-    return facts
+        facts.append(phrase("{default} when absent", default=f"`{attribute.default}`"))
+    return [*facts, *_since(attribute.since)]
 
 
-def _times(rule: ElementRule) -> str:
-    if rule.many:
-        return " (any number)"
-    return " (required)" if rule.required else ""
+def _since(version: Version) -> list[Phrase]:
+    return [phrase("since version {version}", version=_shown(version))] if version > (1, 0) else []
+
+
+def _with_count(tag: str, *, many: bool, required: bool) -> Phrase:
+    name = f"`<{tag}>`"
+    if many:
+        return phrase("{name} (any number)", name=name)
+    return phrase("{name} (required)", name=name) if required else Phrase(name)
 
 
 def _shown(version: Version) -> str:

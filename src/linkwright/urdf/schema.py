@@ -192,7 +192,7 @@ AXIS = ElementRule(
         AttributeRule(
             "xyz",
             VECTOR3,
-            "the direction",
+            "the direction of the axis, a vector of length 1",
             default="0 0 0",
             usual=True,
             field="axis",

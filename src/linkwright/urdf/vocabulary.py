@@ -5,13 +5,14 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
+from linkwright.diagnostics import Phrase, joined, phrase
 from linkwright.schema import ElementRule, describe_attribute, describe_element
 from linkwright.urdf.schema import ROBOT
 
 _Path = tuple[str, ...]
 
 
-def meanings(name: str) -> list[str]:
+def meanings(name: str) -> list[Phrase]:
     """What a name or path stands for, each meaning in Markdown; none where URDF has no such thing.
 
     A path goes from the outside in, may begin anywhere and may end with an attribute: ``joint.limit.effort``
@@ -20,15 +21,17 @@ def meanings(name: str) -> list[str]:
     asked = tuple(re.findall(r"[\w-]+", name.casefold()))
     if not asked:
         return []
-    places: dict[str, list[_Path]] = {}
+    places: dict[Phrase, list[_Path]] = {}
     for path, rule in _elements(ROBOT, ()):
         if _ends_with(path, asked):
             places.setdefault(describe_element(rule), []).append(path)
         if asked[:-1] == path[len(path) - len(asked) + 1 :]:
             for attribute in rule.attributes:
                 if attribute.name.casefold() == asked[-1]:
-                    places.setdefault(f"- {describe_attribute(attribute)}", []).append((*path, attribute.name))
-    return [f"{_headed(paths)}\n\n{text}" for text, paths in places.items()]
+                    places.setdefault(phrase("- {line}", line=describe_attribute(attribute)), []).append(
+                        (*path, attribute.name)
+                    )
+    return [joined([_headed(paths), text], "\n\n") for text, paths in places.items()]
 
 
 def names() -> list[str]:

@@ -114,7 +114,9 @@ class ZeroInertia(_TensorRule):
             yield self.report(
                 phrase("link '{name}' has a mass of {mass:g} kg and no inertia", name=link.name, mass=inertial.mass),
                 part(inertial, "inertia"),
-                hint=phrase("`linkwright inertia` computes it from the link's shapes"),
+                hint=phrase("`linkwright inertia` computes it from the link's shapes")
+                if link.visuals or link.collisions
+                else phrase("give it that of a small solid of this mass: the link has no shape to compute it from"),
             )
 
 
