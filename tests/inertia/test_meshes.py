@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import gc
 import struct
 
 import numpy as np
@@ -31,6 +32,28 @@ def write(folder, kind):
     else:
         path.write_bytes(data.encode() if isinstance(data, str) else data)
     return path
+
+
+@pytest.mark.parametrize("kind", ["stl", "obj", "glb"])
+def test_nothing_large_stays_of_a_file_that_was_read(kind, tmp_path):
+    """Counted without the garbage collector, which comes seldom for so few objects, however large they are."""
+    path = write(tmp_path, kind)
+    read_mesh(path)
+    gc.collect()
+    before = _bytes_of_meshes()
+    gc.disable()
+    try:
+        for _ in range(3):
+            read_mesh(path)
+        assert _bytes_of_meshes() == before
+    finally:
+        gc.enable()
+
+
+def _bytes_of_meshes():
+    """How many objects there are that hold corners, triangles or the bytes of a file."""
+    kinds = (trimesh.caching.TrackedArray, trimesh.caching.DataStore, trimesh.parent.LoadSource)
+    return sum(isinstance(each, kinds) for each in gc.get_objects())
 
 
 @pytest.mark.parametrize("kind", ["stl", "stl_ascii", "obj", "dae", "glb", "gltf"])

@@ -91,7 +91,9 @@ def placed_meshes(data: bytes, kind: str, **options: Any) -> list[PlacedMesh]:
 def _parsed(data: bytes, kind: str, **options: Any) -> Iterator[PlacedMesh]:
     import trimesh  # not above: it costs 0.1 s, and most robots are checked without a look into their meshes
 
-    logging.getLogger("trimesh").addHandler(logging.NullHandler())  # what it warns of is no concern of the user
+    logger = logging.getLogger("trimesh")
+    if not logger.handlers:
+        logger.addHandler(logging.NullHandler())  # what it warns of is no concern of the user
     scene: Any = trimesh.load_scene(BytesIO(data), file_type=kind, process=False, **options)
     for node in scene.graph.nodes_geometry:
         matrix, name = scene.graph[node]
@@ -99,6 +101,7 @@ def _parsed(data: bytes, kind: str, **options: Any) -> Iterator[PlacedMesh]:
         if isinstance(mesh, trimesh.Trimesh) and len(mesh.faces):
             unit = _collada_unit(mesh) if kind == "dae" else 1.0
             yield PlacedMesh(mesh, np.asarray(matrix, dtype=np.float64), unit)
+    scene.__dict__.clear()  # it holds itself in a circle, and with it the bytes of the file
 
 
 def said_by_parser(error: Exception) -> Phrase:

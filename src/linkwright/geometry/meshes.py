@@ -124,11 +124,15 @@ def _parse(data: bytes, kind: str, path: Path) -> TriangleMesh:
     vertices: list[Array] = [np.zeros((0, 3))]
     faces: list[Faces] = [np.zeros((0, 3), dtype=np.int64)]
     count = 0
+    parsed = []
     for placed in placed_meshes(data, kind, **options):
         corners = np.asarray(placed.mesh.vertices, dtype=np.float64)
         vertices.append((corners @ placed.matrix[:3, :3].T + placed.matrix[:3, 3]) * placed.unit)
         faces.append(placed.faces + count)
         count += len(corners)
+        parsed.append(placed.mesh)
+    for mesh in parsed:
+        mesh.__dict__.clear()  # it holds itself in a circle: few objects that Python seldom looks for, and many bytes
     return TriangleMesh(np.concatenate(vertices), np.concatenate(faces))
 
 
