@@ -13,6 +13,7 @@ from linkwright.lint.settings import Settings
 from tests.corpora import MODELS
 from tests.lint.cases import load_cases
 from tests.places import PACKAGE
+from tests.work import lines_run
 
 RULES = ("LW3", "LW4", "LW5")
 FOUND = {
@@ -70,3 +71,18 @@ def test_no_number_is_too_odd(seed, tmp_path, capsys):
     examine(path, settings=Settings(select=RULES))
     assert main(["inertia", str(path), "--format", chance.choice(("text", "json"))]) in (0, 1)
     capsys.readouterr()
+
+
+def test_a_body_of_many_links_is_not_measured_for_each_of_them(tmp_path):
+    def work(count):
+        link = (
+            '<link name="l{0}"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>'
+            '</inertial><visual><geometry><box size="1 1 1"/></geometry></visual></link>'
+            '<joint name="j{0}" type="fixed"><parent link="base"/><child link="l{0}"/></joint>'
+        )
+        path = tmp_path / f"r{count}.urdf"
+        path.write_text(f'<robot name="r"><link name="base"/>{"".join(map(link.format, range(count)))}</robot>')
+        return lines_run(lambda: examine(path, settings=Settings()))
+
+    work(300)
+    assert work(900) < 3.5 * work(300)

@@ -14,6 +14,9 @@ from linkwright.lint.meshes import MeshFacts
 from linkwright.urdf import Collision, Link, Mesh, Visual
 from linkwright.urdf.bodies import Bodies, Body
 
+_MANY = 200
+"""Links of a body from which on it is not measured anew for each of them."""
+
 
 class Extents:
     """How large the shapes of a description are, each measured once."""
@@ -22,6 +25,7 @@ class Extents:
         self._bodies = bodies
         self._meshes = meshes
         self._measured: dict[int, Bounds | None] = {}
+        self._of_bodies: dict[Body, Bounds | None] = {}
 
     def mass_properties(self, body: Body) -> MassProperties:
         """What the ``<inertial>`` of a body's links come to, in the frame of its first link."""
@@ -50,11 +54,23 @@ class Extents:
         return union(known) if len(known) == len(found) else None
 
     def body_bounds(self, link: Link) -> Bounds | None:
-        """The box around the whole body of a link in that link's frame; None when a shape cannot be measured."""
+        """The box around the whole body of a link in that link's frame; None when a shape cannot be measured.
+
+        Of a body of very many links the box is put around all of them once, and the one in a link's frame around that.
+        """
         body = self._bodies.of(link.name)
         if body is None:
             return None
-        back = np.linalg.inv(frame_matrix(body.frames[link.name]))
+        back = np.asarray(np.linalg.inv(frame_matrix(body.frames[link.name])), dtype=np.float64)
+        if len(body.frames) <= _MANY:
+            return self._bounds_from(body, back)
+        if body not in self._of_bodies:
+            self._of_bodies[body] = self._bounds_from(body, np.eye(4))
+        around = self._of_bodies[body]
+        return None if around is None else around.moved(back)
+
+    def _bounds_from(self, body: Body, back: Array) -> Bounds | None:
+        """The box around a body, along the axes that a matrix turns those of its first link to."""
         boxes = []
         for member, frame in zip(self._bodies.members(body), body.frames.values(), strict=True):
             if not (member.visuals or member.collisions):

@@ -36,6 +36,7 @@ class Bodies:
 
     def __init__(self, robot: Robot | None) -> None:
         self._robot = robot
+        self._masses: dict[Body, float] = {}
 
     @cached_property
     def all(self) -> tuple[Body, ...]:
@@ -56,9 +57,11 @@ class Bodies:
         return link.name in self._standing_for_others
 
     def mass(self, body: Body) -> float:
-        """The positive masses of a body's links together, in kg."""
-        inertials = [link.inertial for link in self.members(body)]
-        return sum(inertial.mass for inertial in inertials if inertial is not None and inertial.mass > 0)
+        """The positive masses of a body's links together, in kg; added up once."""
+        if body not in self._masses:
+            inertials = [link.inertial for link in self.members(body)]
+            self._masses[body] = sum(each.mass for each in inertials if each is not None and each.mass > 0)
+        return self._masses[body]
 
     @cached_property
     def _standing_for_others(self) -> frozenset[str]:

@@ -276,7 +276,7 @@ class CenterForgotten(Rule):
             if element is None or element.first("origin") is not None:
                 continue
             body = subject.bodies.of(link.name)
-            if body is None or len(body.links) > 1:
+            if body is None or len(body.frames) > 1:
                 continue
             # Beyond 0.45 of an edge from the middle of the box: at its side, or outside.
             offset = abs(bounds.center) - 0.45 * bounds.size
