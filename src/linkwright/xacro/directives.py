@@ -121,7 +121,7 @@ def set_attribute(expander: Expander, site: Site) -> None:
 
 
 def _warn_of_value(expander: Expander, node: Element, name: str, value: object) -> None:
-    kind = term(type(value).__name__)
+    kind = type(value).__name__
     message = (
         phrase(
             "ros/xacro fails to write the attribute '{name}': its value is no text but of type {kind}",
