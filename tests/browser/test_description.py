@@ -109,6 +109,7 @@ def test_diagram_and_table_show_all_links_and_joints_and_select_them(page):
 
 
 def test_an_edit_lights_up_and_a_mistake_leads_to_its_place(page, arm):
+    page.locator('.link-row[data-link="fore"]').wait_for()  # what lights up is there
     revision = state(page, "description.revision")
     page.evaluate("""() => {
         window.lit = new Set();
