@@ -9,6 +9,7 @@ import os
 import resource
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -63,14 +64,16 @@ def fuzz_one(name: str, runs: int, seconds: int) -> None:
     """Fuzz one target in this process, which ends with it; what is found is kept and the run goes on."""
     import atheris  # type: ignore[import-untyped]
 
+    work = FOLDER / "work"
+    work.mkdir(parents=True, exist_ok=True)
+    tempfile.tempdir = str(work)  # the process ends without tidying up
     with atheris.instrument_imports(include=["linkwright"]):
         from fuzz.targets import TARGETS, hard_seeds, seeds
 
     target = TARGETS[name]
     corpus, found_in = FOLDER / "corpus" / name, FOLDER / "found"
-    for folder in (corpus, found_in, FOLDER / "work"):
+    for folder in (corpus, found_in):
         folder.mkdir(parents=True, exist_ok=True)
-    os.chdir(FOLDER / "work")
     if not any(corpus.iterdir()):
         for number, seed in enumerate(seeds(name)):
             (corpus / f"seed-{number}").write_bytes(seed)

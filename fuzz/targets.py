@@ -6,6 +6,7 @@ again, and it takes less than a second of processor time.
 
 from __future__ import annotations
 
+import tempfile
 from collections.abc import Callable
 from pathlib import Path
 from random import Random
@@ -53,10 +54,14 @@ def check_xml(text: str) -> None:
 
 def check_expansion(files: documents.Files) -> None:
     """A description that is expanded gives a document that can be read, and the same one each time."""
-    _save("other.xacro", files.other)
-    _save("data.yaml", files.data)
+    folder = Path(_FOLDER.name)
+    _save(folder / "other.xacro", files.other)
+    _save(folder / "data.yaml", files.data)
+    packages = {"pkg": str(folder)}
     try:
-        expansion = expand("main.xacro", {"given": "1"}, packages={"pkg": "."}, text=files.main, limits=_SMALL_LIMITS)
+        expansion = expand(
+            folder / "main.xacro", {"given": "1"}, packages=packages, text=files.main, limits=_SMALL_LIMITS
+        )
     except LinkwrightError as error:
         _check_printable(error)
         return
@@ -145,14 +150,16 @@ def _check_printable(error: LinkwrightError) -> None:
         assert to_data(diagnostic)["message"]
 
 
-def _save(name: str, text: str) -> None:
-    if _contents.get(name) != text:
-        Path(name).write_text(text, encoding="utf-8", errors="surrogatepass", newline="")
+def _save(path: Path, text: str) -> None:
+    if _contents.get(path) != text:
+        path.write_text(text, encoding="utf-8", errors="surrogatepass", newline="")
         sources.documents.clear()  # a file that changes twice in a tick of the clock would be taken for the old one
-        _contents[name] = text
+        _contents[path] = text
 
 
-_contents: dict[str, str] = {}
+_FOLDER = tempfile.TemporaryDirectory(prefix="linkwright-fuzz-")
+"""Of the files that a description includes or loads; it goes with the process."""
+_contents: dict[Path, str] = {}
 
 
 def _text(data: bytes) -> str:

@@ -1,11 +1,15 @@
-"""How much work something is, without a clock."""
+"""How much work something is: lines counted, not time measured; what has no lines at least comes to an end."""
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from types import FrameType
 from typing import Any
+
+from linkwright.xacro import Limits
 
 
 def lines_run(function: Callable[[], object]) -> int:
@@ -24,3 +28,14 @@ def lines_run(function: Callable[[], object]) -> int:
     finally:
         sys.settrace(before)
     return count
+
+
+@contextmanager
+def ends() -> Iterator[None]:
+    """What is inside takes less of the processor than an expansion may altogether, where it could take hours.
+
+    For single calls in C, which have no lines to count. They take a second at most; the rest is for slow machines.
+    """
+    before = time.process_time()
+    yield
+    assert time.process_time() - before < Limits().seconds

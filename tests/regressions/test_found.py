@@ -6,13 +6,14 @@ what the fuzzers check (see ``fuzz/targets.py``): no error but ours, and an outp
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 from fuzz import targets
 from fuzz.documents import HEAD, Files
+
+from tests.work import ends
 
 INPUTS = sorted((Path(__file__).parent / "inputs").iterdir())
 
@@ -29,18 +30,13 @@ CHECKS: dict[str, Callable[[str], None]] = {
 
 
 @pytest.mark.parametrize("path", INPUTS, ids=lambda path: path.name)
-def test_what_was_found_stays_mended(path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
+def test_what_was_found_stays_mended(path: Path) -> None:
     check = CHECKS[path.name.partition("--")[0]]
-    started = time.process_time()
-    check(path.read_bytes().decode("utf-8", "surrogatepass"))
-    assert time.process_time() - started < 3.0
+    with ends():
+        check(path.read_bytes().decode("utf-8", "surrogatepass"))
 
 
 @pytest.mark.parametrize("name", [name for name in targets.TARGETS if targets.hard_seeds(name)])
-def test_what_was_slow_or_large_once_is_read_or_refused(
-    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
+def test_what_was_slow_or_large_once_is_read_or_refused(name: str) -> None:
     for text in targets.hard_seeds(name):
         targets.TARGETS[name](text.encode())
