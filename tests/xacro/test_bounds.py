@@ -1,11 +1,8 @@
-"""Ways to make an expansion never end, or fill the memory. Each is stopped within a second, with a clear error."""
+"""Ways to make an expansion never end, or fill the memory. Each is stopped with a clear error."""
 
 from __future__ import annotations
 
 import sys
-import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import fields
 from pathlib import Path
 
@@ -15,22 +12,15 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.xacro import Limits, expand
 from linkwright.xacro.faults import Fault
 from tests.places import REPOSITORY
+from tests.work import ends
 
 from .cases import ROOT
 from .evaluating import evaluate
 
 
-@contextmanager
-def at_once() -> Iterator[None]:
-    """What is inside takes less than a second of the processor; three, where other tests run beside it."""
-    before = time.process_time()
-    yield
-    assert time.process_time() - before < 3.0
-
-
 def codes(text: str, limits: Limits | None = None) -> list[str]:
     """The codes of the mistakes in a text, none of which takes long to find."""
-    with at_once(), pytest.raises(LinkwrightError) as caught:
+    with ends(), pytest.raises(LinkwrightError) as caught:
         expand("m.xacro", text=text, limits=limits)
     return [diagnostic.code for diagnostic in caught.value.diagnostics]
 
@@ -182,7 +172,7 @@ HUGE = [
 
 @pytest.mark.parametrize("source", HUGE, ids=lambda source: source[:40])
 def test_what_would_grow_or_never_end_is_stopped(source: str) -> None:
-    with at_once(), pytest.raises(Fault):
+    with ends(), pytest.raises(Fault):
         evaluate("${" + source + "}", items=[1], data={"a": 1})
 
 
@@ -294,7 +284,7 @@ LARGE_BUT_ALLOWED = [
 
 @pytest.mark.parametrize("source", LARGE_BUT_ALLOWED, ids=lambda source: source[:40])
 def test_what_is_large_but_allowed_does_not_take_long(source: str) -> None:
-    with at_once():
+    with ends():
         evaluate("${" + source + "}", items=[1], data={"a": 1})
 
 
@@ -378,7 +368,7 @@ def test_endless_depth_is_an_error(body: str) -> None:
 def test_a_file_that_includes_itself_is_an_error(tmp_path: Path) -> None:
     file = tmp_path / "m.xacro"
     file.write_text(f'{ROOT}<xacro:include filename="m.xacro"/><xacro:include filename="m.xacro"/></robot>')
-    with at_once(), pytest.raises(LinkwrightError) as caught:
+    with ends(), pytest.raises(LinkwrightError) as caught:
         expand(file)
     assert caught.value.diagnostics[0].code == "XAC601"
 

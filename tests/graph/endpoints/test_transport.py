@@ -307,7 +307,7 @@ async def test_what_is_waited_for_comes_from_outside(graph, transport):
 
     graph.attach(transport)
     loop = asyncio.get_running_loop()
-    waiting = loop.run_in_executor(None, graph.wait_for_node, "far/elsewhere", 10.0)
+    waiting = loop.run_in_executor(None, graph.wait_for_node, "far/elsewhere", 60.0)
     await asyncio.sleep(0.01)
     transport.nodes.append(ELSEWHERE)
     transport.tell()
