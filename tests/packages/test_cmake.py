@@ -171,3 +171,258 @@ def test_what_is_not_there_is_named(package: Path) -> None:
         list(rules("install(DIRECTORY meshes DESTINATION share/arm)").installed(package))
     for text in ("install(FILES none DESTINATION x OPTIONAL)", "if(A)\ninstall(FILES none DESTINATION x)\nendif()"):
         assert copied(text, package) == {}
+
+
+_DONE_BY_CMAKE = [
+    (
+        """
+        set(ROS_VERSION $ENV{ROS_VERSION})
+        if(ROS_VERSION EQUAL 1)
+          find_package(catkin)
+          install(DIRECTORY urdf DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
+        elseif(${ROS_VERSION} EQUAL 2)
+          install(FILES urdf/arm.urdf DESTINATION share/arm RENAME two.urdf)
+        endif()
+        """,
+        ["share/arm/two.urdf"],
+    ),
+    (
+        """
+        find_package(catkin QUIET)
+        if(catkin_FOUND)
+          install(FILES urdf/notes.txt DESTINATION share/arm)
+        else(catkin_FOUND)
+          install(FILES urdf/arm.urdf DESTINATION share/arm)
+        endif(catkin_FOUND)
+        """,
+        ["share/arm/arm.urdf"],
+    ),
+    (
+        """
+        foreach(folder urdf worlds)
+          if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/arm.urdf)
+            install(FILES ${folder}/arm.urdf DESTINATION share/arm/${folder})
+          endif()
+        endforeach()
+        """,
+        ["share/arm/urdf/arm.urdf"],
+    ),
+    (
+        """
+        file(GLOB found RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} urdf/*)
+        foreach(each ${found})
+          if(NOT IS_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/${each} AND NOT each MATCHES [[txt$]])
+            list(APPEND kept ${each})
+          endif()
+        endforeach()
+        install(FILES ${kept} DESTINATION share/arm)
+        """,
+        ["share/arm/arm.urdf"],
+    ),
+    (
+        """
+        option(ALL "all of it" OFF)
+        if(ALL OR WIN32 AND (NOT UNIX))
+          install(FILES urdf/notes.txt DESTINATION share/arm)
+        else()
+          install(FILES urdf/arm.urdf DESTINATION share/arm)
+        endif()
+        """,
+        ["share/arm/arm.urdf"],
+    ),
+    (
+        """
+        if("$ENV{ROS_DISTRO}" STREQUAL "foxy" OR CMAKE_VERSION VERSION_LESS 2)
+          set(which notes.txt)
+        else()
+          set(which arm.urdf)
+        endif()
+        set(which arm.urdf)
+        install(FILES urdf/${which} DESTINATION share/arm)
+        """,
+        ["share/arm/arm.urdf"],
+    ),
+    (
+        """
+        function(install_scripts)
+          cmake_parse_arguments(PARSE_ARGV 0 given "" DESTINATION "")
+          foreach(script IN LISTS given_UNPARSED_ARGUMENTS)
+            get_filename_component(name ${script} NAME_WE)
+            install(PROGRAMS ${script} RENAME ${name} DESTINATION ${given_DESTINATION})
+          endforeach()
+        endfunction()
+        install_scripts(scripts/run.py DESTINATION lib/arm)
+        """,
+        ["lib/arm/run"],
+    ),
+    (
+        """
+        set(files urdf/arm.urdf scripts/run.py)
+        set(names a b)
+        foreach(file name IN ZIP_LISTS files names)
+          install(FILES ${file} DESTINATION share/arm RENAME ${name})
+        endforeach()
+        """,
+        ["share/arm/a", "share/arm/b"],
+    ),
+    (
+        """
+        foreach(number RANGE 1 3)
+          if(number EQUAL 2)
+            continue()
+          endif()
+          install(FILES urdf/arm.urdf DESTINATION share/arm RENAME ${number}.urdf)
+        endforeach()
+        """,
+        ["share/arm/1.urdf", "share/arm/3.urdf"],
+    ),
+    (
+        """
+        set(i 0)
+        while(TRUE)
+          math(EXPR i "${i} + 1")
+          if(i GREATER 2)
+            break()
+          endif()
+          install(FILES urdf/arm.urdf DESTINATION share/arm RENAME ${i}.urdf)
+        endwhile()
+        """,
+        ["share/arm/1.urdf", "share/arm/2.urdf"],
+    ),
+    (
+        """
+        function(pick out)
+          set(${out} urdf PARENT_SCOPE)
+          return()
+          set(${out} none PARENT_SCOPE)
+        endfunction()
+        pick(WHERE)
+        install(FILES ${WHERE}/arm.urdf DESTINATION share/arm)
+        """,
+        ["share/arm/arm.urdf"],
+    ),
+    (
+        """
+        macro(share what)
+          if(${ARGC} GREATER 1)
+            install(FILES ${what} DESTINATION share/${ARGV1})
+          endif()
+        endmacro()
+        share(urdf/notes.txt)
+        share(urdf/arm.urdf arm)
+        """,
+        ["share/arm/arm.urdf"],
+    ),
+    (
+        """
+        set(all urdf launch scripts)
+        list(REMOVE_ITEM all launch)
+        list(REVERSE all)
+        list(TRANSFORM all APPEND "/")
+        list(GET all 1 which)
+        string(REPLACE "/" "" name ${which})
+        string(TOUPPER ${name} name)
+        install(FILES ${which}arm.urdf DESTINATION share/arm/${name})
+        """,
+        ["share/arm/URDF/arm.urdf"],
+    ),
+    (
+        r"""
+        string(REGEX REPLACE "([a-z]+)\\.urdf$" "\\1" name urdf/arm.urdf)
+        install(FILES urdf/arm.urdf DESTINATION share/${name})
+        """,
+        ["share/urdf/arm/arm.urdf"],
+    ),
+    (
+        """
+        project(arm VERSION 1.2.3)
+        install(FILES urdf/arm.urdf DESTINATION share/${PROJECT_VERSION_MINOR}/${arm_VERSION})
+        """,
+        ["share/2/1.2.3/arm.urdf"],
+    ),
+    (
+        """
+        install(FILES urdf/arm.urdf TYPE DATA)
+        """,
+        ["share/arm.urdf"],
+    ),
+    (
+        r"""
+        install(DIRECTORY urdf DESTINATION x FILES_MATCHING REGEX "\\.xacro$")
+        """,
+        ["x/urdf/parts/hand.xacro"],
+    ),
+    (
+        """
+        install(DIRECTORY urdf DESTINATION x PATTERN "parts/*" EXCLUDE REGEX "not" EXCLUDE)
+        """,
+        ["x/urdf/arm.urdf"],
+    ),
+]
+"""Texts of a CMakeLists.txt, and what CMake itself installs for them."""
+
+
+@pytest.mark.parametrize(("text", "destinations"), _DONE_BY_CMAKE)
+def test_what_cmake_would_do_is_done(package: Path, text: str, destinations: list[str]) -> None:
+    found = rules(text, package)
+    assert found.is_complete, found.unknown
+    assert sorted(file.destination for file in found.installed(package)) == destinations
+
+
+@pytest.mark.parametrize(
+    "condition", ["ANYTHING", "NOT DEFINED ANYTHING", "A STREQUAL ${B}", "EXISTS notes", "A AND NOT B"]
+)
+def test_of_a_condition_that_only_cmake_can_answer_all_branches_are_read(package: Path, condition: str) -> None:
+    text = f"""
+        if({condition})
+          install(FILES urdf/arm.urdf DESTINATION a)
+        else()
+          install(FILES none DESTINATION b)
+        endif()
+    """
+    assert copied(text, package) == {"urdf/arm.urdf": "a/arm.urdf"}
+
+
+def test_files_that_the_build_writes(package: Path) -> None:
+    (package / "robot.urdf.in").write_text("@NAME@")
+    found = rules(
+        "foreach(NAME a b)\n  configure_file(robot.urdf.in ${PROJECT_BINARY_DIR}/made/${NAME}.urdf)\nendforeach()\n"
+        'file(WRITE ${PROJECT_BINARY_DIR}/note "arm ")\nfile(APPEND ${PROJECT_BINARY_DIR}/note "is built")\n'
+        "install(DIRECTORY ${PROJECT_BINARY_DIR}/made DESTINATION share/arm)\n"
+        "install(FILES ${PROJECT_BINARY_DIR}/note DESTINATION share/arm)",
+        package,
+    )
+    written = {file.destination: file.text(package) for file in found.installed(package)}
+    assert written == {"share/arm/made/a.urdf": "a", "share/arm/made/b.urdf": "b", "share/arm/note": "arm is built"}
+
+
+def test_what_commands_of_ament_install(package: Path) -> None:
+    for name in ("hooks/arm.dsv.in", "hooks/more.sh", "plugins/arm.xml"):
+        (package / name).parent.mkdir(exist_ok=True)
+        (package / name).write_text("set;ROBOT;@PROJECT_NAME@" if name.endswith(".in") else "")
+    found = rules(
+        'ament_environment_hooks("${CMAKE_CURRENT_SOURCE_DIR}/hooks/${PROJECT_NAME}.dsv.in" hooks/more.sh)\n'
+        'ament_index_register_resource(robots CONTENT "urdf/arm.urdf")\n'
+        "pluginlib_export_plugin_description_file(controllers plugins/arm.xml)\n"
+        "ament_python_install_module(scripts/run.py)",
+        package,
+    )
+    files = {file.destination: file for file in found.installed(package)}
+    index = "share/ament_index/resource_index"
+    assert sorted(files) == [
+        f"{index}/controllers__pluginlib__plugin/arm",
+        f"{index}/robots/arm",
+        "share/arm/arm.xml",
+        "share/arm/environment/arm.dsv",
+        "share/arm/environment/more.sh",
+    ]
+    assert files["share/arm/environment/arm.dsv"].text(package) == "set;ROBOT;arm"
+    assert files[f"{index}/robots/arm"].text(package) == "urdf/arm.urdf"
+    assert files[f"{index}/controllers__pluginlib__plugin/arm"].text(package) == "share/arm/arm.xml\n"
+    assert found.hooks == ["share/arm/environment/arm.dsv", "share/arm/environment/more.sh"]
+    assert found.modules == ["scripts/run.py"]
+
+
+def test_what_xacro_would_make_is_told(package: Path) -> None:
+    found = rules("xacro_add_files(urdf/arm.urdf.xacro INSTALL DESTINATION urdf)", package)
+    assert found.unknown == ["'urdf/arm.urdf' would have to be made by xacro"]

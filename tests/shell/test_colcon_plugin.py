@@ -99,6 +99,31 @@ def test_what_needs_a_compiler_is_told_and_the_rest_is_installed(tmp_path: Path)
     assert (share / "config" / "limits.yaml").read_text() == "arm: 'arm'\n"
 
 
+def test_environment_hooks_and_all_files_of_a_python_package(tmp_path: Path) -> None:
+    arm = package(
+        tmp_path,
+        "arm",
+        'ament_environment_hooks("hooks/${PROJECT_NAME}.dsv.in")\nament_python_install_package(arm)\n'
+        "ament_python_install_module(tools/extra.py)",
+    )
+    for name, text in {
+        "hooks/arm.dsv.in": "prepend-non-duplicate;GZ_SIM_RESOURCE_PATH;share/@PROJECT_NAME@/models\n",
+        "arm/__init__.py": "",
+        "arm/data/table.csv": "1,2\n",
+        "tools/extra.py": "VALUE = 3\n",
+    }.items():
+        (arm / name).parent.mkdir(parents=True, exist_ok=True)
+        (arm / name).write_text(text)
+    built = in_shell(tmp_path, "colcon build")
+    assert built.returncode == 0, built.stderr
+    used = in_shell(
+        tmp_path,
+        "source install/setup.bash && cd / && echo $GZ_SIM_RESOURCE_PATH && python3 -c 'import arm, extra, pathlib; "
+        'print(extra.VALUE, pathlib.Path(arm.__file__).with_name("data").joinpath("table.csv").read_text().strip())\'',
+    )
+    assert used.stdout.splitlines() == [str(tmp_path / "install/arm/share/arm/models"), "3 1,2"], used.stderr
+
+
 def test_what_is_not_there_ends_the_build(tmp_path: Path) -> None:
     package(tmp_path, "arm", "install(DIRECTORY meshes DESTINATION share/arm)")
     result = in_shell(tmp_path, "colcon build")

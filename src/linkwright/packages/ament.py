@@ -17,6 +17,9 @@ from linkwright.packages.manifest import MANIFEST
 PREFIX_PATH = "AMENT_PREFIX_PATH"
 """The environment variable that sourcing a ROS or a workspace sets."""
 
+ROS_VARIABLES = {"ROS_DISTRO": "humble", "ROS_VERSION": "2", "ROS_PYTHON_VERSION": "3"}
+"""What sourcing a ROS 2 sets besides, for Humble, which we follow."""
+
 _MARKERS = Path("share", "ament_index", "resource_index", "packages")
 _COLCON_LAYOUT = ".colcon_install_layout"
 

@@ -42,7 +42,7 @@ def link_folder(name: str, folder: Path, moved: Mapping[str, InstalledFile]) -> 
         else:
             links[entry.name] = entry
     for path, file in moved.items():
-        links[path] = folder / file.source if file.values is None else file.text(folder)
+        links[path] = file.text(folder) if file.is_made else folder / file.source
     if len(links) > _MOST_LINKS:
         raise OSError("too many files")
     mark = hashlib.sha256(repr((str(folder), sorted((path, str(link)) for path, link in links.items()))).encode())

@@ -75,5 +75,7 @@ def _installed(folder: Path) -> Iterator[InstalledFile]:
             return
         from linkwright.packages.readers.cmake import read_cmake
 
-        yield from read_cmake(source, folder).installed(folder, missing_ok=True)
+        cmake = read_cmake(source, folder)
+        hooks = set(cmake.hooks)  # they are read where a build is sourced
+        yield from (file for file in cmake.installed(folder, missing_ok=True) if file.destination not in hooks)
         return

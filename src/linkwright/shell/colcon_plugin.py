@@ -73,6 +73,8 @@ class CopyingAmentCmakeTask(TaskExtensionPoint):  # type: ignore[misc]  # its ba
             hooks += create_environment_hook(
                 "pythonpath", Path(args.install_base), package.name, "PYTHONPATH", _site(), mode="prepend"
             )
+        # Hooks in a shell's own language call functions of ament; those that are tables are colcon's language, too.
+        hooks += [Path(hook) for hook in cmake.hooks if hook.endswith(".dsv")]
         create_environment_scripts(package, args, additional_hooks=hooks)
         return 0
 
@@ -86,18 +88,27 @@ def _install_all(args: Any, name: str, folder: Path, cmake: CMakeFile) -> None:
     create_file(args, f"{_INDEX}/packages/{name}")
     install(args, MANIFEST, f"share/{name}/{MANIFEST}")
     for file in cmake.installed(folder):
-        if file.values is None:
-            install(args, file.source, file.destination)
-        else:
+        if file.is_made:
             create_file(args, file.destination, content=file.text(folder))
+        else:
+            install(args, file.source, file.destination)
     for interface in cmake.interfaces:
         install(args, interface, f"share/{name}/{interface}")
     if cmake.interfaces:
         create_file(args, f"{_INDEX}/rosidl_interfaces/{name}", content="\n".join(sorted(cmake.interfaces)) + "\n")
     for module in cmake.modules:
-        for path in sorted((folder / module).rglob("*.py")):
-            inside = Path(module).name / path.relative_to(folder / module)
-            install(args, path.relative_to(folder).as_posix(), f"{_site()}/{inside.as_posix()}")
+        _install_module(args, folder, module)
+
+
+def _install_module(args: Any, folder: Path, module: str) -> None:
+    """Install a Python module, or a Python package with all that lies in it."""
+    path = folder / module
+    if not path.exists():
+        raise FileNotFoundError(module)
+    for file in [path] if path.is_file() else sorted(path.rglob("*")):
+        if file.is_file() and "__pycache__" not in file.parts:
+            inside = Path(path.name) / file.relative_to(path) if path.is_dir() else Path(path.name)
+            install(args, file.relative_to(folder).as_posix(), f"{_site()}/{inside.as_posix()}")
 
 
 def _site() -> str:

@@ -11,6 +11,7 @@ from collections.abc import MutableMapping
 from contextlib import suppress
 from pathlib import Path
 
+from linkwright.packages.ament import ROS_VARIABLES
 from linkwright.packages.cache import cache_folder
 
 PROGRAMS = {
@@ -27,8 +28,6 @@ PROGRAMS = {
 
 ``urdf_to_graphiz`` is how urdfdom spelt it for years, and still installs beside the right spelling.
 """
-
-_ROS_VARIABLES = {"ROS_DISTRO": "humble", "ROS_VERSION": "2", "ROS_PYTHON_VERSION": "3"}
 
 
 def write_programs(folder: Path, python: str = sys.executable) -> None:
@@ -67,4 +66,4 @@ def offer_programs(environment: MutableMapping[str, str]) -> None:
 def offer_ros_variables(environment: MutableMapping[str, str]) -> None:
     """Set what sourcing a ROS 2 sets and launch files ask for, where none is sourced: we follow Humble."""
     if "ROS_DISTRO" not in environment:
-        environment.update(_ROS_VARIABLES)
+        environment.update(ROS_VARIABLES)

@@ -7,11 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from fnmatch import fnmatch
+from fnmatch import fnmatchcase
 from itertools import takewhile
 from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import SourceText, Span
+from linkwright.packages.readers.cmake_conditions import matched
 from linkwright.packages.readers.cmake_language import (
     BUILD,
     PREFIX,
@@ -20,6 +21,7 @@ from linkwright.packages.readers.cmake_language import (
     Command,
     within_package,
 )
+from linkwright.packages.readers.cmake_syntax import is_open
 from linkwright.packages.readers.installed_file import InstalledFile
 
 _KEYWORDS = frozenset(
@@ -36,6 +38,47 @@ _COMPILED = frozenset(
     }
 )
 _INTERFACES = (".msg", ".srv", ".action", ".idl")
+_FOLDERS_OF_TYPES = {
+    "BIN": "bin",
+    "SBIN": "sbin",
+    "LIB": "lib",
+    "INCLUDE": "include",
+    "SYSCONF": "etc",
+    "DATA": "share",
+    "INFO": "share/info",
+    "LOCALE": "share/locale",
+    "MAN": "share/man",
+    "DOC": "share/doc",
+}
+_NAME = "CMakeLists.txt"
+_INDEX = "share/ament_index/resource_index"
+
+
+@dataclass(frozen=True, slots=True)
+class PathPattern:
+    """A ``PATTERN`` or ``REGEX`` of files and folders in a folder that is copied.
+
+    Attributes:
+        text: the pattern.
+        is_regex: whether it is a regular expression, which may match anywhere in the path.
+        is_excluded: whether what it matches stays out.
+    """
+
+    text: str
+    is_regex: bool
+    is_excluded: bool
+
+    def matches(self, path: str) -> bool:
+        """Whether it means a file or folder.
+
+        Args:
+            path: from the package on, beginning with a slash.
+        """
+        if self.is_regex:
+            return bool(matched(self.text, path))
+        parts = path.split("/")
+        depth = self.text.count("/") + 1
+        return fnmatchcase("/".join(parts[-depth:]), self.text)
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,8 +90,8 @@ class CopyRule:
         items: what, relative to the package; the content of a folder where the text ends with a slash.
         destination: where to, relative to the prefix; None where that is not known.
         renamed: the name of the one file at its destination, where it changes.
-        matching: of a folder only files that match one of these patterns; all when empty.
-        without: of a folder nothing that matches one of these patterns.
+        patterns: of files and folders in a folder.
+        only_matching: whether only files that match a pattern are copied.
         is_optional: whether it may be missing.
     """
 
@@ -56,9 +99,24 @@ class CopyRule:
     items: tuple[Argument, ...]
     destination: str | None
     renamed: str | None = None
-    matching: tuple[str, ...] = ()
-    without: tuple[str, ...] = ()
+    patterns: tuple[PathPattern, ...] = ()
+    only_matching: bool = False
     is_optional: bool = False
+
+    def takes(self, folder: str, inside: PurePosixPath) -> bool:
+        """Whether a file in a folder is copied.
+
+        Args:
+            folder: relative to the package.
+            inside: the file, relative to the folder.
+        """
+        if not self.patterns:
+            return not self.only_matching
+        paths = [f"/{folder.rstrip('/')}/{path}" for path in (*list(inside.parents)[:-1], inside)]
+        if any(pattern.is_excluded and pattern.matches(path) for pattern in self.patterns for path in paths):
+            return False
+        wanted = (pattern for pattern in self.patterns if not pattern.is_excluded)
+        return not self.only_matching or any(pattern.matches(paths[-1]) for pattern in wanted)
 
 
 @dataclass
@@ -70,7 +128,8 @@ class CMakeFile:
         copies: what it copies.
         targets: the names of the programs that it builds or installs.
         interfaces: the interface files that it generates code for, relative to the package.
-        modules: the Python packages that it installs, folders relative to the package.
+        modules: the Python packages and modules that it installs, folders and files relative to the package.
+        hooks: the installed files that set variables where the package is used, relative to the prefix.
         compiled: what it compiles.
         unknown: why it may install more than was read here; empty where that is all.
         is_ament: whether it is the one of an ament package.
@@ -82,10 +141,12 @@ class CMakeFile:
     targets: set[str] = field(default_factory=set)
     interfaces: list[str] = field(default_factory=list)
     modules: list[str] = field(default_factory=list)
+    hooks: list[str] = field(default_factory=list)
     compiled: list[str] = field(default_factory=list)
     unknown: list[str] = field(default_factory=list)
     is_ament: bool = False
-    _generated: dict[str, tuple[str, dict[str, str]]] = field(default_factory=dict)
+    _generated: dict[str, InstalledFile] = field(default_factory=dict)
+    _made: dict[str, InstalledFile] = field(default_factory=dict)
 
     @property
     def is_complete(self) -> bool:
@@ -136,6 +197,9 @@ class CMakeFile:
         Raises:
             FileNotFoundError: a file or folder is not there; the exception carries its name.
         """
+        for file in self._made.values():
+            if not missing_ok or file.content is not None or (package / file.source).is_file():
+                yield file
         for rule in self.copies:
             if rule.destination is not None:
                 for item in rule.items:
@@ -145,13 +209,12 @@ class CMakeFile:
         self, rule: CopyRule, item: str, destination: str, package: Path, *, missing_ok: bool
     ) -> Iterator[InstalledFile]:
         into, name = PurePosixPath(destination), PurePosixPath(item).name
-        made = self._generated.get(item)
-        if made is not None:
-            yield InstalledFile(made[0], str(into / (rule.renamed or name)), made[1])
+        if item.startswith(BUILD):
+            yield from self._copied_from_build(rule, item, into)
             return
         path = package / item
         if not path.exists():
-            if missing_ok or rule.is_optional or item.startswith(("$<", BUILD)):
+            if missing_ok or rule.is_optional or item.startswith("$<"):
                 return
             raise FileNotFoundError(item)
         if path.is_file():
@@ -160,8 +223,24 @@ class CMakeFile:
         below = into if item.endswith("/") else into / path.resolve().name
         for file in sorted(path.rglob("*")):
             inside = PurePosixPath(file.relative_to(path).as_posix())
-            if file.is_file() and _is_taken(rule, inside):
-                yield InstalledFile(file.relative_to(package).as_posix(), str(below / inside))
+            if file.is_file() and rule.takes(item, inside):
+                yield InstalledFile((PurePosixPath(item) / inside).as_posix(), str(below / inside))
+
+    def _copied_from_build(self, rule: CopyRule, item: str, into: PurePosixPath) -> Iterator[InstalledFile]:
+        below = into if item.endswith("/") else into / PurePosixPath(item).name
+        for made, file in self._generated.items():
+            if made == item:
+                yield replace(file, destination=str(into / (rule.renamed or PurePosixPath(made).name)))
+            elif made.startswith(f"{item.rstrip('/')}/"):
+                inside = PurePosixPath(made).relative_to(item)
+                if rule.takes(item, inside):
+                    yield replace(file, destination=str(below / inside))
+
+    def _make(self, source: str, destination: str, values: dict[str, str] | None = None, content: str = "") -> None:
+        """Note a file that the build makes and installs; more content for the same file is added to it."""
+        before = self._made.get(destination)
+        text = None if values is not None else (before.content or "" if before else "") + content
+        self._made[destination] = InstalledFile(source, destination, values, text)
 
 
 def read_cmake(source: SourceText, package: Path | None = None) -> CMakeFile:
@@ -185,21 +264,34 @@ def _take(file: CMakeFile, command: Command, program: CMakeProgram) -> None:
         file.compiled.append(words[0])
     if name == "project" and given:
         file.project = file.project or given[0]
-    elif name in ("add_executable", "ament_auto_add_executable") and words and "$" not in words[0]:
+    elif name in ("add_executable", "ament_auto_add_executable") and words and not is_open(words[0]):
         file.targets.add(words[0])
     elif name == "rclcpp_components_register_node":
         executable = _following(words, "EXECUTABLE")
-        if executable is not None and "$" not in executable:
+        if executable is not None and not is_open(executable):
             file.targets.add(executable)
-    elif name == "configure_file" and len(words) > 1 and "$" not in words[0]:
-        made = words[1] if words[1].startswith(BUILD) else f"{program.variables['CMAKE_CURRENT_BINARY_DIR']}/{words[1]}"
-        file._generated[made] = within_package(words[0], command.folder), dict(program.variables)
+    elif name == "configure_file" and len(words) > 1 and not is_open(words[0]):
+        source = within_package(words[0], command.folder)
+        file._generated[_in_build(words[1], program)] = InstalledFile(source, "", dict(program.variables))
+    elif name == "file" and len(words) > 1 and words[0] in ("WRITE", "APPEND"):
+        made = _in_build(words[1], program)
+        before = file._generated.get(made) if words[0] == "APPEND" else None
+        content = (before.content or "" if before else "") + "".join(words[2:])
+        file._generated[made] = InstalledFile(_NAME, "", None, content)
     elif name in ("install", "catkin_install_python") and words:
         _install(file, command)
     elif name == "rosidl_generate_interfaces":
         file.interfaces += [within_package(word, command.folder) for word in words if word.endswith(_INTERFACES)]
     elif name == "ament_python_install_package" and words:
         file.modules.append(within_package(_following(words, "PACKAGE_DIR") or words[0], command.folder))
+    elif name == "ament_python_install_module" and words:
+        file.modules.append(within_package(words[0], command.folder))
+    elif name == "ament_environment_hooks":
+        _take_hooks(file, command, program)
+    elif name in ("ament_index_register_resource", "pluginlib_export_plugin_description_file") and words:
+        _take_resource(file, command)
+    elif name == "xacro_add_files" and "INSTALL" in words:
+        file.unknown += [f"'{word.removesuffix('.xacro')}' would have to be made by xacro" for word in words[:1]]
     elif name in ("ament_package", "ament_auto_package"):
         file.is_ament = True
         if "INSTALL_TO_SHARE" in words:
@@ -207,21 +299,54 @@ def _take(file: CMakeFile, command: Command, program: CMakeProgram) -> None:
             _add(file, CopyRule("DIRECTORY", given[words.index("INSTALL_TO_SHARE") + 1 :], share), command)
 
 
+def _in_build(word: str, program: CMakeProgram) -> str:
+    return word if word.startswith(BUILD) else f"{program.variables['CMAKE_CURRENT_BINARY_DIR']}/{word}"
+
+
+def _take_hooks(file: CMakeFile, command: Command, program: CMakeProgram) -> None:
+    """Environment hooks: copied, or made of a template whose name ends with ``.in``."""
+    for word in command.words:
+        if is_open(word):
+            continue
+        hook = within_package(word, command.folder)
+        name = PurePosixPath(hook).name
+        into = f"share/{file.project.text if file.project else ''}/environment/{name.removesuffix('.in')}"
+        file.hooks.append(into)
+        if name.endswith(".in"):
+            file._make(hook, into, dict(program.variables))
+        else:
+            file._made[into] = InstalledFile(hook, into)
+
+
+def _take_resource(file: CMakeFile, command: Command) -> None:
+    """An entry of the resource index, and the description of a plugin that it leads to."""
+    words, project = command.words, file.project.text if file.project else ""
+    if command.name == "ament_index_register_resource":
+        name, content = _following(words, "PACKAGE_NAME") or project, _following(words, "CONTENT") or ""
+        file._make(_NAME, f"{_INDEX}/{words[0]}/{name}", content=content)
+    elif len(words) > 1 and not is_open(words[1]):
+        path = PurePosixPath(within_package(words[1], command.folder))
+        share = f"share/{project}"
+        file._make(_NAME, f"{_INDEX}/{words[0]}__pluginlib__plugin/{project}", content=f"{share}/{path.name}\n")
+        rule = CopyRule("FILES", command.arguments[1:2], share, is_optional=command.is_conditional)
+        _add(file, rule, command)
+
+
 def _install(file: CMakeFile, command: Command) -> None:
     given, words = command.arguments, command.words
     kind = words[0]
     items = tuple(takewhile(lambda argument: argument.text not in _KEYWORDS, given[1:]))
     if kind in ("FILES", "PROGRAMS", "DIRECTORY"):
-        destination = _following(words, "DESTINATION")
-        if destination is None or "$" in destination:
+        destination = _following(words, "DESTINATION") or _FOLDERS_OF_TYPES.get(_following(words, "TYPE") or "")
+        if destination is None or is_open(destination):
             file.unknown.append(f"'install({' '.join(words)})' cannot be read without CMake")
             destination = None
         else:
             destination = destination.removeprefix(f"{PREFIX}/")
-        matching, without = _patterns(words)
         renamed = _following(words, "RENAME")
         is_optional = command.is_conditional or "OPTIONAL" in words
-        rule = CopyRule(kind, items, destination, renamed, matching, without, is_optional)
+        patterns, only_matching = tuple(_patterns(words)), "FILES_MATCHING" in words
+        rule = CopyRule(kind, items, destination, renamed, patterns, only_matching, is_optional)
         _add(file, rule, command)
     elif kind == "TARGETS":
         file.targets |= {item.text for item in items}
@@ -234,7 +359,7 @@ def _add(file: CMakeFile, rule: CopyRule, command: Command) -> None:
     known = tuple(
         Argument(within_package(item.text, command.folder), item.start, item.end, item.source)
         for item in rule.items
-        if "$" not in item.text
+        if not is_open(item.text)
     )
     if len(known) < len(rule.items):
         file.unknown.append(f"'{command.name}({' '.join(command.words)})' cannot be read without CMake")
@@ -248,19 +373,8 @@ def _following(words: Sequence[str], keyword: str) -> str | None:
     return words[at] if at < len(words) else None
 
 
-def _patterns(words: Sequence[str]) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    patterns = [
-        (words[at + 1], words[at + 2 : at + 3] == ["EXCLUDE"])
-        for at, word in enumerate(words[:-1])
-        if word == "PATTERN"
-    ]
-    matching = tuple(pattern for pattern, excluded in patterns if not excluded)
-    without = tuple(pattern for pattern, excluded in patterns if excluded)
-    return (matching if "FILES_MATCHING" in words else ()), without
-
-
-def _is_taken(rule: CopyRule, inside: PurePosixPath) -> bool:
-    parts = inside.parts
-    if any(fnmatch(part, pattern) for part in parts for pattern in rule.without):
-        return False
-    return not rule.matching or any(fnmatch(inside.name, pattern) for pattern in rule.matching)
+def _patterns(words: Sequence[str]) -> Iterator[PathPattern]:
+    for at, word in enumerate(words[:-1]):
+        if word in ("PATTERN", "REGEX"):
+            is_excluded = words[at + 2 : at + 3] == ["EXCLUDE"]
+            yield PathPattern(words[at + 1], word == "REGEX", is_excluded)

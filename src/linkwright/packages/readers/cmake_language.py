@@ -1,41 +1,51 @@
 """CMake's language as far as it says what a package installs: commands in the order in which CMake would run them.
 
-Variables, lists, loops over them, functions and macros of the file, subdirectories and included files are followed, and
-so are patterns of files. What only CMake itself knows (conditions, what ``find_package`` sets) is not: all branches of
-a condition are read, and a variable that two branches set differently has no value. A variable whose value is not
-known stays in the text as ``${...}``.
+Variables, lists, texts, loops, functions and macros of the file, subdirectories and included files are followed, and
+so are patterns of files and the conditions that can be answered here. What only CMake itself knows, such as what
+``find_package`` sets, is not: of such a condition all branches are read, and a variable that two branches set
+differently has no value. A variable whose value is not known stays in the text as ``${...}``.
 """
 
 from __future__ import annotations
 
+import os
 import posixpath
 import re
+import sys
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from linkwright.diagnostics import SourceText
-
-_PIECE = re.compile(
-    r"""
-    (?P<blank>\s+)
-  | (?P<comment>\#\[(?P<level>=*)\[.*?\](?P=level)\] | \#[^\n]*)
-  | \[(?P<equals>=*)\[(?P<bracket>.*?)\](?P=equals)\]
-  | "(?P<quoted>(?:[^"\\]|\\.)*)"
-  | (?P<open>\() | (?P<close>\))
-  | (?P<word>(?:[^\s()"\#\\]|\\.|"(?:[^"\\]|\\.)*")+)
-    """,
-    re.VERBOSE | re.DOTALL,
+from linkwright.packages.ament import ROS_VARIABLES
+from linkwright.packages.readers.cmake_conditions import Condition, Word
+from linkwright.packages.readers.cmake_syntax import ENDS, Statement, Token, branches, end_of_block, is_open, statements
+from linkwright.packages.readers.cmake_values import (
+    UNKNOWN,
+    calculated,
+    items_of,
+    list_command,
+    part_of_name,
+    string_command,
+    version_variables,
 )
-_VARIABLE = re.compile(r"\$\{([A-Za-z0-9_]+)\}")
-_ENDS = {"foreach": "endforeach", "function": "endfunction", "macro": "endmacro", "while": "endwhile"}
+
+_VARIABLE = re.compile(r"\$\{([A-Za-z0-9_.+/-]+)\}")
+_ENVIRONMENT = re.compile(r"\$ENV\{(\w+)\}")
 _DEEPEST = 20
 _MOST_COMMANDS = 20_000
-UNKNOWN = "${}"
-"""The value of a variable that cannot be told."""
 
 SOURCE, BUILD, PREFIX = "<source>", "<build>", "<prefix>"
 """What the folder of the package, that of the build and that of the installation are called in values of variables."""
+
+_PLATFORM = {
+    "WIN32": "1" if os.name == "nt" else "0",
+    "MSVC": "1" if os.name == "nt" else "0",
+    "UNIX": "0" if os.name == "nt" else "1",
+    "APPLE": "1" if sys.platform == "darwin" else "0",
+}
+_FOUND = {"catkin_FOUND": "0", **dict.fromkeys(("ament_cmake_FOUND", "ament_cmake_auto_FOUND"), "1")}
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +66,7 @@ class Command:
         name: in lower case.
         arguments: what it is given.
         folder: the folder of its ``CMakeLists.txt``, relative to the package; empty for the package's own.
-        is_conditional: whether it stands in a branch of an ``if``.
+        is_conditional: whether it stands in a branch of an ``if`` of which it is not known whether it is taken.
     """
 
     name: str
@@ -74,22 +84,10 @@ class _TooMuchError(Exception):
     """A file that would keep CMake busy for long; it carries the name of a command."""
 
 
-@dataclass(frozen=True, slots=True)
-class _Token:
-    text: str
-    start: int
-    end: int
-    is_list: bool
-    has_variables: bool
-
-
-_Statement = tuple[str, list[_Token], SourceText]
-
-
 @dataclass(slots=True)
 class _Routine:
     parameters: list[str]
-    body: list[_Statement]
+    body: list[Statement]
     has_scope: bool
 
 
@@ -117,12 +115,17 @@ class CMakeProgram:
             "CMAKE_INSTALL_BINDIR": "bin",
             "CMAKE_INSTALL_LIBDIR": "lib",
             "CMAKE_INSTALL_INCLUDEDIR": "include",
+            **_PLATFORM,
+            **_FOUND,
         }
     )
     unknown: list[str] = field(default_factory=list)
     _routines: dict[str, _Routine] = field(default_factory=dict)
     _folder: str = ""
     _conditions: int = 0
+    _around: dict[str, int] = field(default_factory=dict)  # the conditions around what return() and break() leave
+    _leaving: str = ""
+    _for_parent: dict[str, str] = field(default_factory=dict)
     _depth: int = 0
     _count: int = 0
 
@@ -134,52 +137,132 @@ class CMakeProgram:
             self.unknown.append(str(error))
 
     def _run_file(self, source: SourceText) -> Iterator[Command]:
-        yield from self._run_block([(name, tokens, source) for name, tokens in _statements(source.text)])
+        with self._leaves("return"):
+            yield from self._run_block(list(statements(source)))
 
     # --- blocks ------------------------------------------------------------------------------------------------------
 
-    def _run_block(self, statements: Sequence[_Statement]) -> Iterator[Command]:
+    @contextmanager
+    def _leaves(self, *commands: str) -> Iterator[None]:
+        """A block that these commands leave."""
+        before = self._around
+        self._around = {**before, **dict.fromkeys(commands, self._conditions)}
+        try:
+            yield
+        finally:
+            self._around = before
+            if self._leaving in commands:
+                self._leaving = ""
+
+    def _run_block(self, body: Sequence[Statement]) -> Iterator[Command]:
         at = 0
-        while at < len(statements):
-            name, tokens, source = statements[at]
+        while at < len(body) and not self._leaving:
+            statement = body[at]
             at += 1
-            if name in _ENDS:
-                end = _end_of(statements, at, name)
-                yield from self._run_compound(name, [*self._arguments(tokens, source)], list(statements[at:end]))
+            if statement.name in ENDS:
+                end = end_of_block(body, at, statement.name)
+                yield from self._run_compound(statement, list(body[at:end]))
                 at = end + 1
             else:
-                yield from self._run_command(name, tokens, source)
+                yield from self._run_command(statement)
 
-    def _run_compound(self, name: str, given: Sequence[Argument], body: list[_Statement]) -> Iterator[Command]:
-        words = [each.text for each in given]
-        if name in ("function", "macro") and words:
-            self._routines[words[0].lower()] = _Routine(words[1:], body, name == "function")
-        elif name == "foreach" and words:
-            items = self._loop_items(words[1:])
-            if items is None:
-                self.unknown.append(name)
+    def _run_compound(self, opening: Statement, body: list[Statement]) -> Iterator[Command]:
+        words = [each.text for each in self._arguments(opening)]
+        if opening.name == "if":
+            yield from self._run_branches(opening, body)
+        elif opening.name == "while":
+            yield from self._run_while(opening, body)
+        elif opening.name in ("function", "macro") and words:
+            self._routines[words[0].lower()] = _Routine(words[1:], body, opening.name == "function")
+        elif opening.name == "foreach" and words:
+            yield from self._run_foreach(words, body)
+
+    def _run_branches(self, opening: Statement, body: Sequence[Statement]) -> Iterator[Command]:
+        """The branch that is taken; where that cannot be told, all that may be."""
+        is_uncertain = False
+        for condition, branch in branches(opening, body):
+            answer = True if condition is None else self._holds(condition)
+            if answer is False:
+                continue
+            is_uncertain = is_uncertain or answer is None
+            self._conditions += is_uncertain
+            yield from self._run_block(branch)
+            self._conditions -= is_uncertain
+            if answer:
                 return
-            before = self.variables.get(words[0])
-            for item in items:
-                self._tick(name)
-                self.variables[words[0]] = item
-                yield from self._run_block(body)
-            _restore(self.variables, words[0], before)
-        else:
-            self.unknown.append(name)
 
-    def _loop_items(self, words: Sequence[str]) -> list[str] | None:
-        if words[:1] == ["RANGE"] or words[:2] == ["IN", "ZIP_LISTS"]:
+    def _holds(self, condition: Statement) -> bool | None:
+        words = list[Word]()
+        for token in condition.tokens:
+            text = self._filled(token)
+            parts = [text] if token.is_quoted else items_of(text)
+            words += [Word(part, token.is_quoted) for part in parts]
+        return Condition(words, self.variables, self._is_there).answer()
+
+    def _is_there(self, what: str, path: str) -> bool | None:
+        if self.package is None or not path.startswith(SOURCE):
             return None
+        found = self.package / within_package(path, self._folder)
+        return found.is_dir() if what == "IS_DIRECTORY" else found.exists()
+
+    def _run_while(self, opening: Statement, body: list[Statement]) -> Iterator[Command]:
+        with self._leaves("break"):
+            while not self._leaving:
+                self._tick("while")
+                answer = self._holds(opening)
+                if answer is None:
+                    self.unknown.append("while")
+                if not answer:
+                    return
+                yield from self._run_once(body)
+
+    def _run_foreach(self, words: list[str], body: list[Statement]) -> Iterator[Command]:
+        loop = self._loop(words)
+        if loop is None:
+            self.unknown.append("foreach")
+            return
+        names, rounds = loop
+        before = {name: self.variables.get(name) for name in names}
+        with self._leaves("break"):
+            for values in rounds:
+                self._tick("foreach")
+                self.variables.update(zip(names, values, strict=True))
+                yield from self._run_once(body)
+                if self._leaving:
+                    break
+        for name, value in before.items():
+            _restore(self.variables, name, value)
+
+    def _run_once(self, body: list[Statement]) -> Iterator[Command]:
+        with self._leaves("continue"):
+            yield from self._run_block(body)
+
+    def _loop(self, words: list[str]) -> tuple[list[str], list[tuple[str, ...]]] | None:
+        """The names that a loop sets, and their values in each round."""
+        if "IN" in words[1:] and words[words.index("IN", 1) :][1:2] == ["ZIP_LISTS"]:
+            at = words.index("IN", 1)
+            names, lists = words[:at], [items_of(self.variables.get(word, UNKNOWN)) for word in words[at + 2 :]]
+            if len(names) != len(lists) or len({len(items) for items in lists}) != 1:
+                return None
+            rounds = list(zip(*lists, strict=True))
+        elif words[1:2] == ["RANGE"]:
+            names, rounds = words[:1], [(str(number),) for number in _range(words[2:])]
+            if not rounds:
+                return None
+        else:
+            names, rounds = words[:1], [(item,) for item in self._loop_items(words[1:])]
+        return None if any(is_open(item) for values in rounds for item in values) else (names, rounds)
+
+    def _loop_items(self, words: Sequence[str]) -> list[str]:
         items, kind = list[str](), "ITEMS"
         for word in words[1:] if words[:1] == ["IN"] else words:
             if words[0] == "IN" and word in ("LISTS", "ITEMS"):
                 kind = word
             elif kind == "LISTS":
-                items += _items_of(self.variables.get(word, UNKNOWN))
+                items += items_of(self.variables.get(word, UNKNOWN))
             else:
                 items.append(word)
-        return None if any("$" in item for item in items) else items
+        return items
 
     def _tick(self, name: str) -> None:
         self._count += 1
@@ -188,12 +271,13 @@ class CMakeProgram:
 
     # --- commands ----------------------------------------------------------------------------------------------------
 
-    def _run_command(self, name: str, tokens: Sequence[_Token], source: SourceText) -> Iterator[Command]:
+    def _run_command(self, statement: Statement) -> Iterator[Command]:
+        name = statement.name
         self._tick(name)
-        command = Command(name, tuple(self._arguments(tokens, source)), self._folder, self._conditions > 0)
+        command = Command(name, tuple(self._arguments(statement)), self._folder, self._conditions > 0)
         words = command.words
-        if name in ("if", "endif"):
-            self._conditions = max(0, self._conditions + (1 if name == "if" else -1))
+        if name in ("return", "break", "continue"):
+            self._leaving = name if self._conditions == self._around.get(name) else ""
         elif name in self._routines:
             yield from self._call(self._routines[name], words)
         elif name in ("add_subdirectory", "include") and words:
@@ -208,13 +292,19 @@ class CMakeProgram:
             return
         outside = dict(self.variables)
         bound = dict(zip(routine.parameters, words, strict=False))
+        bound |= {f"ARGV{number}": word for number, word in enumerate(words)}
         bound |= {"ARGV": ";".join(words), "ARGN": ";".join(words[len(routine.parameters) :]), "ARGC": str(len(words))}
         self.variables.update(bound)
         self._depth += 1
-        yield from self._run_block(routine.body)
+        for_parent = self._for_parent
+        if routine.has_scope:
+            self._for_parent = {}
+        with self._leaves("return"):
+            yield from self._run_block(routine.body)
         self._depth -= 1
         if routine.has_scope:
-            self.variables = outside
+            self.variables = outside | self._for_parent
+            self._for_parent = for_parent
         else:
             for name in bound:
                 _restore(self.variables, name, outside.get(name))
@@ -226,7 +316,7 @@ class CMakeProgram:
         place = within_package(word, self._folder)
         path = (
             None
-            if self.package is None or "$" in place
+            if self.package is None or is_open(place)
             else self.package / place / ("CMakeLists.txt" if is_folder else "")
         )
         try:
@@ -236,12 +326,13 @@ class CMakeProgram:
         if text is None or self._depth >= _DEEPEST:
             self.unknown.append(command)
             return
-        outside, folder = dict(self.variables), self._folder
+        outside, folder, for_parent = dict(self.variables), self._folder, self._for_parent
         self.variables["CMAKE_CURRENT_LIST_DIR"] = posixpath.join(
             SOURCE, place if is_folder else posixpath.dirname(place)
         )
         if is_folder:
             self._folder = "" if place == "." else place
+            self._for_parent = {}
             self.variables["CMAKE_CURRENT_SOURCE_DIR"] = posixpath.join(SOURCE, place)
             self.variables["CMAKE_CURRENT_BINARY_DIR"] = posixpath.join(BUILD, place)
         self._depth += 1
@@ -249,48 +340,73 @@ class CMakeProgram:
         self._depth -= 1
         self._folder = folder
         if is_folder:
-            self.variables = outside
+            self.variables = outside | self._for_parent
+            self._for_parent = for_parent
         else:
             self.variables["CMAKE_CURRENT_LIST_DIR"] = outside["CMAKE_CURRENT_LIST_DIR"]
+
+    # --- variables ---------------------------------------------------------------------------------------------------
 
     def _assign(self, name: str, words: list[str]) -> None:
         """Keep what a command says about variables."""
         if name == "project" and words:
             self.variables["PROJECT_NAME"] = self.variables["CMAKE_PROJECT_NAME"] = words[0]
+            self.variables |= {f"{words[0]}_SOURCE_DIR": SOURCE, f"{words[0]}_BINARY_DIR": BUILD}
+            self.variables |= version_variables(words)
             for variable in ("CATKIN_PACKAGE_SHARE_DESTINATION", "CATKIN_PACKAGE_BIN_DESTINATION"):
                 self.variables[variable] = f"{'share' if 'SHARE' in variable else 'lib'}/{words[0]}"
-        elif name == "set" and words and not words[0].startswith("ENV{"):
-            values = words[1:]
-            for keyword in ("CACHE", "PARENT_SCOPE"):
-                values = values[: values.index(keyword)] if keyword in values else values
-            self._set(words[0], ";".join(values))
+        elif name == "set" and words:
+            self._set_as_told(words)
+        elif name == "option" and words:
+            self._set(words[0], words[2] if len(words) > 2 else "OFF")
+        elif name == "unset" and words:
+            self.variables.pop(words[0], None)
         elif name == "list" and len(words) > 1:
-            self._change_list(words[0], words[1], words[2:])
+            self._change_list(words)
+        elif name == "string" and len(words) > 1:
+            for target, value in string_command(words, self._value).items():
+                self._set(target, value)
+        elif name == "math" and len(words) > 2:
+            self._set(words[1], calculated(words[2]))
         elif name == "get_filename_component" and len(words) > 2:
-            self._set(words[0], _part_of_name(words[1], words[2]))
+            self._set(words[0], part_of_name(words[1], words[2]))
         elif name == "file" and len(words) > 1 and words[0] in ("GLOB", "GLOB_RECURSE"):
             self._set(words[1], self._matching(words[2:], recursive=words[0] == "GLOB_RECURSE"))
         elif name == "cmake_parse_arguments" and len(words) >= 4:
             self._parse_arguments(words)
 
+    def _set_as_told(self, words: list[str]) -> None:
+        name, values = words[0], words[1:]
+        if name.startswith("ENV{"):
+            return
+        if "CACHE" in values:
+            values = values[: values.index("CACHE")]
+        if values[-1:] == ["PARENT_SCOPE"]:
+            value = ";".join(values[:-1])
+            self._for_parent[name] = UNKNOWN if self._conditions or is_open(value) else value
+        else:
+            self._set(name, ";".join(values))
+
+    def _value(self, name: str) -> str:
+        return self.variables.get(name, "")
+
     def _set(self, name: str, value: str) -> None:
         is_certain = not self._conditions or self.variables.get(name, value) == value
-        self.variables[name] = value if is_certain and "$" not in value else UNKNOWN
+        self.variables[name] = value if is_certain and not is_open(value) else UNKNOWN
 
-    def _change_list(self, what: str, name: str, words: list[str]) -> None:
-        before = self.variables.get(name, "")
-        if what in ("APPEND", "PREPEND"):
-            items = [*_items_of(before), *words] if what == "APPEND" else [*words, *_items_of(before)]
-            self.variables[name] = UNKNOWN if any("$" in item for item in items) else ";".join(items)
-        elif what in ("REMOVE_ITEM", "REMOVE_AT", "REVERSE", "SORT", "FILTER", "TRANSFORM", "INSERT"):
-            self.variables[name] = UNKNOWN
+    def _change_list(self, words: list[str]) -> None:
+        for target, value in list_command(words[0], words[1:], self._value).items():
+            if words[0] in ("APPEND", "PREPEND"):
+                self.variables[target] = value  # in a branch too: what may be in a list is in it
+            else:
+                self._set(target, value)
 
     def _matching(self, words: list[str], *, recursive: bool) -> str:
         words = [word for word in words if word != "CONFIGURE_DEPENDS"]
         base = None
         if words[:1] == ["RELATIVE"]:
             base, words = within_package(words[1], self._folder) if len(words) > 1 else "", words[2:]
-        if self.package is None or any("$" in word for word in words):
+        if self.package is None or any(map(is_open, words)):
             return UNKNOWN
         found: set[str] = set()
         for word in words:
@@ -307,11 +423,14 @@ class CMakeProgram:
         return ";".join(posixpath.relpath(path, base or ".") for path in sorted(found))
 
     def _parse_arguments(self, words: list[str]) -> None:
+        if words[0] == "PARSE_ARGV":
+            given = items_of(self._value("ARGV"))[int(words[1]) if words[1].isdecimal() else 0 :]
+            words = [*words[2:6], *given]
         prefix, options, single, many, *given = words
-        kinds = {name: kind for kind, names in enumerate((options, single, many)) for name in _items_of(names)}
+        kinds = {name: kind for kind, names in enumerate((options, single, many)) for name in items_of(names)}
         values: dict[str, list[str]] = {}
         current = "UNPARSED_ARGUMENTS"
-        for word in (item for text in given for item in _items_of(text)):
+        for word in (item for text in given for item in items_of(text)):
             if word in kinds:
                 values[word] = ["TRUE"] if kinds[word] == 0 else []
                 current = "UNPARSED_ARGUMENTS" if kinds[word] == 0 else word
@@ -322,20 +441,37 @@ class CMakeProgram:
         for name in (*kinds, "UNPARSED_ARGUMENTS"):
             self.variables[f"{prefix}_{name}"] = ";".join(values.get(name, ["FALSE"] if kinds.get(name) == 0 else []))
 
-    def _arguments(self, tokens: Sequence[_Token], source: SourceText) -> Iterator[Argument]:
-        for token in tokens:
-            text = self.filled(token.text) if token.has_variables else token.text
-            for each in _items_of(text) if token.is_list else [text]:
-                yield Argument(each, token.start, token.end, source)
+    def _arguments(self, statement: Statement) -> Iterator[Argument]:
+        for token in statement.tokens:
+            text = self._filled(token)
+            for each in [text] if token.is_quoted else items_of(text):
+                yield Argument(each, token.start, token.end, statement.source)
 
-    def filled(self, text: str) -> str:
-        """A text with the values of known variables in it."""
-        for _ in range(_DEEPEST):  # ${${NAME}_FILES}
-            filled = _VARIABLE.sub(lambda match: self.variables.get(match[1], match[0]), text)
+    def _filled(self, token: Token) -> str:
+        """The text of an argument with the values of known variables in it."""
+        text = token.text
+        for _ in range(_DEEPEST if token.has_variables else 0):  # ${${NAME}_FILES}
+            filled = _ENVIRONMENT.sub(lambda match: _environment(match[1]) or match[0], text)
+            filled = _VARIABLE.sub(lambda match: self.variables.get(match[1], match[0]), filled)
             if filled == text:
                 break
             text = filled
         return text
+
+
+def _environment(name: str) -> str | None:
+    """What CMake sees of the environment: the variables of ROS."""
+    return os.environ.get(name, ROS_VARIABLES[name]) if name in ROS_VARIABLES else None
+
+
+def _range(words: Sequence[str]) -> range:
+    """The numbers of ``foreach(i RANGE ...)``, which has its last number, too; none where that cannot be told."""
+    try:
+        numbers = [int(word) for word in words]
+    except ValueError:
+        return range(0)
+    start, stop, step = [0, *numbers, 1][:3] if len(numbers) == 1 else [*numbers, 1, 1][:3]
+    return range(start, stop + 1, step) if step > 0 and stop - start < _MOST_COMMANDS else range(0)
 
 
 def within_package(text: str, folder: str) -> str:
@@ -352,59 +488,8 @@ def within_package(text: str, folder: str) -> str:
     return f"{path}/" if text.endswith("/") and not path.endswith("/") else path
 
 
-def _items_of(text: str) -> list[str]:
-    return [item for item in text.split(";") if item]
-
-
 def _restore(variables: dict[str, str], name: str, value: str | None) -> None:
     if value is None:
         variables.pop(name, None)
     else:
         variables[name] = value
-
-
-def _part_of_name(path: str, part: str) -> str:
-    name = posixpath.basename(path)
-    parts = {
-        "NAME": name,
-        "NAME_WE": name.partition(".")[0],
-        "NAME_WLE": posixpath.splitext(name)[0],
-        "DIRECTORY": posixpath.dirname(path),
-        "PATH": posixpath.dirname(path),
-    }
-    return parts.get(part, UNKNOWN)
-
-
-def _end_of(statements: Sequence[_Statement], at: int, name: str) -> int:
-    depth = 1
-    for index in range(at, len(statements)):
-        depth += (statements[index][0] == name) - (statements[index][0] == _ENDS[name])
-        if not depth:
-            return index
-    return len(statements)
-
-
-def _statements(text: str) -> Iterator[tuple[str, list[_Token]]]:
-    """The commands as they are written; nested parentheses are flattened, comments left out."""
-    at, name, depth = 0, "", 0
-    tokens: list[_Token] = []
-    while at < len(text):
-        piece = _PIECE.match(text, at)
-        if piece is None:
-            at += 1
-            continue
-        at = piece.end()
-        if piece["open"]:
-            depth += 1
-        elif piece["close"]:
-            depth = max(0, depth - 1)
-            if depth == 0 and name:
-                yield name.lower(), tokens
-                name, tokens = "", []
-        elif piece["word"] and depth == 0:
-            name, tokens = piece["word"], []
-        elif depth and piece["blank"] is None and piece["comment"] is None:
-            value = piece["word"] or piece["quoted"] or piece["bracket"] or ""
-            quote = 1 if piece["quoted"] is not None else 0
-            is_word = piece["word"] is not None
-            tokens.append(_Token(value, piece.start() + quote, piece.end() - quote, is_word, piece["bracket"] is None))

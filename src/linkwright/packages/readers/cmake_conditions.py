@@ -1,0 +1,189 @@
+"""What ``if(...)`` and ``while(...)`` of CMake ask, and the answer: yes, no, or that only CMake could tell."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, MutableMapping, Sequence
+from dataclasses import dataclass
+
+from linkwright.packages.readers.cmake_syntax import is_open
+
+_NUMBER = re.compile(r"[+-]?\d+(\.\d*)?")
+_YES = frozenset({"1", "ON", "YES", "TRUE", "Y"})
+_NO = frozenset({"", "0", "OFF", "NO", "FALSE", "N", "IGNORE", "NOTFOUND"})
+_ORDERS: dict[str, Callable[[int], bool]] = {
+    "EQUAL": lambda sign: sign == 0,
+    "LESS": lambda sign: sign < 0,
+    "GREATER": lambda sign: sign > 0,
+    "LESS_EQUAL": lambda sign: sign <= 0,
+    "GREATER_EQUAL": lambda sign: sign >= 0,
+}
+_BINARY = frozenset({"MATCHES", "IN_LIST"}) | {
+    f"{kind}{order}" for kind in ("", "STR", "VERSION_") for order in _ORDERS
+}
+_MOST_WORDS = 200
+_LONGEST_SEARCH = 0.2
+"""Seconds for a regular expression, which may come from strangers."""
+
+
+@dataclass(frozen=True, slots=True)
+class Word:
+    """A word of a condition: its text with known variables put in, and whether it stands in quotes."""
+
+    text: str
+    is_quoted: bool = False
+
+    @property
+    def keyword(self) -> str:
+        """What it means as an operator; empty in quotes."""
+        return "" if self.is_quoted else self.text
+
+
+@dataclass(slots=True)
+class Condition:
+    """A condition that is worked out.
+
+    Args:
+        words: what is asked.
+        variables: those that are known; ``MATCHES`` sets ``CMAKE_MATCH_...``.
+        is_there: whether a path exists, or is a folder where ``IS_DIRECTORY`` is asked; None where that is not known.
+    """
+
+    words: Sequence[Word]
+    variables: MutableMapping[str, str]
+    is_there: Callable[[str, str], bool | None]
+    _at: int = 0
+
+    def answer(self) -> bool | None:
+        """Whether it holds; None where that cannot be told."""
+        if len(self.words) > _MOST_WORDS:
+            return None
+        found = self._either()
+        return found if self._at == len(self.words) else None
+
+    def _next(self, *keywords: str) -> bool:
+        if self._at < len(self.words) and self.words[self._at].keyword in keywords:
+            self._at += 1
+            return True
+        return False
+
+    def _either(self) -> bool | None:
+        found = self._both()
+        while self._next("OR"):
+            other = self._both()
+            found = True if found or other else None if None in (found, other) else False
+        return found
+
+    def _both(self) -> bool | None:
+        found = self._negated()
+        while self._next("AND"):
+            other = self._negated()
+            found = False if False in (found, other) else None if None in (found, other) else True
+        return found
+
+    def _negated(self) -> bool | None:
+        if self._next("NOT"):
+            found = self._negated()
+            return None if found is None else not found
+        return self._test()
+
+    def _test(self) -> bool | None:
+        if self._next("("):
+            found = self._either()
+            return found if self._next(")") else None
+        if self._at >= len(self.words):
+            return None
+        word = self.words[self._at]
+        self._at += 1
+        if word.keyword in ("EXISTS", "IS_DIRECTORY", "DEFINED", "COMMAND", "TARGET", "POLICY", "IS_ABSOLUTE"):
+            return self._about(word.text)
+        if self._at < len(self.words) and self.words[self._at].keyword in _BINARY:
+            operator = self.words[self._at].text
+            self._at += 1
+            return self._compared(word, operator)
+        return self._truth(word)
+
+    def _about(self, what: str) -> bool | None:
+        if self._at >= len(self.words):
+            return None
+        subject = self.words[self._at].text
+        self._at += 1
+        if is_open(subject):
+            return None
+        if what == "DEFINED":
+            return True if subject in self.variables else None
+        return self.is_there(what, subject) if what in ("EXISTS", "IS_DIRECTORY") else None
+
+    def _compared(self, left: Word, operator: str) -> bool | None:
+        if self._at >= len(self.words):
+            return None
+        right = self.words[self._at]
+        self._at += 1
+        given = self._value(left)
+        if operator == "IN_LIST":
+            items = self.variables.get(right.text)
+            return None if items is None or is_open(items + given) else given in items.split(";")
+        other = right.text if operator == "MATCHES" else self._value(right)
+        if is_open(given) or is_open(other):
+            return None
+        if operator == "MATCHES":
+            return self._matches(given, other)
+        kind = next((kind for kind in ("STR", "VERSION_") if operator.startswith(kind)), "")
+        sign = _order(kind, given, other)
+        return None if sign is None else _ORDERS[operator.removeprefix(kind)](sign)
+
+    def _matches(self, text: str, pattern: str) -> bool | None:
+        found = matched(pattern, text)
+        if found is None:
+            return None
+        if found:
+            groups = [found[0][0], *found[0][1]]
+            self.variables.update({f"CMAKE_MATCH_{number}": group for number, group in enumerate(groups)})
+        return bool(found)
+
+    def _value(self, word: Word) -> str:
+        return word.text if word.is_quoted else self.variables.get(word.text, word.text)
+
+    def _truth(self, word: Word) -> bool | None:
+        if is_open(word.text):
+            return None
+        said = _constant(word.text)
+        if said is not None or word.is_quoted:
+            return bool(said)
+        value = self.variables.get(word.text)
+        if value is None or is_open(value):
+            return None
+        return _constant(value) is not False
+
+
+def matched(pattern: str, text: str) -> list[tuple[str, list[str]]] | None:
+    """The places where a regular expression of CMake matches, each with its groups; None where it is none here."""
+    import regex
+
+    try:
+        found = regex.finditer(pattern, text, timeout=_LONGEST_SEARCH)
+        return [(each[0], [group or "" for group in each.groups()]) for each in found]
+    except (regex.error, TimeoutError, RecursionError):
+        return None
+
+
+def _constant(text: str) -> bool | None:
+    upper = text.upper()
+    if upper in _YES or (_NUMBER.fullmatch(upper) and float(upper)):
+        return True
+    if upper in _NO or upper.endswith("-NOTFOUND") or _NUMBER.fullmatch(upper):
+        return False
+    return None
+
+
+def _order(kind: str, left: str, right: str) -> int | None:
+    if kind == "STR":
+        return (left > right) - (left < right)
+    if kind == "VERSION_":
+        pair = [[int(part) for part in re.findall(r"\d+", text)] for text in (left, right)]
+        longest = max(len(parts) for parts in pair)
+        one, other = ([*parts, *[0] * (longest - len(parts))] for parts in pair)
+        return (one > other) - (one < other)
+    if not _NUMBER.fullmatch(left) or not _NUMBER.fullmatch(right):
+        return None
+    return (float(left) > float(right)) - (float(left) < float(right))
