@@ -155,7 +155,7 @@ def test_what_the_table_does_not_require_is_optional(version, path, attribute: A
 def test_defaults_are_those_of_the_model(path, values):
     rule = ROBOT
     for tag in path.split()[1:]:
-        rule = rule.child(tag)
+        rule = rule.child_rules.get(tag)
     for attribute in rule.attributes:
         if attribute.default:
             default = getattr(values, attribute.name)

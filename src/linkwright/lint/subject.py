@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from linkwright.lint.extents import Extents
     from linkwright.lint.meshes import MeshFacts
     from linkwright.lint.package import PackageContext
+    from linkwright.lint.structure import Structure
     from linkwright.lint.xacro_facts import XacroFacts
     from linkwright.packages import PackageFinder
     from linkwright.urdf.bodies import Bodies
@@ -120,6 +121,13 @@ class Subject:
             return KinematicTree(self.robot)
         except LinkwrightError:
             return None
+
+    @cached_property
+    def structure(self) -> Structure:
+        """The elements of the description, those that URDF knows and those that nobody reads."""
+        from linkwright.lint.structure import Structure
+
+        return Structure(self.root)
 
     @cached_property
     def meshes(self) -> MeshFacts:

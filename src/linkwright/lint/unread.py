@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from difflib import SequenceMatcher
+from functools import lru_cache
 
 from linkwright.diagnostics import Span, nearest
+from linkwright.lint.structure import EXTENSIONS, Place
 from linkwright.lint.subject import Subject
-from linkwright.lint.walk import Place, known_elements
 from linkwright.schema import ElementRule
 from linkwright.urdf import schema
 from linkwright.xmltree import Element
 
-EXTENSIONS = frozenset({"gazebo", "transmission", "ros2_control", "sensor", "mujoco", "simulation", "plugin"})
-"""Elements of other tools directly in ``<robot>``."""
 INNER_EXTENSIONS = frozenset({"contact", "sensor", "verbose", "self_collision_checking", "plugin", "gazebo"})
 """Elements of other tools inside of links and joints."""
 EXTENSION_ATTRIBUTES = frozenset({"D", "K", "mu_coulomb", "mu_viscous", "type", "id", "reference_position", "unit"})
@@ -65,27 +64,6 @@ def _homes() -> dict[str, tuple[str, ...]]:
 HOMES = _homes()
 
 
-def unknown_children(subject: Subject) -> Iterator[tuple[Place, Element]]:
-    """The elements that URDF has no place for where they stand, but for those of other tools and namespaces."""
-    for place in known_elements(subject):
-        for child in place.element.elements():
-            if place.rule.child(child.tag) is not None or ":" in child.tag:
-                continue
-            if place.rule is schema.ROBOT and child.tag in EXTENSIONS:
-                continue
-            if place.rule is schema.GEOMETRY and child is next(place.element.elements(), None):
-                continue  # an unknown shape, which the reader reports
-            yield place, child
-
-
-def unknown_attributes(subject: Subject) -> Iterator[tuple[Place, str]]:
-    """The attributes that their elements do not have, but for those of other namespaces."""
-    for place in known_elements(subject):
-        for attribute in place.element.attributes:
-            if place.rule.attribute(attribute) is None and ":" not in attribute and attribute != "xmlns":
-                yield place, attribute
-
-
 def told_by_reader(subject: Subject) -> dict[Span | None, str]:
     """What the reader said, by place: its hint names what is misspelt."""
     return {found.span: found.hint or "" for found in subject.reading.diagnostics}
@@ -121,12 +99,29 @@ def meant_attribute(place: Place, attribute: str) -> str | None:
 
 def close_name(name: str, known: Iterable[str]) -> str | None:
     """The known name that a misspelt one is very near, or None; shorter differences than a word's own variants."""
-    best = max(known, key=lambda each: _likeness(name, each), default="")
-    return best if best and best != name and _likeness(name, best) >= _CLOSE and len(name) > 2 else None
+    if len(name) < 3:
+        return None
+    near = [(likeness, each) for each in known if (likeness := _likeness(name.casefold(), each)) >= _CLOSE]
+    best = max(near, key=lambda pair: pair[0], default=(0.0, name))[1]
+    return best if best != name else None
 
 
-def _likeness(one: str, other: str) -> float:
-    return SequenceMatcher(None, one.casefold(), other.casefold()).ratio()
+def _likeness(folded: str, known: str) -> float:
+    """How alike a name in lower case and a known one are, from 0 to 1; 0 for less than what is close."""
+    matcher = _matcher(known)
+    matcher.set_seq1(folded)
+    # The first two are no less than the last, and found sooner.
+    if matcher.real_quick_ratio() < _CLOSE or matcher.quick_ratio() < _CLOSE:
+        return 0.0
+    return matcher.ratio()
+
+
+@lru_cache(maxsize=512)
+def _matcher(known: str) -> SequenceMatcher[str]:
+    """What compares names with a known one; what it works out about that one it keeps."""
+    matcher = SequenceMatcher[str]()
+    matcher.set_seq2(known.casefold())
+    return matcher
 
 
 def inside(place: Place) -> str:

@@ -1,72 +1,17 @@
-"""Walking over a description as rules do: every element with its place in the schema, every joint with its parts."""
+"""Walking over a description as rules do: every joint with its parts."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from linkwright.diagnostics import phrase, term
-from linkwright.schema import ElementRule
-from linkwright.urdf import Joint, schema
+from linkwright.urdf import Joint
 from linkwright.urdf.values import number, numbers
 from linkwright.xmltree import Element
 
 if TYPE_CHECKING:
     from linkwright.lint.subject import Subject
-
-
-@dataclass(frozen=True, slots=True)
-class Place:
-    """An element that URDF knows, with its rule.
-
-    Attributes:
-        element: the element.
-        rule: what it may carry and contain.
-        parent: the element around it; None for ``<robot>``.
-        owner: the link, joint or material that it is part of, as messages name it; empty for ``<robot>``.
-    """
-
-    element: Element
-    rule: ElementRule
-    parent: Element | None
-    owner: str
-
-    @property
-    def of_owner(self) -> str:
-        """What follows the tag of a part in a message: `` of joint 'elbow'``."""
-        return f" of {self.owner}" if self.owner and self.rule not in schema.ROBOT.children else ""
-
-    def __str__(self) -> str:
-        """The element as messages name it: ``joint 'elbow'``, ``<limit> of joint 'elbow'``."""
-        return self.owner if self.owner and not self.of_owner else f"<{self.rule.tag}>{self.of_owner}"
-
-
-def known_elements(subject: Subject) -> Iterator[Place]:
-    """Every element of the description that URDF has a place for, in document order."""
-    if subject.root.tag != schema.ROBOT.tag:
-        return
-    waiting = [Place(subject.root, schema.ROBOT, None, "")]
-    while waiting:
-        place = waiting.pop()
-        yield place
-        inner = []
-        for child in place.element.elements():
-            rule = place.rule.child(child.tag)
-            if rule is not None:
-                inner.append(Place(child, rule, place.element, place.owner or owner_name(child)))
-        waiting.extend(reversed(inner))
-
-
-def owner_name(element: Element) -> str:
-    """A link, joint or material as messages name it."""
-    name = element.attributes.get("name")
-    return (
-        phrase("a {tag} without a name", tag=term(element.tag))
-        if name is None
-        else phrase("{tag} '{name}'", tag=term(element.tag), name=name)
-    )
 
 
 def joints(subject: Subject) -> Iterator[tuple[Joint, Element]]:

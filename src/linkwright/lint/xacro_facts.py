@@ -226,9 +226,9 @@ class FileFacts:
     def _mention(
         self, text: str, element: Element, attribute: str | None, parents: tuple[Element, ...], order: int
     ) -> None:
-        found = mentions(text)
         if "$" not in text:
             return
+        found = mentions(text)
         self.uses.append(Use(element, attribute, found, parents, order))
         self.names |= found.names
         self.used_arguments |= found.arguments

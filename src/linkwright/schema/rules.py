@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 Version = tuple[int, int]
@@ -84,6 +84,8 @@ class ElementRule:
     Attributes:
         tag: the element's name.
         meaning: one phrase for hover texts and documentation.
+        attribute_rules: the rules of its attributes by name.
+        child_rules: the rules of the elements inside by tag, its own among them where it nests.
         attributes: in the order in which documentation lists them.
         children: the elements inside that are read, in the order in which they are written.
         required: whether the element around it cannot be read without it.
@@ -108,6 +110,8 @@ class ElementRule:
 
     tag: str
     meaning: str
+    attribute_rules: Mapping[str, AttributeRule] = field(init=False, repr=False)
+    child_rules: Mapping[str, ElementRule] = field(init=False, repr=False)
     attributes: tuple[AttributeRule, ...] = ()
     children: tuple[ElementRule, ...] = ()
     required: bool = False
@@ -124,6 +128,11 @@ class ElementRule:
     keeps: bool = False
     nests: bool = False
     check: Callable[..., Any] | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "attribute_rules", {rule.name: rule for rule in self.attributes})
+        own = {self.tag: self} if self.nests else {}
+        object.__setattr__(self, "child_rules", {rule.tag: rule for rule in self.children} | own)
 
     @property
     def target(self) -> str:
@@ -143,13 +152,3 @@ class ElementRule:
     def values(self) -> tuple[AttributeRule, ...]:
         """What it says itself: its attributes, and the text inside."""
         return self.attributes if self.text is None else (*self.attributes, self.text)
-
-    def attribute(self, name: str) -> AttributeRule | None:
-        """The rule of one attribute, or None."""
-        return next((rule for rule in self.attributes if rule.name == name), None)
-
-    def child(self, tag: str) -> ElementRule | None:
-        """The rule of one child element, or None."""
-        if self.nests and tag == self.tag:
-            return self
-        return next((rule for rule in self.children if rule.tag == tag), None)

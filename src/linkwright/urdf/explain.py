@@ -117,7 +117,7 @@ class UrdfReport(Findings):
         self, element: Element, rule: ElementRule, child: ElementRule, owner: Element, kind: str = ""
     ) -> None:
         """A required child is not there; `kind` is the type of a joint where only such joints want it."""
-        candidates = [each for each in element.elements() if rule.child(each.tag) is None]
+        candidates = [each for each in element.elements() if each.tag not in rule.child_rules]
         like = nearest(child.tag, [each.tag for each in candidates], limit=1)
         misspelt = next((each for each in candidates if each.tag in like), None)
         hint = phrase(
@@ -143,7 +143,7 @@ class UrdfReport(Findings):
 
     def unknown_choice(self, child: Element, rule: ElementRule, owner: Element) -> None:
         """What should be a shape is none, or not in this version."""
-        if rule.child(child.tag) is not None:
+        if child.tag in rule.child_rules:
             hint = phrase('write <robot version="1.1" ...>, or build it from a cylinder and two spheres')
             self.error(
                 "URDF132", phrase("<capsule> of {owner} needs URDF 1.1", owner=owner_name(owner)), child, hint=hint
@@ -215,7 +215,7 @@ def _count_hint(rule: ElementRule, attribute: AttributeRule, found: tuple[float,
 
 
 def _missing_attribute_hint(element: Element, rule: ElementRule, attribute: AttributeRule) -> Phrase:
-    unknown = [name for name in element.attributes if rule.attribute(name) is None]
+    unknown = [name for name in element.attributes if name not in rule.attribute_rules]
     like = nearest(attribute.name, unknown, limit=1)
     if like:
         return phrase("did you mean '{name}' where it says '{like}'?", name=attribute.name, like=like[0])

@@ -203,7 +203,7 @@ class SeveralShapes(Rule):
             for shape in link.elements():
                 geometry = shape.first("geometry") if shape.tag in ("visual", "collision") else None
                 inside = geometry.elements() if geometry is not None else ()
-                found = [element for element in inside if GEOMETRY.child(element.tag)]
+                found = [element for element in inside if element.tag in GEOMETRY.child_rules]
                 for extra in found[1:]:
                     yield self.report(
                         phrase(

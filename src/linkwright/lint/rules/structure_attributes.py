@@ -13,7 +13,6 @@ from linkwright.lint.unread import (
     attribute_name_span,
     meant_attribute,
     told_by_reader,
-    unknown_attributes,
 )
 
 
@@ -45,7 +44,7 @@ class MisspeltAttribute(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Every attribute nobody reads whose name is near one that is not given."""
         told = told_by_reader(subject)
-        for place, attribute in unknown_attributes(subject):
+        for place, attribute in subject.structure.unknown_attributes:
             meant = meant_attribute(place, attribute)
             if meant is None or f"'{attribute}'" in told.get(place.element.span(), ""):
                 continue
@@ -86,7 +85,7 @@ class UnknownAttribute(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Every attribute nobody reads that is like nothing the element has."""
         told = told_by_reader(subject)
-        for place, attribute in unknown_attributes(subject):
+        for place, attribute in subject.structure.unknown_attributes:
             if attribute in EXTENSION_ATTRIBUTES or meant_attribute(place, attribute) is not None:
                 continue
             if f"'{attribute}'" in told.get(place.element.span(), ""):

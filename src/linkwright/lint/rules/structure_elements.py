@@ -15,9 +15,7 @@ from linkwright.lint.unread import (
     is_misspelt,
     meant_element,
     told_by_reader,
-    unknown_children,
 )
-from linkwright.lint.walk import known_elements
 from linkwright.urdf import schema
 
 
@@ -50,7 +48,7 @@ class MisspeltElement(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Every element nobody reads whose name is near one that could stand there."""
         told = told_by_reader(subject)
-        for place, child in unknown_children(subject):
+        for place, child in subject.structure.unknown_elements:
             meant = meant_element(place.rule, child)
             if meant is None or child.span() in told:
                 continue
@@ -98,7 +96,7 @@ class MisplacedElement(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Every element that is known elsewhere; a material in a collision has a rule of its own."""
         told = told_by_reader(subject)
-        for place, child in unknown_children(subject):
+        for place, child in subject.structure.unknown_elements:
             homes = HOMES.get(child.tag, ())
             if not homes or child.span() in told or (place.rule.tag, child.tag) == ("collision", "material"):
                 continue
@@ -140,7 +138,7 @@ class UnknownElement(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Every element nobody reads that is like nothing URDF has."""
         told = told_by_reader(subject)
-        for place, child in unknown_children(subject):
+        for place, child in subject.structure.unknown_elements:
             if place.rule is schema.ROBOT or child.tag in INNER_EXTENSIONS or child.tag in HOMES:
                 continue
             if meant_element(place.rule, child) is None and child.span() not in told:
@@ -185,7 +183,7 @@ class MaterialInCollision(Rule):
         """Every material of a collision."""
         from linkwright.lint.fix import remove_element
 
-        for place in known_elements(subject):
+        for place in subject.structure.places:
             if place.rule.tag == "collision":
                 for material in place.element.elements("material"):
                     yield self.report(

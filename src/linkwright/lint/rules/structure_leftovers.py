@@ -8,7 +8,6 @@ from pathlib import PurePath
 from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
-from linkwright.lint.walk import known_elements
 from linkwright.urdf.value_types import TEXT
 from linkwright.xmltree import Text
 
@@ -42,9 +41,9 @@ class XacroInUrdf(Rule):
         """Every address with an expression; of numbers the reader says it."""
         if subject.expansion is not None:
             return
-        for place in known_elements(subject):
+        for place in subject.structure.places:
             for attribute, written in place.element.attributes.items():
-                rule = place.rule.attribute(attribute)
+                rule = place.rule.attribute_rules.get(attribute)
                 if rule is None or rule.type is not TEXT:
                     continue
                 if "${" in written or "$(" in written:
@@ -86,7 +85,7 @@ class StrayText(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Every text with something in it; where a value is missing besides, the reader says it."""
         told = {found.span for found in subject.reading.diagnostics}
-        for place in known_elements(subject):
+        for place in subject.structure.places:
             if place.element.span() in told:
                 continue
             for child in place.element.children:

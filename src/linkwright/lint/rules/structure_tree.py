@@ -9,7 +9,6 @@ from linkwright.diagnostics import Diagnostic, Note, Severity, phrase
 from linkwright.lint.fix import remove_element
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
-from linkwright.lint.walk import known_elements
 from linkwright.urdf import schema
 from linkwright.xmltree import Element
 
@@ -148,10 +147,10 @@ class RepeatedElement(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Every element after the first of its tag, where one is read."""
-        for place in known_elements(subject):
+        for place in subject.structure.places:
             first: dict[str, Element] = {}
             for child in place.element.elements():
-                rule = place.rule.child(child.tag)
+                rule = place.rule.child_rules.get(child.tag)
                 if rule is None or rule.many or place.rule is schema.GEOMETRY:
                     continue
                 before = first.setdefault(child.tag, child)

@@ -1,0 +1,108 @@
+"""A description beside the schema of URDF: what has a place there, and what stands there that nobody reads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cached_property
+from typing import NamedTuple
+
+from linkwright.diagnostics import phrase, term
+from linkwright.schema import ElementRule
+from linkwright.urdf import schema
+from linkwright.xmltree import Element
+
+EXTENSIONS = frozenset({"gazebo", "transmission", "ros2_control", "sensor", "mujoco", "simulation", "plugin"})
+"""Elements of other tools directly in ``<robot>``."""
+
+
+class Place(NamedTuple):
+    """An element that URDF knows, with its rule.
+
+    Attributes:
+        element: the element.
+        rule: what it may carry and contain.
+        parent: the element around it; None for ``<robot>``.
+        owner: the link, joint or material that it is or is part of; None for ``<robot>``.
+    """
+
+    element: Element
+    rule: ElementRule
+    parent: Element | None
+    owner: Element | None
+
+    @property
+    def of_owner(self) -> str:
+        """What follows the tag of a part in a message: `` of joint 'elbow'``."""
+        return "" if self.owner is None or self.owner is self.element else f" of {_owner_name(self.owner)}"
+
+    def __str__(self) -> str:
+        """The element as messages name it: ``joint 'elbow'``, ``<limit> of joint 'elbow'``."""
+        return _owner_name(self.element) if self.owner is self.element else f"<{self.rule.tag}>{self.of_owner}"
+
+
+class Structure:
+    """The elements of a description; each list is made when first asked for.
+
+    Args:
+        root: the root element.
+    """
+
+    def __init__(self, root: Element) -> None:
+        self._root = root
+
+    @cached_property
+    def places(self) -> list[Place]:
+        """Every element that URDF has a place for, in document order; none where the root is no ``<robot>``."""
+        return list(self._walk())
+
+    @cached_property
+    def unknown_elements(self) -> list[tuple[Place, Element]]:
+        """The elements that URDF has no place for where they stand, but for those of other tools and namespaces."""
+        return [
+            (place, child)
+            for place in self.places
+            for child in place.element.elements()
+            if child.tag not in place.rule.child_rules and not _is_expected(place, child)
+        ]
+
+    @cached_property
+    def unknown_attributes(self) -> list[tuple[Place, str]]:
+        """The attributes that their elements do not have, but for those of other namespaces."""
+        return [
+            (place, name)
+            for place in self.places
+            for name in place.element.attributes
+            if name not in place.rule.attribute_rules and ":" not in name and name != "xmlns"
+        ]
+
+    def _walk(self) -> Iterator[Place]:
+        if self._root.tag != schema.ROBOT.tag:
+            return
+        waiting = [Place(self._root, schema.ROBOT, None, None)]
+        while waiting:
+            place = waiting.pop()
+            yield place
+            element, rules, _, owner = place
+            inner = [
+                Place(child, rule, element, owner or child)
+                for child in element.elements()
+                if (rule := rules.child_rules.get(child.tag)) is not None
+            ]
+            waiting.extend(reversed(inner))
+
+
+def _is_expected(place: Place, child: Element) -> bool:
+    if ":" in child.tag or (place.rule is schema.ROBOT and child.tag in EXTENSIONS):
+        return True
+    # An unknown shape, which the reader reports.
+    return place.rule is schema.GEOMETRY and child is next(place.element.elements(), None)
+
+
+def _owner_name(element: Element) -> str:
+    """A link, joint or material as messages name it."""
+    name = element.attributes.get("name")
+    return (
+        phrase("a {tag} without a name", tag=term(element.tag))
+        if name is None
+        else phrase("{tag} '{name}'", tag=term(element.tag), name=name)
+    )
