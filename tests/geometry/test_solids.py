@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from linkwright.geometry.polyhedron import polyhedron_properties
-from linkwright.geometry.solids import half_extents, shape_properties
+from linkwright.geometry.solids import shape_properties, volume_of
 from linkwright.urdf import Box, Capsule, Cylinder, Sphere
 
 sizes = st.floats(0.01, 2.0)
@@ -75,10 +75,10 @@ def test_a_capsule_without_cylinder_is_a_sphere():
 @pytest.mark.parametrize("shape", [Box((1, 0, 1)), Box((1, -1, 1)), Sphere(0), Cylinder(-1, 1), Capsule(1, -1)])
 def test_a_size_that_is_not_positive_has_no_mass(shape):
     assert shape_properties(shape, 1000.0).mass == 0
+    assert volume_of(shape) == 0
 
 
-def test_extents():
-    assert np.allclose(half_extents(Box((1, 2, 3))), (0.5, 1, 1.5))
-    assert np.allclose(half_extents(Cylinder(1, 4)), (1, 1, 2))
-    assert np.allclose(half_extents(Capsule(1, 4)), (1, 1, 3))
-    assert np.allclose(half_extents(Sphere(2)), (2, 2, 2))
+@given(sizes, sizes, sizes)
+def test_the_volume_is_the_mass_at_a_density_of_one(a, b, c):
+    for shape in (Box((a, b, c)), Cylinder(a, b), Capsule(a, b), Sphere(a)):
+        assert volume_of(shape) == pytest.approx(shape_properties(shape).mass)

@@ -1,4 +1,4 @@
-"""Mass properties of the simple shapes, in closed form, and the space they take.
+"""Mass properties of the simple shapes, in closed form, and their volumes.
 
 The formulae are those of any table of moments of inertia of homogeneous bodies, for instance Beer, Johnston: *Vector
 Mechanics for Engineers: Dynamics*, inside back cover. All are about the centre of mass and the shape's own axes.
@@ -6,11 +6,10 @@ Mechanics for Engineers: Dynamics*, inside back cover. All are about the centre 
 
 from __future__ import annotations
 
-from math import pi
+from math import pi, prod
 
 import numpy as np
 
-from linkwright.geometry.arrays import Array
 from linkwright.geometry.mass import MassProperties
 from linkwright.geometry.shapes import Box, Capsule, Cylinder, SimpleShape, Sphere
 
@@ -31,17 +30,16 @@ def shape_properties(shape: SimpleShape, density: float = 1.0) -> MassProperties
     return _cylinder(shape, density)
 
 
-def half_extents(shape: SimpleShape) -> Array:
-    """Half the edges, in m, of the box around a shape along its own axes; shape (3,)."""
+def volume_of(shape: SimpleShape) -> float:
+    """The volume of a shape in m3; 0 where a size is zero or less."""
     if isinstance(shape, Box):
-        half = np.array(shape.size, dtype=np.float64) / 2.0
-    elif isinstance(shape, Sphere):
-        half = np.full(3, shape.radius)
-    else:
-        above = shape.length / 2.0 + (shape.radius if isinstance(shape, Capsule) else 0.0)
-        half = np.array((shape.radius, shape.radius, above), dtype=np.float64)
-    extents: Array = np.abs(half)
-    return extents
+        return prod(shape.size) if min(shape.size) > 0 else 0.0
+    if isinstance(shape, Sphere):
+        return 4 / 3 * pi * max(shape.radius, 0.0) ** 3
+    if isinstance(shape, Capsule):
+        r, length = shape.radius, shape.length
+        return pi * r * r * length + 4 / 3 * pi * r**3 if r > 0 and length >= 0 else 0.0
+    return pi * shape.radius**2 * shape.length if min(shape.radius, shape.length) > 0 else 0.0
 
 
 def _box(box: Box, density: float) -> MassProperties:
@@ -49,7 +47,7 @@ def _box(box: Box, density: float) -> MassProperties:
     if min(box.size) <= 0:
         return MassProperties(0.0)
     a, b, c = box.size
-    mass = density * a * b * c
+    mass = density * volume_of(box)
     return _diagonal(mass, mass * (b * b + c * c) / 12, mass * (a * a + c * c) / 12, mass * (a * a + b * b) / 12)
 
 
@@ -58,7 +56,7 @@ def _cylinder(cylinder: Cylinder, density: float) -> MassProperties:
     r, length = cylinder.radius, cylinder.length
     if min(r, length) <= 0:
         return MassProperties(0.0)
-    mass = density * pi * r * r * length
+    mass = density * volume_of(cylinder)
     across = mass * (3 * r * r + length * length) / 12
     return _diagonal(mass, across, across, mass * r * r / 2)
 
@@ -68,7 +66,7 @@ def _sphere(sphere: Sphere, density: float) -> MassProperties:
     r = sphere.radius
     if r <= 0:
         return MassProperties(0.0)
-    mass = density * 4 / 3 * pi * r * r * r
+    mass = density * volume_of(sphere)
     moment = 2 / 5 * mass * r * r
     return _diagonal(mass, moment, moment, moment)
 

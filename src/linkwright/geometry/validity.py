@@ -13,7 +13,9 @@ import numpy as np
 
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.geometry.arrays import Array
+from linkwright.geometry.bounds import Bounds
 from linkwright.geometry.mass import MassProperties
+from linkwright.geometry.vectors import Vector3
 
 HEAVIEST_DENSITY = 22_600.0
 """Osmium in kg/m3: no solid is denser."""
@@ -76,25 +78,19 @@ def excessive_products(tensor: Array, tolerance: float = TOLERANCE) -> list[tupl
     return found
 
 
-def largest_moment_within(center: Array, low: Array, high: Array, mass: float) -> float:
+def largest_moment_within(center: Vector3, box: Bounds, mass: float) -> float:
     """The largest moment about a centre of mass that a body inside a box can have, in kg m2.
 
     A body's points are nowhere farther than the farthest corner, and a moment about an axis through the centre of mass
     is at most that of the whole mass at the farthest distance.
 
     Args:
-        center: the centre of mass in m; shape (3,).
-        low: the box's lowest corner; shape (3,).
-        high: its highest corner; shape (3,).
+        center: the centre of mass in m.
+        box: the box, in m.
         mass: in kg.
     """
-    farthest = np.maximum(np.abs(low - center), np.abs(high - center))
-    return mass * float(farthest @ farthest)
-
-
-def distance_outside(point: Array, low: Array, high: Array) -> float:
-    """How far a point lies outside a box, in m; 0 inside."""
-    return float(np.linalg.norm(np.maximum(0.0, np.maximum(low - point, point - high))))
+    ends = zip(center, box.low, box.high, strict=True)
+    return mass * sum(max(abs(low - middle), abs(high - middle)) ** 2 for middle, low, high in ends)
 
 
 def problems(properties: MassProperties) -> list[Phrase]:

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 from typing import Literal
 
 from linkwright.diagnostics import LinkwrightError, Phrase, phrase, term
+from linkwright.geometry.bounds import bounds_of
 from linkwright.geometry.mass import FARTHEST, MassProperties, combine
-from linkwright.geometry.solids import half_extents, shape_properties
+from linkwright.geometry.solids import shape_properties
 from linkwright.inertia.inertial import has_mass
 from linkwright.inertia.mesh_library import MeshLibrary
 from linkwright.urdf import Collision, Link, Mesh, Visual
@@ -120,7 +121,7 @@ def _solid(
             )
     else:
         what = type(geometry).__name__.lower()
-        if half_extents(geometry).max() > FARTHEST:
+        if max(bounds_of(geometry).high) > FARTHEST:
             notes.append(phrase("a {kind} {what} is left out: it is too large", kind=term(kind), what=term(what)))
             return None
         solid = shape_properties(geometry)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from math import prod
+
 import numpy as np
 
-from linkwright.geometry.arrays import Array, matrix_from_pose, row_from_pose
-from linkwright.geometry.bounds import Bounds, union
+from linkwright.geometry.bounds import Bounds, bounds_of, union
 from linkwright.geometry.mass import FARTHEST, MassProperties, combine
-from linkwright.geometry.placement import Placement
-from linkwright.geometry.solids import half_extents, shape_properties
+from linkwright.geometry.placement import IDENTITY, Placement, placement
+from linkwright.geometry.solids import volume_of
 from linkwright.inertia.inertial import from_inertial, is_computable
 from linkwright.lint.meshes import MeshFacts
 from linkwright.urdf import Collision, Link, Mesh, Visual
@@ -16,6 +17,8 @@ from linkwright.urdf.bodies import Bodies, Body
 
 _MANY = 200
 """Links of a body from which on it is not measured anew for each of them."""
+
+_ORIGIN = Placement(IDENTITY, (0.0, 0.0, 0.0))
 
 
 class Extents:
@@ -25,17 +28,17 @@ class Extents:
         self._bodies = bodies
         self._meshes = meshes
         self._measured: dict[int, Bounds | None] = {}
-        self._of_bodies: dict[Body, Bounds | None] = {}
+        self._of_bodies: dict[tuple[Body, str], Bounds | None] = {}
 
     def mass_properties(self, body: Body) -> MassProperties:
         """What the ``<inertial>`` of a body's links come to, in the frame of its first link."""
         parts = []
         for link, frame in zip(self._bodies.members(body), body.frames.values(), strict=True):
-            inertial, matrix = link.inertial, frame_matrix(frame)
+            inertial = link.inertial
             if inertial is not None and inertial.mass > 0 and is_computable(inertial):
                 own = from_inertial(inertial)
-                rotation = matrix[:3, :3]
-                center = rotation @ own.center + matrix[:3, 3]
+                rotation = np.array(frame.rotation)
+                center = rotation @ own.center + np.array(_near(frame).position)
                 parts.append(MassProperties(own.mass, center, rotation @ own.inertia @ rotation.T))
         return combine(parts)
 
@@ -59,26 +62,26 @@ class Extents:
         Of a body of very many links the box is put around all of them once, and the one in a link's frame around that.
         """
         body = self._bodies.of(link.name)
-        if body is None:
-            return None
-        back = np.asarray(np.linalg.inv(frame_matrix(body.frames[link.name])), dtype=np.float64)
-        if len(body.frames) <= _MANY:
-            return self._bounds_from(body, back)
-        if body not in self._of_bodies:
-            self._of_bodies[body] = self._bounds_from(body, np.eye(4))
-        around = self._of_bodies[body]
-        return None if around is None else around.moved(back)
+        if body is None or len(body.frames) == 1:
+            return None if body is None else self.link_bounds(link)
+        key = (body, link.name if len(body.frames) <= _MANY else body.links[0])
+        if key not in self._of_bodies:
+            self._of_bodies[key] = self._around(body, _near(body.frames[key[1]]))
+        around = self._of_bodies[key]
+        if around is None or key[1] == link.name:
+            return around
+        return around.moved(_ORIGIN.seen_from(_near(body.frames[link.name])))
 
-    def _bounds_from(self, body: Body, back: Array) -> Bounds | None:
-        """The box around a body, along the axes that a matrix turns those of its first link to."""
+    def _around(self, body: Body, frame: Placement) -> Bounds | None:
+        """The box around a body in a frame that is given in that of its first link."""
         boxes = []
-        for member, frame in zip(self._bodies.members(body), body.frames.values(), strict=True):
+        for member, own in zip(self._bodies.members(body), body.frames.values(), strict=True):
             if not (member.visuals or member.collisions):
                 continue
             bounds = self.link_bounds(member)
             if bounds is None:
                 return None
-            boxes.append(bounds.moved(back @ frame_matrix(frame)))
+            boxes.append(bounds.moved(_near(own).seen_from(frame)))
         return union(boxes)
 
     def volume(self, link: Link) -> float | None:
@@ -94,9 +97,9 @@ class Extents:
                 if bounds is None:
                     return None
                 if isinstance(shape.geometry, Mesh):
-                    total += float(np.prod(bounds.size))
+                    total += prod(bounds.size)
                 else:
-                    total += shape_properties(shape.geometry).mass
+                    total += volume_of(shape.geometry)
             totals.append(total)
         return max(totals)
 
@@ -108,19 +111,16 @@ class Extents:
             mesh = self._meshes.triangles(shape)
             if mesh is None:
                 return None
-            low, high = mesh.bounds
-            box = Bounds(low, high)
+            low, high = (corner.tolist() for corner in mesh.bounds)
+            box = Bounds((low[0], low[1], low[2]), (high[0], high[1], high[2]))
         else:
-            half = half_extents(geometry)
-            if half.max() > FARTHEST:
+            box = bounds_of(geometry)
+            if max(box.high) > FARTHEST:
                 return None
-            box = Bounds(-half, half)
-        return box.moved(matrix_from_pose(row_from_pose(shape.origin)))
+        return box.moved(placement(shape.origin))
 
 
-def frame_matrix(frame: Placement) -> Array:
-    """A frame as a homogeneous matrix, shape (4, 4); places beyond all bounds are moved to their edge."""
-    matrix = np.eye(4)
-    matrix[:3, :3] = frame.rotation
-    matrix[:3, 3] = np.clip(frame.position, -FARTHEST, FARTHEST)
-    return matrix
+def _near(frame: Placement) -> Placement:
+    """A frame; a place beyond all bounds is moved to their edge, so that nothing overflows."""
+    x, y, z = (min(max(part, -FARTHEST), FARTHEST) for part in frame.position)
+    return Placement(frame.rotation, (x, y, z))

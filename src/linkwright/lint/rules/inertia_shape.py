@@ -6,6 +6,7 @@ A link's body may be larger than the link: what is fixed to it counts. Where a m
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from math import prod
 from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, Note, Phrase, phrase
@@ -93,13 +94,13 @@ class DensityTooHigh(Rule):
             bounds, volume = subject.extents.link_bounds(link), subject.extents.volume(link)
             if bounds is None or volume is None or bounds.diagonal <= _MARKER:
                 continue
-            if bounds.size.min() < _ALMOST_NOTHING / 10:
+            if min(bounds.size) < _ALMOST_NOTHING / 10:
                 continue  # a sheet: its thickness is not meant
             if subject.bodies.stands_for_others(link):
                 around = subject.extents.body_bounds(link)
                 if around is None:
                     continue
-                volume = max(volume, float(around.size.prod()))
+                volume = max(volume, prod(around.size))
             if volume > 0 and inertial.mass / volume > HEAVIEST_DENSITY:
                 yield self.report(
                     phrase(
@@ -207,20 +208,15 @@ class CenterOutside(Rule):
     options = (Option("margin", 0.25, "how far outside it may lie, as a part of the diagonal of the shapes' box"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        if not any(links_with_inertial(subject)):
-            return
-        import numpy as np
-
-        from linkwright.geometry.validity import distance_outside
-
         margin = self.option(subject, "margin", float)
         for link, inertial, bounds in measured(subject):
-            center = np.asarray(inertial.origin.xyz, dtype=np.float64)
-            if np.abs(center).max() > _BEYOND_BELIEF:
+            center = inertial.origin.xyz
+            if max(map(abs, center)) > _BEYOND_BELIEF:
                 continue
-            distance = distance_outside(center, bounds.low, bounds.high)
+            distance = bounds.distance(center)
             if distance > max(margin * bounds.diagonal, _ALMOST_NOTHING):
-                scaled = distance_outside(center / 1000, bounds.low, bounds.high) == 0
+                x, y, z = center
+                scaled = bounds.distance((x / 1000, y / 1000, z / 1000)) == 0
                 yield self.report(
                     phrase(
                         "the centre of mass of link '{name}' lies {length} outside its shapes",
@@ -279,9 +275,9 @@ class CenterForgotten(Rule):
             if body is None or len(body.frames) > 1:
                 continue
             # Beyond 0.45 of an edge from the middle of the box: at its side, or outside.
-            offset = abs(bounds.center) - 0.45 * bounds.size
-            if offset.max() > _ALMOST_NOTHING:
-                x, y, z = (round(float(part), 4) + 0.0 for part in bounds.center)
+            ends = zip(bounds.center, bounds.size, strict=True)
+            if any(abs(middle) - 0.45 * size > _ALMOST_NOTHING for middle, size in ends):
+                x, y, z = (round(part, 4) + 0.0 for part in bounds.center)
                 yield self.report(
                     phrase(
                         "<inertial> of link '{name}' has no <origin>, but its shapes lie to one side", name=link.name
@@ -320,17 +316,12 @@ class InertiaTooLarge(Rule):
     options = (Option("factor", 2.0, "how many times the largest possible moment is reported"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        if not any(links_with_inertial(subject)):
-            return
-        import numpy as np
-
         from linkwright.geometry.validity import largest_moment_within
 
         factor = self.option(subject, "factor", float)
         for link, inertial, bounds in measured(subject):
             largest = max(inertial.ixx, inertial.iyy, inertial.izz)
-            center = np.clip(np.asarray(inertial.origin.xyz, dtype=np.float64), bounds.low, bounds.high)
-            limit = largest_moment_within(center, bounds.low, bounds.high, inertial.mass)
+            limit = largest_moment_within(bounds.nearest(inertial.origin.xyz), bounds, inertial.mass)
             if largest > factor * limit:
                 usual = _uniform(bounds, inertial.mass)
                 name = max(("ixx", "iyy", "izz"), key=lambda each: getattr(inertial, each))
@@ -389,10 +380,10 @@ class InertiaTooSmall(Rule):
             bounds = subject.extents.link_bounds(link)
             largest = max(inertial.ixx, inertial.iyy, inertial.izz)
             flaw = flaw_of(inertial)
-            if bounds is None or largest <= 0 or (flaw is not None and flaw.kind != "triangle"):
+            if bounds is None or largest <= 0:
                 continue
             usual = _uniform(bounds, inertial.mass)
-            if largest * factor < usual:
+            if largest * factor < usual and (flaw is None or flaw.kind == "triangle"):
                 yield self.report(
                     phrase(
                         "the inertia of link '{name}' is {thousands} times smaller than that of a solid of its size",
@@ -418,7 +409,7 @@ _COMPUTE = phrase("`linkwright inertia` computes it from the link's shapes")
 
 def _uniform(bounds: Bounds, mass: float) -> float:
     """The largest moment of a solid box of this mass about its middle, in kg m2."""
-    squares = sorted(float(edge) ** 2 for edge in bounds.size)
+    squares = sorted(edge**2 for edge in bounds.size)
     return mass * (squares[1] + squares[2]) / 12
 
 
