@@ -9,7 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from linkwright.geometry.polyhedron import polyhedron_properties
-from linkwright.geometry.solids import shape_properties, volume_of
+from linkwright.geometry.shapes import volume_of
+from linkwright.geometry.solids import shape_properties
 from linkwright.urdf import Box, Capsule, Cylinder, Sphere
 
 sizes = st.floats(0.01, 2.0)

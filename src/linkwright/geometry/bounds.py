@@ -10,6 +10,9 @@ from linkwright.geometry.placement import Placement
 from linkwright.geometry.shapes import Box, Capsule, SimpleShape, Sphere
 from linkwright.geometry.vectors import Vector3, added, scaled, subtracted
 
+FARTHEST = 1e9
+"""Lengths in m beyond this are mistakes; nothing is computed from them, so that nothing overflows."""
+
 
 class Bounds(NamedTuple):
     """A box along the axes of some frame: its lowest and highest corner in m."""

@@ -11,9 +11,6 @@ from numpy.typing import ArrayLike
 from linkwright.geometry.arrays import Array, rotation_matrix, row_from_pose
 from linkwright.geometry.single import Pose
 
-FARTHEST = 1e9
-"""Lengths in m beyond this are mistakes; nothing is computed from them, so that nothing overflows."""
-
 LEAST_MASS = 1e-30
 """A mass in kg below this, some electrons, is none."""
 

@@ -19,8 +19,9 @@ from linkwright.diagnostics import (
     phrase,
 )
 from linkwright.geometry.arrays import Array
+from linkwright.geometry.bounds import FARTHEST
 from linkwright.geometry.hull import convex_hull
-from linkwright.geometry.mass import FARTHEST, MassProperties
+from linkwright.geometry.mass import MassProperties
 from linkwright.geometry.mesh_files import MESH_ENDINGS, BadMeshError, beside, placed_meshes
 from linkwright.geometry.polyhedron import Faces, is_closed, merged, polyhedron_properties
 from linkwright.geometry.vectors import Vector3

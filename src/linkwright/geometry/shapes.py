@@ -1,8 +1,9 @@
-"""The simple shapes that descriptions are made of; lengths in metres."""
+"""The simple shapes that descriptions are made of, and their volumes; lengths in metres."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import pi, prod
 
 from linkwright.geometry.vectors import Vector3
 
@@ -38,3 +39,15 @@ class Sphere:
 
 
 SimpleShape = Box | Cylinder | Capsule | Sphere
+
+
+def volume_of(shape: SimpleShape) -> float:
+    """The volume of a shape in m3; 0 where a size is zero or less."""
+    if isinstance(shape, Box):
+        return prod(shape.size) if min(shape.size) > 0 else 0.0
+    if isinstance(shape, Sphere):
+        return 4 / 3 * pi * max(shape.radius, 0.0) ** 3
+    if isinstance(shape, Capsule):
+        r, length = shape.radius, shape.length
+        return pi * r * r * length + 4 / 3 * pi * r**3 if r > 0 and length >= 0 else 0.0
+    return pi * shape.radius**2 * shape.length if min(shape.radius, shape.length) > 0 else 0.0

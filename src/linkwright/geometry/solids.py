@@ -1,4 +1,4 @@
-"""Mass properties of the simple shapes, in closed form, and their volumes.
+"""Mass properties of the simple shapes, in closed form.
 
 The formulae are those of any table of moments of inertia of homogeneous bodies, for instance Beer, Johnston: *Vector
 Mechanics for Engineers: Dynamics*, inside back cover. All are about the centre of mass and the shape's own axes.
@@ -6,12 +6,12 @@ Mechanics for Engineers: Dynamics*, inside back cover. All are about the centre 
 
 from __future__ import annotations
 
-from math import pi, prod
+from math import pi
 
 import numpy as np
 
 from linkwright.geometry.mass import MassProperties
-from linkwright.geometry.shapes import Box, Capsule, Cylinder, SimpleShape, Sphere
+from linkwright.geometry.shapes import Box, Capsule, Cylinder, SimpleShape, Sphere, volume_of
 
 
 def shape_properties(shape: SimpleShape, density: float = 1.0) -> MassProperties:
@@ -28,18 +28,6 @@ def shape_properties(shape: SimpleShape, density: float = 1.0) -> MassProperties
     if isinstance(shape, Capsule):
         return _capsule(shape, density)
     return _cylinder(shape, density)
-
-
-def volume_of(shape: SimpleShape) -> float:
-    """The volume of a shape in m3; 0 where a size is zero or less."""
-    if isinstance(shape, Box):
-        return prod(shape.size) if min(shape.size) > 0 else 0.0
-    if isinstance(shape, Sphere):
-        return 4 / 3 * pi * max(shape.radius, 0.0) ** 3
-    if isinstance(shape, Capsule):
-        r, length = shape.radius, shape.length
-        return pi * r * r * length + 4 / 3 * pi * r**3 if r > 0 and length >= 0 else 0.0
-    return pi * shape.radius**2 * shape.length if min(shape.radius, shape.length) > 0 else 0.0
 
 
 def _box(box: Box, density: float) -> MassProperties:

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Literal
 
 from linkwright.diagnostics import LinkwrightError, Phrase, phrase, term
-from linkwright.geometry.bounds import bounds_of
-from linkwright.geometry.mass import FARTHEST, MassProperties, combine
+from linkwright.geometry.bounds import FARTHEST, bounds_of
+from linkwright.geometry.mass import MassProperties, combine
 from linkwright.geometry.solids import shape_properties
 from linkwright.inertia.inertial import has_mass
 from linkwright.inertia.mesh_library import MeshLibrary

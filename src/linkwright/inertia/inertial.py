@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from linkwright.geometry.mass import FARTHEST, LEAST_MASS, MassProperties
+from linkwright.geometry.bounds import FARTHEST
+from linkwright.geometry.mass import LEAST_MASS, MassProperties
 from linkwright.urdf import Inertial, Pose
 
 _GREATEST = 1e30

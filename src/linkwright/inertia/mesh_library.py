@@ -6,7 +6,7 @@ import os.path
 from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError, phrase
-from linkwright.geometry.mass import FARTHEST
+from linkwright.geometry.bounds import FARTHEST
 from linkwright.geometry.meshes import TriangleMesh, read_mesh, unreadable
 from linkwright.packages import PackageFinder
 from linkwright.urdf import Mesh

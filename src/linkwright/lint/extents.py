@@ -2,18 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from functools import cached_property
 from math import prod
+from typing import TYPE_CHECKING
 
-import numpy as np
-
-from linkwright.geometry.bounds import Bounds, bounds_of, union
-from linkwright.geometry.mass import FARTHEST, MassProperties, combine
+from linkwright.geometry.bounds import FARTHEST, Bounds, bounds_of, union
 from linkwright.geometry.placement import IDENTITY, Placement, placement
-from linkwright.geometry.solids import volume_of
-from linkwright.inertia.inertial import from_inertial, is_computable
+from linkwright.geometry.shapes import volume_of
 from linkwright.lint.meshes import MeshFacts
-from linkwright.urdf import Collision, Link, Mesh, Visual
+from linkwright.urdf import Collision, Inertial, Link, Mesh, Visual
 from linkwright.urdf.bodies import Bodies, Body
+
+if TYPE_CHECKING:
+    from linkwright.geometry.mass import MassProperties
+
+MARKER = 0.01
+"""A body smaller than this, in m, is a marker; nothing is concluded from its shapes."""
+
+_NEGLIGIBLE = 0.01
+"""A mass of less than this part of its body's is a placeholder that changes nothing."""
 
 _MANY = 200
 """Links of a body from which on it is not measured anew for each of them."""
@@ -24,14 +32,44 @@ _ORIGIN = Placement(IDENTITY, (0.0, 0.0, 0.0))
 class Extents:
     """How large the shapes of a description are, each measured once."""
 
-    def __init__(self, bodies: Bodies, meshes: MeshFacts) -> None:
+    def __init__(self, links: Sequence[Link], bodies: Bodies, meshes: MeshFacts) -> None:
+        self._links = links
         self._bodies = bodies
         self._meshes = meshes
         self._measured: dict[int, Bounds | None] = {}
         self._of_bodies: dict[tuple[Body, str], Bounds | None] = {}
 
+    @cached_property
+    def heavy(self) -> list[tuple[Link, Inertial]]:
+        """The links with shapes whose mass counts in their body."""
+        if not any(link.inertial for link in self._links):
+            return []
+        from linkwright.inertia.inertial import is_computable  # here: robots without masses need no numpy
+
+        return [
+            (link, inertial)
+            for link in self._links
+            if (inertial := link.inertial) is not None
+            and inertial.mass > 0
+            and (link.visuals or link.collisions)
+            and (body := self._bodies.of(link.name)) is not None
+            and is_computable(inertial)
+            and inertial.mass >= _NEGLIGIBLE * self._bodies.mass(body)
+        ]
+
+    @cached_property
+    def measured(self) -> list[tuple[Link, Inertial, Bounds]]:
+        """Those whose body can be measured and is no marker, with the box around the body in the link's frame."""
+        boxes = ((link, inertial, self.body_bounds(link)) for link, inertial in self.heavy)
+        return [(link, inertial, box) for link, inertial, box in boxes if box is not None and box.diagonal > MARKER]
+
     def mass_properties(self, body: Body) -> MassProperties:
         """What the ``<inertial>`` of a body's links come to, in the frame of its first link."""
+        import numpy as np
+
+        from linkwright.geometry.mass import MassProperties, combine
+        from linkwright.inertia.inertial import from_inertial, is_computable
+
         parts = []
         for link, frame in zip(self._bodies.members(body), body.frames.values(), strict=True):
             inertial = link.inertial

@@ -10,15 +10,17 @@ from typing import TYPE_CHECKING
 from linkwright.descriptions import Description
 from linkwright.diagnostics import LinkwrightError
 from linkwright.lint.settings import Settings
-from linkwright.urdf import Joint, Link, Robot
+from linkwright.urdf import Inertial, Joint, Link, Robot
 from linkwright.xmltree import Document, Element
 
 if TYPE_CHECKING:
+    from linkwright.geometry.placement import Placement
     from linkwright.kinematics import KinematicTree
     from linkwright.lint.extents import Extents
     from linkwright.lint.meshes import MeshFacts
     from linkwright.lint.package import PackageContext
     from linkwright.lint.structure import Structure
+    from linkwright.lint.tensors import Flaw
     from linkwright.lint.xacro_facts import XacroFacts
     from linkwright.packages import PackageFinder
     from linkwright.urdf.bodies import Bodies
@@ -155,7 +157,22 @@ class Subject:
         """The space that shapes take, and the mass properties of bodies."""
         from linkwright.lint.extents import Extents
 
-        return Extents(self.bodies, self.meshes)
+        return Extents(self.links, self.bodies, self.meshes)
+
+    @cached_property
+    def tensor_flaws(self) -> list[tuple[Link, Inertial, Flaw]]:
+        """The links whose inertia tensor no body can have, with what is wrong with it first of all."""
+        from linkwright.lint.tensors import flaw_of
+
+        inertials = ((link, link.inertial) for link in self.links if link.inertial is not None)
+        return [(link, each, flaw) for link, each in inertials if (flaw := flaw_of(each)) is not None]
+
+    @cached_property
+    def frames(self) -> Mapping[str, Placement]:
+        """Every link in the root link's frame, with all joints at zero; none where there is no robot."""
+        from linkwright.lint.frames import placements
+
+        return {} if self.robot is None else placements(self.robot)
 
     @cached_property
     def package(self) -> PackageContext | None:

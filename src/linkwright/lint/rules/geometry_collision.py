@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, Note, Severity, Span, phrase
+from linkwright.lint.extents import MARKER
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
@@ -18,10 +19,6 @@ if TYPE_CHECKING:
 
 _WORLD = frozenset(("world", "map", "odom"))
 """Links that are the surroundings: what is fixed to them does not move."""
-
-
-_MARKER = 0.01
-"""Shapes smaller than this, in m, are markers; nothing is concluded from them."""
 
 
 class MissingCollision(Rule):
@@ -140,7 +137,7 @@ class CollisionApart(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         for link in _doubly_shaped(subject):
             seen, felt = _bounds(subject, link.visuals), _bounds(subject, link.collisions)
-            if seen is None or felt is None or min(seen.diagonal, felt.diagonal) < _MARKER:
+            if seen is None or felt is None or min(seen.diagonal, felt.diagonal) < MARKER:
                 continue
             gap = seen.gap(felt)
             if gap > 0.25 * min(seen.diagonal, felt.diagonal) and gap > 1e-3:
@@ -187,7 +184,7 @@ class CollisionSize(Rule):
         factor = self.option(subject, "factor", float)
         for link in _doubly_shaped(subject):
             seen, felt = _bounds(subject, link.visuals), _bounds(subject, link.collisions)
-            if seen is None or felt is None or min(seen.diagonal, felt.diagonal) < _MARKER:
+            if seen is None or felt is None or min(seen.diagonal, felt.diagonal) < MARKER:
                 continue
             ratio = felt.diagonal / seen.diagonal
             if not 1 / factor <= ratio <= factor:

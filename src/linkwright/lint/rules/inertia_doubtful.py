@@ -8,8 +8,8 @@ from linkwright.diagnostics import Diagnostic, Note, phrase, quoted_names
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
 from linkwright.lint.rules.inertia import links_with_inertial, part
-from linkwright.lint.rules.inertia_tensor import DIAGONAL, PRODUCTS
 from linkwright.lint.subject import Subject
+from linkwright.lint.tensors import DIAGONAL, PRODUCTS
 from linkwright.urdf import Inertial, Link
 
 

@@ -5,17 +5,18 @@ A link's body may be larger than the link: what is fixed to it counts. Where a m
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from math import prod
 from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, Note, Phrase, phrase
+from linkwright.lint.extents import MARKER
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
 from linkwright.lint.rules.inertia import links_with_inertial, part
-from linkwright.lint.rules.inertia_tensor import flaw_of
 from linkwright.lint.subject import Subject
-from linkwright.urdf import Inertial, Link, Mesh
+from linkwright.lint.tensors import flaw_of
+from linkwright.urdf import Mesh
 
 if TYPE_CHECKING:
     from linkwright.geometry.bounds import Bounds
@@ -26,36 +27,8 @@ _UNITS = ((1e3, "g m2"), (1e4, "kg cm2"), (1e6, "kg mm2"), (1e9, "g mm2"))
 _BEYOND_BELIEF = 20.0
 """From this distance on, in m, `shape-far` tells of an origin."""
 
-_MARKER = 0.01
-"""A body smaller than this, in m, is a marker; nothing is concluded from its shapes."""
-
-_NEGLIGIBLE = 0.01
-"""A mass of less than this part of its body's is a placeholder that changes nothing."""
-
 _ALMOST_NOTHING = 1e-3
 """Differences smaller than this, in m, are none."""
-
-
-def counting(subject: Subject) -> Iterator[tuple[Link, Inertial]]:
-    """The links with shapes whose mass counts in their body."""
-    for link, inertial in links_with_inertial(subject):
-        from linkwright.inertia.inertial import is_computable  # here: robots without masses need no numpy
-
-        body = subject.bodies.of(link.name)
-        if body is None or not (link.visuals or link.collisions):
-            continue
-        if inertial.mass <= 0 or not is_computable(inertial):
-            continue
-        if inertial.mass >= _NEGLIGIBLE * subject.bodies.mass(body):
-            yield link, inertial
-
-
-def measured(subject: Subject) -> Iterator[tuple[Link, Inertial, Bounds]]:
-    """The links whose mass counts in a body that can be measured, with the box around the body in the link frame."""
-    for link, inertial in counting(subject):
-        bounds = subject.extents.body_bounds(link)
-        if bounds is not None and bounds.diagonal > _MARKER:
-            yield link, inertial, bounds
 
 
 class DensityTooHigh(Rule):
@@ -86,13 +59,13 @@ class DensityTooHigh(Rule):
     name = "density-too-high"
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        if not any(links_with_inertial(subject)):
+        if not subject.extents.heavy:
             return
         from linkwright.geometry.validity import HEAVIEST_DENSITY
 
-        for link, inertial in counting(subject):
+        for link, inertial in subject.extents.heavy:
             bounds, volume = subject.extents.link_bounds(link), subject.extents.volume(link)
-            if bounds is None or volume is None or bounds.diagonal <= _MARKER:
+            if bounds is None or volume is None or bounds.diagonal <= MARKER:
                 continue
             if min(bounds.size) < _ALMOST_NOTHING / 10:
                 continue  # a sheet: its thickness is not meant
@@ -209,7 +182,7 @@ class CenterOutside(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         margin = self.option(subject, "margin", float)
-        for link, inertial, bounds in measured(subject):
+        for link, inertial, bounds in subject.extents.measured:
             center = inertial.origin.xyz
             if max(map(abs, center)) > _BEYOND_BELIEF:
                 continue
@@ -267,7 +240,7 @@ class CenterForgotten(Rule):
     name = "center-of-mass-forgotten"
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        for link, inertial, bounds in measured(subject):
+        for link, inertial, bounds in subject.extents.measured:
             element = inertial.element
             if element is None or element.first("origin") is not None:
                 continue
@@ -316,10 +289,12 @@ class InertiaTooLarge(Rule):
     options = (Option("factor", 2.0, "how many times the largest possible moment is reported"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        if not subject.extents.measured:
+            return
         from linkwright.geometry.validity import largest_moment_within
 
         factor = self.option(subject, "factor", float)
-        for link, inertial, bounds in measured(subject):
+        for link, inertial, bounds in subject.extents.measured:
             largest = max(inertial.ixx, inertial.iyy, inertial.izz)
             limit = largest_moment_within(bounds.nearest(inertial.origin.xyz), bounds, inertial.mass)
             if largest > factor * limit:
@@ -376,14 +351,13 @@ class InertiaTooSmall(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         factor = self.option(subject, "factor", float)
-        for link, inertial, _ in measured(subject):
+        for link, inertial, _ in subject.extents.measured:
             bounds = subject.extents.link_bounds(link)
             largest = max(inertial.ixx, inertial.iyy, inertial.izz)
-            flaw = flaw_of(inertial)
             if bounds is None or largest <= 0:
                 continue
             usual = _uniform(bounds, inertial.mass)
-            if largest * factor < usual and (flaw is None or flaw.kind == "triangle"):
+            if largest * factor < usual and ((flaw := flaw_of(inertial)) is None or flaw.kind == "triangle"):
                 yield self.report(
                     phrase(
                         "the inertia of link '{name}' is {thousands} times smaller than that of a solid of its size",

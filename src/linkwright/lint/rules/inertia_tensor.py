@@ -3,66 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, Note, phrase
 from linkwright.lint.rule import Rule
-from linkwright.lint.rules.inertia import links_with_inertial, part
+from linkwright.lint.rules.inertia import part
 from linkwright.lint.subject import Subject
+from linkwright.lint.tensors import DIAGONAL, Flaw, tensor
 from linkwright.urdf import Inertial, Link
-
-if TYPE_CHECKING:
-    from linkwright.geometry.arrays import Array
-
-DIAGONAL = ("ixx", "iyy", "izz")
-PRODUCTS = ("ixy", "ixz", "iyz")
-
-
-@dataclass(frozen=True, slots=True)
-class Flaw:
-    """The first thing that is wrong with a link's tensor; by it each tensor is reported by one rule only.
-
-    Attributes:
-        kind: ``zero``, ``diagonal``, ``product``, ``indefinite`` or ``triangle``.
-        attribute: the attribute it shows in, or None when it is in all of them.
-        amount: a number that belongs to it: the largest product allowed, the part by which the inequality is broken.
-    """
-
-    kind: str
-    attribute: str | None = None
-    amount: float = 0.0
-
-
-def tensor(inertial: Inertial) -> Array:
-    """The tensor in kg m2 as it is written, in the inertial frame; shape (3, 3)."""
-    import numpy as np
-
-    i = inertial
-    return np.array(((i.ixx, i.ixy, i.ixz), (i.ixy, i.iyy, i.iyz), (i.ixz, i.iyz, i.izz)))
-
-
-def flaw_of(inertial: Inertial) -> Flaw | None:
-    """The first thing that is wrong with a tensor, or None."""
-    from linkwright.geometry import validity
-
-    moments = [getattr(inertial, name) for name in DIAGONAL]
-    products = [getattr(inertial, name) for name in PRODUCTS]
-    if not any(moments) and not any(products):
-        return Flaw("zero")
-    for name, moment in zip(DIAGONAL, moments, strict=True):
-        if moment <= 0:
-            return Flaw("diagonal", name, moment)
-    matrix = tensor(inertial)
-    if any(products):
-        for name, limit in validity.excessive_products(matrix):
-            return Flaw("product", name, limit)
-        if validity.is_indefinite(matrix):
-            return Flaw("indefinite")
-    excess = validity.triangle_excess(matrix)
-    if excess > validity.TOLERANCE:
-        return Flaw("triangle", DIAGONAL[moments.index(max(moments))], excess)
-    return None
 
 
 class _TensorRule(Rule):
@@ -72,10 +19,7 @@ class _TensorRule(Rule):
 
     def flawed(self, subject: Subject) -> Iterator[tuple[Link, Inertial, Flaw]]:
         """The links whose tensor has the flaw first of all."""
-        for link, inertial in links_with_inertial(subject):
-            flaw = flaw_of(inertial)
-            if flaw is not None and flaw.kind == self.kind:
-                yield link, inertial, flaw
+        return (each for each in subject.tensor_flaws if each[2].kind == self.kind)
 
 
 class ZeroInertia(_TensorRule):

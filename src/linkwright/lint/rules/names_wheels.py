@@ -15,10 +15,9 @@ from typing import NamedTuple
 from linkwright.diagnostics import Diagnostic, Note, Span, phrase
 from linkwright.geometry.placement import Placement, placement, turned
 from linkwright.geometry.vectors import dot, length, subtracted
-from linkwright.lint.frames import placements
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
-from linkwright.urdf import Collision, Cylinder, Joint, Link, Robot, Vector3, Visual
+from linkwright.urdf import Collision, Cylinder, Joint, Link, Vector3, Visual
 
 _NO_WHEEL = re.compile(
     r"steer|swivel|knuckle|suspension|caster|castor|drop|arm|hub|axle|mount|fork|plate|holder|base|shaft|rocker|bogie"
@@ -39,9 +38,11 @@ class Wheel(NamedTuple):
     axis: Vector3
 
 
-def wheels(robot: Robot, type_of_joint: str = "continuous") -> Iterator[Wheel]:
+def wheels(subject: Subject, type_of_joint: str = "continuous") -> Iterator[Wheel]:
     """The wheels of a robot on joints of a type, in file order; by default those that turn freely."""
-    frames = placements(robot)
+    robot, frames = subject.robot, subject.frames
+    if robot is None:
+        return
     base = frames.get("base_link", frames[robot.root])
     for joint in robot.joints.values():
         if joint.type == type_of_joint and is_wheel(joint) and joint.child in frames:
@@ -106,9 +107,7 @@ class WheelSide(Rule):
     name = "wheel-side"
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        if subject.robot is None:
-            return
-        for left, right in pairs(list(wheels(subject.robot))):
+        for left, right in pairs(list(wheels(subject))):
             gap = subtracted(left.frame.position, right.frame.position)
             if gap[1] < -_APART and abs(gap[1]) > abs(gap[0]) and left.joint.element is not None:
                 note = Note(
@@ -159,7 +158,7 @@ class WheelHasLimits(Rule):
         if robot is None:
             return
         turning = {joint.parent for joint in robot.joints.values() if joint.type == "continuous"}
-        for wheel in wheels(robot, "revolute"):
+        for wheel in wheels(subject, "revolute"):
             joint = wheel.joint
             if joint.child in turning or "wheel" not in joint.child.lower() or _is_wide(joint):
                 continue
@@ -202,9 +201,7 @@ class WheelAxis(Rule):
     name = "wheel-axis"
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        if subject.robot is None:
-            return
-        for wheel in wheels(subject.robot):
+        for wheel in wheels(subject):
             discs = list(_disc_axes(wheel.link))
             axis = wheel.joint.axis
             size = length(axis)
@@ -254,9 +251,7 @@ class WheelsTurnAgainst(Rule):
     name = "wheels-turn-against"
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        if subject.robot is None:
-            return
-        for left, right in pairs(list(wheels(subject.robot))):
+        for left, right in pairs(list(wheels(subject))):
             if dot(left.axis, right.axis) < -_AXIS_TOLERANCE and right.joint.element is not None:
                 note = Note(phrase("'{name}' turns the other way", name=left.joint.name), _place(left.joint))
                 message = phrase(
@@ -293,9 +288,7 @@ class WheelsNotMirrored(Rule):
     default = False
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        if subject.robot is None:
-            return
-        for left, right in pairs(list(wheels(subject.robot))):
+        for left, right in pairs(list(wheels(subject))):
             (lx, ly, lz), (rx, ry, rz) = left.frame.position, right.frame.position
             if max(abs(lx - rx), abs(ly + ry), abs(lz - rz)) > _APART and right.joint.element is not None:
                 note = Note(
@@ -339,9 +332,7 @@ class WheelsTurnBackward(Rule):
     default = False
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        if subject.robot is None:
-            return
-        for left, right in pairs(list(wheels(subject.robot))):
+        for left, right in pairs(list(wheels(subject))):
             if max(left.axis[1], right.axis[1]) < -_AXIS_TOLERANCE and left.joint.element is not None:
                 message = phrase(
                     "positive velocities of '{name}' and '{joint_name}' drive backward",

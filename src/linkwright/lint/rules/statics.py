@@ -7,13 +7,12 @@ ground by their cylinders and spheres; where one has only a mesh, nothing is sai
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from math import hypot, sqrt
 from typing import NamedTuple
 
 from linkwright.diagnostics import Diagnostic, Note, Span, phrase
-from linkwright.geometry.placement import placement
-from linkwright.lint.frames import placements
+from linkwright.geometry.placement import Placement, placement
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
 from linkwright.lint.rules.names_wheels import wheels
@@ -41,11 +40,13 @@ class Contact(NamedTuple):
     is_wheel: bool
 
 
-def contacts(robot: Robot) -> list[Contact] | None:
-    """Where a robot stands on the ground; None when one of its wheels cannot be measured."""
-    frames = placements(robot)
+def contacts(subject: Subject) -> list[Contact] | None:
+    """Where a robot stands on the ground; None without one, and when one of its wheels cannot be measured."""
+    robot, frames = subject.robot, subject.frames
+    if robot is None:
+        return None
     base = frames.get("base_link", frames[robot.root])
-    driven = {wheel.link.name for wheel in wheels(robot)}
+    driven = {wheel.link.name for wheel in wheels(subject)}
     found = []
     for name, link in robot.links.items():
         is_wheel = name in driven
@@ -86,8 +87,7 @@ class WheelsNotLevel(Rule):
     options = (Option("tolerance", 0.01, "how far above the ground a wheel may be, in m"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        robot = subject.robot
-        found = contacts(robot) if robot is not None else None
+        found = contacts(subject)
         if found is None or sum(contact.is_wheel for contact in found) < 2:
             return
         tolerance = self.option(subject, "tolerance", float)
@@ -136,11 +136,11 @@ class CenterBeyondWheels(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         robot = subject.robot
-        found = contacts(robot) if robot is not None else None
+        found = contacts(subject)
         if robot is None or found is None or len(found) < 3:
             return
         corners = _hull([contact.place[:2] for contact in found])
-        center = _center_of_mass(robot)
+        center = _center_of_mass(robot, subject.frames)
         if len(corners) < 3 or center is None:
             return
         distance = _distance_outside(center, corners)
@@ -179,9 +179,8 @@ def _depth(shape: object, upward: float) -> float | None:
     return None
 
 
-def _center_of_mass(robot: Robot) -> Point | None:
+def _center_of_mass(robot: Robot, frames: Mapping[str, Placement]) -> Point | None:
     """Where the robot's weight acts, x and y in the frame of the base; None without masses."""
-    frames = placements(robot)
     base = frames.get("base_link", frames[robot.root])
     total = x = y = 0.0
     for name, link in robot.links.items():

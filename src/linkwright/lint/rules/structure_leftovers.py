@@ -86,11 +86,10 @@ class StrayText(Rule):
         """Every text with something in it; where a value is missing besides, the reader says it."""
         told = {found.span for found in subject.reading.diagnostics}
         for place in subject.structure.places:
-            if place.element.span() in told:
+            texts = [child for child in place.element.children if isinstance(child, Text) and child.data.strip()]
+            if not texts or place.element.span() in told:
                 continue
-            for child in place.element.children:
-                if not isinstance(child, Text) or not child.data.strip():
-                    continue
+            for child in texts:
                 text = " ".join(child.data.split())
                 text = text if len(text) <= 40 else f"{text[:40]}..."
                 span = None

@@ -16,7 +16,7 @@ from linkwright.lint.xacro_facts import Definition, FileFacts, XacroFacts
 from linkwright.schema import ElementRule
 from linkwright.urdf.schema import ROBOT
 from linkwright.xacro.faults import attribute_part
-from linkwright.xmltree import Document, Element
+from linkwright.xmltree import Element
 
 ADDRESS = "http://www.ros.org/wiki/xacro"
 _OLD_ADDRESSES = re.compile(r"https?://(www\.)?ros\.org/(wiki/xacro|xacro)/?(#interface)?")
@@ -62,12 +62,12 @@ class XacroPrefixMissing(Rule):
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
         documents = subject.sources.values()
-        macros = _macro_names(documents)
-        for document in documents:
-            root = document.root
+        described = [(document.root, list(_described(document.root))) for document in documents]
+        macros = _macro_names(elements for _, elements in described)
+        for root, elements in described:
             if root.tag != "robot":
                 continue
-            for element in _described(root):
+            for element in elements:
                 needed = _NEEDED.get(element.tag)
                 if needed is None and element.tag in macros:
                     needed = ()
@@ -88,12 +88,12 @@ class XacroPrefixMissing(Rule):
                 yield self.report(message, element, hint=hint, fix=fix)
 
 
-def _macro_names(documents: Iterable[Document]) -> set[str]:
-    """The names of all macros that some documents define, those of elements of URDF left out."""
+def _macro_names(documents: Iterable[Iterable[Element]]) -> set[str]:
+    """The names of all macros among the elements of some documents, those of elements of URDF left out."""
     macros = (
         element.attributes.get("name", "")
-        for document in documents
-        for element in _described(document.root)
+        for elements in documents
+        for element in elements
         if element.tag == "xacro:macro"
     )
     return set(macros) - _elements_of(ROBOT)
