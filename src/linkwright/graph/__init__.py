@@ -1,5 +1,8 @@
 """The computation graph: nodes, topics, parameters, quality of service, time, logging and transforms."""
 
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
 from linkwright.graph.actions.client import ActionClient, ClientGoalHandle
 from linkwright.graph.actions.goal import CancelResponse, GoalResponse, GoalStatus, ServerGoalHandle
 from linkwright.graph.actions.server import ActionServer
@@ -65,7 +68,6 @@ from linkwright.graph.qos.profile import (
 from linkwright.graph.time.clock import Clock, ClockChange, JumpHandle, JumpThreshold, ROSClock, TimeJump
 from linkwright.graph.time.timebase import JumpClock, SystemClock, Timebase
 from linkwright.graph.time.values import ClockType, Duration, Time
-from linkwright.graph.transforms.buffer import FrameSnapshot, TransformBuffer
 from linkwright.graph.transforms.errors import (
     ConnectivityException,
     ExtrapolationException,
@@ -73,7 +75,10 @@ from linkwright.graph.transforms.errors import (
     LookupException,
     TransformException,
 )
-from linkwright.graph.transforms.listener import TransformListener
+
+if TYPE_CHECKING:
+    from linkwright.graph.transforms.buffer import FrameSnapshot, TransformBuffer
+    from linkwright.graph.transforms.listener import TransformListener
 
 __all__ = [
     "ACTION_STATUS_QOS",
@@ -172,3 +177,16 @@ __all__ = [
     "qos_check_compatible",
     "run_logged",
 ]
+
+_WITH_NUMPY = {
+    "FrameSnapshot": "linkwright.graph.transforms.buffer",
+    "TransformBuffer": "linkwright.graph.transforms.buffer",
+    "TransformListener": "linkwright.graph.transforms.listener",
+}
+
+
+def __getattr__(name: str) -> Any:
+    """Those made of numpy's arrays, whose import takes longer than all else here, when somebody asks for them."""
+    if name in _WITH_NUMPY:
+        return getattr(import_module(_WITH_NUMPY[name]), name)
+    raise AttributeError(f"module '{__name__}' has no attribute '{name}'")

@@ -1,5 +1,7 @@
 """ROS 2 messages, services and actions: classes made from their definitions, and their bytes, hashes and texts."""
 
+from typing import TYPE_CHECKING, Any
+
 from linkwright.messages.catalogue import packages as shipped_packages
 from linkwright.messages.cdr import deserialize, serialize
 from linkwright.messages.classes import get_action, get_interface, get_message, get_service
@@ -10,7 +12,6 @@ from linkwright.messages.field_values import set_fields
 from linkwright.messages.hashing import type_hash
 from linkwright.messages.message import ActionType, Message, ServiceType, definition_of
 from linkwright.messages.presentation import definition_text, interface_names, prototype
-from linkwright.messages.tf_message import TFMessage, TransformBatch
 from linkwright.messages.wellknown import (
     Duration,
     FloatSequence,
@@ -24,6 +25,9 @@ from linkwright.messages.wellknown import (
     Vector3,
 )
 from linkwright.messages.yaml_text import to_yaml
+
+if TYPE_CHECKING:
+    from linkwright.messages.tf_message import TFMessage, TransformBatch
 
 __all__ = [
     "ActionType",
@@ -63,3 +67,12 @@ __all__ = [
     "to_yaml",
     "type_hash",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """Those made of numpy's arrays, whose import takes longer than all else here, when somebody asks for them."""
+    if name in ("TFMessage", "TransformBatch"):
+        from linkwright.messages import tf_message
+
+        return getattr(tf_message, name)
+    raise AttributeError(f"module '{__name__}' has no attribute '{name}'")

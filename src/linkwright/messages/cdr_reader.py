@@ -14,8 +14,6 @@ from contextlib import contextmanager
 from itertools import count
 from typing import Any, Literal
 
-import numpy as np
-
 from linkwright.messages import cdr_values
 from linkwright.messages.cdr_layout import ANYWHERE, DEEPEST_LOOP, MOST_INLINE, START, Place, facts
 from linkwright.messages.definition import Container, Field, FieldType, Structure
@@ -38,7 +36,6 @@ _SCOPE: dict[str, Any] = {
     "too_long": cdr_values.too_long,
     "check_bounds": cdr_values.check_bounds,
     "array": array,
-    "frombuffer": np.frombuffer,
 }
 
 _parts: dict[tuple[str, str], Callable[..., Any]] = {}
@@ -173,8 +170,10 @@ class _ReaderCode:
             assert primitive is not None
             self._align(primitive.size)
             self.end_run()
+            import numpy as np
+
             dtype = np.dtype(primitive.dtype).newbyteorder(self._order)
-            data = f"frombuffer(d, {self._given(dtype, 'T')}, {size}, {self._here()})"
+            data = f"{self._given(np.frombuffer, 'F')}(d, {self._given(dtype, 'T')}, {size}, {self._here()})"
             native = f".astype({primitive.dtype!r})" if self._order == ">" else ".copy()"
             self._line(f"{target} = {data}{native}")
             self._skip(size * primitive.size)

@@ -12,13 +12,14 @@ from array import array
 from collections import UserList, UserString
 from collections.abc import Iterable, Sequence
 from collections.abc import Set as AbstractSet
-from typing import Any, NoReturn, cast
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import TYPE_CHECKING, Any, NoReturn, cast
 
 from linkwright.messages.definition import Container, FieldType
+from linkwright.messages.numpy_values import is_array
 from linkwright.messages.primitives import Primitive
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 
 class Unset:
@@ -89,7 +90,7 @@ def check_message(name: str, value: Any, cls: type) -> Any:
 
 def check_values(name: str, value: Any, kind: FieldType, cls: type) -> Any:
     """Several bools, bytes, texts or messages; the list that was given is kept."""
-    if isinstance(value, np.ndarray) and cls is bool and value.dtype == np.bool_:
+    if cls is bool and is_array(value) and value.dtype.kind == "b":
         value = value.ravel().tolist()
     if not (
         _is_collection(value)
@@ -103,6 +104,8 @@ def check_values(name: str, value: Any, kind: FieldType, cls: type) -> Any:
 
 def check_fixed_array(name: str, value: Any, kind: FieldType) -> NDArray[Any]:
     """A fixed number of numbers, kept as a numpy array."""
+    import numpy as np
+
     primitive = cast(Primitive, kind.primitive)
     if isinstance(value, np.ndarray):
         if value.dtype != np.dtype(primitive.dtype):
@@ -123,7 +126,7 @@ def check_sequence(name: str, value: Any, kind: FieldType) -> array[Any]:
         if kind.size is not None and len(value) > kind.size:
             raise AssertionError(f"The '{name}' array.array() must have a size <= {kind.size}")
         return value
-    if isinstance(value, np.ndarray):
+    if is_array(value):
         return _from_numpy(name, value, kind, primitive)
     if primitive.array_code == "B" and isinstance(value, (bytes, bytearray, memoryview)):
         return _from_buffer(name, value, kind)
@@ -132,7 +135,7 @@ def check_sequence(name: str, value: Any, kind: FieldType) -> array[Any]:
 
 def made_sequence(name: str, value: Any, kind: FieldType) -> array[Any]:
     """What a constructor makes of numbers: as rclpy's, it takes integers for floats."""
-    if isinstance(value, (array, np.ndarray, bytes, bytearray, memoryview)):
+    if isinstance(value, (array, bytes, bytearray, memoryview)) or is_array(value):
         return check_sequence(name, value, kind)
     assert kind.primitive is not None
     assert kind.primitive.array_code is not None
@@ -141,6 +144,8 @@ def made_sequence(name: str, value: Any, kind: FieldType) -> array[Any]:
 
 def made_fixed_array(name: str, value: Any, kind: FieldType) -> NDArray[Any]:
     """What a constructor makes of numbers for a fixed array."""
+    import numpy as np
+
     made = np.array(value, dtype=cast(Primitive, kind.primitive).dtype)
     if made.size != kind.size:
         raise AssertionError(f"The '{name}' numpy.ndarray() must have a size of {kind.size}")
@@ -179,6 +184,8 @@ def _in_range(values: Any, primitive: Primitive) -> bool:
 
 
 def _from_numpy(name: str, value: NDArray[Any], kind: FieldType, primitive: Primitive) -> array[Any]:
+    import numpy as np
+
     code = primitive.array_code
     assert code is not None
     wanted = np.dtype(primitive.dtype)

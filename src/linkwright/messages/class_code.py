@@ -11,8 +11,6 @@ from array import array
 from operator import attrgetter
 from typing import Any
 
-import numpy as np
-
 from linkwright.messages import checks
 from linkwright.messages.definition import Container, Field, Structure
 
@@ -31,10 +29,13 @@ def build_class(structure: Structure, base: type, classes: dict[str, type], modu
         "U": checks.UNSET,
         "Checks": checks,
         "Array": array,
-        "Np": np,
         "Range": range,
         "List": list,
     }
+    if any(field.type.is_numeric_array and field.type.container is Container.ARRAY for field in structure.fields):
+        import numpy as np
+
+        scope["Np"] = np
     fields = [_FieldCode(field, classes, scope) for field in structure.fields]
     code = "".join([_constructor(fields), *(field.setter() for field in fields)])
     exec(compile(code, f"<class of {structure.type_name}>", "exec"), scope)  # noqa: S102 - the names in it are checked

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from importlib import import_module
 from typing import Any, cast
 
 from linkwright.messages.class_code import build_class
@@ -22,6 +23,9 @@ _BASES: dict[str, type[Message]] = {
     "builtin_interfaces/msg/Duration": DurationValue,
 }
 """Classes that can do more than hold their fields."""
+
+_WRITTEN_BY_HAND = {"tf2_msgs/msg/TFMessage": "linkwright.messages.tf_message"}
+"""The modules of classes that are not made from their definitions; this one imports numpy."""
 
 
 def get_message(name: str) -> type[Any]:
@@ -92,6 +96,9 @@ def _make(definition: Definition) -> type:
 
 def _make_message(structure: Structure) -> type:
     parts = {name: _made(LIBRARY.structure(name)) for name in structure.references}
+    if structure.type_name in _WRITTEN_BY_HAND:
+        import_module(_WRITTEN_BY_HAND[structure.type_name])  # calls `add_class`
+        return cast("type", _classes[structure.type_name])
     base = _BASES.get(structure.type_name, Message)
     return build_class(structure, base, parts, python_module(structure.type_name))
 

@@ -6,10 +6,9 @@ from array import array
 from collections import OrderedDict
 from typing import Any
 
-import numpy as np
-
 from linkwright.messages.definition import Container, FieldType
 from linkwright.messages.message import Message, definition_of
+from linkwright.messages.numpy_values import is_array, is_scalar
 from linkwright.messages.primitives import PRIMITIVES
 
 _CUT = "..."
@@ -86,13 +85,13 @@ def _plain(value: Any, truncate_length: int | None, no_arr: bool, no_str: bool) 
         return abbreviated_text(value) if no_str else _cut(value, truncate_length)
     if isinstance(value, Message):
         return to_dict(value, truncate_length=truncate_length, no_arr=no_arr, no_str=no_str)
-    return value.item() if isinstance(value, np.generic) else value
+    return value.item() if is_scalar(value) else value
 
 
 def _plain_list(values: Any, truncate_length: int | None, no_arr: bool, no_str: bool) -> list[Any]:
     cut = truncate_length is not None and len(values) > truncate_length
-    if isinstance(values, (array, np.ndarray)):
-        numbers: list[Any] = (values.ravel() if isinstance(values, np.ndarray) else values)[:truncate_length].tolist()
+    if isinstance(values, array) or is_array(values):
+        numbers: list[Any] = (values.ravel() if is_array(values) else values)[:truncate_length].tolist()
         return [*numbers, _CUT] if cut else numbers
     plain = [_plain(each, truncate_length, no_arr, no_str) for each in list(values)[:truncate_length]]
     return [*plain, _CUT] if cut else plain
@@ -109,7 +108,7 @@ def _csv(value: Any, truncate_length: int | None, no_arr: bool, no_str: bool) ->
         return abbreviated_text(value) if no_str else _cut(value, truncate_length)
     if isinstance(value, bytes):
         return str(value)
-    if isinstance(value, (list, tuple, array, np.ndarray)):
+    if isinstance(value, (list, tuple, array)) or is_array(value):
         words = [_csv(each, truncate_length, no_arr, no_str) for each in list(value)[:truncate_length]]
         if truncate_length is not None and len(value) > truncate_length:
             words.append(_CUT)

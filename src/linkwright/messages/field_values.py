@@ -7,13 +7,12 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any
 
-import numpy as np
-
 from linkwright.diagnostics import Diagnostic, Phrase, did_you_mean, foreign, joined, phrase, quoted
 from linkwright.messages.classes import get_message
 from linkwright.messages.definition import Container, FieldType
 from linkwright.messages.errors import UnknownFieldError, WrongValueError
 from linkwright.messages.message import Message, definition_of
+from linkwright.messages.numpy_values import is_array, is_scalar
 from linkwright.messages.primitives import Primitive
 
 _HEADER = "std_msgs/msg/Header"
@@ -118,7 +117,7 @@ class _Setter:
             return self._message(kind, value, path) if primitive is None else _converted(primitive, kind, value)
         if kind.base in {"uint8", "char"} and isinstance(value, (bytes, bytearray)):
             value = list(value)
-        if not isinstance(value, (Sequence, array, np.ndarray)) or isinstance(value, (str, bytes)):
+        if not (isinstance(value, (Sequence, array)) or is_array(value)) or isinstance(value, (str, bytes)):
             raise _Unfit(_described(kind))
         one = FieldType(kind.base, kind.string_bound)
         values = [self._value(one, each, f"{path}[{number}]") for number, each in enumerate(value)]
@@ -155,7 +154,7 @@ class _Setter:
 
 def _converted(primitive: Primitive, kind: FieldType, value: Any) -> Any:
     """A value as the field's Python type; ranges and lengths are left to the field's own check."""
-    if isinstance(value, np.generic):
+    if is_scalar(value):
         value = value.item()
     python = primitive.python
     if python is str:

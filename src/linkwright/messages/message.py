@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, ClassVar
 
-from numpy import ndarray
-
 from linkwright.messages.definition import Structure
+from linkwright.messages.numpy_values import ndarray_class
 
 
 def definition_of(message_class: type[Any]) -> Structure:
@@ -74,6 +73,7 @@ class Message:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, self.__class__):
             return False
+        ndarray = ndarray_class()
         for slot in self.__slots__:
             ours, theirs = getattr(self, slot), getattr(other, slot)
             if type(ours) is ndarray or type(theirs) is ndarray:

@@ -4,9 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-from numpy.typing import NDArray
-
 from linkwright.messages.classes import get_message
 
 Time = get_message("builtin_interfaces/msg/Time")
@@ -19,5 +16,5 @@ TransformStamped = get_message("geometry_msgs/msg/TransformStamped")
 Vector3 = get_message("geometry_msgs/msg/Vector3")
 JointState = get_message("sensor_msgs/msg/JointState")
 
-FloatSequence = Sequence[float] | NDArray[np.float64]
+FloatSequence = Sequence[float]
 """Numbers for a float64[] field: any sequence of floats, or a numpy array where there are many."""

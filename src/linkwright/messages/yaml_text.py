@@ -14,11 +14,10 @@ from functools import lru_cache
 from math import isfinite
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from linkwright.messages.conversion import abbreviated, abbreviated_text, to_dict
 from linkwright.messages.definition import Container, Field, FieldType
 from linkwright.messages.message import Message, definition_of
+from linkwright.messages.numpy_values import is_array
 
 _LONGEST_REMEMBERED = 200
 
@@ -96,7 +95,7 @@ class _Writer:
         bullet = indent + "- "
         number = _number_text(kind)
         if number is not None:
-            numbers = shown.tolist() if isinstance(shown, (array, np.ndarray)) else shown
+            numbers = shown.tolist() if isinstance(shown, array) or is_array(shown) else shown
             lines.extend([f"{bullet}{number(each)}\n" for each in numbers])
         else:
             way = (*way, "s")
