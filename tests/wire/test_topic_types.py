@@ -9,11 +9,13 @@ import sys
 import textwrap
 
 import pytest
+from cyclonedds.idl import make_idl_struct
 
 from linkwright.messages import String, get_message
 from linkwright.wire.dds import open_domains as opened
 from linkwright.wire.dds.cyclone import CycloneError
 from linkwright.wire.dds.topic_types import _undescribing
+from linkwright.wire.dds.type_descriptions import empty_type_data
 
 Point = get_message("geometry_msgs/msg/Point")
 
@@ -168,3 +170,11 @@ def test_graphs_that_come_and_go_leave_no_memory_and_no_pointer_to_it_behind(dom
 @pytest.mark.slow
 def test_graphs_may_join_at_the_same_time(domain):
     assert output_of(TOGETHER) == ""
+
+
+@pytest.mark.parametrize("name", ["A_", "Ab_", "Abc_", "ParticipantEntitiesInfo_", "Müller_"])
+def test_a_type_known_by_its_name_is_described_as_the_package_does(name):
+    type_name = f"some_interfaces::msg::dds_::{name}"
+    described = make_idl_struct(name, type_name.replace("::", "."), {}, dataclassify=False)
+    described.__idl__.fill_type_data()
+    assert empty_type_data(type_name) == described.__idl__._xt_bytedata

@@ -40,7 +40,7 @@ def run_list(arguments: argparse.Namespace) -> int:
         print_names_and_types(session.node.get_action_names_and_types(), arguments)
         return 0
 
-    return run_in_graph(arguments, job)
+    return run_in_graph(arguments, job, only_looks=True)
 
 
 def configure_info(parser: argparse.ArgumentParser) -> None:
@@ -74,7 +74,7 @@ def run_info(arguments: argparse.Namespace) -> int:
                 print(f"    {full} [{', '.join(types)}]" if arguments.show_types else f"    {full}")
         return 0
 
-    return run_in_graph(arguments, job)
+    return run_in_graph(arguments, job, only_looks=True)
 
 
 def configure_type(parser: argparse.ArgumentParser) -> None:
@@ -102,7 +102,7 @@ def run_type(arguments: argparse.Namespace) -> int:
             print(each)
         return 0
 
-    return run_in_graph(arguments, job)
+    return run_in_graph(arguments, job, only_looks=True)
 
 
 def configure_send_goal(parser: argparse.ArgumentParser) -> None:

@@ -50,7 +50,7 @@ def run_nodes(arguments: argparse.Namespace) -> int:
         print_names(managed_nodes(session, hidden=arguments.all), arguments)
         return 0
 
-    return run_in_graph(arguments, job)
+    return run_in_graph(arguments, job, only_looks=True)
 
 
 def configure_get(parser: argparse.ArgumentParser) -> None:

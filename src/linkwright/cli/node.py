@@ -43,7 +43,7 @@ def run_list(arguments: argparse.Namespace) -> int:
         print_names(names, arguments)
         return 0
 
-    return run_in_graph(arguments, job)
+    return run_in_graph(arguments, job, only_looks=True)
 
 
 def configure_info(parser: argparse.ArgumentParser) -> None:
@@ -83,7 +83,7 @@ def run_info(arguments: argparse.Namespace) -> int:
         _section("Action Clients", session.graph.get_action_client_names_and_types_by_node(*who), hidden)
         return 0
 
-    return run_in_graph(arguments, job)
+    return run_in_graph(arguments, job, only_looks=True)
 
 
 def _section(title: str, found: NamesAndTypes, hidden: bool) -> None:

@@ -76,7 +76,7 @@ def run_list(arguments: argparse.Namespace) -> int:
         print_names_and_types(services, arguments)
         return 0
 
-    return run_in_graph(arguments, job)
+    return run_in_graph(arguments, job, only_looks=True)
 
 
 def configure_find(parser: argparse.ArgumentParser) -> None:
@@ -95,7 +95,7 @@ def run_find(arguments: argparse.Namespace) -> int:
         print_names([name for name, types in services if arguments.service_type in types], arguments)
         return 0
 
-    return run_in_graph(arguments, job)
+    return run_in_graph(arguments, job, only_looks=True)
 
 
 def configure_info(parser: argparse.ArgumentParser) -> None:
@@ -114,7 +114,7 @@ def run_info(arguments: argparse.Namespace) -> int:
         print(f"Services count: {session.node.count_services(name)}")
         return 0
 
-    return run_in_graph(arguments, job)
+    return run_in_graph(arguments, job, only_looks=True)
 
 
 def configure_type(parser: argparse.ArgumentParser) -> None:
@@ -129,7 +129,7 @@ def run_type(arguments: argparse.Namespace) -> int:
         print("\n".join(types_of_service(session, arguments)))
         return 0
 
-    return run_in_graph(arguments, job)
+    return run_in_graph(arguments, job, only_looks=True)
 
 
 def configure_call(parser: argparse.ArgumentParser) -> None:

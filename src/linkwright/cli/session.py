@@ -145,6 +145,7 @@ async def graph_session(
     spin_time: float | None = None,
     use_sim_time: bool = False,
     remappings: Sequence[tuple[str, str]] = (),
+    only_looks: bool = False,
 ) -> AsyncIterator[Session]:
     """Join the graph, with a hidden node, until the block ends.
 
@@ -153,6 +154,7 @@ async def graph_session(
         spin_time: seconds to wait for discovery; when left out, until others have told what they have.
         use_sim_time: whether the node goes by ``/clock``.
         remappings: rules ``(from, to)`` for the names that the node uses.
+        only_looks: whether the verb asks what there is and speaks to nobody; its node is not seen outside then.
 
     Raises:
         LinkwrightError: CLI401, there is no DDS to reach other processes with.
@@ -165,7 +167,7 @@ async def graph_session(
             remappings=remappings,
             start_parameter_services=False,
         )
-        await join_others(graph, spin_time)
+        await join_others(graph, spin_time, only_looks=only_looks)
         yield Session(graph, node)
     finally:
         await graph.close()
@@ -177,6 +179,7 @@ def run_in_graph(
     *,
     node_name: str | None = None,
     remappings: Sequence[tuple[str, str]] = (),
+    only_looks: bool = False,
 ) -> int:
     """Run a verb's coroutine in the graph; its result is the exit status.
 
@@ -185,6 +188,7 @@ def run_in_graph(
         job: what the verb does.
         node_name: see `graph_session`.
         remappings: see `graph_session`.
+        only_looks: see `graph_session`.
     """
 
     async def main() -> int:
@@ -193,6 +197,7 @@ def run_in_graph(
             spin_time=getattr(arguments, "spin_time", None),
             use_sim_time=getattr(arguments, "use_sim_time", False),
             remappings=remappings,
+            only_looks=only_looks,
         ) as session:
             return await job(session)
 
@@ -209,7 +214,7 @@ def open_graph() -> Graph:
     return Graph()
 
 
-async def join_others(graph: Graph, spin_time: float | None) -> None:
+async def join_others(graph: Graph, spin_time: float | None, *, only_looks: bool = False) -> None:
     """Connect the graph with what runs in other processes and wait until that is discovered.
 
     Raises:
@@ -220,7 +225,7 @@ async def join_others(graph: Graph, spin_time: float | None) -> None:
 
     if dds.available():
         read_settings()  # raises what joining would only log
-    transport = dds.join(graph) if dds.available() else None
+    transport = dds.join(graph, only_looks=only_looks) if dds.available() else None
     if transport is None:
         raise LinkwrightError(
             Diagnostic(

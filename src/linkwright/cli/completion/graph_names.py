@@ -86,7 +86,7 @@ def look() -> int:
         written.replace(path)
         return 0
 
-    return run_in_graph(Namespace(), job)
+    return run_in_graph(Namespace(), job, only_looks=True)
 
 
 if __name__ == "__main__":

@@ -49,7 +49,7 @@ def run_list(arguments: argparse.Namespace) -> int:
             print_names_and_types(topics, arguments)
         return 0
 
-    return run_in_graph(arguments, job)
+    return run_in_graph(arguments, job, only_looks=True)
 
 
 def _counted(title: str, kind: str, topics: Sequence[tuple[str, Sequence[str], int]]) -> str:
@@ -92,7 +92,7 @@ def run_info(arguments: argparse.Namespace) -> int:
                 print(endpoint_text(each), end=end)
         return 0
 
-    return run_in_graph(arguments, job)
+    return run_in_graph(arguments, job, only_looks=True)
 
 
 def configure_find(parser: argparse.ArgumentParser) -> None:
@@ -111,7 +111,7 @@ def run_find(arguments: argparse.Namespace) -> int:
         print_names([name for name, types in topics if arguments.topic_type in types], arguments)
         return 0
 
-    return run_in_graph(arguments, job)
+    return run_in_graph(arguments, job, only_looks=True)
 
 
 def configure_type(parser: argparse.ArgumentParser) -> None:
@@ -138,7 +138,7 @@ def run_type(arguments: argparse.Namespace) -> int:
             print(each)
         return 0
 
-    return run_in_graph(arguments, job)
+    return run_in_graph(arguments, job, only_looks=True)
 
 
 def endpoint_text(info: Any) -> str:

@@ -12,7 +12,10 @@ five milliseconds each time when another thread computes.
 from __future__ import annotations
 
 import ctypes as c
+import sys
 from functools import lru_cache
+from importlib import import_module
+from importlib.util import find_spec, module_from_spec
 from typing import Any
 
 INFINITY = 0x7FFF_FFFF_FFFF_FFFF
@@ -168,8 +171,8 @@ class Cyclone:
     """The bound functions, under their names in C, and what is used of the Python package."""
 
     def __init__(self) -> None:
-        # The order matters: the package loads the shared library that its wheel carries.
-        from cyclonedds import _clayer
+        _open_package()
+        from cyclonedds import _clayer  # loads the shared library that the wheel carries
         from cyclonedds.internal import DDS
 
         path = DDS._dll_handle._name
@@ -234,6 +237,29 @@ class Cyclone:
             return c.string_at(value.value).decode(errors="replace")
         finally:
             self.dds_free(value)
+
+
+def _open_package() -> None:
+    """Have modules of the package `cyclonedds` imported when they are used, not all with the first of them.
+
+    Its ``__init__`` does nothing but to import them all, which takes several times as long as those that are used here.
+    Whoever imports the package in this process finds everything in it as before.
+    """
+    spec = find_spec("cyclonedds")
+    if "cyclonedds" in sys.modules or spec is None:
+        return
+    package = module_from_spec(spec)
+    package.__dict__["__getattr__"] = _submodule
+    sys.modules.setdefault("cyclonedds", package)
+
+
+def _submodule(name: str) -> Any:
+    if name.startswith("__"):
+        raise AttributeError(f"module 'cyclonedds' has no attribute '{name}'")
+    try:
+        return import_module(f"cyclonedds.{name}")
+    except ModuleNotFoundError as error:
+        raise AttributeError(f"module 'cyclonedds' has no attribute '{name}'") from error
 
 
 @lru_cache(maxsize=1)

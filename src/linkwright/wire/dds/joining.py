@@ -45,7 +45,11 @@ def available(environment: Mapping[str, str] | None = None) -> bool:
 
 
 def join(
-    graph: Graph, *, domain_id: int | None = None, environment: Mapping[str, str] | None = None
+    graph: Graph,
+    *,
+    domain_id: int | None = None,
+    environment: Mapping[str, str] | None = None,
+    only_looks: bool = False,
 ) -> DdsTransport | None:
     """Have a graph seen by other processes, and see theirs. It happens in the background; nothing waits for it.
 
@@ -55,6 +59,7 @@ def join(
         graph: the graph; the transport attaches itself to it.
         domain_id: takes the place of ROS_DOMAIN_ID.
         environment: the environment variables; those of the process when left out.
+        only_looks: whether the graph sees other processes and is not seen by them.
 
     Returns:
         The transport; None where DDS is not installed, switched off, or wrongly set.
@@ -72,6 +77,6 @@ def join(
         return None
     for warning in settings.warnings:
         logger.warning(warning)
-    transport = DdsTransport(settings, logger)
+    transport = DdsTransport(settings, logger, only_looks=only_looks)
     graph.attach(transport)
     return transport

@@ -59,14 +59,22 @@ class RemoteParticipant:
         """Whether it is one of Linkwright's, which says nothing about the distribution of ROS 2."""
         return self.entity_name.startswith(NAME + "/")
 
-    def has_died(self) -> bool:
-        """Whether its process is gone though its lease still runs; known of ours on this machine alone."""
+    @property
+    def process(self) -> int | None:
+        """The id of its process; None unless it is one of ours on this machine."""
         kind, _, rest = self.entity_name.partition("/")
         namespace, _, process = rest.partition("/")
         if kind != NAME or not namespace or namespace != process_namespace() or not process.isdecimal():
+            return None
+        return int(process)
+
+    def has_died(self) -> bool:
+        """Whether its process is gone though its lease still runs; known of ours on this machine alone."""
+        process = self.process
+        if process is None:
             return False
         try:
-            os.kill(int(process), 0)
+            os.kill(process, 0)
         except ProcessLookupError:
             return True
         except OSError:
@@ -223,6 +231,11 @@ class RemoteGraph:
                 if age < _ALL_WITHIN and not self._endpoints.keys() >= participant.endpoints():
                     return False
         return self.all_told()
+
+    def our_processes(self) -> int:
+        """How many other processes of this machine are known to be Linkwright's, and alive."""
+        alive = (each for each in self.participants() if not each.has_died())
+        return len({each.process for each in alive} - {None, os.getpid()})
 
     def nodes(self) -> list[NodeIdentity]:
         """The nodes of other processes, one entry for each, in the order of their participants."""

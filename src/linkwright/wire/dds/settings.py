@@ -13,7 +13,6 @@ import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
-from xml.sax.saxutils import quoteattr
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, phrase
 from linkwright.graph.introspection.type_descriptions import BEFORE_IRON
@@ -190,6 +189,8 @@ def _fragments(reach: Range, peers: list[str]) -> list[str]:
             f"<Tag>ros_discovery_off_{os.getpid()}</Tag></Discovery></Domain></CycloneDDS>"
         )
         return [off]
+    from xml.sax.saxutils import quoteattr  # with it come the modules of urllib, which the usual case does without
+
     local = reach is Range.LOCALHOST
     listed = "".join(f"<Peer address={quoteattr(peer)}/>" for peer in (["localhost"] if local else []) + peers)
     return [

@@ -15,8 +15,9 @@ from linkwright.diagnostics import LinkwrightError, render
 from linkwright.graph.endpoints.info import EndpointInfo
 from linkwright.graph.log.logger import Logger
 from linkwright.graph.names.identity import NodeIdentity
+from linkwright.wire.dds.local_sockets import other_processes
 from linkwright.wire.dds.remote import RemoteGraph
-from linkwright.wire.dds.settings import Settings
+from linkwright.wire.dds.settings import Range, Settings
 
 if TYPE_CHECKING:
     from linkwright.graph.endpoints.client import Client
@@ -31,6 +32,7 @@ SETTLED_AFTER = 0.3
 _JOINED_WITHIN = 10.0
 """Seconds after which the thread that joins is given up: an import that Ctrl-C ended may keep its lock for ever."""
 
+_LOOK_AGAIN = 0.01
 _CLOSED_WITHIN = 0.05
 """Seconds after which who waits sees that the domain was left."""
 
@@ -44,10 +46,13 @@ class DdsTransport:
     Args:
         settings: the domain and how to join it.
         logger: for what there is to tell.
+        only_looks: whether it only finds out what there is outside: nobody outside hears of the graph's nodes and
+            endpoints, which saves making them there.
     """
 
-    def __init__(self, settings: Settings, logger: Logger) -> None:
+    def __init__(self, settings: Settings, logger: Logger, *, only_looks: bool = False) -> None:
         self._settings = settings
+        self._only_looks = only_looks
         self._logger = logger
         self._remote = RemoteGraph()
         self._engine: Engine | None = None
@@ -101,54 +106,64 @@ class DdsTransport:
             return False
         while time.monotonic() < deadline and not self._closed:
             quiet = time.monotonic() - max(self._remote.changed_at, self._joined_at)
-            if quiet >= SETTLED_AFTER and self._remote.is_complete():
+            if self._remote.is_complete() and (quiet >= SETTLED_AFTER or self._knows_everybody()):
                 return True
-            time.sleep(0.01)
+            time.sleep(_LOOK_AGAIN)
         return False
+
+    def _knows_everybody(self) -> bool:
+        """Whether all processes that can take part are known, so that there is nothing to wait for.
+
+        That can be told of Linkwright's processes on this machine, and only where nobody else is looked for.
+        """
+        if not self._only_looks or self._settings.range is not Range.MACHINE:
+            return False
+        others = other_processes(self._settings.domain_id)
+        return others is not None and self._remote.our_processes() >= others
 
     # --- for the graph -----------------------------------------------------------------------------------------------
 
     def open_node(self, node: NodeIdentity) -> None:
         """Make a node known."""
-        self._do(lambda engine: engine.add_node(node))
+        self._mirror(lambda engine: engine.add_node(node))
 
     def close_node(self, node: NodeIdentity) -> None:
         """Take a node back."""
-        self._do(lambda engine: engine.remove_node(node))
+        self._mirror(lambda engine: engine.remove_node(node))
 
     def open_publisher(self, publisher: Publisher[Any]) -> None:
         """Mirror a publisher."""
-        if self._engine is not None:
+        if self._engine is not None and not self._only_looks:
             publisher.hold_for_outside(self.wait_until_ready)
-        self._do(lambda engine: engine.open_publisher(publisher))
+        self._mirror(lambda engine: engine.open_publisher(publisher))
 
     def close_publisher(self, publisher: Publisher[Any]) -> None:
         """Take a publisher back once what it sent reliably has been acknowledged, or nobody is there to do so."""
-        self._do(lambda engine: engine.close_publisher(publisher))
+        self._mirror(lambda engine: engine.close_publisher(publisher))
 
     def open_subscription(self, subscription: Subscription[Any]) -> None:
         """Mirror a subscription."""
-        self._do(lambda engine: engine.open_subscription(subscription))
+        self._mirror(lambda engine: engine.open_subscription(subscription))
 
     def close_subscription(self, subscription: Subscription[Any]) -> None:
         """Take a subscription back."""
-        self._do(lambda engine: engine.close_endpoint(subscription))
+        self._mirror(lambda engine: engine.close_endpoint(subscription))
 
     def open_service(self, service: Service[Any, Any]) -> None:
         """Mirror a service."""
-        self._do(lambda engine: engine.open_service(service))
+        self._mirror(lambda engine: engine.open_service(service))
 
     def close_service(self, service: Service[Any, Any]) -> None:
         """Take a service back."""
-        self._do(lambda engine: engine.close_endpoint(service))
+        self._mirror(lambda engine: engine.close_endpoint(service))
 
     def open_client(self, client: Client[Any, Any]) -> None:
         """Mirror a client."""
-        self._do(lambda engine: engine.open_client(client))
+        self._mirror(lambda engine: engine.open_client(client))
 
     def close_client(self, client: Client[Any, Any]) -> None:
         """Take a client back."""
-        self._do(lambda engine: engine.close_endpoint(client))
+        self._mirror(lambda engine: engine.close_endpoint(client))
 
     def remote_nodes(self) -> Sequence[NodeIdentity]:
         """The nodes of other processes, as far as discovery has come."""
@@ -183,6 +198,11 @@ class DdsTransport:
         if self._engine is not None:
             self._engine.abandon()
             self._engine = None
+
+    def _mirror(self, work: Callable[[Engine], None]) -> None:
+        """Have something done about what this process has."""
+        if not self._only_looks:
+            self._do(work)
 
     def _do(self, work: Callable[[Engine], None]) -> None:
         """Have something done in the thread that makes and deletes, in the order of asking."""

@@ -8,6 +8,7 @@ the member that rosidl gives it). The content of samples never goes through thes
 
 from __future__ import annotations
 
+from hashlib import md5
 from importlib import import_module
 from threading import RLock
 from typing import Any
@@ -113,8 +114,61 @@ def struct_class(type_name: str, members: dict[str, Any]) -> Any:
     short = type_name.rpartition("::")[2]
     described: Any = make_idl_struct(short, type_name.replace("::", "."), members, dataclassify=False)
     described.__idl__.populate()
-    described.__idl__.fill_type_data()
+    if members:
+        described.__idl__.fill_type_data()
+    else:
+        described.__idl__._xt_bytedata = empty_type_data(type_name)
     return described
+
+
+_MINIMAL = bytes.fromhex("f1510100 01000000 00000000 04000000 00000000")
+_COMPLETE = bytes.fromhex("f2510100")
+_NO_MEMBERS = bytes.fromhex("04000000 00000000")
+_MINIMAL_ID, _COMPLETE_ID = 0x40001001, 0x40001002
+
+
+def empty_type_data(type_name: str) -> tuple[bytes, bytes]:
+    """TypeInformation and TypeMapping of a final structure without members (DDS-XTypes 1.3, 7.3.4 and 7.6.3.2.2).
+
+    Cyclone's Python package makes the same, for which it imports classes of all of XTypes: that takes longer than to
+    join a domain and to find everybody in it.
+
+    Args:
+        type_name: its DDS name.
+
+    Returns:
+        Both as XCDR2, little-endian, without header.
+    """
+    name = type_name.encode() + b"\0"
+    complete = _COMPLETE + _number(8 + len(name)) + _number(0) + _number(len(name)) + name
+    complete += bytes(-len(complete) % 4) + _NO_MEMBERS
+    information = _with_dependencies(_MINIMAL_ID, _MINIMAL) + _with_dependencies(_COMPLETE_ID, complete)
+    same = _number(1) + _type_id(complete) + _type_id(_MINIMAL)
+    return _sized(information), _pair(_MINIMAL) + _pair(complete) + _sized(same)
+
+
+def _with_dependencies(member_id: int, type_object: bytes) -> bytes:
+    """A TypeIdentifierWithDependencies, a mutable member."""
+    sized_id = _sized(_type_id(type_object) + b"\0" + _number(len(type_object) + 4))
+    return _number(member_id) + _sized(_sized(sized_id + _number(0) + _NO_MEMBERS))
+
+
+def _pair(type_object: bytes) -> bytes:
+    """A sequence of one TypeIdentifierTypeObjectPair."""
+    return _sized(_number(1) + _type_id(type_object) + b"\0" + _sized(type_object))
+
+
+def _type_id(type_object: bytes) -> bytes:
+    """Its EquivalenceHash behind the kind, EK_MINIMAL or EK_COMPLETE."""
+    return type_object[:1] + md5(_sized(type_object), usedforsecurity=False).digest()[:14]
+
+
+def _sized(data: bytes) -> bytes:
+    return _number(len(data)) + data
+
+
+def _number(value: int) -> bytes:
+    return value.to_bytes(4, "little")
 
 
 def _idl_types() -> Any:

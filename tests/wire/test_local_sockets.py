@@ -1,0 +1,76 @@
+"""How many other processes take part in a domain, by the ports that they listen on."""
+
+from __future__ import annotations
+
+import os
+import socket
+import sys
+
+import pytest
+
+from linkwright.wire.dds.local_sockets import multicast_port, other_processes
+
+DOMAIN = 7
+FIRST = multicast_port(DOMAIN)
+
+on_linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="looks into /proc")
+
+
+@pytest.fixture
+def tables(tmp_path):
+    """Writes the system's tables, of sockets at these ports."""
+
+    def write(*ports: int, **inodes: int) -> object:
+        lines = ["  sl  local_address rem_address   st ..."]
+        for number, port in enumerate(ports):
+            inode = inodes.get(f"p{port}", 1_000_000_000 + number)
+            lines.append(f" {number}: 00000000:{port:04X} 00000000:0000 07 0:0 00:0 0 0 0 {inode} 2 0000 0")
+        (tmp_path / "udp").write_text("\n".join(lines) + "\n")
+        (tmp_path / "udp6").write_text(lines[0] + "\n")
+        return tmp_path
+
+    return write
+
+
+@on_linux
+@pytest.mark.parametrize(
+    ("ports", "count"),
+    [
+        ((), 0),
+        ((FIRST, FIRST + 1, FIRST + 10, FIRST + 11), 1),  # as Cyclone and Fast DDS listen
+        ((FIRST, FIRST + 10, FIRST, FIRST + 12, FIRST, FIRST + 14), 3),
+        ((FIRST + 10, FIRST + 11, FIRST + 30), 2),  # on unicast alone
+        ((FIRST, FIRST), 2),  # on multicast alone, with unicast ports of the system's choice
+        ((FIRST + 10, FIRST, FIRST), 2),
+        ((FIRST - 250, FIRST + 250, 53, 5353), 0),  # other domains, and what is not DDS
+    ],
+)
+def test_processes_are_counted_by_their_ports(tables, ports, count):
+    assert other_processes(DOMAIN, tables(*ports)) == count
+
+
+@on_linux
+def test_sockets_of_this_process_do_not_count(tables):
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as own:
+        inode = os.fstat(own.fileno()).st_ino
+        assert other_processes(DOMAIN, tables(FIRST, **{f"p{FIRST}": inode})) == 0
+
+
+def test_where_the_system_has_no_tables_the_number_is_not_known(tmp_path):
+    assert other_processes(DOMAIN, tmp_path) is None
+
+
+@on_linux
+def test_a_table_that_is_written_otherwise_tells_nothing(tmp_path):
+    (tmp_path / "udp").write_text("sl\nsomething else\n")
+    (tmp_path / "udp6").write_text("sl\n")
+    assert other_processes(DOMAIN, tmp_path) is None
+
+
+@on_linux
+def test_the_system_tells_of_another_process(processes, programs, domain):
+    assert other_processes(domain) == 0
+    programs("our_program", "one")
+    assert other_processes(domain) == 1
+    processes("ours")  # has sockets as well, of this process
+    assert other_processes(domain) == 1

@@ -1,0 +1,111 @@
+"""Transports that only look: for verbs that ask what there is and speak to nobody."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import textwrap
+
+import pytest
+
+from linkwright.graph import Graph
+from linkwright.messages import String
+from linkwright.wire.dds import join
+from linkwright.wire.dds import transport as module
+from tests.waiting import SECONDS, wait_until
+
+on_linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="the system does not tell who is there")
+
+
+@pytest.fixture
+def looking():
+    graph = Graph(threads=True)
+    transport = join(graph, only_looks=True)
+    assert transport is not None
+    assert transport.wait_until_ready(SECONDS)
+    yield graph, transport
+    graph.close_now()
+
+
+@pytest.fixture
+def never_quiet(monkeypatch):
+    """Nobody concludes from silence that all have answered."""
+    monkeypatch.setattr(module, "SETTLED_AFTER", float("inf"))
+
+
+def test_it_sees_others_and_is_not_seen(looking, processes):
+    graph, _ = looking
+    node = graph.create_node("looks")
+    node.create_publisher(String, "unheard", 10)
+    others = processes("others")
+    others.node.create_subscription(String, "chatter", print, 10)
+    assert others.transport.wait_until_ready(SECONDS)
+    wait_until(lambda: graph.count_subscribers("/chatter") == 1)
+    seen_by = processes("third")
+    seen_by.spin_until(lambda: seen_by.node.count_subscribers("chatter") == 1)
+    assert sorted(name for name, _ in seen_by.node.get_node_names_and_namespaces()) == ["others", "third"]
+    assert seen_by.node.count_publishers("unheard") == 0
+
+
+@on_linux
+def test_alone_it_has_nothing_to_wait_for(looking, never_quiet):
+    _, transport = looking
+    assert transport.wait_for_discovery(SECONDS)
+
+
+@on_linux
+def test_where_all_are_known_it_waits_no_longer(programs, never_quiet):
+    programs("our_program", "one")
+    programs("our_program", "two")
+    graph = Graph(threads=True)
+    transport = join(graph, only_looks=True)
+    assert transport is not None
+    assert transport.wait_for_discovery(SECONDS)
+    assert {node.name for node in transport.remote_nodes()} == {"one", "two"}
+    assert graph.count_publishers("/chatter") == 0
+    graph.close_now()
+
+
+@on_linux
+def test_somebody_who_has_not_answered_is_waited_for(looking, monkeypatch):
+    _, transport = looking
+    here = 1
+    monkeypatch.setattr(module, "other_processes", lambda _domain: here)
+    assert not transport._knows_everybody()
+    here = 0
+    assert transport._knows_everybody()
+
+
+@pytest.mark.parametrize("range_name", ["SUBNET", "LOCALHOST"])
+def test_beyond_the_own_machine_the_system_cannot_tell(range_name, monkeypatch):
+    monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", range_name)
+    monkeypatch.setattr(module, "other_processes", lambda _domain: 0)
+    graph = Graph(threads=True)
+    transport = join(graph, only_looks=True)
+    assert transport is not None
+    assert not transport._knows_everybody()
+    graph.close_now()
+
+
+def test_neither_numpy_nor_what_it_does_not_use_of_cyclone_is_imported():
+    code = """
+        import sys
+        from linkwright.graph import Graph
+        from linkwright.wire.dds import join
+
+        graph = Graph(threads=True)
+        graph.create_node("looks")
+        transport = join(graph, only_looks=True)
+        assert transport.wait_until_ready(60)
+        graph.close_now()
+        costly = ("numpy", "cyclonedds.pub", "cyclonedds.qos", "cyclonedds.idl._xt_builder", "urllib.request")
+        print([name for name in costly if name in sys.modules])
+        import cyclonedds
+        from cyclonedds import core
+        from cyclonedds.pub import DataWriter
+        print(cyclonedds.pub.DataWriter is DataWriter, cyclonedds.core is core, hasattr(cyclonedds, "nothing"))
+    """
+    done = subprocess.run(
+        [sys.executable, "-c", textwrap.dedent(code)], capture_output=True, text=True, check=False, timeout=SECONDS
+    )
+    assert (done.stdout, done.stderr) == ("[]\nTrue True False\n", "")
