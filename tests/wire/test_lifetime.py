@@ -7,6 +7,7 @@ import textwrap
 import threading
 import time
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -53,6 +54,30 @@ def test_closing_twice_and_before_being_ready_is_fine(processes):
     transport.close()
     transport.close()
     assert transport.remote_nodes() == []
+
+
+def test_a_domain_that_is_joined_after_joining_was_given_up_is_left_again(processes, monkeypatch):
+    from linkwright.wire.dds import engine, join, open_domains, transport
+
+    may_join, engines = threading.Event(), []
+
+    class Late(engine.Engine):
+        def __init__(self, *arguments: Any) -> None:
+            assert may_join.wait(SECONDS)
+            super().__init__(*arguments)
+            engines.append(self)
+
+    monkeypatch.setattr(engine, "Engine", Late)
+    monkeypatch.setattr(transport, "_JOINED_WITHIN", 0.0)
+    us = processes("ours", join_now=False)
+    joining = join(us.graph)
+    joining.close()
+    assert not engines
+    may_join.set()
+    joining._starter.join(SECONDS)
+    assert [each._participant.closed for each in engines] == [True]
+    assert open_domains._opened == {}
+    assert not joining.wait_until_ready(SECONDS)
 
 
 @pytest.mark.parametrize("seconds", [0.0, 0.05, 0.1, 0.15, 0.2])

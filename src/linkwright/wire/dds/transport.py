@@ -59,6 +59,8 @@ class DdsTransport:
         self._work: deque[Callable[[Engine], None]] = deque()
         self._decided = threading.Event()
         self._closed = False
+        self._joining = threading.Lock()
+        self._has_left = False
         self._joined_at = 0.0
         self.problem: LinkwrightError | None = None
         """Why the domain could not be joined; None when it could, or was not tried yet."""
@@ -185,9 +187,11 @@ class DdsTransport:
         _open_transports.discard(self)
         if self._starter.ident is not None:  # Ctrl-C may have come before it was started
             self._starter.join(_JOINED_WITHIN)
-        if self._engine is not None:
-            self._engine.close()
-            self._engine = None
+        with self._joining:
+            self._has_left = True
+            engine, self._engine = self._engine, None
+        if engine is not None:
+            engine.close()
         self._work.clear()
 
     # --- inside ------------------------------------------------------------------------------------------------------
@@ -218,10 +222,15 @@ class DdsTransport:
             # Imported in this thread because loading Cyclone takes 0.15 s.
             from linkwright.wire.dds.engine import Engine
 
-            self._engine = Engine(self._settings, self._remote, self._work, self._logger)
-            self._joined_at = time.monotonic()
-            self._engine.start()
-            self._engine.wake()
+            engine = Engine(self._settings, self._remote, self._work, self._logger)
+            with self._joining:
+                if not self._has_left:
+                    self._engine = engine
+                    self._joined_at = time.monotonic()
+                    engine.start()
+                    engine.wake()
+            if self._has_left:  # `close` has given this thread up
+                engine.close()
         except LinkwrightError as error:
             self.problem = error
             self._work.clear()
