@@ -53,7 +53,7 @@ def deserialize(data: bytes | bytearray | memoryview, message_class: type[Messag
     if type(data) is not bytes:
         data = bytes(data)
     little = data[:2] == _LITTLE
-    read = message_class._read if little else _reader_for(data, message_class)  # type: ignore[attr-defined]
+    read = message_class._read if little else _reader_for(data, message_class)  # type: ignore[attr-defined]  # of Message
     try:
         message: MessageT = read(data)
     except READ_FAULTS as fault:

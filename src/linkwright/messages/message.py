@@ -53,7 +53,7 @@ class Message:
         from linkwright.messages.cdr_writer import compile_writer
 
         cls = type(self)
-        cls._write = compile_writer(cls._definition)  # type: ignore[method-assign, assignment]
+        cls._write = compile_writer(cls._definition)  # type: ignore[method-assign, assignment]  # for this class, from now on
         return self._write()
 
     @classmethod
@@ -62,7 +62,7 @@ class Message:
         from linkwright.messages.cdr_reader import compile_reader
 
         reader = compile_reader(cls._definition, cls._class_of)
-        cls._read = staticmethod(reader)  # type: ignore[assignment]
+        cls._read = staticmethod(reader)  # type: ignore[assignment]  # for this class, from now on
         return reader(data)
 
     @classmethod

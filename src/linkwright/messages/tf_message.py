@@ -201,7 +201,7 @@ class TFMessage(Message):
 
 
 # What rclpy's users find there; the slots above are fixed by now.
-TFMessage.__slots__ = ("_transforms",)  # type: ignore[assignment]
+TFMessage.__slots__ = ("_transforms",)  # type: ignore[assignment]  # of another length
 
 add_class(TFMessage)
 

@@ -13,10 +13,10 @@ from pathlib import Path
 from typing import Any
 
 from colcon_core.environment import create_environment_scripts  # type: ignore[import-untyped]  # it ships no types
-from colcon_core.logging import colcon_logger  # type: ignore[import-untyped]
-from colcon_core.shell import create_environment_hook  # type: ignore[import-untyped]
-from colcon_core.task import TaskExtensionPoint, create_file, install  # type: ignore[import-untyped]
-from colcon_ros.package_identification.ros import RosPackageIdentification  # type: ignore[import-untyped]
+from colcon_core.logging import colcon_logger  # type: ignore[import-untyped]  # likewise
+from colcon_core.shell import create_environment_hook  # type: ignore[import-untyped]  # likewise
+from colcon_core.task import TaskExtensionPoint, create_file, install  # type: ignore[import-untyped]  # likewise
+from colcon_ros.package_identification.ros import RosPackageIdentification  # type: ignore[import-untyped]  # likewise
 
 from linkwright.diagnostics import SourceText
 from linkwright.packages import MANIFEST

@@ -135,9 +135,8 @@ class _KindLoader(Loader):
             return found
 
         module.__doc__ = f"The {kind} interfaces of {package}."
-        module.__getattr__ = load  # type: ignore[method-assign]  # PEP 562
-        module.__dir__ = lambda: sorted({*names, *vars(module)})  # type: ignore[method-assign]
-        module.__all__ = list(names)  # type: ignore[attr-defined]
+        own_names = {"__getattr__": load, "__dir__": lambda: sorted({*names, *vars(module)})}  # PEP 562
+        vars(module).update(own_names, __all__=list(names))
 
 
 class _InterfaceLoader(Loader):

@@ -112,9 +112,8 @@ class _Loader:
             setattr(module, name, value)
             return value
 
-        module.__getattr__ = look_up  # type: ignore[method-assign]  # PEP 562
-        module.__dir__ = lambda: sorted({*names, *vars(module)})  # type: ignore[method-assign]
-        module.__all__ = described.public  # type: ignore[attr-defined]
+        own_names = {"__getattr__": look_up, "__dir__": lambda: sorted({*names, *vars(module)})}  # PEP 562
+        vars(module).update(own_names, __all__=described.public)
         for name in described.submodules:
             if name in described.names and described.names[name].origin != table.IMPORT:
                 # A function with the name of its module, which Python would put in its place when that is imported.

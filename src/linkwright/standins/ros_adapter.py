@@ -39,8 +39,8 @@ class ROSAdapter:
         """
         if self._running:
             raise RuntimeError("Cannot start a ROS adapter that is already running")
-        import rclpy  # type: ignore[import-not-found, unused-ignore]
-        from rclpy.executors import SingleThreadedExecutor  # type: ignore[import-not-found, unused-ignore]
+        import rclpy  # type: ignore[import-not-found, unused-ignore]  # a stand-in, or a real ROS 2
+        from rclpy.executors import SingleThreadedExecutor  # type: ignore[import-not-found, unused-ignore]  # likewise
 
         self._context = rclpy.context.Context()
         rclpy.init(args=self._argv, context=self._context)

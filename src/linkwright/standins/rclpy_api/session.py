@@ -90,7 +90,8 @@ def shutdown(*, context: Context | None = None, uninstall_handlers: bool | None 
     """
     _end_global_executor(context)
     default = is_default(context)
-    (get_default_context(shutting_down=True) if default else context).shutdown()  # type: ignore[union-attr]
+    ends = get_default_context(shutting_down=True) if context is None or default else context
+    ends.shutdown()
     if uninstall_handlers or (uninstall_handlers is None and default):
         uninstall_signal_handlers()
 
